@@ -1,0 +1,34 @@
+# Two commands do all the set-up: `make demo` and `make test`. Everything lives in .venv.
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+STAMP  := $(VENV)/.installed
+
+.PHONY: demo test lint types fuzz docs clean
+
+$(STAMP): pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	touch $@
+
+demo: $(STAMP)  ## check the shipped missions and draw them
+	$(BIN)/bigactors demo --out demo
+
+test: lint types $(STAMP)  ## everything that must hold
+	$(BIN)/python -m pytest -n 2 -q
+
+lint: $(STAMP)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(STAMP)
+	$(BIN)/mypy
+
+fuzz: $(STAMP)  ## 100,000 mutated missions (about an hour)
+	BIGACTORS_FUZZ=100000 $(BIN)/python -m pytest -n 2 -q -m fuzz
+
+docs: $(STAMP)  ## write the generated pages of docs/
+	$(BIN)/python -m bigactors.docs
+
+clean:
+	rm -rf $(VENV) demo dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

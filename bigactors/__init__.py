@@ -1,0 +1,3 @@
+"""Logical-space programming."""
+
+__version__ = "0.1.0"

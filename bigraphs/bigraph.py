@@ -1,0 +1,208 @@
+"""Concrete bigraphs: a place graph and a link graph over the same nodes, as one immutable value.
+
+Places are numbered: a node counts from 0, and region `r` is `~r` (-1, -2, ...), so that a parent is one integer. A link
+is the number of an edge or, as a string, an outer name. A node may have several parents: that is sharing (Sevegnani and
+Calder). A name identifies its node; nodes without a name, and all edges, are anonymous.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+from bigraphs import wellformed
+from bigraphs.interface import Interface
+from bigraphs.signature import Signature
+
+Place: TypeAlias = int
+Link: TypeAlias = int | str
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """One node: its control, its name if it has one, the link of each port, and its parents."""
+
+    control: str
+    name: str | None = None
+    ports: tuple[Link, ...] = ()
+    parents: tuple[Place, ...] = (~0,)
+
+    def __str__(self) -> str:
+        return f"{self.name}:{self.control}" if self.name else self.control
+
+
+@dataclass(frozen=True, slots=True)
+class Bigraph:
+    """A bigraph in normal order; build it with `assemble`, `from_relations`, the algebra or a notation.
+
+    `sites` holds the parents of each site, `inner_links` the link of each inner name, sorted. Two bigraphs whose nodes
+    all have names are equal if they are the same bigraph; for anonymous nodes compare `canonical` forms. The operators
+    are `|` merge product, `//` parallel product, `*` tensor product, `@` composition.
+    """
+
+    signature: Signature
+    nodes: tuple[Node, ...] = ()
+    regions: int = 0
+    sites: tuple[tuple[Place, ...], ...] = ()
+    edges: int = 0
+    inner_links: tuple[tuple[str, Link], ...] = ()
+    outer_names: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        wellformed.check(self)
+
+    @property
+    def inner(self) -> Interface:
+        """Return the face that sites and inner names make."""
+        return Interface(len(self.sites), tuple(name for name, _ in self.inner_links))
+
+    @property
+    def outer(self) -> Interface:
+        """Return the face that regions and outer names make."""
+        return Interface(self.regions, self.outer_names)
+
+    def __or__(self, other: Bigraph) -> Bigraph:
+        from bigraphs.algebra import merge_product  # noqa: PLC0415 - the algebra is built on values
+
+        return merge_product(self, other)
+
+    def __floordiv__(self, other: Bigraph) -> Bigraph:
+        from bigraphs.algebra import parallel  # noqa: PLC0415 - the algebra is built on values
+
+        return parallel(self, other)
+
+    def __mul__(self, other: Bigraph) -> Bigraph:
+        from bigraphs.algebra import tensor  # noqa: PLC0415 - the algebra is built on values
+
+        return tensor(self, other)
+
+    def __matmul__(self, other: Bigraph) -> Bigraph:
+        from bigraphs.algebra import compose  # noqa: PLC0415 - the algebra is built on values
+
+        return compose(self, other)
+
+    def __str__(self) -> str:
+        from bigraphs.text import draw_text  # noqa: PLC0415 - drawing is built on values
+
+        return draw_text(self)
+
+
+def link_key(link: Link) -> tuple[bool, Link]:
+    """Order edges before names."""
+    return isinstance(link, str), link
+
+
+def find(bigraph: Bigraph, name: str) -> int | None:
+    """Return the number of the node so named, or None."""
+    return next((number for number, node in enumerate(bigraph.nodes) if node.name == name), None)
+
+
+def children(bigraph: Bigraph) -> dict[Place, list[int]]:
+    """Return the nodes in each place, sorted; every place has an entry."""
+    found: dict[Place, list[int]] = {place: [] for place in range(-bigraph.regions, len(bigraph.nodes))}
+    for number, node in enumerate(bigraph.nodes):
+        for parent in node.parents:
+            found[parent].append(number)
+    return found
+
+
+def sites_in(bigraph: Bigraph) -> dict[Place, list[int]]:
+    """Return the sites in each place that has any, sorted."""
+    found: dict[Place, list[int]] = {}
+    for site, parents in enumerate(bigraph.sites):
+        for parent in parents:
+            found.setdefault(parent, []).append(site)
+    return found
+
+
+def points(bigraph: Bigraph) -> dict[Link, list[tuple[int, int]]]:
+    """Return the (node, port) pairs on each link, sorted; idle links have an empty list."""
+    found: dict[Link, list[tuple[int, int]]] = {link: [] for link in links(bigraph)}
+    for number, node in enumerate(bigraph.nodes):
+        for port, link in enumerate(node.ports):
+            found[link].append((number, port))
+    return found
+
+
+def links(bigraph: Bigraph) -> list[Link]:
+    """Return every link: edges, then outer names."""
+    return [*range(bigraph.edges), *bigraph.outer_names]
+
+
+def moved(node: Node, places: Callable[[Place], Iterable[Place]], links: Callable[[Link], Link]) -> Node:
+    """Return the node with its parents and links mapped."""
+    parents = tuple({target: None for parent in node.parents for target in places(parent)})
+    return replace(node, parents=parents, ports=tuple(map(links, node.ports)))
+
+
+def assemble(
+    signature: Signature,
+    nodes: Sequence[Node],
+    *,
+    regions: int = 1,
+    sites: Sequence[Iterable[Place]] = (),
+    edges: int = 0,
+    inner_links: Mapping[str, Link] | None = None,
+    outer_names: Iterable[str] = (),
+) -> Bigraph:
+    """Return the bigraph in normal order; raises BigraphError if it is none.
+
+    Named nodes come first, sorted by name; anonymous ones follow in the order given. Parents are sorted, and edges are
+    numbered by their points, so that the order in which a bigraph was put together leaves no trace.
+    """
+    given = Bigraph(
+        signature,
+        tuple(nodes),
+        regions,
+        tuple(tuple(sorted(set(parents))) for parents in sites),
+        edges,
+        tuple(sorted((inner_links or {}).items())),
+        tuple(sorted(set(outer_names))),
+    )
+    return normal(given, sorted(range(len(nodes)), key=lambda number: _name_key(nodes[number], number)))
+
+
+def _name_key(node: Node, number: int) -> tuple[bool, str, int]:
+    return node.name is None, node.name or "", number
+
+
+def normal(bigraph: Bigraph, order: Sequence[int]) -> Bigraph:
+    """Return the same bigraph with its nodes in this order, and everything else sorted."""
+    rank = {number: place for place, number in enumerate(order)}
+    edge_rank = _edge_ranks(bigraph, rank)
+
+    def place(old: Place) -> tuple[Place]:
+        return (rank.get(old, old),)
+
+    def link(old: Link) -> Link:
+        return edge_rank[old] if isinstance(old, int) else old
+
+    renamed = [_tidy(bigraph.signature, moved(bigraph.nodes[number], place, link)) for number in order]
+    return replace(
+        bigraph,
+        nodes=tuple(renamed),
+        sites=tuple(tuple(sorted(rank.get(old, old) for old in parents)) for parents in bigraph.sites),
+        inner_links=tuple((name, link(old)) for name, old in bigraph.inner_links),
+    )
+
+
+def _tidy(signature: Signature, node: Node) -> Node:
+    ports = node.ports if signature[node.control].ordered else tuple(sorted(node.ports, key=link_key))
+    return replace(node, parents=tuple(sorted(node.parents)), ports=ports)
+
+
+def _edge_ranks(bigraph: Bigraph, rank: Mapping[int, int]) -> dict[int, int]:
+    """Number edges by their points; edges with the same points are interchangeable."""
+    at: list[list[tuple[int, int]]] = [[] for _ in range(bigraph.edges)]
+    for number, node in enumerate(bigraph.nodes):
+        ordered = bigraph.signature[node.control].ordered
+        for port, link in enumerate(node.ports):
+            if isinstance(link, int):
+                at[link].append((rank[number], port if ordered else 0))
+    within: list[list[str]] = [[] for _ in range(bigraph.edges)]
+    for name, link in bigraph.inner_links:
+        if isinstance(link, int):
+            within[link].append(name)
+    by_points = sorted(range(bigraph.edges), key=lambda edge: (sorted(at[edge]), within[edge]))
+    return {edge: place for place, edge in enumerate(by_points)}

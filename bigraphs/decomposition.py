@@ -1,0 +1,145 @@
+"""Taking a match apart: target = context ∘ (redex ⊗ identity) ∘ parameter, with every name accounted for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from bigraphs.algebra import compose, identity, tensor
+from bigraphs.bigraph import Bigraph, Link, Place, assemble, children, moved
+from bigraphs.interface import Interface
+from bigraphs.matching import Match
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What a match leaves around its redex.
+
+    The first regions of `parameter` go into the redex's sites; the `spare` ones after them (only shared places need
+    any) and the names `wires` pass by the redex into `context`. `instance` is the redex with the target's node names.
+    """
+
+    context: Bigraph
+    instance: Bigraph
+    parameter: Bigraph
+    spare: int
+    wires: tuple[str, ...]
+
+    @property
+    def beside(self) -> Bigraph:
+        """Return the identity that stands beside the redex."""
+        return identity(Interface(self.spare, self.wires))
+
+
+def take_apart(match: Match) -> Parts:
+    """Return context, redex and parameter of a match."""
+    inside = _inside(match)
+    wires = _wires(match, inside)
+    outside = [number for number in range(len(match.target.nodes)) if number not in {*inside, *match.nodes}]
+    spares = [number for number in inside if not set(outside).isdisjoint(_above(match, number))]
+    return Parts(
+        _context(match, outside, spares, wires),
+        _instance(match),
+        _parameter(match, inside, spares, wires),
+        len(spares),
+        tuple(sorted(wires.values())),
+    )
+
+
+def recompose(parts: Parts) -> Bigraph:
+    """Put context, redex and parameter together again: the target."""
+    return compose(parts.context, compose(tensor(parts.instance, parts.beside), parts.parameter))
+
+
+def _inside(match: Match) -> list[int]:
+    """Return the nodes in the sites, sorted."""
+    below = children(match.target)
+    found = {number for tops in match.sites for number in tops}
+    waiting = list(found)
+    while waiting:
+        fresh = set(below[waiting.pop()]) - found
+        found |= fresh
+        waiting.extend(fresh)
+    return sorted(found)
+
+
+def _above(match: Match, number: int) -> tuple[Place, ...]:
+    return match.target.nodes[number].parents
+
+
+def _wires(match: Match, inside: Sequence[int]) -> dict[Link, str]:
+    """Give each link of the parameter a name that the redex does not have."""
+    linked = dict.fromkeys(link for number in inside for link in match.target.nodes[number].ports)
+    taken = set(match.redex.outer_names)
+    fresh = (name for name in map("w{}".format, range(len(linked) + len(taken))) if name not in taken)
+    return dict(zip(linked, fresh, strict=False))
+
+
+def _instance(match: Match) -> Bigraph:
+    redex = match.redex
+    nodes = [
+        replace(node, name=match.target.nodes[image].name)
+        for node, image in zip(redex.nodes, match.nodes, strict=True)
+    ]
+    return assemble(
+        redex.signature,
+        nodes,
+        regions=redex.regions,
+        sites=redex.sites,
+        edges=redex.edges,
+        outer_names=redex.outer_names,
+    )
+
+
+def _context(
+    match: Match, outside: Sequence[int], spares: Sequence[int], wires: Mapping[Link, str]
+) -> Bigraph:
+    """Return what is around the redex; it owns every edge that the redex does not."""
+    target = match.target
+    rank = {number: place for place, number in enumerate(outside)}
+    matched = {image for link, image in match.links if isinstance(link, int)}
+    kept = [edge for edge in range(target.edges) if edge not in matched]
+    edges = {edge: place for place, edge in enumerate(kept)}
+
+    def places(place: Place) -> tuple[Place, ...]:
+        return (place,) if place < 0 else (rank[place],) if place in rank else ()
+
+    def link(old: Link) -> Link:
+        return edges[old] if isinstance(old, int) else old
+
+    passing = {name: link(old) for old, name in wires.items()}
+    wanted = {name: link(image) for name, image in match.links if isinstance(name, str)}
+    around = [*match.regions, *(_above(match, number) for number in spares)]
+    return assemble(
+        target.signature,
+        [moved(target.nodes[number], places, link) for number in outside],
+        regions=target.regions,
+        sites=[[found for place in above for found in places(place)] for above in around],
+        edges=len(kept),
+        inner_links=passing | wanted,
+        outer_names=target.outer_names,
+    )
+
+
+def _parameter(
+    match: Match, inside: Sequence[int], spares: Sequence[int], wires: Mapping[Link, str]
+) -> Bigraph:
+    """Return what is in the sites, one region each, then one region per node that is in the context, too."""
+    rank = {number: place for place, number in enumerate(inside)}
+    regions: dict[int, list[Place]] = {number: [] for number in inside}
+    for site, tops in enumerate(match.sites):
+        for number in tops:
+            regions[number].append(~site)
+    for spare, number in enumerate(spares):
+        regions[number].append(~(len(match.sites) + spare))
+    nodes = []
+    for number in inside:
+        node = match.target.nodes[number]
+        within = (*regions[number], *(rank[place] for place in node.parents if place in rank))
+        nodes.append(replace(node, parents=within, ports=tuple(wires[link] for link in node.ports)))
+    return assemble(
+        match.target.signature,
+        nodes,
+        regions=len(match.sites) + len(spares),
+        outer_names=wires.values(),
+    )

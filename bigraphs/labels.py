@@ -1,0 +1,31 @@
+"""How people are told which node, link or place is meant, wherever a bigraph is shown."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from bigraphs.bigraph import Bigraph, Link
+
+
+def node_labels(bigraph: Bigraph) -> tuple[str, ...]:
+    """Return one label per node, all different: its name, else its control, numbered if there are several."""
+    kinds = Counter(node.control for node in bigraph.nodes if node.name is None)
+    taken = {node.name for node in bigraph.nodes}
+    seen: Counter[str] = Counter()
+    found: list[str] = []
+    for node in bigraph.nodes:
+        if node.name is not None:
+            found.append(node.name)
+            continue
+        seen[node.control] += 1
+        plain = kinds[node.control] == 1 and node.control not in taken
+        label = node.control if plain else f"{node.control}#{seen[node.control]}"
+        while label in taken:
+            label += "'"
+        found.append(label)
+    return tuple(found)
+
+
+def link_label(link: Link) -> str:
+    """Return an outer name, or `/n` for edge n."""
+    return link if isinstance(link, str) else f"/{link}"

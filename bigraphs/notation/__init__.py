@@ -1,0 +1,1 @@
+"""Texts of bigraphs, read and written; each notation is one module."""

@@ -1,0 +1,127 @@
+"""From bigraphs to BigraphER's notation: an expression that elaborates to an equal bigraph."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from bigraphs.bigraph import Bigraph, Link, Node, Place, children, sites_in
+from bigraphs.errors import BigraphError
+from bigraphs.notation.big_printer import format_expression
+from bigraphs.notation.big_syntax import (
+    Chain,
+    Close,
+    Expression,
+    Identity,
+    Ion,
+    Nest,
+    NewNames,
+    Number,
+    Placed,
+    Share,
+    Substitute,
+    Wired,
+)
+
+
+def write_big(bigraph: Bigraph) -> str:
+    """Write a bigraph of anonymous nodes; raises BigraphError for a named node, which this notation cannot say.
+
+    >>> from bigraphs.relations import from_relations
+    >>> from dataclasses import replace
+    >>> one = from_relations({"u": "UAV", "a": "Area"}, {"u": "a"}, {"net": ["u"]})
+    >>> write_big(replace(one, nodes=tuple(replace(node, name=None) for node in one.nodes)))
+    'Area.UAV{net}.1'
+    """
+    return format_expression(expression_of(bigraph))
+
+
+def expression_of(bigraph: Bigraph) -> Expression:
+    """Return an expression of a bigraph: closures, then places side by side, then wires."""
+    for node in bigraph.nodes:
+        if node.name is not None:
+            raise BigraphError("notation", f"this notation cannot name a node, as {node}", "use the paper's notation")
+    edges = _edge_names(bigraph)
+    shared = any(len(parents) > 1 for parents in [*(node.parents for node in bigraph.nodes), *bigraph.sites])
+    places = _layers(bigraph, edges) if shared else _nested(bigraph, edges)
+    parts = [*places, *_wires(bigraph, edges)]
+    body = _chain("||", parts) if parts else Number(0)
+    return Wired(tuple(Close((name,)) for name in edges), body) if edges else body
+
+
+def _edge_names(bigraph: Bigraph) -> list[str]:
+    taken = {*bigraph.outer_names, *(name for name, _ in bigraph.inner_links)}
+    free = (name for name in map("e{}".format, range(bigraph.edges + len(taken))) if name not in taken)
+    return [name for _, name in zip(range(bigraph.edges), free, strict=False)]
+
+
+def _named(link: Link, edges: Sequence[str]) -> str:
+    return link if isinstance(link, str) else edges[link]
+
+
+def _chain(operator: str, parts: Sequence[Expression]) -> Expression:
+    return Chain(parts[0], tuple((operator, part) for part in parts[1:])) if len(parts) > 1 else parts[0]
+
+
+def _wires(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
+    """Return substitutions for inner names, and what is idle."""
+    grouped: dict[str, list[str]] = {}
+    for name, link in bigraph.inner_links:
+        grouped.setdefault(_named(link, edges), []).append(name)
+    used = {_named(link, edges) for node in bigraph.nodes for link in node.ports} | set(grouped)
+    idle = tuple(name for name in (*bigraph.outer_names, *edges) if name not in used)
+    wires: list[Expression] = [Substitute(outer, tuple(inner)) for outer, inner in sorted(grouped.items())]
+    return [*wires, NewNames(idle)] if idle else wires
+
+
+def _ion(node: Node, edges: Sequence[str]) -> Ion:
+    return Ion(node.control, tuple(_named(link, edges) for link in node.ports))
+
+
+def _nested(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
+    """Return one expression per region; where sites are not in order, all of them composed with a permutation."""
+    inside, sited = children(bigraph), sites_in(bigraph)
+    written: list[int] = []
+
+    def within(place: Place) -> Expression:
+        parts: list[Expression] = []
+        for child in inside[place]:
+            ion = _ion(bigraph.nodes[child], edges)
+            atomic = bigraph.signature[ion.control].status == "atomic"
+            parts.append(ion if atomic else Nest(ion, within(child)))
+        written.extend(sited.get(place, ()))
+        parts.extend(Identity() for _ in sited.get(place, ()))
+        return _chain("|", parts) if parts else Number(1)
+
+    regions = [within(~region) for region in range(bigraph.regions)]
+    if written == sorted(written):
+        return regions
+    rank = {site: place for place, site in enumerate(written)}
+    order = Placed(tuple((rank[site],) for site in range(len(written))), len(written))
+    return [Chain(_chain("||", regions), (("*", order),))]
+
+
+def _layers(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
+    """Return shared places layer by layer: each layer's nodes are put into slots that the layers before left open."""
+    slots: list[Place] = [~region for region in range(bigraph.regions)]
+    found: Expression = Identity(len(slots))
+    waiting = list(range(len(bigraph.nodes)))
+    while waiting:
+        layer = [number for number in waiting if set(bigraph.nodes[number].parents) <= set(slots)]
+        found = _layer(bigraph, edges, layer, slots, found)
+        open_ = [n for n in layer if bigraph.signature[bigraph.nodes[n].control].status != "atomic"]
+        slots = [*open_, *slots]
+        waiting = [number for number in waiting if number not in layer]
+    rank = {place: slot for slot, place in enumerate(slots)}
+    sites = Placed(tuple(tuple(rank[place] for place in parents) for parents in bigraph.sites), len(slots))
+    return [Chain(found, (("*", sites),))]
+
+
+def _layer(
+    bigraph: Bigraph, edges: Sequence[str], layer: Sequence[int], slots: Sequence[Place], where: Expression
+) -> Expression:
+    rank = {place: slot for slot, place in enumerate(slots)}
+    ions: list[Expression] = [_ion(bigraph.nodes[number], edges) for number in layer]
+    parents = [tuple(rank[place] for place in bigraph.nodes[number].parents) for number in layer]
+    passing = [(slot,) for slot in range(len(slots))]
+    what = _chain("||", [*ions, Identity(len(slots))])
+    return Share(what, Placed((*parents, *passing), len(slots)), where)

@@ -1,0 +1,83 @@
+"""Bounded reading: what every notation checks before, and says after, lark reads a text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any, Final
+
+from lark import Lark
+from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
+
+from bigraphs.errors import NotationError
+
+MAX_BYTES: Final = 1_000_000
+MAX_NESTING: Final = 200
+MAX_TOKEN: Final = 10_000
+
+_STEPS: Final = re.compile(r"[()]|\.|\|\|?|-->|->|[;,=]|[^\W\d]\w*|/")
+_RESETS: Final = frozenset({"|", "||", "->", "-->", ";", ",", "="})
+
+
+def read(parser: Lark, text: str, words: Mapping[str, str], start: str) -> Any:  # noqa: ANN401 - lark's tree
+    """Parse `text` from `start`; raises NotationError, in `words`, at the first thing that does not fit.
+
+    The parser must build its values while it parses, so that depth costs no recursion.
+    """
+    check_bounds(text)
+    try:
+        return parser.parse(text, start=start)
+    except UnexpectedInput as found:
+        raise _explain(found, text, words) from None
+
+
+def check_bounds(text: str) -> None:
+    """Refuse a text over a megabyte, a word over ten kilobytes, and nesting over 200, in linear time."""
+    if len(text) > MAX_BYTES or len(text.encode("utf-8", "surrogatepass")) > MAX_BYTES:
+        hint = "split it, or write it as relations (from_relations)"
+        raise NotationError("too-long", "the text is longer than 1 MB", text, 0, hint=hint)
+    for word in re.finditer(rf"[^\s.|(){{}}\[\],;/]{{{MAX_TOKEN + 1},}}", text):
+        raise NotationError("too-long", "a word is longer than 10 kB", text, word.start())
+    _check_nesting(text)
+
+
+def _check_nesting(text: str) -> None:
+    depth, outer = 0, [0]
+    for step in _STEPS.finditer(text):
+        symbol = step.group()
+        if symbol == "(":
+            depth += 1
+            outer.append(depth)
+        elif symbol == ")":
+            depth = outer.pop() if len(outer) > 1 else 0
+        elif symbol in _RESETS:
+            depth = outer[-1]
+        elif symbol in "./":
+            depth += 1
+        if depth > MAX_NESTING:
+            message = f"nesting deeper than {MAX_NESTING}"
+            raise NotationError("too-deep", message, text, step.start(), hint="name inner parts apart")
+
+
+def _explain(found: UnexpectedInput, text: str, words: Mapping[str, str]) -> NotationError:
+    if isinstance(found, UnexpectedToken):
+        names = found.accepts or found.expected
+        at_end = found.token.type == "$END"
+        offset = len(text.rstrip()) if at_end else found.token.start_pos or 0
+        seen = "the text ends" if at_end else f"found '{_short(str(found.token))}'"
+        length = 1 if at_end else len(found.token)
+    else:
+        names = found.allowed if isinstance(found, UnexpectedCharacters) else set()
+        offset, length = found.pos_in_stream or 0, 1
+        seen = f"found {_short(text[offset : offset + 1])!r}"
+    expected = sorted({words[name] for name in names or () if name in words})
+    message = f"{seen}, expected {_one_of(expected)}" if expected else f"{seen}, which fits nothing here"
+    return NotationError("syntax", message, text, offset, length=length)
+
+
+def _short(token: str) -> str:
+    return token if len(token) <= 40 else token[:37] + "..."
+
+
+def _one_of(words: list[str]) -> str:
+    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " or " + words[-1]

@@ -1,0 +1,48 @@
+"""Applying a match: the reactum takes the redex's place in the same context."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from bigraphs.algebra import compose, lean, tensor
+from bigraphs.bigraph import Bigraph, assemble
+from bigraphs.decomposition import take_apart
+from bigraphs.instantiation import instantiate
+from bigraphs.matching import Match
+from bigraphs.rules import ReactionRule, matches
+
+
+def rewrite(rule: ReactionRule, match: Match) -> Bigraph:
+    """Return the target with the reactum for the redex, lean (no idle edges, as abstract bigraphs have none).
+
+    Raises BigraphError if a named node would be copied, or created where its name is taken.
+    """
+    parts = take_apart(match)
+    parameter = instantiate(parts.parameter, rule.instantiation, len(rule.redex.sites))
+    reactum = _with_matched_names(rule, match)
+    return lean(compose(parts.context, compose(tensor(reactum, parts.beside), parameter)))
+
+
+def successors(rule: ReactionRule, target: Bigraph) -> Iterator[tuple[Match, Bigraph]]:
+    """Yield every occurrence with what the rule makes of it."""
+    return ((match, rewrite(rule, match)) for match in matches(rule, target))
+
+
+def _with_matched_names(rule: ReactionRule, match: Match) -> Bigraph:
+    """Return the reactum in which each variable has the name, if any, of the node it matched."""
+    found: dict[str | None, str | None] = {
+        node.name: match.target.nodes[image].name
+        for node, image in zip(rule.redex.nodes, match.nodes, strict=True)
+        if node.name in rule.node_variables
+    }
+    reactum = rule.reactum
+    nodes = [replace(node, name=found.get(node.name, node.name)) for node in reactum.nodes]
+    return assemble(
+        reactum.signature,
+        nodes,
+        regions=reactum.regions,
+        sites=reactum.sites,
+        edges=reactum.edges,
+        outer_names=reactum.outer_names,
+    )

@@ -1,0 +1,71 @@
+"""Reaction rules: what is looked for, what is put in its place, and what becomes of the sites."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from bigraphs.algebra import parallel, substitution
+from bigraphs.bigraph import Bigraph
+from bigraphs.errors import BigraphError
+from bigraphs.matching import Match, find_matches
+
+
+@dataclass(frozen=True, slots=True)
+class ReactionRule:
+    """A parametric reaction rule; build it with `rule`.
+
+    Site `i` of the reactum is filled with what site `instantiation[i]` of the redex held. A named redex node matches
+    its namesake only, unless its name is among `node_variables`: then it matches any node, and the same name in the
+    reactum is that node. An outer name of the redex stands for any link, unless it is among `link_constants`.
+    """
+
+    redex: Bigraph
+    reactum: Bigraph
+    instantiation: tuple[int, ...]
+    name: str = ""
+    node_variables: frozenset[str] = frozenset()
+    link_constants: frozenset[str] = frozenset()
+
+    def __post_init__(self) -> None:
+        _ = self.redex.signature | self.reactum.signature
+        if self.redex.outer != self.reactum.outer:
+            found = f"the redex shows {self.redex.outer}, the reactum {self.reactum.outer}"
+            raise BigraphError(
+                "rule", found, "give both the same regions, and every name of the reactum to the redex"
+            )
+        if self.redex.inner_links or self.reactum.inner_links:
+            raise BigraphError("rule", "a rule has sites, but no inner names")
+        self._check_instantiation()
+
+    def _check_instantiation(self) -> None:
+        given, wanted = len(self.instantiation), len(self.reactum.sites)
+        if given != wanted:
+            hint = "name a site of the redex for each site of the reactum"
+            raise BigraphError("rule", f"the reactum has {wanted} sites, {given} are instantiated", hint)
+        for site in self.instantiation:
+            if not 0 <= site < len(self.redex.sites):
+                raise BigraphError("rule", f"the redex has no site {site}")
+
+
+def rule(
+    redex: Bigraph,
+    reactum: Bigraph,
+    instantiation: tuple[int, ...] | None = None,
+    *,
+    name: str = "",
+    node_variables: frozenset[str] = frozenset(),
+    link_constants: frozenset[str] = frozenset(),
+) -> ReactionRule:
+    """Return a rule; names that the reactum lacks are idle in it, and sites stay in order unless told otherwise."""
+    for missing in sorted(set(redex.outer_names) - set(reactum.outer_names)):
+        reactum = parallel(reactum, substitution(missing, ()))
+    order = tuple(range(len(reactum.sites))) if instantiation is None else instantiation
+    return ReactionRule(redex, reactum, order, name, node_variables, link_constants)
+
+
+def matches(rule: ReactionRule, target: Bigraph) -> Iterator[Match]:
+    """Yield every occurrence of the rule's redex in a ground bigraph."""
+    return find_matches(
+        rule.redex, target, node_variables=rule.node_variables, link_constants=rule.link_constants
+    )

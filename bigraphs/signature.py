@@ -1,0 +1,84 @@
+"""Controls: the kinds of node, and what each allows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Literal, TypeAlias
+
+from bigraphs.errors import BigraphError
+
+Status: TypeAlias = Literal["active", "passive", "atomic"]
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """A kind of node.
+
+    `arity` is the number of its ports, None for any number. Rules apply inside *active* nodes only; an *atomic* one
+    contains nothing. Ports that are not `ordered` are interchangeable, as in BigraphER.
+    """
+
+    name: str
+    arity: int | None = None
+    status: Status = "active"
+    ordered: bool = True
+
+    def __post_init__(self) -> None:
+        if not self.name:
+            raise BigraphError("control", "a control without a name")
+        if self.arity is not None and self.arity < 0:
+            raise BigraphError(
+                "arity", f"control '{self.name}' has the arity {self.arity}", "count ports from 0"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """A set of controls, sorted by name."""
+
+    controls: tuple[Control, ...] = ()
+
+    def __post_init__(self) -> None:
+        ordered = tuple(sorted(self.controls, key=lambda control: control.name))
+        for one, other in zip(ordered, ordered[1:], strict=False):
+            if one.name == other.name:
+                raise BigraphError("control", f"control '{one.name}' is declared twice")
+        object.__setattr__(self, "controls", ordered)
+
+    def __getitem__(self, name: str) -> Control:
+        found = _by_name(self).get(name)
+        if found is None:
+            known = ", ".join(control.name for control in self.controls) or "none"
+            raise BigraphError("control", f"unknown control '{name}'", f"the signature has {known}")
+        return found
+
+    def __contains__(self, name: str) -> bool:
+        return name in _by_name(self)
+
+    def __or__(self, other: Signature) -> Signature:
+        """Return both, where they agree on the controls that they share."""
+        if self is other or not other.controls:
+            return self
+        return _union(self, other) if self.controls else other
+
+
+def open_signature(names: Iterable[str]) -> Signature:
+    """Return active controls of any arity, with interchangeable ports."""
+    return Signature(tuple(Control(name, ordered=False) for name in sorted(set(names))))
+
+
+@lru_cache(maxsize=256)
+def _by_name(signature: Signature) -> dict[str, Control]:
+    return {control.name: control for control in signature.controls}
+
+
+@lru_cache(maxsize=256)
+def _union(one: Signature, other: Signature) -> Signature:
+    merged = _by_name(one) | _by_name(other)
+    for control in one.controls:
+        if merged[control.name] != control:
+            hint = "give both bigraphs one signature"
+            raise BigraphError("control", f"control '{control.name}' is declared in two different ways", hint)
+    return one if len(merged) == len(one.controls) else Signature(tuple(merged.values()))

@@ -1,0 +1,62 @@
+"""The physical model: geometry, altitude and channels of what is on the WGS 84 earth, and where it may move.
+
+It reads and writes GeoJSON and waypoint files. It knows nothing of bigraphs, agents or missions. AIS
+recordings are read by `physical.ais` and its neighbours, which need the extra `ais`.
+"""
+
+from physical.altitude import Band, band_contains
+from physical.containment import Conflict, Place, PlaceIndex, check_places, holds
+from physical.drift import Face, drift_faces, face_at
+from physical.errors import GeometryError, PhysicalError
+from physical.geojson import GeoJSONError, read_geojson, write_geojson
+from physical.measure import area, centroid, distance, interior_point, waypoint
+from physical.mobility import JoinChannel, LeaveChannel, MobilityCommand, Waypoint, go_to, rechannel
+from physical.placement import nearest_placement, translate_to
+from physical.property import PhysicalProperty, Velocity
+from physical.shape import Geometry, box, circle, contains, equal, overlaps, point, polygon
+from physical.waypoints import MissionItem, read_waypoints, waypoint_places, write_waypoints
+
+__all__ = [
+    "Band",
+    "Conflict",
+    "Face",
+    "GeoJSONError",
+    "Geometry",
+    "GeometryError",
+    "JoinChannel",
+    "LeaveChannel",
+    "MissionItem",
+    "MobilityCommand",
+    "PhysicalError",
+    "PhysicalProperty",
+    "Place",
+    "PlaceIndex",
+    "Velocity",
+    "Waypoint",
+    "area",
+    "band_contains",
+    "box",
+    "centroid",
+    "check_places",
+    "circle",
+    "contains",
+    "distance",
+    "drift_faces",
+    "equal",
+    "face_at",
+    "go_to",
+    "holds",
+    "interior_point",
+    "nearest_placement",
+    "overlaps",
+    "point",
+    "polygon",
+    "read_geojson",
+    "read_waypoints",
+    "rechannel",
+    "translate_to",
+    "waypoint",
+    "waypoint_places",
+    "write_geojson",
+    "write_waypoints",
+]

@@ -1,0 +1,258 @@
+"""The finite quotient of a drift within a place (semantics.md, *The environment*).
+
+Where a mover may be is cut along the borders of all places (for a point), or along those of their Minkowski
+erosions by the mover (for a convex polygon); within one *cell* of this arrangement all its relations are
+the same. Two cells are adjacent where they share a border of positive length; the borders themselves are
+left out.
+
+**Cells with equal relations.** Two cells apart from each other may stand in the same relations, such as the
+two sides of a channel. To make them one would let the mover hop across the channel without being seen in
+it: sound for safety, but not exact. They are one here only where no sequence of moves tells them apart
+(bisimilarity), so the quotient is exact, and the coarsest that is.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import combinations, pairwise
+from typing import Final
+
+import shapely
+
+from physical.containment import PlaceIndex
+from physical.errors import GeometryError
+from physical.frame import E7, METRES_PER_DEGREE, TURN, PositionE7, local_frame, rounded
+from physical.measure import centroid, deep_spot
+from physical.placement import is_convex, outline, placed, room, template
+from physical.shape import Geometry, beside, contains, intern, planar
+
+GRID: Final = 0.02
+"""Metres between the spots at which borders may meet: coordinates and edges are exact to half of it."""
+
+CLEARANCE: Final = 0.05
+"""Metres that the representative of a face keeps from borders; what has no room for that is a sliver."""
+
+
+@dataclass(frozen=True, slots=True)
+class Face:
+    """Placements that nothing tells apart, by a representative.
+
+    Attributes:
+        representative: The mover, placed well inside.
+        inside: The names of the places that contain it, sorted.
+        adjacent: The faces into which it may drift from here, by index, ascending.
+    """
+
+    representative: Geometry
+    inside: tuple[str, ...]
+    adjacent: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A connected cell of the arrangement, in the frame of the place drifted in."""
+
+    shape: shapely.Polygon
+    representative: Geometry
+    inside: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Quotient:
+    """Cells, the face of each, and the faces."""
+
+    cells: tuple[Cell, ...]
+    face_of: tuple[int, ...]
+    faces: tuple[Face, ...]
+
+
+def drift_faces(mover: Geometry, within: Geometry, places: Mapping[str, Geometry]) -> tuple[Face, ...]:
+    """Return the faces of a mover's drift within a place, by representative; none where it doesn't fit.
+
+    Exact for one mover among polygons that stand still. Faces narrower than 10 cm are left out.
+
+    Raises:
+        GeometryError: The mover is a polygon that is not convex, or `within` is a point.
+    """
+    return quotient(mover, within, places).faces
+
+
+def face_at(mover: Geometry, within: Geometry, places: Mapping[str, Geometry]) -> int | None:
+    """Return the index of the face in which a mover is now; None where it isn't within the place.
+
+    On a border it counts to the nearest face with its relations.
+    """
+    if not contains(within, mover):
+        return None
+    found = quotient(mover, within, places)
+    here = shapely.Point(plane_of(mover, within).spot(mover))
+    inside = tuple(sorted(name for name, place in places.items() if contains(place, mover)))
+    alike = [i for i, cell in enumerate(found.cells) if cell.inside == inside]
+    if not alike:
+        return None
+    return found.face_of[min(alike, key=lambda i: (found.cells[i].shape.distance(here), i))]
+
+
+def quotient(mover: Geometry, within: Geometry, places: Mapping[str, Geometry]) -> Quotient:
+    """Return the cells and the faces of a drift; where the mover is now doesn't matter."""
+    _check(mover, within)
+    still = intern(((0, 0),)) if mover.is_point else template(mover)
+    return _quotient(still, within, tuple(sorted(places.items())))
+
+
+@lru_cache(maxsize=1 << 8)
+def _quotient(mover: Geometry, within: Geometry, places: tuple[tuple[str, Geometry], ...]) -> Quotient:
+    plane = plane_of(mover, within)
+    polygons = {name: place for name, place in places if not place.is_point}
+    pieces = _pieces(plane, within, list(polygons.values()))
+    index = PlaceIndex(polygons)
+    found = ((i, _cell(piece, plane, within, index)) for i, piece in enumerate(pieces))
+    cells = {i: cell for i, cell in found if cell is not None}
+    links = _shared_edges(pieces)
+    return _merged(cells, links | _across_slivers(pieces, cells, links))
+
+
+def _check(mover: Geometry, within: Geometry) -> None:
+    if within.is_point:
+        raise GeometryError("drift", f"nothing can drift within {within!r}", "drift within a polygon")
+    if not mover.is_point and not is_convex(outline(template(mover))):
+        raise GeometryError(
+            "not-convex",
+            "a polygon that is not convex cannot drift within a place: faces are known for convex ones only",
+            "list its placements (drifts among), or give its convex hull",
+        )
+
+
+# --- the arrangement ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Plane:
+    """Where an arrangement is computed, in metres.
+
+    Attributes:
+        room: Where the mover's centroid may be for it to be inside a place.
+        put: The mover with its centroid there.
+        spot: Where a geometry's centroid is.
+    """
+
+    room: Callable[[Geometry], shapely.Geometry]
+    put: Callable[[float, float], Geometry]
+    spot: Callable[[Geometry], tuple[float, float]]
+
+
+def plane_of(mover: Geometry, within: Geometry) -> Plane:
+    """Return the plane for a mover.
+
+    For a polygon the metric frame in which it moves rigidly; for a point a plane affine to latitude and
+    longitude, about metric, in which edges stay as straight as they are.
+    """
+    if mover.is_point:
+        return _affine(centroid(within).ring[0], planar(within))
+    frame = local_frame(centroid(within).ring[0])
+    return Plane(
+        lambda place: room(frame.project(planar(place)), mover),
+        lambda x, y: placed(mover, frame, x, y),
+        lambda at: frame.metres(centroid(at).ring[0]),
+    )
+
+
+def _affine(centre: PositionE7, near: shapely.Geometry) -> Plane:
+    north, east = centre
+    up = METRES_PER_DEGREE / E7
+    across = up * max(math.cos(math.radians(north / E7)), 0.01)
+    east += TURN * round((near.centroid.x - east) / TURN)
+
+    def flat(place: Geometry) -> shapely.Geometry:
+        return shapely.transform(beside(near, planar(place)), lambda at: (at - (east, north)) * (across, up))
+
+    return Plane(
+        flat,
+        lambda x, y: intern((rounded((north + y / up) / E7, (east + x / across) / E7),)),
+        lambda at: flat(centroid(at)).coords[0],
+    )
+
+
+def _pieces(plane: Plane, within: Geometry, places: Sequence[Geometry]) -> list[shapely.Polygon]:
+    """Return the polygons into which all borders cut the plane, as far as they meet the place drifted in."""
+    space = plane.room(within)
+    rooms = [found for found in map(plane.room, places) if found.intersects(space)]
+    borders = shapely.union_all([shape.boundary for shape in (space, *rooms)], grid_size=GRID)
+    return [piece for piece in shapely.get_parts(shapely.polygonize([borders])) if piece.intersects(space)]
+
+
+def _cell(piece: shapely.Polygon, plane: Plane, within: Geometry, index: PlaceIndex) -> Cell | None:
+    """Return the cell that a piece is; None where the piece is a sliver or outside the place drifted in."""
+    spot = deep_spot(piece, CLEARANCE)
+    if spot is None:
+        return None
+    representative = plane.put(*spot)
+    if not contains(within, representative):
+        return None
+    return Cell(piece, representative, tuple(sorted(index.containers(representative))))
+
+
+# --- adjacency ------------------------------------------------------------------------------------
+
+Links = frozenset[tuple[int, int]]
+"""Adjacent pieces, by index, the lesser first."""
+
+
+def _shared_edges(pieces: Sequence[shapely.Polygon]) -> Links:
+    """Return which pieces of one arrangement share an edge; it has been cut at every vertex."""
+    owners: dict[frozenset[tuple[float, float]], list[int]] = {}
+    for i, piece in enumerate(pieces):
+        for ring in (piece.exterior, *piece.interiors):
+            for edge in pairwise(ring.coords):
+                owners.setdefault(frozenset(edge), []).append(i)
+    return frozenset((min(pair), max(pair)) for pair in owners.values() if len(pair) == 2)
+
+
+def _across_slivers(pieces: Sequence[shapely.Polygon], cells: Mapping[int, Cell], links: Links) -> Links:
+    """Return which cells face each other across a sliver, along a metre or so."""
+    slivers = {i for i, piece in enumerate(pieces) if deep_spot(piece, CLEARANCE) is None}
+    beside_one = sorted({i for link in links if slivers & set(link) for i in link if i in cells})
+    reach = 4 * CLEARANCE
+    grown = {i: pieces[i].buffer(reach) for i in beside_one}
+    return frozenset(
+        (i, j)
+        for i, j in combinations(beside_one, 2)
+        if grown[i].intersects(pieces[j]) and grown[i].intersection(pieces[j]).area > 4 * reach**2
+    )
+
+
+# --- cells made faces -----------------------------------------------------------------------------
+
+
+def _merged(cells: Mapping[int, Cell], links: Links) -> Quotient:
+    near = {i: frozenset(a + b - i for a, b in links if i in (a, b)) & cells.keys() for i in cells}
+    classes = _bisimilar(cells, near)
+    largest = {
+        name: max((i for i in cells if classes[i] == name), key=lambda i: (round(cells[i].shape.area), -i))
+        for name in set(classes.values())
+    }
+    order = sorted(largest, key=lambda name: cells[largest[name]].representative)
+    rank = {name: position for position, name in enumerate(order)}
+    faces = tuple(
+        _face(cells[largest[name]], {rank[classes[j]] for j in near[largest[name]]}) for name in order
+    )
+    kept = sorted(cells)
+    return Quotient(tuple(cells[i] for i in kept), tuple(rank[classes[i]] for i in kept), faces)
+
+
+def _face(cell: Cell, adjacent: set[int]) -> Face:
+    return Face(cell.representative, cell.inside, tuple(sorted(adjacent)))
+
+
+def _bisimilar(cells: Mapping[int, Cell], near: Mapping[int, frozenset[int]]) -> dict[int, int]:
+    """Return the class of each cell: equal relations, and moves into the same classes."""
+    classes: dict[int, int] = {}
+    signatures: dict[int, object] = {i: cells[i].inside for i in cells}
+    while len(set(signatures.values())) > len(set(classes.values())):
+        numbers: dict[object, int] = {}
+        classes = {i: numbers.setdefault(signatures[i], len(numbers)) for i in sorted(cells)}
+        signatures = {i: (classes[i], frozenset(classes[j] for j in near[i])) for i in cells}
+    return classes

@@ -1,0 +1,322 @@
+"""GeoJSON (RFC 7946) feature collections, read and written as physical properties.
+
+`properties.name` and `properties.kind` say what a feature is; `altitude` ([low, high], metres), `channels`,
+`carried_by` and, of a Point, `radius_m` (which makes it a circle) may be there. Other members are left alone;
+a position's third number is no band of altitudes and is ignored. Edges are straight in longitude and
+latitude, as here (§3.1.1). What crosses the antimeridian is written cut (§3.1.9) and joined again when read.
+A moved polygon is written as its vertices: what it is a placement of is not.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Final, NoReturn
+
+import shapely
+from shapely.affinity import translate
+
+from physical.altitude import Band
+from physical.errors import PhysicalError
+from physical.frame import E7, TURN, PositionE7
+from physical.property import PhysicalProperty
+from physical.shape import Geometry, canonical, circle, planar, point, polygon
+
+MAX_BYTES: Final = 10_000_000
+MAX_FEATURES: Final = 10_000
+MAX_VERTICES: Final = 100_000
+MAX_WORD: Final = 200
+
+Json = Mapping[str, object]
+
+
+class GeoJSONError(PhysicalError):
+    """A mistake in a GeoJSON text; `problems` has every one that was found, each with its feature."""
+
+    def __init__(self, problems: Sequence[PhysicalError]) -> None:
+        first = problems[0]
+        super().__init__(first.code, first.message, first.hint, first.where)
+        self.problems = tuple(problems)
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.problems))
+
+
+def read_geojson(text: str | bytes) -> tuple[PhysicalProperty, ...]:
+    """Return the physical properties of a feature collection, in its order.
+
+    Raises:
+        GeoJSONError: With all problems of all features.
+    """
+    features = _features(_parsed(text))
+    found: list[PhysicalProperty] = []
+    problems: list[PhysicalError] = []
+    for index, feature in enumerate(features):
+        try:
+            found.append(_property(feature))
+        except PhysicalError as problem:
+            where = f"feature {index}{_label(feature)}"
+            problems.append(PhysicalError(problem.code, problem.message, problem.hint, where))
+    problems += _repeated(found)
+    if problems:
+        raise GeoJSONError(problems)
+    return tuple(found)
+
+
+def write_geojson(properties: Iterable[PhysicalProperty]) -> str:
+    """Return a feature collection of physical properties, sorted by name."""
+    features = [_feature(item) for item in sorted(properties, key=lambda item: item.entity)]
+    return (
+        json.dumps({"type": "FeatureCollection", "features": features}, ensure_ascii=False, indent=1) + "\n"
+    )
+
+
+# --- reading --------------------------------------------------------------------------------------
+
+
+def _fail(code: str, message: str, hint: str = "") -> NoReturn:
+    raise PhysicalError(code, message, hint)
+
+
+def _parsed(text: str | bytes) -> object:
+    if len(text) > MAX_BYTES:
+        raise GeoJSONError(
+            [PhysicalError("too-large", f"the text is over {MAX_BYTES:,} bytes", "simplify it")]
+        )
+    try:
+        return json.loads(
+            text if isinstance(text, str) else text.decode("utf-8-sig"), parse_constant=_constant
+        )
+    except UnicodeDecodeError as problem:
+        message = f"the text is not UTF-8: byte {problem.start} is not valid"
+        raise GeoJSONError([PhysicalError("encoding", message, "save it as UTF-8")]) from None
+    except RecursionError:
+        raise GeoJSONError([PhysicalError("json", "the text is nested too deeply")]) from None
+    except ValueError as problem:
+        raise GeoJSONError([PhysicalError("json", f"the text is not JSON: {problem}")]) from None
+
+
+def _constant(name: str) -> NoReturn:
+    raise ValueError(f"{name} is no number")
+
+
+def _features(collection: object) -> Sequence[object]:
+    try:
+        if not isinstance(collection, dict) or collection.get("type") != "FeatureCollection":
+            _fail(
+                "collection",
+                "the text is no FeatureCollection",
+                'write {"type": "FeatureCollection", "features": [...]}',
+            )
+        _check_crs(collection.get("crs"))
+        features = collection.get("features")
+        if not isinstance(features, list):
+            _fail("collection", "the collection has no list of features", 'write "features": [...]')
+        if len(features) > MAX_FEATURES:
+            _fail(
+                "too-large",
+                f"the collection has over {MAX_FEATURES:,} features",
+                "leave out what plays no part",
+            )
+        if sum(map(_count, features)) > MAX_VERTICES:
+            _fail("too-large", f"the collection has over {MAX_VERTICES:,} vertices", "simplify its borders")
+    except PhysicalError as problem:
+        raise GeoJSONError([problem]) from None
+    return features
+
+
+def _check_crs(crs: object) -> None:
+    """Refuse another coordinate system than WGS 84, as GeoJSON allowed before RFC 7946."""
+    named = json.dumps(crs)
+    if crs is not None and "CRS84" not in named and "4326" not in named:
+        _fail("crs", f"the coordinates are not WGS 84 but {named:.80}", "convert them: RFC 7946 has no other")
+
+
+def _count(feature: object) -> int:
+    """Count the positions of a feature without trusting its shape."""
+    open_lists = [feature.get("geometry")] if isinstance(feature, dict) else []
+    open_lists = [part.get("coordinates") for part in open_lists if isinstance(part, dict)]
+    count = 0
+    while open_lists:
+        part = open_lists.pop()
+        if isinstance(part, list):
+            count += not isinstance(part[0] if part else None, list)
+            open_lists += [inner for inner in part if isinstance(inner, list)]
+    return count
+
+
+def _label(feature: object) -> str:
+    properties = feature.get("properties") if isinstance(feature, dict) else None
+    name = properties.get("name") if isinstance(properties, dict) else None
+    return f" ({name:.60})" if isinstance(name, str) else ""
+
+
+def _repeated(found: Sequence[PhysicalProperty]) -> list[PhysicalError]:
+    counted = Counter(item.entity for item in found)
+    return [
+        PhysicalError("duplicate-name", f"{count} features have the name {name}", "names are unique")
+        for name, count in counted.items()
+        if count > 1
+    ]
+
+
+def _property(feature: object) -> PhysicalProperty:
+    if not isinstance(feature, dict) or feature.get("type") != "Feature":
+        _fail(
+            "feature", "this is no Feature", 'write {"type": "Feature", "geometry": ..., "properties": ...}'
+        )
+    properties = feature.get("properties")
+    if not isinstance(properties, dict):
+        _fail("properties", "the feature has no properties", 'write at least "name" and "kind"')
+    return PhysicalProperty(
+        entity=_word(properties, "name"),
+        kind=_word(properties, "kind"),
+        geometry=_geometry(feature.get("geometry"), properties.get("radius_m")),
+        altitude=_altitude(properties.get("altitude")),
+        channels=_channels(properties.get("channels")),
+        carried_by=None if properties.get("carried_by") is None else _word(properties, "carried_by"),
+    )
+
+
+def _word(properties: Json, member: str) -> str:
+    value = properties.get(member)
+    if value is None:
+        _fail(member, f"the feature has no {member}", f'write "{member}" into its properties')
+    if not isinstance(value, str) or not value.strip() or len(value) > MAX_WORD or not value.isprintable():
+        _fail(member, f"the {member} {value!r:.60} is no word", f"write a text of 1 to {MAX_WORD} characters")
+    return value
+
+
+def _altitude(value: object) -> Band | None:
+    if value is None:
+        return None
+    if not isinstance(value, list) or len(value) != 2:
+        _fail("altitude", f"the altitude {value!r:.60} is no band", "write [low, high], in metres")
+    return Band(*value)
+
+
+def _channels(value: object) -> tuple[str, ...]:
+    if value is None:
+        return ()
+    if not isinstance(value, list):
+        _fail("channels", f"the channels {value!r:.60} are no list", 'write ["wifi", ...]')
+    return tuple(_word({"channel": channel}, "channel") for channel in value)
+
+
+def _geometry(geometry: object, radius: object) -> Geometry:
+    kind = geometry.get("type") if isinstance(geometry, dict) else None
+    coordinates = geometry.get("coordinates") if isinstance(geometry, dict) else None
+    if kind == "Point":
+        at = _position(coordinates)
+        return point(*at) if radius is None else circle(at, radius)  # type: ignore[arg-type]  # circle checks it
+    if radius is not None:
+        _fail("radius", "only a Point can have a radius_m", "leave it out, or write the centre as a Point")
+    if kind == "Polygon":
+        return polygon(_ring(coordinates))
+    if kind == "MultiPolygon":
+        return _joined(_list(coordinates))
+    return _fail(
+        "geometry",
+        "the feature has no geometry" if kind is None else f"a {kind!s:.40} is neither a Point nor a Polygon",
+        "write one feature for each Point and each Polygon",
+    )
+
+
+def _list(value: object) -> list[object]:
+    return (
+        value if isinstance(value, list) else _fail("coordinates", f"{value!r:.60} is no list of coordinates")
+    )
+
+
+def _position(value: object) -> tuple[float, float]:
+    if not isinstance(value, list) or len(value) not in (2, 3):
+        _fail("not-a-position", f"{value!r:.60} is no position", "write [longitude, latitude], in degrees")
+    return value[1], value[0]
+
+
+def _ring(value: object) -> list[tuple[float, float]]:
+    rings = _list(value)
+    if len(rings) > 1:
+        _fail(
+            "hole",
+            f"the polygon has {len(rings) - 1} hole(s)",
+            "write what is in the hole as a place of its own",
+        )
+    positions = [_position(vertex) for vertex in _list(rings[0] if rings else None)]
+    if not positions or positions[0] != positions[-1]:
+        _fail("open-ring", "the polygon's ring is not closed", "repeat its first position at its end")
+    return positions
+
+
+def _joined(parts: Sequence[object]) -> Geometry:
+    """Return the polygon that was cut along the antimeridian (RFC 7946 §3.1.9)."""
+    found = [planar(polygon(_ring(part))) for part in parts]
+    west = [_turned_east(shape) for shape in found]
+    whole = shapely.union_all(west) if _cut(west) else None
+    if whole is None or whole.geom_type != "Polygon" or whole.interiors:
+        _fail(
+            "geometry",
+            f"a MultiPolygon of {len(parts)} parts that are not one polygon cut along the antimeridian",
+            "write one feature for each Polygon",
+        )
+    return canonical(
+        _without_cuts([(round(north), round(east)) for east, north in whole.exterior.coords[:-1]])
+    )
+
+
+def _turned_east(shape: shapely.Polygon) -> shapely.Polygon:
+    return translate(shape, TURN) if shape.bounds[0] == -TURN // 2 else shape
+
+
+def _cut(parts: Sequence[shapely.Polygon]) -> bool:
+    """Whether every part ends at the antimeridian, on one side or the other."""
+    sides = {(part.bounds[0] == TURN // 2, part.bounds[2] == TURN // 2) for part in parts}
+    return sides == {(True, False), (False, True)}
+
+
+def _without_cuts(ring: list[PositionE7]) -> list[PositionE7]:
+    """Leave out vertices on the antimeridian that the cut has put amid an edge, to a unit of rounding."""
+    around = zip(ring[-1:] + ring[:-1], ring, ring[1:] + ring[:1], strict=True)
+    return [here for before, here, after in around if here[1] != TURN // 2 or not _amid(before, here, after)]
+
+
+def _amid(a: PositionE7, b: PositionE7, c: PositionE7) -> bool:
+    run = c[1] - a[1]
+    return (a[1] < b[1]) != (c[1] < b[1]) and abs((b[0] - a[0]) * run - (c[0] - a[0]) * (b[1] - a[1])) <= abs(
+        run
+    )
+
+
+# --- writing --------------------------------------------------------------------------------------
+
+
+def _feature(item: PhysicalProperty) -> Json:
+    known = {
+        "name": item.entity,
+        "kind": item.kind,
+        "altitude": None if item.altitude is None else [item.altitude.low, item.altitude.high],
+        "channels": list(item.channels) or None,
+        "carried_by": item.carried_by,
+    }
+    properties = {name: value for name, value in known.items() if value is not None}
+    return {"type": "Feature", "properties": properties, "geometry": _written(item.geometry)}
+
+
+def _written(geometry: Geometry) -> Json:
+    shape = planar(geometry)
+    if geometry.is_point:
+        return {"type": "Point", "coordinates": [shape.x / E7, shape.y / E7]}
+    half = TURN // 2
+    if shape.bounds[2] <= half:
+        return {"type": "Polygon", "coordinates": _rings(shape)}
+    _, south, _, north = shape.bounds
+    east = shapely.intersection(shape, shapely.box(-half, south, half, north))
+    west = translate(shapely.intersection(shape, shapely.box(half, south, 2 * TURN, north)), -TURN)
+    parts = [part for side in (east, west) for part in shapely.get_parts(side) if part.geom_type == "Polygon"]
+    return {"type": "MultiPolygon", "coordinates": [_rings(part) for part in parts]}
+
+
+def _rings(shape: shapely.Polygon) -> list[list[list[float]]]:
+    ring = shapely.geometry.polygon.orient(shape).exterior.coords
+    return [[[round(east) / E7, round(north) / E7] for east, north in ring]]

@@ -1,0 +1,25 @@
+"""Geometry in one import: what it is, how it is related, what it measures, where it is put."""
+
+from physical.errors import GeometryError
+from physical.measure import area, centroid, distance, interior_point, waypoint
+from physical.placement import nearest_placement, translate_to
+from physical.shape import Geometry, box, circle, contains, equal, overlaps, point, polygon
+
+__all__ = [
+    "Geometry",
+    "GeometryError",
+    "area",
+    "box",
+    "centroid",
+    "circle",
+    "contains",
+    "distance",
+    "equal",
+    "interior_point",
+    "nearest_placement",
+    "overlaps",
+    "point",
+    "polygon",
+    "translate_to",
+    "waypoint",
+]

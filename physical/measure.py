@@ -1,0 +1,129 @@
+"""Metres of geometries: area, distance, centroid and the waypoints that follow from them."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from itertools import pairwise
+from typing import Final
+
+import shapely
+
+from physical.errors import GeometryError
+from physical.frame import E7, PositionE7, equal_area, geod, local_frame, rounded
+from physical.shape import Geometry, contains, intern, planar
+
+_GAUSS: Final = (
+    (0.019855071751231912, 0.05061426814518853),
+    (0.10166676129318664, 0.11119051722668721),
+    (0.2372337950418355, 0.15685332293894344),
+    (0.4082826787521751, 0.18134189168918083),
+    (0.5917173212478248, 0.18134189168918083),
+    (0.7627662050579645, 0.15685332293894344),
+    (0.8983332387068134, 0.11119051722668721),
+    (0.9801449282487681, 0.05061426814518853),
+)
+"""Nodes and weights of Gauss-Legendre quadrature on [0, 1]."""
+
+
+@lru_cache(maxsize=1 << 16)
+def area(geometry: Geometry) -> float:
+    """Return the area on the ellipsoid in square metres; a point has none.
+
+    The edges are straight in latitude and longitude, so the area is an integral of the equal-area
+    projection's height along each of them.
+    """
+    if geometry.is_point:
+        return 0.0
+    edges = list(pairwise(planar(geometry).exterior.coords))
+    norths = [a[1] + t * (b[1] - a[1]) for a, b in edges for t, _ in _GAUSS]
+    _, heights = equal_area()([0.0] * len(norths), [north / E7 for north in norths])
+    base = min(heights)  # differences to it keep their digits in a small polygon
+    means = [
+        sum(weight * (heights[8 * i + j] - base) for j, (_, weight) in enumerate(_GAUSS))
+        for i in range(len(edges))
+    ]
+    metres_per_unit = equal_area()(1.0, 0.0)[0] / E7
+    return float(
+        abs(sum((b[0] - a[0]) * mean for (a, b), mean in zip(edges, means, strict=True))) * metres_per_unit
+    )
+
+
+@lru_cache(maxsize=1 << 16)
+def distance(a: Geometry, b: Geometry) -> float:
+    """Return the metres between the nearest points of two geometries, 0 where they meet."""
+    if a.is_point and b.is_point:
+        return _between(a.ring[0], b.ring[0])
+    frame = local_frame(_middle(a))
+    for _ in range(2):  # near where they are nearest, the frame is exact
+        line = shapely.shortest_line(frame.project(planar(a)), frame.project(planar(b)))
+        (x1, y1), (x2, y2) = line.coords
+        nearest = frame.position(x1, y1), frame.position(x2, y2)
+        frame = local_frame(frame.position((x1 + x2) / 2, (y1 + y2) / 2))
+    return 0.0 if line.length == 0.0 else _between(*nearest)
+
+
+def _between(a: PositionE7, b: PositionE7) -> float:
+    metres: float = geod().inv(a[1] / E7, a[0] / E7, b[1] / E7, b[0] / E7)[2]
+    return metres
+
+
+def _middle(geometry: Geometry) -> PositionE7:
+    west, south, east, north = planar(geometry).bounds
+    return rounded((south + north) / 2 / E7, (west + east) / 2 / E7)
+
+
+@lru_cache(maxsize=1 << 16)
+def centroid(geometry: Geometry) -> Geometry:
+    """Return the centre of area; of a moved polygon, the point to which it was moved."""
+    if geometry.is_point:
+        return geometry
+    if geometry.anchor is not None:
+        return intern((geometry.anchor,))
+    centre = _middle(geometry)
+    for _ in range(2):  # seen from the middle of the bounds, then from the centroid itself
+        frame = local_frame(centre)
+        found = frame.project(planar(geometry)).centroid
+        centre = frame.position(found.x, found.y)
+    return intern((centre,))
+
+
+@lru_cache(maxsize=1 << 16)
+def interior_point(geometry: Geometry) -> Geometry:
+    """Return a point well inside a polygon; of a point, itself."""
+    if geometry.is_point:
+        return geometry
+    frame = local_frame(_middle(geometry))
+    spot = deep_spot(frame.project(planar(geometry)), 0.001)
+    inside = spot and intern((frame.position(*spot),))
+    if not inside or not contains(geometry, inside):
+        raise GeometryError(
+            "too-thin",
+            f"no position on the grid of 1 cm lies inside {geometry!r}",
+            "widen the place to a metre or more",
+        )
+    return inside
+
+
+def deep_spot(shape: shapely.Polygon, clearance: float) -> tuple[float, float] | None:
+    """Return a spot of a polygon about as far from its border as any; None if no farther than `clearance`.
+
+    The middle of what is left when the border is moved inwards as far as possible, in steps of a fifth.
+    """
+    west, south, east, north = shape.bounds
+    depth = min(east - west, north - south) / 2
+    while depth > clearance:
+        core = max(
+            shapely.get_parts(shape.buffer(-depth, quad_segs=2)), key=lambda part: part.area, default=None
+        )
+        if core is not None and not core.is_empty:
+            middle = core.centroid
+            spot = middle if core.contains(middle) else core.representative_point()
+            return (spot.x, spot.y)
+        depth *= 0.8
+    return None
+
+
+def waypoint(geometry: Geometry) -> Geometry:
+    """Return where to send what should go there: the centroid if it lies inside, else an interior point."""
+    middle = centroid(geometry)
+    return middle if geometry.is_point or contains(geometry, middle) else interior_point(geometry)

@@ -1,0 +1,58 @@
+"""Mobility commands: what a vehicle is told (paper §3.2.3, Figure 6)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from physical.altitude import Band
+from physical.errors import PhysicalError
+from physical.measure import waypoint
+from physical.property import PhysicalProperty
+from physical.shape import Geometry
+
+
+@dataclass(frozen=True, slots=True)
+class Waypoint:
+    """Go to a point, within a band of altitudes if one is given."""
+
+    entity: str
+    point: Geometry
+    altitude: Band | None = None
+
+    def __post_init__(self) -> None:
+        if not self.point.is_point:
+            raise PhysicalError("waypoint", f"{self.point!r} is no point", "take the waypoint of the polygon")
+
+
+@dataclass(frozen=True, slots=True)
+class JoinChannel:
+    """Begin to use a channel."""
+
+    entity: str
+    channel: str
+
+
+@dataclass(frozen=True, slots=True)
+class LeaveChannel:
+    """Cease to use a channel."""
+
+    entity: str
+    channel: str
+
+
+MobilityCommand = Waypoint | JoinChannel | LeaveChannel
+
+
+def go_to(entity: str, target: PhysicalProperty) -> Waypoint:
+    """Return the command that moves an entity to a target: the centroid of its polygon, if that is inside."""
+    return Waypoint(entity, waypoint(target.geometry), target.altitude)
+
+
+def rechannel(entity: str, before: tuple[str, ...], after: tuple[str, ...]) -> tuple[MobilityCommand, ...]:
+    """Return the commands that change an entity's channels: those to leave, then those to join, sorted."""
+    leave = sorted(set(before) - set(after))
+    join = sorted(set(after) - set(before))
+    return (
+        *(LeaveChannel(entity, channel) for channel in leave),
+        *(JoinChannel(entity, channel) for channel in join),
+    )

@@ -1,0 +1,181 @@
+"""Where a mover is put: translated as a rigid shape, in the local metric frame of the place that it moves in.
+
+A mover is a point or a polygon. A polygon keeps its metric shape (to the frame's 4e-5 at 100 km) and its
+heading in the frame; every placement is computed from the polygon as first given, so nothing accumulates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from itertools import pairwise
+from typing import Final
+
+import shapely
+
+from physical.errors import GeometryError
+from physical.frame import Frame, local_frame
+from physical.measure import centroid
+from physical.shape import Geometry, beside, canonical, contains, intern, planar
+
+MARGINS: Final = (0.05, 0.5, 5.0)
+"""Metres that a placement keeps from borders: the first with which it stands as it should after rounding."""
+
+MAX_PIECES: Final = 200_000
+"""How many pieces the erosion of a polygon by a mover may have."""
+
+CONVEXITY: Final = 0.03
+"""Metres by which a convex polygon may be dented: its coordinates are rounded to 1 cm."""
+
+Offset = tuple[float, float]
+"""Metres to the east and to the north."""
+
+
+def template(mover: Geometry) -> Geometry:
+    """Return the geometry that a mover is a placement of: itself, if it was never moved."""
+    return mover.template or mover
+
+
+@lru_cache(maxsize=1 << 12)
+def outline(polygon: Geometry) -> tuple[Offset, ...]:
+    """Return the vertices of an unmoved polygon as metres from its centroid; long edges are divided."""
+    frame = local_frame(centroid(polygon).ring[0])
+    return tuple(frame.project(planar(polygon)).exterior.coords[:-1])
+
+
+def placed(mover: Geometry, frame: Frame, x: float, y: float) -> Geometry:
+    """Return the mover with its centroid (rounded to 1e-7 degree) at x and y metres of a frame."""
+    anchor = frame.position(x, y)
+    if mover.is_point:
+        return intern((anchor,))
+    still = template(mover)
+    if centroid(still).ring[0] == anchor:
+        return still
+    east, north = frame.metres(anchor)
+    ring = [frame.position(east + dx, north + dy) for dx, dy in outline(still)]
+    return canonical(ring, still, anchor)
+
+
+def translate_to(mover: Geometry, position: Geometry) -> Geometry:
+    """Return the mover with its centroid at a point, its metric shape and heading preserved."""
+    return placed(mover, local_frame(centroid(position).ring[0]), 0.0, 0.0)
+
+
+def nearest_placement(mover: Geometry, target: Geometry, holes: Sequence[Geometry] = ()) -> Geometry | None:
+    """Return the mover placed nearest to the target's centroid, inside the target and swallowed by no hole.
+
+    A point is swallowed by a hole that it lies in or on the border of; a polygon by one that contains it.
+    The placement keeps 5 cm from every border that bounds it. None where it fits nowhere, or only with less.
+    Of several nearest, the northern-most, then the eastern-most.
+
+    Raises:
+        GeometryError: The borders are too detailed for the mover.
+    """
+    if target.is_point:
+        return None
+    return _nearest(template(mover) if not mover.is_point else _ANY_POINT, target, tuple(sorted(set(holes))))
+
+
+_ANY_POINT: Final = intern(((0, 0),))
+"""Stands for every point: where a point was doesn't matter to where it can be."""
+
+
+@lru_cache(maxsize=1 << 14)
+def _nearest(mover: Geometry, target: Geometry, holes: tuple[Geometry, ...]) -> Geometry | None:
+    frame = local_frame(centroid(target).ring[0])
+    central = _tried(mover, frame, (0.0, 0.0))
+    if _stands(central, target, holes):
+        return central
+    free = _free(mover, frame, target, holes)
+    for margin in MARGINS:
+        spot = _nearest_spot(free.buffer(-margin))
+        if spot is None:
+            return None
+        found = _tried(mover, frame, spot)
+        if _stands(found, target, holes):
+            return found
+    return None
+
+
+def _tried(mover: Geometry, frame: Frame, spot: Offset) -> Geometry | None:
+    try:
+        return placed(mover, frame, *spot)
+    except GeometryError:  # over a pole
+        return None
+
+
+def _stands(mover: Geometry | None, target: Geometry, holes: Iterable[Geometry]) -> bool:
+    return mover is not None and contains(target, mover) and not any(swallows(hole, mover) for hole in holes)
+
+
+def swallows(hole: Geometry, mover: Geometry) -> bool:
+    """Whether a mover is in a hole: a point in or on the border of it, a polygon contained in it."""
+    if not mover.is_point:
+        return contains(hole, mover)
+    fixed = planar(hole)
+    return bool(shapely.intersects(fixed, beside(fixed, planar(mover))))
+
+
+def _free(mover: Geometry, frame: Frame, target: Geometry, holes: Iterable[Geometry]) -> shapely.Geometry:
+    space = frame.project(planar(target))
+    taken = [shape for shape in map(frame.project, map(planar, holes)) if shape.intersects(space)]
+    if not mover.is_point:
+        space, taken = room(space, mover), [room(hole, mover) for hole in taken if hole.geom_type != "Point"]
+    return space.difference(shapely.union_all(taken)) if taken else space
+
+
+def room(space: shapely.Polygon, mover: Geometry) -> shapely.Geometry:
+    """Return where an unmoved mover's centroid may be for it to be inside a polygon in a metric frame.
+
+    The Minkowski erosion: the mover is inside where one of its vertices is, and its border doesn't meet the
+    polygon's.
+    """
+    offsets = outline(mover)
+    dx, dy = offsets[0]
+    return shapely.transform(space, lambda at: at - (dx, dy)).difference(_obstacle(space.boundary, offsets))
+
+
+def _obstacle(border: shapely.Geometry, offsets: Sequence[Offset]) -> shapely.Geometry:
+    """Return where a mover's centroid is when its border (of a convex one, any of it) meets a border."""
+    rings = shapely.get_parts(border)
+    edges = [edge for ring in rings for edge in pairwise(ring.coords)]
+    parts = [offsets] if is_convex(offsets) else list(pairwise([*offsets, offsets[0]]))
+    if len(edges) * len(parts) > MAX_PIECES:
+        raise GeometryError(
+            "too-detailed",
+            f"a border of {len(edges)} edges is too detailed for a mover of {len(offsets)} vertices",
+            "simplify the place or the mover",
+        )
+    swept = [
+        shapely.LineString([(x - dx, y - dy) for x, y in edge for dx, dy in part])
+        for edge in edges
+        for part in parts
+    ]
+    return shapely.union_all(shapely.convex_hull(swept))
+
+
+def is_convex(offsets: Sequence[Offset]) -> bool:
+    """Whether a polygon is convex, but for dents that rounding leaves."""
+    hull = shapely.MultiPoint(offsets).convex_hull.exterior
+    return all(bool(hull.distance(shapely.Point(offset)) <= CONVEXITY) for offset in offsets)
+
+
+def _nearest_spot(free: shapely.Geometry) -> Offset | None:
+    """Return the point of a planar shape nearest to the origin; among equals (to 1 cm) the northern-most."""
+    if free.is_empty:
+        return None
+    if free.contains(shapely.Point(0, 0)):
+        return (0.0, 0.0)
+    edges = [edge for ring in shapely.get_parts(free.boundary) for edge in pairwise(ring.coords)]
+    spots = [_foot(*edge) for edge in edges]
+    least = min(x * x + y * y for x, y in spots) ** 0.5
+    near = [(x, y) for x, y in spots if (x * x + y * y) ** 0.5 <= least + 0.01]
+    return max(near, key=lambda spot: (round(spot[1], 1), round(spot[0], 1)))
+
+
+def _foot(a: tuple[float, float], b: tuple[float, float]) -> Offset:
+    """Return the point of a segment nearest to the origin."""
+    (ax, ay), (dx, dy) = a, (b[0] - a[0], b[1] - a[1])
+    length = dx * dx + dy * dy
+    along = min(1.0, max(0.0, -(ax * dx + ay * dy) / length)) if length else 0.0
+    return (ax + along * dx, ay + along * dy)

@@ -1,0 +1,132 @@
+"""Cells: a configuration is a finite map from cells to values; agents, structure and requests are views over it.
+
+Rules see a configuration only through `read` and `test`, and answer with `Changes`. Whoever wants to know what a rule
+looked at puts another `Cells` in the place of a configuration: nothing in `semantics/` can tell the difference.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import lru_cache
+from typing import Any, Protocol
+
+Cell = tuple[str, ...]
+"""The address of one value: what it is, then whose (`("parent", "uav0")`)."""
+
+Changes = dict[Cell, Any]
+"""What a rule writes."""
+
+AGENTS: Cell = ("agents",)
+NAMES: Cell = ("names",)
+QUEUE: Cell = ("queue",)
+
+MONITOR = "watch"
+"""Cells whose first word begins so belong to the race monitor; configurations are counted without them."""
+
+
+Question = Callable[..., bool]
+"""What may be asked of a cell's value, and some constants."""
+
+
+class Cells(Protocol):
+    """What a rule may do with a configuration."""
+
+    def read(self, cell: Cell) -> Any:
+        """Return the value of a cell, None where it has none."""
+
+    def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
+        """Ask one question of a cell: only the yes or no is learned."""
+
+
+class State(Cells, Protocol):
+    """Cells that a rule's conclusion may be written over."""
+
+    def with_(self, changes: Mapping[Cell, Any]) -> "State":
+        """Return the cells with these values."""
+
+
+class Layout:
+    """A sorted tuple of cells with its index; one object for each tuple, so that rows compare by position."""
+
+    __slots__ = ("cells", "index")
+
+    def __init__(self, cells: tuple[Cell, ...]) -> None:
+        self.cells = cells
+        self.index = {cell: position for position, cell in enumerate(cells)}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (layout_of, (self.cells,))
+
+
+@lru_cache(maxsize=4096)
+def layout_of(cells: tuple[Cell, ...]) -> Layout:
+    """Return the one layout of these cells, which must be sorted."""
+    return Layout(cells)
+
+
+class Row:
+    """An immutable map from cells to values with a hash that is kept up to date by what changes (Zobrist)."""
+
+    __slots__ = ("_hash", "layout", "values")
+
+    def __init__(self, layout: Layout, values: tuple[Any, ...], digest: int | None = None) -> None:
+        self.layout = layout
+        self.values = values
+        self._hash = _digest(layout, values) if digest is None else digest
+
+    @staticmethod
+    def of(contents: Mapping[Cell, Any]) -> "Row":
+        """Make a row of a mapping."""
+        cells = tuple(sorted(contents))
+        return Row(layout_of(cells), tuple(contents[cell] for cell in cells))
+
+    def read(self, cell: Cell) -> Any:
+        """Return the value of a cell, None where it has none."""
+        position = self.layout.index.get(cell)
+        return None if position is None else self.values[position]
+
+    def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
+        """Ask one question of a cell."""
+        return question(self.read(cell), *constants)
+
+    def items(self) -> Iterator[tuple[Cell, Any]]:
+        """Yield cells with their values, sorted by cell."""
+        return zip(self.layout.cells, self.values, strict=True)
+
+    def with_(self, changes: Mapping[Cell, Any]) -> "Row":
+        """Return the row with these values; the same object where nothing changes."""
+        index = self.layout.index
+        if any(cell not in index for cell in changes):
+            return Row.of({**dict(self.items()), **changes})
+        values = list(self.values)
+        digest = self._hash
+        changed = False
+        for cell, value in changes.items():
+            position = index[cell]
+            old = values[position]
+            if old is not value and old != value:
+                digest ^= hash((position, old)) ^ hash((position, value))
+                values[position] = value
+                changed = True
+        return Row(self.layout, tuple(values), digest) if changed else self
+
+    def __eq__(self, other: object) -> bool:
+        if self is other:
+            return True
+        return (
+            isinstance(other, Row)
+            and self._hash == other._hash
+            and self.layout is other.layout
+            and self.values == other.values
+        )
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Row, (self.layout, self.values))  # hashes of strings differ between processes
+
+
+def _digest(layout: Layout, values: Iterable[Any]) -> int:
+    digest = hash(layout.cells)
+    for position, value in enumerate(values):
+        digest ^= hash((position, value))
+    return digest

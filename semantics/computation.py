@@ -1,0 +1,242 @@
+"""Internal computation: what `fun` takes in one step, from one command, `react` or `choose` up to the next.
+
+What is left of an agent to run is a tuple of statement numbers, the next one first. Loops unroll when they come first
+(their jump belongs to the step they stand before), so the first statement is always a command, a `react`, a `choose`
+or internal.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Final
+
+from semantics.agents import Code, Store
+from semantics.expressions import Expression, Fault, Scope, evaluated, truth
+from semantics.patterns import bind
+from semantics.program import Behaviour, Program
+from semantics.provenance import NOTHING, Provenance
+from semantics.queries import Observation
+from semantics.statements import (
+    Assign,
+    Block,
+    Call,
+    Case,
+    Choice,
+    Choose,
+    Display,
+    For,
+    ForEach,
+    If,
+    Internal,
+    Loop,
+    Match,
+    Statement,
+    Tested,
+    While,
+)
+from semantics.values import Value, in_order, show
+
+MOST_STEPS: Final = 10_000
+"""Internal steps after which a computation that reached no command is said to diverge."""
+
+
+@dataclass(slots=True)
+class Process:
+    """One agent's code and variables while it computes, with what each rests on, and what it displays."""
+
+    program: Program
+    code: Code
+    rests_on: tuple[Provenance, ...]
+    scope: Scope
+    shown: list[str] = field(default_factory=list)
+
+    @property
+    def next(self) -> Statement | None:
+        """The statement that comes next, None where nothing is left."""
+        return self.program.statements[self.code[0]] if self.code else None
+
+    def leave(self) -> Provenance:
+        """Drop the first statement and return what got the agent there."""
+        here, self.rests_on = self.rests_on[0], self.rests_on[1:]
+        self.code = self.code[1:]
+        return here
+
+    def enter(self, block: Block, rests_on: Provenance) -> None:
+        """Put a block before what is left."""
+        self.code = block + self.code
+        self.rests_on = (rests_on,) * len(block) + self.rests_on
+
+    def unroll(self) -> None:
+        """Take the jumps of loops that come next.
+
+        Raises:
+            Fault: A loop jumps for ever.
+        """
+        jumps = 0
+        while isinstance(loop := self.next, Loop):
+            number, here = self.code[0], self.leave()
+            self.enter((*loop.body, number), here)
+            jumps += 1
+            if jumps > MOST_STEPS or not loop.body:
+                raise Fault("a loop without a command runs for ever", diverges=True)
+
+    def evaluate(self, expression: Expression) -> tuple[Value, Provenance]:
+        """Return a value with what it rests on."""
+        return evaluated(expression, self.scope)
+
+    def variables(self) -> tuple[Store, tuple[Provenance, ...]]:
+        """Return the variables that what is left may read, sorted, with what each rests on."""
+        alive = sorted(self.program.live(self.code).intersection(self.scope.store))
+        store = tuple((name, self.scope.store[name]) for name in alive)
+        return store, tuple(self.scope.rests_on.get(name, NOTHING) for name in alive)
+
+    def fork(self) -> "Process":
+        """Return an independent copy."""
+        scope = self.scope
+        copy = Scope(scope.agent, scope.host, dict(scope.store), dict(scope.rests_on), scope.kinds)
+        return Process(self.program, self.code, self.rests_on, copy, list(self.shown))
+
+
+def compute(process: Process) -> Iterator[Process]:
+    """Yield the process after all internal computation up to the next command, `react` or `choose`.
+
+    A `choose` that comes first gives one successor for each alternative.
+
+    Raises:
+        Fault: The computation fails, or reaches no command within `MOST_STEPS`.
+    """
+    statement = process.next
+    starts = list(_choose(process, statement)) if isinstance(statement, Choice) else [process]
+    for start in starts:
+        for _ in range(MOST_STEPS):
+            start.unroll()
+            following = start.next
+            if following is None or not isinstance(following, Internal):
+                break
+            _step(start, following)
+        else:
+            raise Fault(f"no command is reached within {MOST_STEPS} internal steps", diverges=True)
+        yield start
+
+
+def _choose(process: Process, statement: Choice) -> Iterator[Process]:
+    if isinstance(statement, Choose):
+        for block in statement.alternatives:
+            chosen = process.fork()
+            chosen.enter(block, chosen.leave())
+            yield chosen
+        return
+    members, rests_on = process.evaluate(statement.members)
+    for member in members_of(members):
+        chosen = process.fork()
+        chosen.scope.binding({statement.variable: member}, rests_on)
+        chosen.enter(statement.body, chosen.leave() | rests_on)
+        yield chosen
+
+
+def members_of(value: Value) -> tuple[Value, ...]:
+    """Return what a `for` or `choose` goes through: a set's members or an observation's nodes, in order.
+
+    Raises:
+        Fault: It is neither.
+    """
+    if isinstance(value, Observation):
+        return value.shown
+    if isinstance(value, frozenset):
+        return in_order(value)
+    raise Fault(f"a set or an observation was expected, not {show(value)}")
+
+
+def _step(process: Process, statement: Internal) -> None:
+    match statement:
+        case Tested():
+            process.leave()
+        case Assign(variable, expression):
+            value, rests_on = process.evaluate(expression)
+            process.scope.binding({variable: value}, rests_on | process.leave())
+        case Display(expression):
+            value, _ = process.evaluate(expression)
+            process.shown.append(show(value))
+            process.leave()
+        case If(test, then, otherwise):
+            value, rests_on = process.evaluate(test)
+            process.enter(then if truth(value) else otherwise, process.leave() | tested(rests_on))
+        case While(test, body, after):
+            _step_while(process, test, body, after)
+        case For(members, rest, each):
+            value, rests_on = process.evaluate(members)
+            here = process.leave() | tested(rests_on)
+            process.scope.binding({rest: members_of(value)}, here)
+            process.enter((each,), here)
+        case ForEach(variable, rest, body):
+            _step_for(process, variable, rest, body)
+        case Match(expression, cases):
+            value, rests_on = process.evaluate(expression)
+            here = process.leave() | tested(rests_on)
+            if not enter_case(process, cases, value, rests_on, here):
+                raise Fault(f"no case of 'match' takes {show(value)}")
+        case Call(behaviour, arguments):
+            called = process.program.behaviours[behaviour]
+            here = process.leave()
+            bind_parameters(process, called, arguments, here)
+            process.enter(called.body, here)
+
+
+def _step_while(process: Process, test: Expression, body: Block, after: Block) -> None:
+    value, rests_on = process.evaluate(test)
+    here = process.rests_on[0]
+    if truth(value):
+        process.enter(body, here | tested(rests_on))
+        return
+    process.leave()
+    # What follows in the same block runs only because the test failed.
+    follows = sum(1 for left, then in zip(process.code, after, strict=False) if left == then)
+    marked = tuple(kept | tested(rests_on) for kept in process.rests_on[:follows])
+    process.rests_on = marked + process.rests_on[follows:]
+
+
+def _step_for(process: Process, variable: str, rest: str, body: Block) -> None:
+    members = process.scope.store[rest]
+    here = process.rests_on[0]
+    if not isinstance(members, tuple) or not members:
+        process.leave()
+        return
+    process.scope.binding({variable: members[0], rest: members[1:]}, here)
+    process.enter(body, here)
+
+
+def enter_case(
+    process: Process, cases: tuple[Case, ...], value: Value, rests_on: Provenance, here: Provenance
+) -> bool:
+    """Enter the body of the first case whose pattern and guard take a value; False where none does.
+
+    The body rests on the guards that were tried; what the pattern binds, on what the value rests on.
+    """
+    for case in cases:
+        binding = bind(case.pattern, value)
+        if binding is None:
+            continue
+        trial = process.fork()
+        trial.scope.binding(binding, rests_on)
+        if case.guard is not None:
+            verdict, guard = trial.evaluate(case.guard)
+            here |= tested(guard)
+            if not truth(verdict):
+                continue
+        process.scope.binding(binding, rests_on)
+        process.enter(case.body, here)
+        return True
+    return False
+
+
+def tested(provenance: Provenance) -> Provenance:
+    """Return what a decision rests on: only answers, since an observation that is merely held decides nothing."""
+    return frozenset(each for each in provenance if each.asked is not None)
+
+
+def bind_parameters(
+    process: Process, behaviour: Behaviour, arguments: Iterable[Expression], here: Provenance
+) -> None:
+    """Give a behaviour's parameters the values of the arguments, all evaluated before."""
+    values = [process.evaluate(argument) for argument in arguments]
+    for parameter, (value, rests_on) in zip(behaviour.parameters, values, strict=True):
+        process.scope.binding({parameter: value}, rests_on | here)

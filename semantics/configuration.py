@@ -1,0 +1,111 @@
+"""Configurations ⟨α | S | η⟩: immutable, hashable, compared by value; and the transitions between them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from semantics.agents import Agents
+from semantics.cells import MONITOR, Cell, Changes, Question, Row, State
+from semantics.eta import Eta, Pending
+from semantics.requests import Request
+from semantics.setting import Setting
+from semantics.signature import Name
+from semantics.structure import Structure
+
+
+class Configuration:
+    """⟨α | S | η⟩ as views over cells, within a setting."""
+
+    __slots__ = ("setting", "state")
+
+    def __init__(self, setting: Setting, state: State) -> None:
+        self.setting = setting
+        self.state = state
+
+    @staticmethod
+    def of(setting: Setting, contents: Mapping[Cell, Any]) -> "Configuration":
+        """Make a configuration of the values of its cells."""
+        return Configuration(setting, Row.of(contents))
+
+    def read(self, cell: Cell) -> Any:
+        """Return the value of a cell."""
+        return self.state.read(cell)
+
+    def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
+        """Ask one question of a cell."""
+        return self.state.test(cell, question, *constants)
+
+    @property
+    def alpha(self) -> Agents:
+        """The agents."""
+        return Agents(self)
+
+    @property
+    def structure(self) -> Structure:
+        """The structure S = (L, P, β, γ)."""
+        return Structure(self, self.setting)
+
+    @property
+    def eta(self) -> Eta:
+        """The pending requests."""
+        return Eta(self, self.setting)
+
+    def with_(self, *changes: Changes) -> "Configuration":
+        """Return the configuration with these cells written; later changes win."""
+        merged: Changes = {}
+        for each in changes:
+            merged |= each
+        return Configuration(self.setting, self.state.with_(merged))
+
+    def unmonitored(self) -> "Configuration":
+        """Return the configuration without the monitor's cells: what is counted."""
+        assert isinstance(self.state, Row)
+        kept = {cell: value for cell, value in self.state.items() if cell[0] != MONITOR}
+        return Configuration.of(self.setting, kept)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Configuration) and self.state == other.state
+
+    def __hash__(self) -> int:
+        return hash(self.state)
+
+    def __repr__(self) -> str:
+        from semantics.printing import print_configuration  # printing knows configurations
+
+        return print_configuration(self)
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """What a transition is called: `⟨rule : ...⟩`.
+
+    Attributes:
+        rule: The name of the inference rule.
+        agent: Whose rule it is; None for the environment's.
+        about: The request served, or the words after the agent.
+    """
+
+    rule: str
+    agent: Name | None
+    about: Request | str = ""
+
+    def __str__(self) -> str:
+        words = [self.agent or "", self.about] if isinstance(self.about, str) else [str(self.about)]
+        return f"⟨{self.rule} : {', '.join(word for word in words if word)}⟩"
+
+
+@dataclass(frozen=True, slots=True)
+class Transition:
+    """One step that a rule allows.
+
+    Attributes:
+        label: What it is called.
+        target: The configuration after it.
+        shown: What `display` showed.
+        served: The pending request that was served, where it stood.
+    """
+
+    label: Label
+    target: Configuration
+    shown: tuple[str, ...] = ()
+    served: Pending | None = field(default=None, compare=False)

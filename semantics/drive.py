@@ -1,0 +1,130 @@
+"""`drive(P, m(R'))`: make a reactum physically true, or say that it can't be done."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from physical import Geometry, band_contains, centroid, nearest_placement, translate_to
+from semantics.cells import Cell, Cells, Changes, Question
+from semantics.logical_model import LogicalModel
+from semantics.physical_model import Carried, PhysicalModel, Placed, Placement, encloses, measure
+from semantics.reactions import Match, Reaction, moved, relinked
+from semantics.signature import REGION, Name
+from semantics.structure import Structure
+
+if TYPE_CHECKING:
+    from semantics.setting import Setting
+
+
+class Written:
+    """A configuration's cells with some changes before it: the P' that `drive` is building."""
+
+    __slots__ = ("cells", "changes")
+
+    def __init__(self, cells: Cells, changes: Changes) -> None:
+        self.cells = cells
+        self.changes = changes
+
+    def read(self, cell: Cell) -> Any:
+        """Return what was written, else what was there."""
+        return self.changes[cell] if cell in self.changes else self.cells.read(cell)
+
+    def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
+        """Ask what was written, else what was there."""
+        if cell in self.changes:
+            return question(self.changes[cell], *constants)
+        return self.cells.test(cell, question, *constants)
+
+
+@dataclass(frozen=True, slots=True)
+class Driven:
+    """What a reaction takes physically: the writes of P', and who has to fly for it."""
+
+    changes: Changes
+    flying: tuple[tuple[Name, Name], ...]
+
+
+def drive(cells: Cells, setting: "Setting", reaction: Reaction, match: Match) -> Driven | None:
+    """Return the P' in which m(R') is true, None where there is none.
+
+    A node that changed parent is placed at the point nearest the new parent's centroid (the paper's waypoint) at which
+    A(P') gives exactly that parent; what it carries goes along; a node put into a carrier is carried; what a carrier
+    holds may be put where the carrier is, at once. A node that changed links has its channels changed.
+    """
+    changes: Changes = {}
+    flying: list[tuple[Name, Name]] = []
+    for node, place in moved(reaction, match):
+        before = PhysicalModel(Written(cells, changes), setting)
+        for way in (_put_down, _reach):
+            placement = way(before, node, place)
+            if placement is not None and _arrives(before, node, place, placement):
+                changes |= before.placing(node, placement)
+                flying += [(node, place)] if way is _reach else []
+                break
+        else:
+            return None
+    for node, lost, gained in relinked(reaction, match, LogicalModel(cells, setting)):
+        physical = PhysicalModel(Written(cells, changes), setting)
+        changes |= physical.joining(node, (frozenset(physical.channels(node)) - lost) | gained)
+    after = Structure(Written(cells, changes), setting)
+    if not after.consistent(match.relations(reaction.reactum), match.nodes(reaction.reactum)):
+        return None
+    return Driven(changes, tuple(flying))
+
+
+def _arrives(before: PhysicalModel, node: Name, place: Name, placement: Placement) -> bool:
+    """Tell whether A(P') gives a node so placed exactly this parent."""
+    after = PhysicalModel(Written(before.cells, before.placing(node, placement)), before.setting)
+    return after.abstract_parent(node) == place
+
+
+def _put_down(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carried | None:
+    """Put what a carrier holds where the carrier is, if the place is there; into another carrier there likewise."""
+    by = physical.carrier(node)
+    if by is None or place == REGION or place == node:
+        return None
+    carried = physical.placement(node)
+    here, there = physical.position(by), physical.position(place)
+    if here is None or there is None or not isinstance(carried, Carried) or physical.transit(by) is not None:
+        return None
+    if physical.setting.carries(place, node):
+        together = place in physical.carriers(by) or by == place or physical.abstract_parent(place) == by
+        return Carried(place, carried.shape) if together else None
+    shape = carried.shape
+    at = Placed(translate_to(shape.geometry, centroid(here.geometry)), shape.altitude)
+    return at if encloses(there, at) else None
+
+
+def _reach(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carried | None:
+    """Bring what can be driven into a place, or aboard what carries it."""
+    setting = physical.setting
+    origin, target = physical.position(node), None if place == REGION else physical.position(place)
+    if origin is None or target is None or not setting.signature[setting.kind(node)].driven:
+        return None
+    shape = _shape(physical, node, origin)
+    if setting.carries(place, node):
+        return Carried(place, shape)
+    if not setting.signature[setting.kind(place)].may_contain(setting.kind(node)):
+        return None
+    spot = nearest_placement(shape.geometry, target.geometry, _holes(physical, node, place, target, shape))
+    return None if spot is None else Placed(spot, shape.altitude)
+
+
+def _shape(physical: PhysicalModel, node: Name, origin: Placed) -> Placed:
+    placement = physical.placement(node)
+    return placement.shape if isinstance(placement, Carried) else origin
+
+
+def _holes(
+    physical: PhysicalModel, node: Name, place: Name, target: Placed, shape: Placed
+) -> tuple[Geometry, ...]:
+    """Return what would swallow a node inside a place: smaller places that may hold it, at its altitude."""
+    kind = physical.setting.kind(node)
+    others = set(physical.setting.containers(kind)) - {node, place} - physical.cargo(node)
+    found = [position for position in map(physical.position, others) if position is not None]
+    smaller = (hole for hole in found if measure(hole.geometry) <= measure(target.geometry))
+    holes = {
+        hole.geometry
+        for hole in smaller
+        if not hole.geometry.is_point and band_contains(hole.altitude, shape.altitude)
+    }
+    return tuple(sorted(holes))

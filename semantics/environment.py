@@ -1,0 +1,158 @@
+"""The environment section: what `env : P'` and `say` are allowed to do, clause by clause."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from semantics.cells import Cell, Changes
+from semantics.physical_model import (
+    Carried,
+    PhysicalModel,
+    Placed,
+    channels_cell,
+    down_cell,
+    placement_cell,
+)
+from semantics.signature import Name
+from semantics.values import Value
+
+Effect = tuple[str, Changes]
+"""What happens in words, and what it writes into P."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drifts:
+    """An entity drifts among placements; what it carries goes along.
+
+    Attributes:
+        entity: Who drifts.
+        placements: Where it may be.
+        names: What each placement is called.
+        next: The placements that may follow each; from where it is none of them, `first` may follow.
+        first: What may follow where it was at first.
+    """
+
+    entity: Name
+    placements: tuple[Placed, ...]
+    names: tuple[str, ...]
+    next: tuple[tuple[int, ...], ...]
+    first: tuple[int, ...]
+
+    def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
+        """Yield each drift; what is absent, carried or under command does not drift."""
+        here = physical.placement(self.entity)
+        if not isinstance(here, Placed):
+            return
+        known = self.placements.index(here) if here in self.placements else None
+        for index in self.first if known is None else self.next[known]:
+            if self.placements[index] != here:
+                words = f"{self.entity} drifts to {self.names[index]}"
+                yield words, physical.placing(self.entity, self.placements[index])
+
+
+@dataclass(frozen=True, slots=True)
+class Drops:
+    """A channel drops, and returns if it says so."""
+
+    channel: Name
+    returns: bool
+
+    def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
+        """Yield the drop of a channel that is up, the return of one that is down."""
+        if not physical.is_down(self.channel):
+            yield f"{self.channel} drops", {down_cell(self.channel): True}
+        elif self.returns:
+            yield f"{self.channel} returns", {down_cell(self.channel): False}
+
+
+@dataclass(frozen=True, slots=True)
+class Leaves:
+    """One entity leaves a channel, and returns to it if it says so."""
+
+    entity: Name
+    channel: Name
+    returns: bool
+
+    def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
+        """Yield the entity's leaving or its return."""
+        channels = frozenset(physical.channels(self.entity))
+        if self.entity not in physical:
+            return
+        if self.channel in channels:
+            yield (
+                f"{self.entity} leaves {self.channel}",
+                physical.joining(self.entity, channels - {self.channel}),
+            )
+        elif self.returns:
+            yield (
+                f"{self.entity} returns to {self.channel}",
+                physical.joining(self.entity, channels | {self.channel}),
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class Appears:
+    """An absent entity appears, with its channels."""
+
+    entity: Name
+    placements: tuple[Placed | Carried, ...]
+    channels: tuple[Name, ...] = ()
+
+    def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
+        """Yield each place where it may appear, if it is absent."""
+        if self.entity in physical:
+            return
+        several = len(self.placements) > 1
+        for number, placement in enumerate(self.placements, 1):
+            if not isinstance(placement, Carried) or placement.by in physical:
+                words = f"{self.entity} appears" + (f" ({number})" if several else "")
+                changes = physical.joining(self.entity, frozenset(self.channels))
+                yield words, physical.placing(self.entity, placement) | changes
+
+
+@dataclass(frozen=True, slots=True)
+class Vanishes:
+    """An entity vanishes, with what it carries; L keeps their nodes."""
+
+    entity: Name
+
+    def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
+        """Yield its vanishing, if it is there."""
+        if self.entity not in physical:
+            return
+        changes: Changes = {}
+        for name in sorted({self.entity, *physical.cargo(self.entity)}):
+            changes |= physical.placing(name, None) | physical.joining(name, frozenset())
+        yield f"{self.entity} vanishes", changes
+
+
+@dataclass(frozen=True, slots=True)
+class Says:
+    """Someone outside says a message to an agent, at most so many times (`say`, not `env`)."""
+
+    message: Value
+    agent: Name
+    times: int
+    number: int
+
+    @property
+    def counter(self) -> Cell:
+        """The cell that counts how often it may still be said."""
+        return ("says", str(self.number))
+
+
+Clause = Drifts | Drops | Leaves | Appears | Vanishes | Says
+
+
+def touched(clause: Clause) -> tuple[Cell, ...]:
+    """Return the cells that a clause may write."""
+    match clause:
+        case Drifts(entity):
+            return (placement_cell(entity),)
+        case Drops(channel):
+            return (down_cell(channel),)
+        case Leaves(entity):
+            return (channels_cell(entity),)
+        case Says():
+            return (clause.counter,)
+        case Appears(entity) | Vanishes(entity):
+            return (placement_cell(entity), channels_cell(entity))

@@ -1,0 +1,195 @@
+"""The bigActor extension (paper, 3.1): messages, migration, spawning, and what someone outside says.
+
+Written like the seven rules.
+"""
+
+from collections.abc import Iterator
+
+from semantics.cells import Changes
+from semantics.computation import bind_parameters, enter_case
+from semantics.configuration import Configuration, Label, Transition
+from semantics.environment import Clause, Says
+from semantics.expressions import Fault, evaluated, names_in
+from semantics.provenance import NOTHING
+from semantics.requests import MGR, SND
+from semantics.rules import Rule
+from semantics.signature import Name
+from semantics.statements import Migrate, React, Send, Spawn
+from semantics.stepping import (
+    continuing,
+    joining,
+    new_process,
+    next_statement,
+    process_of,
+    resting_on,
+    starting,
+)
+from semantics.values import Value, show
+
+MOST_AGENTS = 64
+"""How many agents a mission may spawn."""
+
+
+def linked(c: Configuration, here: Name, there: Name) -> bool:
+    """Tell whether two hosts are one node, or share a link in L and in P."""
+    logical, physical = c.structure.logical, c.structure.physical
+    if here == there:
+        return True
+    shared = sorted(set(logical.links(here)).intersection(logical.links(there)))
+    return any(physical.connected(link, here) and physical.connected(link, there) for link in shared)
+
+
+def req_snd(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Request a message to be delivered.
+
+    a is at send(m, b)
+    ───────────────────────────────────────────────────  ⟨req_snd : a, send(m, b)⟩
+    ⟨α | S | η⟩  →  ⟨α[a ↦ a′] | S | η ∪ {SND(a, b, m)}⟩
+    """
+    statement = next_statement(c, a)
+    if not isinstance(statement, Send):  # premise: a is at send(m, b)
+        return
+    process = process_of(c, a)
+    message, carried = evaluated(statement.message, process.scope)
+    to, chosen = evaluated(statement.to, process.scope)
+    send = SND(a, names_in(to)[0], message)
+    rests_on = resting_on(process, carried, chosen)
+    process.leave()
+    label = Label("req_snd", a, f"send({show(message)}, {send.to})")
+    yield Transition(label, c.with_(continuing(c, process), c.eta.adding(send, rests_on)))
+
+
+def snd(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Deliver a message.
+
+    SND(a, b, m) ∈ η      b ∈ α      the hosts of a and b are one node, or share a link in L and in P
+    ─────────────────────────────────────────────────────────────────────────  ⟨snd : SND(a, b, m)⟩
+    ⟨α | S | η⟩  →  ⟨α[mailbox(b) + m] | S | η − SND(a, b, m)⟩
+    """
+    for pending in c.eta.in_line(a):
+        send = pending.request
+        if not isinstance(send, SND) or send.to not in c.alpha:  # premises: SND(a, b, m) ∈ η, b ∈ α
+            continue
+        if not linked(c, c.alpha.host(a), c.alpha.host(send.to)):  # premise: one node, or linked
+            continue
+        target = c.with_(c.alpha.posting(send.to, send.message, pending.rests_on), c.eta.removing(pending))
+        yield Transition(Label("snd", a, send), target, served=pending)
+
+
+def rcv_msg(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Receive a message: the first case that fits it takes it.
+
+    a is at a react with a case x for m      m ∈ mailbox(a)
+    ───────────────────────────────────────────────────────────────  ⟨rcv_msg : a, react(m)⟩
+    ⟨α | S | η⟩  →  ⟨α[a ↦ a′ with x := m, mailbox(a) − m] | S | η⟩
+    """
+    statement = next_statement(c, a)
+    if not isinstance(statement, React):  # premise: a is at a react
+        return
+    watch = c.alpha.watch(a)
+    for position, message in enumerate(c.alpha.mailbox(a)):  # premise: m ∈ mailbox(a)
+        rests_on = watch.mailbox[position] if watch else NOTHING
+        process = process_of(c, a)
+        here = process.leave() | rests_on
+        if not enter_case(process, statement.cases, message, rests_on, here):  # premise: a case for it
+            continue
+        taken = c.with_(c.alpha.taking(a, position))
+        target = taken.with_(continuing(taken, process))
+        yield Transition(Label("rcv_msg", a, f"react({show(message, frozenset())})"), target)
+
+
+def req_mgr(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Request to be hosted elsewhere.
+
+    a is at migrate(h)
+    ───────────────────────────────────────────────────  ⟨req_mgr : a, migrate(h)⟩
+    ⟨α | S | η⟩  →  ⟨α[a ↦ a′] | S | η ∪ {MGR(a, h)}⟩
+    """
+    statement = next_statement(c, a)
+    if not isinstance(statement, Migrate):  # premise: a is at migrate(h)
+        return
+    process = process_of(c, a)
+    host, rests_on = evaluated(statement.host, process.scope)
+    request = MGR(a, node_named(c, host))
+    rests_on = resting_on(process, rests_on)
+    process.leave()
+    label = Label("req_mgr", a, f"migrate({request.host})")
+    yield Transition(label, c.with_(continuing(c, process), c.eta.adding(request, rests_on)))
+
+
+def migrate(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Move an agent to another host.
+
+    MGR(a, h) ∈ η, in line      a's host is h, or shares a link with it in L and in P
+    ─────────────────────────────────────────────────────────────────────────  ⟨migrate : MGR(a, h)⟩
+    ⟨α | S | η⟩  →  ⟨α[host(a) ↦ h] | S | η − MGR(a, h)⟩
+    """
+    for pending in c.eta.in_line(a):
+        request = pending.request
+        if not isinstance(request, MGR):  # premise: MGR(a, h) ∈ η, in line
+            continue
+        if not linked(c, c.alpha.host(a), request.host):  # premise: one node, or linked
+            continue
+        target = c.with_(c.alpha.hosting(a, request.host), c.eta.removing(pending))
+        yield Transition(Label("migrate", a, request), target, served=pending)
+
+
+def spawn(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Create an agent; one that is there already under that name is a fault.
+
+    a is at spawn b hosted_at h with_behavior B      b ∉ α
+    ───────────────────────────────────────────────────  ⟨spawn : a, b⟩
+    ⟨α | S | η⟩  →  ⟨α[a ↦ a′] ∪ {b at h running B} | S | η⟩
+    """
+    statement = next_statement(c, a)
+    if not isinstance(statement, Spawn):  # premise: a is at spawn
+        return
+    if statement.name in c.alpha:  # premise: b ∉ α
+        raise Fault(f"an agent '{statement.name}' is there already")
+    if len(c.alpha.names()) >= MOST_AGENTS:
+        raise Fault(f"more than {MOST_AGENTS} agents")
+    parent = process_of(c, a)
+    host, _ = evaluated(statement.host, parent.scope)
+    behaviour = c.setting.program.behaviours[statement.behaviour]
+    bind_parameters(parent, behaviour, statement.arguments, parent.rests_on[0])
+    child = new_process(c.setting, statement.name, node_named(c, host), behaviour.body)
+    for name in behaviour.parameters:
+        child.scope.binding({name: parent.scope.store[name]}, parent.scope.rests_on[name])
+    child.rests_on = (parent.rests_on[0],) * len(child.code)
+    parent.leave()
+    begun = starting(c.setting, statement.name, child.scope.host, child)
+    label = Label("spawn", a, statement.name)
+    yield Transition(label, c.with_(continuing(c, parent), begun, joining(c, statement.name)))
+
+
+def node_named(c: Configuration, value: Value) -> Name:
+    """Return the node that a value names.
+
+    Raises:
+        Fault: It names none.
+    """
+    name = names_in(value)[0] if names_in(value) else ""
+    if name not in c.setting.kinds:
+        raise Fault(f"there is no node {show(value, frozenset())}")
+    return name
+
+
+def say(c: Configuration, clause: Clause) -> Iterator[Transition]:
+    """Let someone outside, a person or the console, put a message into one mailbox.
+
+    the environment says m to a, and has not said it too often      a ∈ α
+    ───────────────────────────────────────────────────  ⟨say : m to a⟩
+    ⟨α | S | η⟩  →  ⟨α[mailbox(a) + m] | S | η⟩
+    """
+    if not isinstance(clause, Says):  # premise: the environment says m to a
+        return
+    left: int = c.read(clause.counter)
+    if left == 0 or clause.agent not in c.alpha:  # premises: not too often, a ∈ α
+        return
+    counted: Changes = {clause.counter: left - 1}
+    label = Label("say", None, f"{show(clause.message, frozenset())} to {clause.agent}")
+    yield Transition(label, c.with_(c.alpha.posting(clause.agent, clause.message), counted))
+
+
+EXTENSION: tuple[Rule, ...] = (req_snd, snd, rcv_msg, req_mgr, migrate, spawn)
+"""The rules of an agent that the extension adds; `say` stands apart, as `env` does."""

@@ -1,0 +1,89 @@
+"""The logical model L as a view over cells: σ_L = {parent, linked}, slot by slot."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from bigraphs.bigraph import Bigraph
+from bigraphs.relations import from_relations
+from semantics.cells import NAMES, Cell, Cells, Changes
+from semantics.signature import REGION, Name
+
+if TYPE_CHECKING:
+    from semantics.setting import Setting
+
+
+def parent_cell(node: Name) -> Cell:
+    """Address the slot `parent(n)`; None there means that n is not in dom(L)."""
+    return ("parent", node)
+
+
+def links_cell(node: Name) -> Cell:
+    """Address the slot `links(n)`: a sorted tuple."""
+    return ("links", node)
+
+
+class LogicalModel:
+    """L over the cells of a configuration."""
+
+    __slots__ = ("cells", "setting")
+
+    def __init__(self, cells: Cells, setting: "Setting") -> None:
+        self.cells = cells
+        self.setting = setting
+
+    def parent(self, node: Name) -> Name | None:
+        """Return `parent(n)`: a node, the region, or None where n is not in dom(L)."""
+        parent: Name | None = self.cells.read(parent_cell(node))
+        return parent
+
+    def links(self, node: Name) -> tuple[Name, ...]:
+        """Return `links(n)`, sorted."""
+        return self.cells.read(links_cell(node)) or ()
+
+    def __contains__(self, node: Name) -> bool:
+        return self.parent(node) is not None
+
+    def nodes(self) -> tuple[Name, ...]:
+        """Return dom(L), sorted."""
+        return tuple(name for name in self.cells.read(NAMES) if name in self)
+
+    def children(self, place: Name) -> tuple[Name, ...]:
+        """Return the nodes whose parent is a place, sorted."""
+        return tuple(
+            name for name in self.cells.read(NAMES) if self.cells.test(parent_cell(name), is_, place)
+        )
+
+    def ancestors(self, node: Name) -> Iterator[Name]:
+        """Yield the places around a node, innermost first, the region left out."""
+        place = self.parent(node)
+        while place is not None and place != REGION:
+            yield place
+            place = self.parent(place)
+
+    def linked(self, node: Name, other: Name) -> bool:
+        """Tell whether two nodes share a link."""
+        return not set(self.links(node)).isdisjoint(self.links(other))
+
+    def nesting(self, node: Name, place: Name) -> Changes:
+        """Write parent[node ↦ place]."""
+        return {parent_cell(node): place}
+
+    def linking(self, node: Name, links: frozenset[Name]) -> Changes:
+        """Write links[node ↦ links]."""
+        return {links_cell(node): tuple(sorted(links))}
+
+    def bigraph(self) -> Bigraph:
+        """Return L as a concrete bigraph whose support is names."""
+        nodes = self.nodes()
+        links = sorted({link for node in nodes for link in self.links(node)})
+        parents = {node: self.parent(node) for node in nodes}
+        return from_relations(
+            {node: self.setting.kind(node) for node in nodes},
+            {node: None if parent == REGION else parent for node, parent in parents.items()},
+            {link: [node for node in nodes if link in self.links(node)] for link in links},
+        )
+
+
+def is_(value: object, constant: object) -> bool:
+    """Ask whether a cell's value is this one."""
+    return value == constant

@@ -1,0 +1,107 @@
+"""The memory of the race monitor: what others change of the observations that an agent still rests on.
+
+Rules only carry along what values rest on; here it is marked what has changed in that since.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+from semantics.agents import Watch, watch_cell
+from semantics.cells import MONITOR, QUEUE, Cell, Changes
+from semantics.configuration import Configuration, Transition
+from semantics.eta import line_cell, sends_cell
+from semantics.provenance import SLOT, Dependency, Key, Provenance, differences
+from semantics.queries import Query, evaluate
+from semantics.requests import CTR, FLY, Request
+from semantics.signature import Name
+from semantics.structure import Parent, Relation
+
+CONTROLS = frozenset({"actuate", "command", "commit"})
+"""The rules by which an agent changes P. (The paper knows `actuate`; `command` takes an entity out of its place.)"""
+
+
+def marked(c: Configuration, transition: Transition) -> Transition:
+    """Return the transition with what it changed for other agents marked, where that is monitored."""
+    if not c.setting.monitored or transition.label.rule not in CONTROLS:
+        return transition
+    after = transition.target
+    slots = changed_slots(c, after)
+    mark = partial(_mark, memo={}, answer=lambda query: slots | _changed_answers(c, after, query))
+    changes: Changes = {}
+    for agent in after.alpha.names():
+        if agent != transition.label.agent:
+            changes |= _mark_agent(after, agent, mark)
+    return replace(transition, target=after.with_(changes)) if changes else transition
+
+
+def changed_slots(before: Configuration, after: Configuration) -> frozenset[Key]:
+    """Return the slots of A(P) in which two configurations differ."""
+    old, new = before.structure.physical, after.structure.physical
+    keys: set[Key] = set()
+    for name in before.setting.kinds:
+        parents = {p.abstract_parent(name) if name in p else None for p in (old, new)}
+        if len(parents) > 1:
+            keys |= {(f"{SLOT}parent", name)} | {(f"{SLOT}children", place) for place in parents if place}
+        if old.links(name) != new.links(name):
+            keys.add((f"{SLOT}links", name))
+    return frozenset(keys)
+
+
+def slots_used(relations: tuple[Relation, ...], closed: tuple[Name, ...]) -> frozenset[Key]:
+    """Return the slots that a redex uses."""
+    kinds = ((f"{SLOT}{'parent' if isinstance(pair, Parent) else 'links'}", pair.node) for pair in relations)
+    return frozenset(kinds) | {(f"{SLOT}children", node) for node in closed}
+
+
+def stale_tests(request: Request, rests_on: Provenance, used: frozenset[Key]) -> tuple[Dependency, ...]:
+    """Return what a control rests on that others have changed since it was observed: a test, or a relation it uses."""
+    if not isinstance(request, CTR | FLY):
+        return ()
+    stale = (
+        each
+        for each in rests_on
+        if each.asked is not None and (each.stale or used.intersection(each.changed))
+    )
+    return tuple(sorted(stale, key=repr))
+
+
+def _changed_answers(before: Configuration, after: Configuration, query: Query) -> frozenset[Key]:
+    views = [evaluate(query, c.structure.physical, c.alpha.hosted) for c in (before, after)]
+    return differences(views[0], views[1])
+
+
+Mark = Callable[[Provenance], Provenance]
+
+
+def _mark(
+    provenance: Provenance, *, memo: dict[Query, frozenset[Key]], answer: Callable[[Query], frozenset[Key]]
+) -> Provenance:
+    return frozenset(_mark_one(each, memo, answer) for each in provenance)
+
+
+def _mark_one(
+    each: Dependency, memo: dict[Query, frozenset[Key]], answer: Callable[[Query], frozenset[Key]]
+) -> Dependency:
+    if each.query not in memo:
+        memo[each.query] = answer(each.query)
+    changed = memo[each.query].difference(each.changed)
+    return replace(each, changed=tuple(sorted(changed.union(each.changed)))) if changed else each
+
+
+def _mark_agent(c: Configuration, agent: Name, mark: Mark) -> Changes:
+    changes: Changes = {}
+    watch = c.alpha.watch(agent)
+    if watch is not None:
+        parts = (tuple(map(mark, part)) for part in (watch.code, watch.store, watch.mailbox))
+        changes[watch_cell(agent)] = Watch(*parts)
+    cells: tuple[Cell, ...] = (line_cell(agent), sends_cell(agent), QUEUE)
+    for cell in cells:
+        kept: tuple[Provenance, ...] = c.read((MONITOR, *cell)) or ()
+        requests: tuple[Request, ...] = c.read(cell) or ()
+        if kept:
+            changes[MONITOR, *cell] = tuple(
+                mark(each) if request.agent == agent else each
+                for request, each in zip(requests, kept, strict=True)
+            )
+    return changes

@@ -1,0 +1,186 @@
+"""The physical model P as a view over cells: where everything is, and σ_P = {contains, carries, connected}."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from physical import Band, Geometry, area, band_contains, contains
+from semantics.cells import NAMES, Cell, Cells, Changes
+from semantics.signature import REGION, Name
+
+if TYPE_CHECKING:
+    from semantics.setting import Setting
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """A geometry on the earth, with the band of altitudes (metres) that it takes up, if it has one."""
+
+    geometry: Geometry
+    altitude: Band | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Carried:
+    """Carried by another entity, wherever that is; `shape` is what it takes up once it is put down."""
+
+    by: Name
+    shape: Placed
+
+
+@dataclass(frozen=True, slots=True)
+class InTransit:
+    """Commanded from `origin` to a node (`control timed`): it may be anywhere between the two."""
+
+    origin: Placed
+    to: Name
+
+
+Placement = Placed | Carried | InTransit
+
+
+def placement_cell(entity: Name) -> Cell:
+    """Address where an entity is; None there means that it is not in P."""
+    return ("placement", entity)
+
+
+def channels_cell(entity: Name) -> Cell:
+    """Address the sorted channels that an entity is on."""
+    return ("channels", entity)
+
+
+def down_cell(channel: Name) -> Cell:
+    """Address whether a channel that may drop is down."""
+    return ("down", channel)
+
+
+@lru_cache(maxsize=1 << 16)
+def encloses(outer: Placed, inner: Placed) -> bool:
+    """Tell interior containment, and that of altitude where both have a band."""
+    levels = band_contains(outer.altitude, inner.altitude)
+    return levels and not outer.geometry.is_point and contains(outer.geometry, inner.geometry)
+
+
+class PhysicalModel:
+    """P and σ_P over the cells of a configuration."""
+
+    __slots__ = ("cells", "setting")
+
+    def __init__(self, cells: Cells, setting: "Setting") -> None:
+        self.cells = cells
+        self.setting = setting
+
+    def placement(self, entity: Name) -> Placement | None:
+        """Return what P says of an entity's whereabouts, None where it has no image."""
+        placement: Placement | None = self.cells.read(placement_cell(entity))
+        return placement
+
+    def channels(self, entity: Name) -> tuple[Name, ...]:
+        """Return the channels that an entity is set to, up or down."""
+        return self.cells.read(channels_cell(entity)) or ()
+
+    def __contains__(self, entity: Name) -> bool:
+        return self.placement(entity) is not None
+
+    def entities(self) -> tuple[Name, ...]:
+        """Return dom(P), sorted."""
+        return tuple(name for name in self.cells.read(NAMES) if name in self)
+
+    def carrier(self, entity: Name) -> Name | None:
+        """Return what carries an entity."""
+        placement = self.placement(entity)
+        return placement.by if isinstance(placement, Carried) else None
+
+    def carriers(self, entity: Name) -> Iterator[Name]:
+        """Yield what carries an entity, then what carries that, and so on."""
+        by = self.carrier(entity)
+        while by is not None:
+            yield by
+            by = self.carrier(by)
+
+    def cargo(self, entity: Name) -> frozenset[Name]:
+        """Return everything that an entity carries, at any depth."""
+        return frozenset(name for name in self.cells.read(NAMES) if entity in self.carriers(name))
+
+    def position(self, entity: Name) -> Placed | None:
+        """Return where an entity is: where its outermost carrier is, or was when it took off."""
+        placement = self.placement(entity)
+        while isinstance(placement, Carried):
+            placement = self.placement(placement.by)
+        return placement.origin if isinstance(placement, InTransit) else placement
+
+    def transit(self, entity: Name) -> InTransit | None:
+        """Return the flight of an entity, or of what carries it."""
+        placement = self.placement(entity)
+        while isinstance(placement, Carried):
+            placement = self.placement(placement.by)
+        return placement if isinstance(placement, InTransit) else None
+
+    def contains(self, place: Name, entity: Name) -> bool:
+        """Tell σ_P's `contains`.
+
+        An entity in transit is contained only by what contains both ends of its flight, the destination itself
+        excepted: nobody sees it arrived before it has.
+        """
+        if place == entity:
+            return False
+        outer, inner = self.position(place), self.position(entity)
+        if outer is None or inner is None or not encloses(outer, inner):
+            return False
+        flight = self.transit(entity)
+        if flight is None:
+            return True
+        destination = None if flight.to == REGION else self.position(flight.to)
+        return place != flight.to and destination is not None and encloses(outer, destination)
+
+    def carries(self, carrier: Name, entity: Name) -> bool:
+        """Tell σ_P's `carries`."""
+        return self.carrier(entity) == carrier
+
+    def connected(self, channel: Name, entity: Name) -> bool:
+        """Tell σ_P's `connected`: the entity is there, on the channel, and the channel is up."""
+        return channel in self.channels(entity) and not self.is_down(channel) and entity in self
+
+    def is_down(self, channel: Name) -> bool:
+        """Tell whether a channel that may drop has dropped."""
+        return bool(self.cells.read(down_cell(channel)))
+
+    def abstract_parent(self, entity: Name) -> Name:
+        """Return the parent of an entity in A(P) (paper, 3.2.2): its carrier, else the smallest total container."""
+        by = self.carrier(entity)
+        if by is not None:
+            return by
+        kind = self.setting.kind(entity)
+        holders = [place for place in self.setting.containers(kind) if self.contains(place, entity)]
+        return min(holders, key=lambda place: (self._area(place), place), default=REGION)
+
+    def _area(self, place: Name) -> float:
+        position = self.position(place)
+        return 0.0 if position is None else measure(position.geometry)
+
+    def children(self, place: Name) -> tuple[Name, ...]:
+        """Return the children of a place, or of the region, in A(P), sorted."""
+        return tuple(name for name in self.entities() if self.abstract_parent(name) == place)
+
+    def links(self, entity: Name) -> tuple[Name, ...]:
+        """Return the links of an entity in A(P), sorted."""
+        return tuple(channel for channel in self.channels(entity) if self.connected(channel, entity))
+
+    def points(self, channel: Name) -> tuple[Name, ...]:
+        """Return the entities on a link of A(P), sorted."""
+        return tuple(name for name in self.cells.read(NAMES) if self.connected(channel, name))
+
+    def placing(self, entity: Name, placement: Placement | None) -> Changes:
+        """Write P[entity ↦ placement]."""
+        return {placement_cell(entity): placement}
+
+    def joining(self, entity: Name, channels: frozenset[Name]) -> Changes:
+        """Write the channels that an entity is on."""
+        return {channels_cell(entity): tuple(sorted(channels))}
+
+
+@lru_cache(maxsize=1 << 14)
+def measure(geometry: Geometry) -> float:
+    """Return the area of a geometry in square metres."""
+    return area(geometry)

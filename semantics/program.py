@@ -1,0 +1,124 @@
+"""A program: the numbered statements of a mission, and the variables that each may still read."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING
+
+from semantics.expressions import free
+from semantics.patterns import variables
+from semantics.statements import (
+    Assign,
+    Block,
+    Call,
+    Case,
+    Choose,
+    ChooseFrom,
+    ControlBy,
+    Display,
+    For,
+    ForEach,
+    If,
+    Loop,
+    Match,
+    Migrate,
+    Observe,
+    React,
+    Send,
+    Spawn,
+    Statement,
+    While,
+)
+
+if TYPE_CHECKING:
+    from semantics.reactions import Reaction
+
+Names = frozenset[str]
+NONE: Names = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class Behaviour:
+    """`def name(parameters) = { body }`; parameters have names of their own in the whole program."""
+
+    name: str
+    parameters: tuple[str, ...]
+    body: Block
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """All statements of a mission, by number.
+
+    Attributes:
+        statements: The statements.
+        behaviours: The parametrised behaviours.
+        reactions: Commands and named rules: from the host and the arguments to a `Reaction`.
+        lines: The line of the mission's text that each statement stands in (from 1), as far as there is one.
+    """
+
+    statements: tuple[Statement, ...] = ()
+    behaviours: Mapping[str, Behaviour] = field(default_factory=dict)
+    reactions: Mapping[str, "Callable[..., Reaction]"] = field(default_factory=dict)
+    lines: tuple[int, ...] = ()
+
+    @cached_property
+    def _reads(self) -> list[Names]:
+        """What each statement may read before it binds it; a least fixpoint, since loops lead back."""
+        reads = [NONE] * len(self.statements)
+        grown = True
+        while grown:
+            after = [_reads(statement, reads, self.statements) for statement in self.statements]
+            grown, reads = after != reads, after
+        return reads
+
+    @cached_property
+    def live(self) -> Callable[[Block], Names]:
+        """Return the function from what is left to run to the variables that it may read: others are forgotten."""
+        return lru_cache(maxsize=1 << 14)(lambda code: _live(code, self._reads, self.statements))
+
+
+def _live(block: Block, reads: list[Names], statements: tuple[Statement, ...]) -> Names:
+    live = NONE
+    for number in reversed(block):
+        statement = statements[number]
+        live = reads[number] | (live - {statement.variable} if isinstance(statement, Assign) else live)
+    return live
+
+
+def _reads(statement: Statement, reads: list[Names], statements: tuple[Statement, ...]) -> Names:
+    def live(block: Block) -> Names:
+        return _live(block, reads, statements)
+
+    def of_cases(cases: Iterable[Case]) -> Names:
+        return NONE.union(*((free(case.guard) | live(case.body)) - variables(case.pattern) for case in cases))
+
+    match statement:
+        case Observe(expression) | Migrate(expression) | Assign(_, expression) | Display(expression):
+            return free(expression)
+        case Send(message, to):
+            return free(message) | free(to)
+        case ControlBy(_, arguments) | Call(_, arguments):
+            return NONE.union(*map(free, arguments))
+        case Spawn(_, host, _, arguments):
+            return free(host).union(*map(free, arguments))
+        case If(test, then, otherwise):
+            return free(test) | live(then) | live(otherwise)
+        case While(test, body, _):
+            return free(test) | live(body)
+        case Loop(body):
+            return live(body)
+        case For(members, rest, each):
+            return free(members) | (reads[each] - {rest})
+        case ForEach(variable, rest, body):
+            return (live(body) - {variable}) | {rest}
+        case ChooseFrom(variable, members, body):
+            return free(members) | (live(body) - {variable})
+        case Choose(alternatives):
+            return NONE.union(*map(live, alternatives))
+        case Match(value, cases):
+            return free(value) | of_cases(cases)
+        case React(cases):
+            return of_cases(cases)
+        case _:
+            return NONE

@@ -1,0 +1,262 @@
+"""What can be said of one configuration, and the properties that a mission asks to be checked."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from semantics.configuration import Configuration
+from semantics.requests import REQUESTS
+from semantics.signature import REGION, Name
+from semantics.statements import React
+from semantics.stepping import next_statement
+from semantics.values import Value, show
+
+# --- atoms ----------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Inside:
+    """`x in y`: y is x's parent, or (unless `directly`) one of the places around it; in L, or `actually` in A(P)."""
+
+    node: Name
+    place: Name
+    actually: bool = False
+    directly: bool = False
+
+    def __str__(self) -> str:
+        return f"{_mode(self.actually)}{self.node} {'directly ' if self.directly else ''}in {self.place}"
+
+
+@dataclass(frozen=True, slots=True)
+class LinkedWith:
+    """`x linked y`: x is on the link y, or shares a link with the node y; in L, or `actually` in A(P)."""
+
+    node: Name
+    other: Name
+    actually: bool = False
+
+    def __str__(self) -> str:
+        return f"{_mode(self.actually)}{self.node} linked {self.other}"
+
+
+@dataclass(frozen=True, slots=True)
+class Present:
+    """`present x`: x has an image in P."""
+
+    entity: Name
+
+    def __str__(self) -> str:
+        return f"present {self.entity}"
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """`known x`: x is a node of L."""
+
+    node: Name
+
+    def __str__(self) -> str:
+        return f"known {self.node}"
+
+
+@dataclass(frozen=True, slots=True)
+class HasPending:
+    """`pending CTR a`: a has such a request in η; any request without the word."""
+
+    agent: Name
+    request: str | None = None
+
+    def __str__(self) -> str:
+        return f"pending {self.request + ' ' if self.request else ''}{self.agent}"
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """`ended a`: nothing is left of a to run."""
+
+    agent: Name
+
+    def __str__(self) -> str:
+        return f"ended {self.agent}"
+
+
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """`waiting a`: a is at a react."""
+
+    agent: Name
+
+    def __str__(self) -> str:
+        return f"waiting {self.agent}"
+
+
+@dataclass(frozen=True, slots=True)
+class HostedAt:
+    """`a hosted_at x`."""
+
+    agent: Name
+    node: Name
+
+    def __str__(self) -> str:
+        return f"{self.agent} hosted_at {self.node}"
+
+
+@dataclass(frozen=True, slots=True)
+class VariableIs:
+    """`a.x == v`: a's variable x, which a may still read, has this value; `shown` is x as the programmer wrote it."""
+
+    agent: Name
+    variables: tuple[str, ...]
+    value: Value
+    shown: str
+
+    def __str__(self) -> str:
+        return f"{self.agent}.{self.shown} == {show(self.value, frozenset())}"
+
+
+@dataclass(frozen=True, slots=True)
+class Always:
+    """`true` or `false`."""
+
+    value: bool
+
+    def __str__(self) -> str:
+        return "true" if self.value else "false"
+
+
+# --- connectives ----------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    """`not f`."""
+
+    formula: "Proposition"
+
+    def __str__(self) -> str:
+        return f"not {_nested(self.formula)}"
+
+
+@dataclass(frozen=True, slots=True)
+class And:
+    """`f and g and ...`."""
+
+    formulas: tuple["Proposition", ...]
+
+    def __str__(self) -> str:
+        return " and ".join(map(_nested, self.formulas)) or "true"
+
+
+@dataclass(frozen=True, slots=True)
+class Or:
+    """`f or g or ...`."""
+
+    formulas: tuple["Proposition", ...]
+
+    def __str__(self) -> str:
+        return " or ".join(map(_nested, self.formulas)) or "false"
+
+
+Atom = Inside | LinkedWith | Present | Known | HasPending | Ended | Waiting | HostedAt | VariableIs | Always
+Proposition = Atom | Not | And | Or
+
+
+def _mode(actually: bool) -> str:
+    return "actually " if actually else ""
+
+
+def _nested(formula: Proposition) -> str:
+    return f"({formula})" if isinstance(formula, And | Or) else str(formula)
+
+
+# --- truth ----------------------------------------------------------------------------------------------------
+
+
+def holds(formula: Proposition, c: Configuration) -> bool:
+    """Tell whether a proposition is true of a configuration."""
+    match formula:
+        case Not(inner):
+            return not holds(inner, c)
+        case And(parts):
+            return all(holds(part, c) for part in parts)
+        case Or(parts):
+            return any(holds(part, c) for part in parts)
+        case _:
+            return _TRUTH[type(formula)](formula, c)
+
+
+def _inside(atom: Inside, c: Configuration) -> bool:
+    around = _actual_places(c, atom.node) if atom.actually else _believed_places(c, atom.node)
+    return next(around, None) == atom.place if atom.directly else atom.place in around
+
+
+def _believed_places(c: Configuration, node: Name) -> Iterator[Name]:
+    if node in c.structure.logical:
+        yield from c.structure.logical.ancestors(node)
+        yield REGION
+
+
+def _actual_places(c: Configuration, node: Name) -> Iterator[Name]:
+    while node != REGION and node in c.structure.physical:
+        node = c.structure.physical.abstract_parent(node)
+        yield node
+
+
+def _linked(atom: LinkedWith, c: Configuration) -> bool:
+    model = c.structure.physical if atom.actually else c.structure.logical
+    links = set(model.links(atom.node)) if atom.node in model else set()
+    if atom.other in c.setting.kinds:
+        return atom.other in model and not links.isdisjoint(model.links(atom.other))
+    return atom.other in links
+
+
+def _pending(atom: HasPending, c: Configuration) -> bool:
+    pending = (each.request for each in c.eta.of(atom.agent))
+    return any(atom.request in (None, type(request).__name__) for request in pending)
+
+
+def _is_agent(c: Configuration, agent: Name) -> bool:
+    return agent in c.alpha
+
+
+def _variable_is(atom: VariableIs, c: Configuration) -> bool:
+    store = dict(c.alpha.store(atom.agent)) if _is_agent(c, atom.agent) else {}
+    values = [store[name] for name in atom.variables if name in store]
+    return any(type(value) is type(atom.value) and value == atom.value for value in values)
+
+
+_TRUTH: dict[type, Callable[[Any, Configuration], bool]] = {
+    Inside: _inside,
+    LinkedWith: _linked,
+    HasPending: lambda atom, c: _is_agent(c, atom.agent) and _pending(atom, c),
+    VariableIs: _variable_is,
+    Present: lambda atom, c: atom.entity in c.structure.physical,
+    Known: lambda atom, c: atom.node in c.structure.logical,
+    Ended: lambda atom, c: _is_agent(c, atom.agent) and not c.alpha.code(atom.agent),
+    Waiting: lambda atom, c: _is_agent(c, atom.agent) and isinstance(next_statement(c, atom.agent), React),
+    HostedAt: lambda atom, c: _is_agent(c, atom.agent) and c.alpha.host(atom.agent) == atom.node,
+    Always: lambda atom, _: atom.value,
+}
+
+
+# --- properties -----------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Property:
+    """What is to be checked.
+
+    Attributes:
+        kind: `local_consistency`, `race_freedom`, `deadlock_freedom`, `arrival`, `computation`, `invariant` or `reachable`.
+        name: Its name; that of its kind where the mission gives none.
+        formula: Of an invariant, or of what is to be reachable.
+        line: Where it stands in the mission's text, from 1; 0 where it was not written.
+    """
+
+    kind: str
+    name: str
+    formula: Proposition = Always(True)
+    line: int = 0
+
+
+REQUEST_WORDS = tuple(kind.__name__ for kind in REQUESTS)

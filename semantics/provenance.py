@@ -1,0 +1,72 @@
+"""What a value or a step rests on: the observations that were tested, and what others have changed in them since.
+
+The race monitor's memory. A stored observation is a dependency with no question yet; testing it asks one.
+"""
+
+from dataclasses import dataclass, replace
+
+from semantics.queries import Observation, Query
+
+Key = tuple[str, ...]
+"""One thing that an observation may be asked, or one slot of A(P): `("in", "uav0")`, `("parent", "uav0")`."""
+
+SLOT = "slot "
+"""How the first word of a key begins that names a slot of A(P) instead of an answer."""
+
+EVERYTHING: Key = ("all",)
+"""The question whose answer is the whole observation."""
+
+
+@dataclass(frozen=True, slots=True)
+class Dependency:
+    """One observation, by its query.
+
+    Attributes:
+        query: What was asked of A(P).
+        changed: Which answers, and which slots of A(P), others have changed since the `sense`; sorted.
+        asked: What was tested of it; None for the observation as it is stored.
+    """
+
+    query: Query
+    changed: tuple[Key, ...] = ()
+    asked: Key | None = None
+
+    @property
+    def stale(self) -> bool:
+        """Whether the tested answer has changed."""
+        return self.asked in self.changed
+
+    def testing(self, key: Key) -> "Dependency":
+        """Return the dependency on one answer of this observation."""
+        return replace(self, asked=key)
+
+    def pruned(self) -> "Dependency":
+        """Forget what nobody asks any more; slots are kept, a redex may use them."""
+        kept = (key for key in self.changed if key == self.asked or key[0].startswith(SLOT))
+        return replace(self, changed=tuple(kept))
+
+
+Provenance = frozenset[Dependency]
+NOTHING: Provenance = frozenset()
+
+
+def asking(provenance: Provenance, keys: tuple[Key, ...]) -> Provenance:
+    """Return what a test rests on: of stored observations the answers asked, of computed values all they came from."""
+    stored = [each for each in provenance if each.asked is None]
+    return provenance.difference(stored) | {each.testing(key) for each in stored for key in keys}
+
+
+def differences(before: Observation, after: Observation) -> frozenset[Key]:
+    """Return the questions that two observations of one query answer differently."""
+    keys: set[Key] = {
+        ("in", name) for name in set(before.shown + before.agents) ^ set(after.shown + after.agents)
+    }
+    for node in {*before.nodes(), *after.nodes()}:
+        if before.parent(node) != after.parent(node):
+            keys.add(("parent", node))
+        if before.links(node) != after.links(node):
+            keys.add(("links", node))
+    for pair in set(before.relations) ^ set(after.relations):
+        place = getattr(pair, "place", None)
+        keys.update({("children", place)} if place else ())
+    return frozenset(keys | {EVERYTHING}) if keys or before != after else frozenset()

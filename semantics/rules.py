@@ -1,0 +1,191 @@
+"""The seven inference rules, and the two that take `actuate` apart when control takes time.
+
+Each is a pure function of a configuration and an agent that yields the transitions which the rule allows (`env` is given
+a clause of the environment instead). Above the bar of each docstring stand the premises, below it the conclusion.
+"""
+
+from collections.abc import Callable, Iterator
+
+from semantics.computation import compute, enter_case
+from semantics.configuration import Configuration, Label, Transition
+from semantics.control import Realisation, commits, realisations
+from semantics.environment import Clause, Says
+from semantics.expressions import evaluated, query_of
+from semantics.provenance import NOTHING, Dependency
+from semantics.queries import evaluate, overlay
+from semantics.reactions import Reaction
+from semantics.requests import CTR, FLY, OBS, READY
+from semantics.setting import Control
+from semantics.signature import Name
+from semantics.statements import ControlBy, Observe, React, at_internal
+from semantics.stepping import continuing, next_statement, process_of, resting_on
+
+Rule = Callable[[Configuration, Name], Iterator[Transition]]
+
+
+def fun(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Compute: all internal steps of an agent up to its next command, react or choose.
+
+    a's next step is internal, and leads to a′
+    ───────────────────────────────────────────────────  ⟨fun : a⟩
+    ⟨α | S | η⟩  →  ⟨α[a ↦ a′] | S | η⟩
+    """
+    if not at_internal(next_statement(c, a)):  # premise: a's next step is internal
+        return
+    for process in compute(process_of(c, a)):
+        shown = tuple(process.shown)
+        yield Transition(Label("fun", a), c.with_(continuing(c, process)), shown)
+
+
+def req_obs(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Request an observation; HOST is resolved when asked.
+
+    a is at observe(q)
+    ───────────────────────────────────────────────────  ⟨req_obs : a, observe(q)⟩
+    ⟨α | S | η⟩  →  ⟨α[a ↦ a′] | S | η ∪ {OBS(a, q)}⟩
+    """
+    statement = next_statement(c, a)
+    if not isinstance(statement, Observe):  # premise: a is at observe(q)
+        return
+    process = process_of(c, a)
+    query = query_of(statement.query, process.scope)
+    rests_on = resting_on(process, process.scope.used)
+    process.leave()
+    label = Label("req_obs", a, f"observe({query})")
+    yield Transition(label, c.with_(continuing(c, process), c.eta.adding(OBS(a, query), rests_on)))
+
+
+def sense(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Observe: interpret the query over the physical structure; L and P become locally consistent there.
+
+    OBS(a, q) ∈ η, in line      L_q = q(A(P))
+    ───────────────────────────────────────────────────────────────────────────────  ⟨sense : OBS(a, q)⟩
+    ⟨α | (L, P, β, γ) | η⟩  →  ⟨α | (L ⊕ L_q, P, β, γ) | η[OBS(a, q) ↦ READY(a, q, L_q)]⟩
+    """
+    for pending in c.eta.in_line(a):
+        if not isinstance(pending.request, OBS):  # premise: OBS(a, q) ∈ η, in line
+            continue
+        query = pending.request.query
+        seen = evaluate(query, c.structure.physical, c.alpha.hosted)  # premise: L_q = q(A(P))
+        rests_on = pending.rests_on | {Dependency(query)} if c.setting.monitored else NOTHING
+        ready = c.eta.replacing(pending, READY(a, query, seen), rests_on)
+        target = c.with_(overlay(c.structure.logical, seen, c), ready)
+        yield Transition(Label("sense", a, pending.request), target, served=pending)
+
+
+def rcv_obs(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Receive an observation: the first case that fits it takes it.
+
+    a is at a react with a case x for L_q      READY(a, q, L_q) ∈ η, in line
+    ────────────────────────────────────────────────────────────────────────  ⟨rcv_obs : a, react(x)⟩
+    ⟨α | S | η⟩  →  ⟨α[a ↦ a′ with x := L_q] | S | η − READY(a, q, L_q)⟩
+    """
+    statement = next_statement(c, a)
+    if not isinstance(statement, React):  # premise: a is at a react
+        return
+    for pending in c.eta.ready(a):  # premise: READY(a, q, L_q) ∈ η, in line
+        assert isinstance(pending.request, READY)
+        process = process_of(c, a)
+        here = process.leave()
+        seen = pending.request.observation
+        if not enter_case(process, statement.cases, seen, pending.rests_on, here):  # premise: a case for it
+            continue
+        target = c.with_(continuing(c, process), c.eta.removing(pending))
+        yield Transition(Label("rcv_obs", a, f"react({seen})"), target)
+
+
+def req_ctr(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Request a control action.
+
+    a is at control(R ⇒ R′)
+    ───────────────────────────────────────────────────  ⟨req_ctr : a, control(R ⇒ R′)⟩
+    ⟨α | S | η⟩  →  ⟨α[a ↦ a′] | S | η ∪ {CTR(a, R ⇒ R′)}⟩
+    """
+    statement = next_statement(c, a)
+    if not isinstance(statement, ControlBy):  # premise: a is at control(R ⇒ R′)
+        return
+    process = process_of(c, a)
+    arguments = [evaluated(argument, process.scope) for argument in statement.arguments]
+    make = c.setting.program.reactions[statement.name]
+    reaction = make(process.scope.host, *(value for value, _ in arguments))
+    assert isinstance(reaction, Reaction)
+    rests_on = resting_on(process, *(kept for _, kept in arguments))
+    pruned = frozenset(each.pruned() for each in rests_on if each.asked is not None)
+    process.leave()
+    label = Label("req_ctr", a, f"control({reaction})")
+    yield Transition(label, c.with_(continuing(c, process), c.eta.adding(CTR(a, reaction), pruned)))
+
+
+def actuate(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Control, in one step: what takes no flight under `control timed`, everything under `control atomic`.
+
+    CTR(a, R ⇒ R′) ∈ η, in line      m a match of R in L
+    S locally consistent w.r.t. m(R)      drive(P, m(R′)) = P′
+    ──────────────────────────────────────────────────────────────────────────────  ⟨actuate : CTR(a, R ⇒ R′)⟩
+    ⟨α | (L, P, β, γ) | η⟩  →  ⟨α | (L[m(R) ↦ m(R′)], P′, β, γ) | η − CTR(a, R ⇒ R′)⟩
+    """
+    for pending in c.eta.in_line(a):
+        if not isinstance(pending.request, CTR):  # premise: CTR(a, R ⇒ R′) ∈ η, in line
+            continue
+        for found in realisations(c, pending.request):  # premises: match, local consistency, P′
+            if found.flying and c.setting.control is Control.TIMED:
+                continue
+            target = c.with_(found.physical, found.logical, c.eta.removing(pending))
+            yield Transition(Label("actuate", a, pending.request), target, served=pending)
+
+
+def command(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Send a vehicle on its way (`control timed`): L believes nothing yet.
+
+    as actuate      neither what moves nor what carries it is in transit
+    ──────────────────────────────────────────────────────────────────────────────  ⟨command : CTR(a, R ⇒ R′)⟩
+    ⟨α | (L, P, β, γ) | η⟩  →  ⟨α | (L, P[moved ↦ in transit], β, γ) | η[CTR ↦ FLY(a, m, R′)]⟩
+    """
+    if c.setting.control is not Control.TIMED:  # premise: control takes time
+        return
+    for pending in c.eta.in_line(a):
+        if not isinstance(pending.request, CTR):  # premise: CTR(a, R ⇒ R′) ∈ η, in line
+            continue
+        for found in realisations(c, pending.request):  # premises: as actuate
+            if not found.flying or found.waits(c):  # premise: not in transit
+                continue
+            fly = FLY(a, pending.request.reaction, found.match)
+            target = c.with_(found.departing(c), c.eta.replacing(pending, fly))
+            yield Transition(Label("command", a, pending.request), target, served=pending)
+
+
+def commit(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Arrive (`control timed`): with the place where it is now, and R as it still holds.
+
+    FLY(a, m, R′) ∈ η, in line      R still matches, but for where the moved node is now
+    its unmoved part is consistent      drive(P, m(R′)) = P′
+    ──────────────────────────────────────────────────────────────────────────────  ⟨commit : FLY(a, m, R′)⟩
+    ⟨α | (L, P, β, γ) | η⟩  →  ⟨α | (L[m(R) ↦ m(R′)], P′, β, γ) | η − FLY(a, m, R′)⟩
+    """
+    for pending in c.eta.in_line(a):
+        if not isinstance(pending.request, FLY):  # premise: FLY(a, m, R′) ∈ η, in line
+            continue
+        found: Realisation | None = commits(c, pending.request)  # premises: match, consistency, P′
+        if found is not None:
+            target = c.with_(found.physical, found.logical, c.eta.removing(pending))
+            yield Transition(Label("commit", a, pending.request), target, served=pending)
+
+
+def env(c: Configuration, clause: Clause) -> Iterator[Transition]:
+    """Let the world change as the mission's environment says it may.
+
+    the environment allows P → P′
+    ───────────────────────────────────────────────────  ⟨env : P′⟩
+    ⟨α | (L, P, β, γ) | η⟩  →  ⟨α | (L, P′, β, γ) | η⟩
+    """
+    if isinstance(clause, Says):  # premise: the clause is about P
+        return
+    for words, changes in clause.effects(c.structure.physical):  # premise: the environment allows P → P′
+        yield Transition(Label("env", None, words), c.with_(changes))
+
+
+RULES: tuple[Rule, ...] = (fun, req_obs, sense, rcv_obs, req_ctr, actuate)
+"""The paper's rules of an agent, in its order; `env` stands apart, since it is nobody's."""
+
+TIMED_RULES: tuple[Rule, ...] = (command, commit)
+"""What takes the place of `actuate` where control takes time."""

@@ -1,0 +1,75 @@
+"""Between a configuration and a process: how an agent starts to compute, and how it is written back."""
+
+from semantics.agents import Watch, code_cell, host_cell, mailbox_cell, store_cell, watch_cell
+from semantics.cells import AGENTS, Changes
+from semantics.computation import Process
+from semantics.configuration import Configuration
+from semantics.eta import line_cell, sends_cell
+from semantics.expressions import Scope
+from semantics.provenance import NOTHING, Provenance
+from semantics.setting import Scheduler, Setting
+from semantics.signature import Name
+from semantics.statements import Statement
+
+
+def next_statement(c: Configuration, a: Name) -> Statement | None:
+    """Return the statement that an agent is at, None where it has ended."""
+    code = c.alpha.code(a)
+    return c.setting.program.statements[code[0]] if code else None
+
+
+def process_of(c: Configuration, a: Name) -> Process:
+    """Return an agent as a process."""
+    agents, watch = c.alpha, c.alpha.watch(a)
+    code, store = agents.code(a), agents.store(a)
+    rests_on = watch.store if watch else (NOTHING,) * len(store)
+    kept = {name: each for (name, _), each in zip(store, rests_on, strict=True)}
+    scope = Scope(a, agents.host(a), dict(store), kept, c.setting.kinds)
+    return Process(c.setting.program, code, watch.code if watch else (NOTHING,) * len(code), scope)
+
+
+def continuing(c: Configuration, process: Process) -> Changes:
+    """Write α[a ↦ a']: what is left to run after the jumps before it, and the variables that it may read."""
+    process.unroll()
+    a = process.scope.agent
+    store, rests_on = process.variables()
+    changes: Changes = {code_cell(a): process.code, store_cell(a): store}
+    watch = c.alpha.watch(a)
+    if watch is not None:
+        changes[watch_cell(a)] = Watch(process.rests_on, rests_on, watch.mailbox)
+    return changes
+
+
+def starting(setting: Setting, a: Name, host: Name, process: Process) -> Changes:
+    """Write the cells of a new agent, but for its name among the agents."""
+    process.unroll()
+    store, rests_on = process.variables()
+    lines = [] if setting.scheduler is Scheduler.FCFS else [line_cell(a)]
+    lines += [sends_cell(a)] if setting.scheduler is Scheduler.PROGRAM_ORDER else []
+    changes: Changes = {
+        host_cell(a): host,
+        code_cell(a): process.code,
+        store_cell(a): store,
+        mailbox_cell(a): (),
+    }
+    changes |= dict.fromkeys(lines, ())
+    if setting.monitored:
+        changes |= {watch_cell(a): Watch(process.rests_on, rests_on)} | {
+            ("watch", *cell): () for cell in lines
+        }
+    return changes
+
+
+def new_process(setting: Setting, a: Name, host: Name, code: tuple[int, ...]) -> Process:
+    """Return a process that has not begun."""
+    return Process(setting.program, code, (NOTHING,) * len(code), Scope(a, host, {}, {}, setting.kinds))
+
+
+def joining(c: Configuration, a: Name) -> Changes:
+    """Write α + a."""
+    return {AGENTS: tuple(sorted({*c.alpha.names(), a}))}
+
+
+def resting_on(process: Process, *parts: Provenance) -> Provenance:
+    """Return what a request rests on: the way to the statement that makes it, and its arguments."""
+    return process.rests_on[0].union(*parts)

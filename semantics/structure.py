@@ -1,0 +1,88 @@
+"""The structure S = (L, P, β, γ), and when it is consistent."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from semantics.cells import Cells
+from semantics.logical_model import LogicalModel
+from semantics.physical_model import PhysicalModel
+from semantics.signature import REGION, Name
+
+if TYPE_CHECKING:
+    from semantics.setting import Setting
+
+
+@dataclass(frozen=True, slots=True)
+class Parent:
+    """The pair (node, place) of σ_L's `parent`."""
+
+    node: Name
+    place: Name
+
+    def __str__(self) -> str:
+        return f"parent({self.node}) = {self.place}"
+
+
+@dataclass(frozen=True, slots=True)
+class Linked:
+    """The pair (link, node) of σ_L's `linked`."""
+
+    link: Name
+    node: Name
+
+    def __str__(self) -> str:
+        return f"linked({self.link}, {self.node})"
+
+
+Relation = Parent | Linked
+"""One pair of σ_L. A part L' of L is a set of them."""
+
+
+class Structure:
+    """S over the cells of a configuration: `logical`, `physical`, and β and γ between them."""
+
+    __slots__ = ("logical", "physical")
+
+    def __init__(self, cells: Cells, setting: "Setting") -> None:
+        self.logical = LogicalModel(cells, setting)
+        self.physical = PhysicalModel(cells, setting)
+
+    def beta(self, node: Name) -> Name | None:
+        """Return β(node): the naming service gives an entity its node's name; what vanished has no image."""
+        return node if node in self.physical else None
+
+    def gamma(self, relation: Relation) -> bool:
+        """Tell whether P relates the β-images as γ(relation) says: γ(parent) = contains or carries, γ(linked) = connected."""
+        physical = self.physical
+        if isinstance(relation, Linked):
+            return self.beta(relation.node) is not None and physical.connected(relation.link, relation.node)
+        if self.beta(relation.node) is None:
+            return False
+        if relation.place == REGION:
+            return True
+        return physical.carries(relation.place, relation.node) or physical.contains(
+            relation.place, relation.node
+        )
+
+    def believes(self, relation: Relation) -> bool:
+        """Tell whether L has a pair."""
+        if isinstance(relation, Linked):
+            return relation.link in self.logical.links(relation.node)
+        return self.logical.parent(relation.node) == relation.place
+
+    def relations(self) -> tuple[Relation, ...]:
+        """Return all of σ_L, sorted by node."""
+        nodes = self.logical.nodes()
+        parents = [Parent(node, self.logical.parent(node) or REGION) for node in nodes]
+        return (*parents, *(Linked(link, node) for node in nodes for link in self.logical.links(node)))
+
+    def consistent(self, relations: Iterable[Relation], nodes: Iterable[Name] = ()) -> bool:
+        """Tell whether (L', P, β, γ) is consistent, L' given by its pairs and its nodes; costs the size of L'."""
+        return all(self.beta(node) is not None for node in nodes) and all(map(self.gamma, relations))
+
+    def locally_consistent(self, relations: Iterable[Relation], nodes: Iterable[Name] = ()) -> bool:
+        """Tell local consistency with respect to L': L' ⊆ L, and (L', P, β, γ) is consistent."""
+        relations, nodes = tuple(relations), tuple(nodes)
+        contained = all(node in self.logical for node in nodes) and all(map(self.believes, relations))
+        return contained and self.consistent(relations, nodes)

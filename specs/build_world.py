@@ -1,0 +1,244 @@
+"""The builder's half for declarations: one method per rule of the grammar, by its name."""
+
+# ruff: noqa: D102 - each method is the grammar's rule of its name, and that is shown in mission.lark
+
+from __future__ import annotations
+
+from lark import Token, Transformer
+
+from specs import syntax as s
+from specs.building import (
+    Children,
+    Mistake,
+    Part,
+    cover,
+    decimal,
+    name,
+    names,
+    nodes,
+    once,
+    optional,
+    rule_body,
+    span_of,
+    text,
+    whole,
+)
+from specs.codes import Code
+from specs.diagnostics import Diagnostic
+
+SCHEDULERS = ("program_order", "unordered", "fcfs")
+CONTROL_MODES = ("atomic", "timed")
+
+
+class BuildWorld(Transformer[Token, s.Mission]):
+    """Build declarations, beliefs, geometry, environment and checks."""
+
+    def mission(self, c: Children) -> s.Mission:
+        return s.Mission(c[0].value if c[0] else None, nodes(c[1:]), span=cover(c))
+
+    def header(self, c: Children) -> Part:
+        return Part(cover(c), name(c[1]))
+
+    # --- signature
+
+    def signature(self, c: Children) -> s.Signature:
+        return s.Signature(nodes(c), span=cover(c))
+
+    def kind(self, c: Children) -> s.Kind:
+        said = once(c[2:], c[1])
+        contains, carries = (said[word].value if word in said else () for word in ("contains", "carries"))
+        return s.Kind(name(c[1]), contains, carries, "driven" in said, "passive" in said, span=cover(c))
+
+    def kind_clause(self, c: Children) -> Part:
+        return Part(cover(c), names(c[1:]), str(c[0]))
+
+    # --- world
+
+    def world(self, c: Children) -> s.World:
+        return s.World(nodes(c), span=cover(c))
+
+    def entity(self, c: Children) -> s.Entity:
+        said = once(c[5:], c[0])
+        carrier = said["carried"].value[0] if "carried" in said else None
+        channels = said["linked"].value if "linked" in said else ()
+        return s.Entity(name(c[0]), name(c[2]), c[4], carrier, channels, "absent" in said, span=cover(c))
+
+    entity_clause = kind_clause
+
+    def channel(self, c: Children) -> s.ChannelDeclaration:
+        return s.ChannelDeclaration(name(c[1]), span=cover(c))
+
+    def from_source(self, c: Children) -> s.FromSource:
+        keep = tuple(item for item in c if isinstance(item, s.Keep))
+        limit = None if c[-1] is None else whole(c[-1])
+        return s.FromSource(text(c[1]), optional(c[3], text), c[5], keep, limit, span=cover(c))
+
+    def keep(self, c: Children) -> s.Keep:
+        return s.Keep(name(c[0]), name(c[0] if c[2] is None else c[2]), span=cover(c))
+
+    # --- geometry
+
+    def placement(self, c: Children) -> s.Placement:
+        return s.Placement(c[0], c[1], span=cover(c))
+
+    def altitude(self, c: Children) -> s.AltitudeBand:
+        return s.AltitudeBand(c[1], c[3] or c[1], span=cover(c))
+
+    def point(self, c: Children) -> s.Point:
+        return s.Point(c[1], span=cover(c))
+
+    def box(self, c: Children) -> s.Box:
+        return s.Box(c[1], c[2], span=cover(c))
+
+    def polygon(self, c: Children) -> s.Polygon:
+        return s.Polygon(nodes(c), span=cover(c))
+
+    def circle(self, c: Children) -> s.Circle:
+        return s.Circle(c[1], c[3], span=cover(c))
+
+    def length(self, c: Children) -> s.Length:
+        return s.Length(c[0].value, str(c[1]), span=cover(c))
+
+    def coordinate(self, c: Children) -> s.Coordinate:
+        return s.Coordinate(c[1].value, c[3].value, span=cover(c))
+
+    def number(self, c: Children) -> Part:
+        return Part(cover(c), decimal(c[0], c[1]))
+
+    # --- beliefs
+
+    def believes(self, c: Children) -> s.Believes:
+        return s.Believes(nodes(c), span=cover(c))
+
+    def believed_in(self, c: Children) -> s.BelievedIn:
+        place = None if c[2].type == "REGION" else name(c[2])
+        return s.BelievedIn(name(c[0]), place, span=cover(c))
+
+    def believed_unknown(self, c: Children) -> s.BelievedUnknown:
+        return s.BelievedUnknown(name(c[0]), span=cover(c))
+
+    def believed_linked(self, c: Children) -> s.BelievedLinked:
+        return s.BelievedLinked(name(c[0]), names(c[2:]), span=cover(c))
+
+    # --- rules
+
+    def rule(self, c: Children) -> s.Rule:
+        return s.Rule(name(c[1]), nodes(c[2:-1]), rule_body(c[-1]), span=cover(c))
+
+    def parameter(self, c: Children) -> s.Parameter:
+        return s.Parameter(name(c[0]), name(c[2]), span=cover(c))
+
+    # --- environment
+
+    def environment(self, c: Children) -> s.Environment:
+        return s.Environment(nodes(c), span=cover(c))
+
+    def drifts_among(self, c: Children) -> s.DriftsAmong:
+        return s.DriftsAmong(name(c[0]), nodes(c[3:]), span=cover(c))
+
+    def drifts_within(self, c: Children) -> s.DriftsWithin:
+        return s.DriftsWithin(name(c[0]), name(c[3]), span=cover(c))
+
+    def drops(self, c: Children) -> s.Drops:
+        return s.Drops(name(c[0]), c[3] is not None, span=cover(c))
+
+    def leaves(self, c: Children) -> s.Leaves:
+        return s.Leaves(name(c[0]), name(c[2]), c[4] is not None, span=cover(c))
+
+    def appears(self, c: Children) -> s.Appears:
+        return s.Appears(name(c[0]), nodes(c[3:]), names(c[3:]), span=cover(c))
+
+    def vanishes(self, c: Children) -> s.Vanishes:
+        return s.Vanishes(name(c[0]), span=cover(c))
+
+    def says(self, c: Children) -> s.Says:
+        times = 1 if c[7] is None else c[7].value
+        return s.Says(c[2], optional(c[4], name), times, span=cover(c))
+
+    def times(self, c: Children) -> Part:
+        return Part(cover(c), 1 if c[0].type == "ONCE" else whole(c[0]))
+
+    def arrives(self, c: Children) -> s.Arrives:
+        return s.Arrives(name(c[0]), span=cover(c))
+
+    def place_name(self, c: Children) -> s.Name:
+        return name(c[0])
+
+    # --- scheduler, control and checks
+
+    def scheduler(self, c: Children) -> s.Scheduler:
+        return s.Scheduler(option("scheduler", c[1], SCHEDULERS), span=cover(c))
+
+    def control_mode(self, c: Children) -> s.ControlMode:
+        return s.ControlMode(option("control", c[1], CONTROL_MODES), span=cover(c))
+
+    def check(self, c: Children) -> s.Check:
+        return s.Check(nodes(c), span=cover(c))
+
+    def standard_property(self, c: Children) -> s.StandardProperty:
+        return s.StandardProperty(str(c[0]), span=cover(c))
+
+    def invariant(self, c: Children) -> s.Invariant:
+        return s.Invariant(c[1], c[3], span=cover(c))
+
+    def reachable(self, c: Children) -> s.Reachable:
+        return s.Reachable(c[1], c[3], span=cover(c))
+
+    # --- formulas
+
+    def connective(self, c: Children) -> s.Connective:
+        operator = {"||": "or", "&&": "and"}.get(c[1], str(c[1]))
+        return s.Connective(operator, c[0], c[2], span=cover(c))
+
+    def negation_of(self, c: Children) -> s.Negation:
+        return s.Negation(c[1], span=cover(c))
+
+    def quantified(self, c: Children) -> s.Quantified:
+        return s.Quantified(str(c[0]), name(c[1]), name(c[3]), c[5], span=cover(c))
+
+    def formula_group(self, c: Children) -> s.Formula:
+        formula: s.Formula = c[1]
+        return formula
+
+    def inside(self, c: Children) -> s.Inside:
+        return s.Inside(name(c[1]), name(c[4]), c[2] is not None, c[0] is not None, span=cover(c))
+
+    def linked_to(self, c: Children) -> s.LinkedTo:
+        return s.LinkedTo(name(c[1]), name(c[3]), c[0] is not None, span=cover(c))
+
+    def present(self, c: Children) -> s.Present:
+        return s.Present(name(c[1]), span=cover(c))
+
+    def known(self, c: Children) -> s.Known:
+        return s.Known(name(c[1]), span=cover(c))
+
+    def pending(self, c: Children) -> s.Pending:
+        return s.Pending(name(c[2]), None if c[1] is None else str(c[1]), span=cover(c))
+
+    def ended(self, c: Children) -> s.Ended:
+        return s.Ended(name(c[1]), span=cover(c))
+
+    def waiting(self, c: Children) -> s.Waiting:
+        return s.Waiting(name(c[1]), span=cover(c))
+
+    def hosted_at(self, c: Children) -> s.HostedAt:
+        return s.HostedAt(name(c[0]), name(c[2]), span=cover(c))
+
+    def same_name(self, c: Children) -> s.Formula:
+        return _equal(c[1], s.SameName(name(c[0]), name(c[2]), span=cover(c)))
+
+    def stored(self, c: Children) -> s.Formula:
+        return _equal(c[3], s.Stored(name(c[0]), name(c[2]), c[4], span=cover(c)))
+
+
+def option(owner: str, token: Token, options: tuple[str, ...]) -> str:
+    """Return the option that a word names; raises Mistake for another word."""
+    if str(token) in options:
+        return str(token)
+    message = f"'{token}' is no {owner}"
+    hint = f"write {', '.join(options[:-1])} or {options[-1]}"
+    raise Mistake(Diagnostic(Code.UNKNOWN_OPTION, span_of(token), message, hint))
+
+
+def _equal(operator: Token, claim: s.SameName | s.Stored) -> s.Formula:
+    return claim if operator == "==" else s.Negation(claim, span=claim.span)

@@ -1,0 +1,172 @@
+"""What the two builders of the syntax tree share: children of a grammar rule, taken apart.
+
+lark gives each rule its children with all tokens kept, and None for each that an optional part lacks; so a child's place
+is its place in the grammar.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Final, TypeAlias, TypeVar
+
+from lark import Token
+
+from bigraphs.errors import NotationError
+from bigraphs.notation.paper import RuleTerm, parse_rule
+from specs.codes import Code
+from specs.diagnostics import Diagnostic
+from specs.syntax import Name, Node, RuleBody, Span, TextLiteral
+from specs.text import MAX_WORD
+
+MOST: Final = 1_000_000_000  # whole numbers are smaller in value
+_ESCAPES: Final = {'"': '"', "\\": "\\", "n": "\n", "t": "\t"}
+_NAMES: Final = frozenset({"NAME", "CHANNEL", "DROPPING"})
+
+Child: TypeAlias = Any  # a token, a node, a Part or None, as the grammar says
+Children: TypeAlias = Sequence[Child]
+N = TypeVar("N", bound=Node)
+
+
+class Mistake(Exception):
+    """A mistake found while building; the parser adds the source."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        self.diagnostic = diagnostic
+        super().__init__(diagnostic)
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """What a grammar rule yields that is no node of its own: a block's statements, a clause's names, a number."""
+
+    span: Span
+    value: Any
+    word: str = ""
+
+
+def span_of(child: Child) -> Span:
+    """Return where a child stands."""
+    if isinstance(child, Token):
+        return Span(int(child.start_pos or 0), int(child.end_pos or 0))
+    span: Span = child.span
+    return span
+
+
+def cover(children: Children) -> Span:
+    """Return the span from the first child that is there to the last."""
+    there = [child for child in children if child is not None]
+    return span_of(there[0]).to(span_of(there[-1])) if there else Span(0, 0)
+
+
+def nodes(children: Children) -> tuple[Any, ...]:
+    """Return the nodes among the children."""
+    return tuple(child for child in children if isinstance(child, Node))
+
+
+def name(token: Token) -> Name:
+    """Return a name; raises Mistake for one over ten kilobytes."""
+    span = span_of(token)
+    if len(token) > MAX_WORD:
+        raise Mistake(
+            Diagnostic(Code.WORD_TOO_LONG, span, f"a name of {len(token):,} characters", "shorten it")
+        )
+    return Name(str(token), span=span)
+
+
+def names(children: Children) -> tuple[Name, ...]:
+    """Return the names among the children."""
+    return tuple(name(child) for child in children if isinstance(child, Token) and child.type in _NAMES)
+
+
+def optional(token: Token | None, make: Callable[[Token], N]) -> N | None:
+    """Apply `make` to a token that may be missing."""
+    return None if token is None else make(token)
+
+
+def text(token: Token) -> TextLiteral:
+    """Return a string with its escapes resolved; raises Mistake for an unknown escape."""
+    span, pieces = span_of(token), []
+    inner = str(token)[1:-1]
+    at = 0
+    while (backslash := inner.find("\\", at)) >= 0:
+        escaped = inner[backslash + 1]
+        if escaped not in _ESCAPES:
+            place = Span(span.start + 1 + backslash, span.start + 3 + backslash)
+            hint = r"write \\ for a backslash; \n and \t are a line end and a tab"
+            raise Mistake(
+                Diagnostic(Code.BAD_ESCAPE, place, f"'\\{escaped}' means nothing in a string", hint)
+            )
+        pieces += [inner[at:backslash], _ESCAPES[escaped]]
+        at = backslash + 2
+    return TextLiteral("".join([*pieces, inner[at:]]), span=span)
+
+
+def whole(token: Token) -> int:
+    """Return a whole number; raises Mistake for another one."""
+    if token.isdecimal() and len(token) <= 10 and int(token) < MOST:
+        return int(token)
+    message = f"{_short(token)} is not a whole number below {MOST:,}"
+    raise Mistake(
+        Diagnostic(
+            Code.BAD_NUMBER, span_of(token), message, "decimal numbers stand in coordinates and lengths only"
+        )
+    )
+
+
+def decimal(sign: Token | None, token: Token) -> float:
+    """Return a finite number; raises Mistake for one too large."""
+    value = float(token)
+    if not math.isfinite(value):
+        raise Mistake(
+            Diagnostic(
+                Code.BAD_NUMBER,
+                span_of(token),
+                f"{_short(token)} is too large a number",
+                "write a finite one",
+            )
+        )
+    return -value if sign and value else value
+
+
+def once(clauses: Children, owner: Token) -> dict[str, Part]:
+    """Return the clauses by their first word; raises Mistake for a repeated one."""
+    found: dict[str, Part] = {}
+    for clause in clauses:
+        if clause.word in found:
+            message = f"'{clause.word}' is said twice of '{_short(owner)}'"
+            hint = "write it once; lists are separated by commas"
+            raise Mistake(Diagnostic(Code.REPEATED_CLAUSE, clause.span, message, hint))
+        found[clause.word] = clause
+    return found
+
+
+def rule_body(token: Token) -> RuleBody:
+    """Return a rule's body; its `term` is None where it has a mistake, which `rule_mistake` tells."""
+    span = span_of(token)
+    raw = str(token)[1:-1]
+    if len(token) > MAX_WORD:
+        raise Mistake(
+            Diagnostic(Code.WORD_TOO_LONG, span, f"a rule of {len(token):,} characters", "split it")
+        )
+    try:
+        term: RuleTerm | None = parse_rule(raw)
+    except NotationError:
+        term = None
+    return RuleBody(" ".join(raw.split()), term, raw, span.start + 1, span=span)
+
+
+def rule_mistake(body: RuleBody) -> Diagnostic | None:
+    """Return what is wrong with a rule's body, at its place in the mission."""
+    try:
+        parse_rule(body.raw)
+    except NotationError as error:
+        start = min(body.raw_start + error.offset, body.span.end - 1)
+        span = Span(start, max(start + 1, min(start + error.length, body.span.end)))
+        return Diagnostic(Code.RULE_SYNTAX, span, error.message, error.hint)
+    return None
+
+
+def _short(token: str) -> str:
+    return token if len(token) <= 40 else f"{token[:37]}..."

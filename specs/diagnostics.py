@@ -1,0 +1,120 @@
+"""The user's mistakes as data, and the one way they are printed."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Final
+
+from specs.codes import Code
+from specs.syntax.nodes import Span
+
+_TAB: Final = 4
+_WIDEST: Final = 100  # columns of a line that are shown
+_BEFORE: Final = 40  # of these, at least so many before the caret where the line is cut
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A mission's text and what it is called in messages; lines end in line feeds."""
+
+    name: str
+    text: str
+
+    def line(self, offset: int) -> int:
+        """Return the number of the line that holds `offset`, counted from 1."""
+        return self.text.count("\n", 0, offset) + 1
+
+    def column(self, offset: int) -> int:
+        """Return how many characters into its line `offset` is, counted from 1."""
+        return offset - self.line_start(offset) + 1
+
+    def line_start(self, offset: int) -> int:
+        """Return the offset of the first character of the line that holds `offset`."""
+        return self.text.rfind("\n", 0, offset) + 1
+
+    def line_text(self, offset: int) -> str:
+        """Return the line that holds `offset`, without its end."""
+        end = self.text.find("\n", offset)
+        return self.text[self.line_start(offset) : end if end >= 0 else len(self.text)]
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """A mistake: what was found and what was expected (`message`), and what to do (`hint`)."""
+
+    code: Code
+    span: Span
+    message: str
+    hint: str = ""
+
+
+class MissionError(Exception):
+    """The mistakes in a mission, sorted by position; printed as they are rendered."""
+
+    def __init__(self, source: Source, diagnostics: Iterable[Diagnostic]) -> None:
+        self.source = source
+        self.diagnostics = tuple(sorted(diagnostics, key=_position))
+        super().__init__(source, self.diagnostics)
+
+    def __str__(self) -> str:
+        return render_all(self.diagnostics, self.source)
+
+
+def render_all(diagnostics: Iterable[Diagnostic], source: Source) -> str:
+    """Return the mistakes as printed, by position, an empty line between two."""
+    return "\n\n".join(render(item, source) for item in sorted(diagnostics, key=_position))
+
+
+def render(diagnostic: Diagnostic, source: Source) -> str:
+    """Return `name:line:column: code: message`, the line, a caret under the mistake, and the hint.
+
+    The column counts characters from 1. Of a line wider than a hundred columns the part around the caret is
+    shown; a mistake of several lines is underlined in its first.
+    """
+    start = min(diagnostic.span.start, len(source.text))
+    line = source.line(start)
+    head = f"{source.name}:{line}:{source.column(start)}: {diagnostic.code.number}: {diagnostic.message}"
+    shown, caret = _underline(source.line_text(start), source.column(start) - 1, diagnostic.span)
+    margin = " " * len(str(line))
+    block = [head, f"  {line} | {shown}".rstrip(), f"  {margin} | {caret}"]
+    if diagnostic.hint:
+        block.append(f"  hint: {diagnostic.hint}")
+    return "\n".join(block)
+
+
+def _underline(line: str, first: int, span: Span) -> tuple[str, str]:
+    last = min(max(first + span.end - span.start, first + 1), max(len(line), first + 1))
+    start, cells = _window(line, first)
+    before = sum(len_ for _, len_ in cells[: first - start])
+    under = sum(len_ for _, len_ in cells[first - start : last - start]) if first < len(line) else 1
+    return "".join(text for text, _ in cells), " " * before + "^" * max(under, 1)
+
+
+def _window(line: str, first: int) -> tuple[int, list[tuple[str, int]]]:
+    """Cut out what is shown around `first`: where it begins, and its characters with their widths."""
+    start = 0 if len(line) <= _WIDEST else max(0, min(first - _BEFORE, len(line) - _WIDEST))
+    cells, width = [], 0
+    for character in line[start:]:
+        cell = _cell(character)
+        width += cell[1]
+        if width > _WIDEST:
+            break
+        cells.append(cell)
+    return start, cells
+
+
+def _cell(character: str) -> tuple[str, int]:
+    """Return a character as it is shown, and its width in columns of a terminal."""
+    if character == "\t":
+        return " " * _TAB, _TAB
+    if not character.isprintable():
+        return "\N{REPLACEMENT CHARACTER}", 1
+    if unicodedata.combining(character):
+        return character, 0
+    return character, 2 if unicodedata.east_asian_width(character) in "WF" else 1
+
+
+def _position(diagnostic: Diagnostic) -> tuple[Span, str, str]:
+    return diagnostic.span, diagnostic.code.number, diagnostic.message

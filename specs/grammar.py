@@ -1,0 +1,90 @@
+"""The grammar of missions as lark has it, built once and kept in memory; and the words it knows."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from importlib.resources import files
+from typing import Final
+
+from lark import Lark
+from lark.lexer import PatternRE, PatternStr, TerminalDef
+
+from specs.build_behaviour import BuildBehaviour
+from specs.build_world import BuildWorld
+
+SECTIONS: Final = frozenset(
+    "mission signature world believes rule def BigActor environment scheduler check".split()
+)
+STATEMENTS: Final = frozenset(
+    "observe control react send migrate spawn display let if loop while for match choose skip".split()
+)
+OPERATION_WORDS: Final = frozenset("in not and or of true false HOST SELF".split())
+QUERY_WORDS: Final = frozenset(
+    "ALL PARENT CHILDREN LINKED_TO HOSTED_AT PARENT_HOST CHILDREN_HOST LINKED_TO_HOST HOSTED_AT_HOST".split()
+)
+ACTION_WORDS: Final = frozenset(
+    "MOVE_HOST_TO MOVE TO CONNECT_HOST_TO DISCONNECT_HOST_FROM HAND PUT IN".split()
+)
+RESERVED: Final = (
+    SECTIONS
+    | STATEMENTS
+    | OPERATION_WORDS
+    | QUERY_WORDS
+    | ACTION_WORDS
+    | frozenset("case else hosted_at with_behavior to at says someone".split())
+)
+
+
+class _Build(BuildWorld, BuildBehaviour):
+    """Both halves of the builder."""
+
+
+def grammar_text() -> str:
+    """Return the grammar as it is written in mission.lark."""
+    return files("specs").joinpath("mission.lark").read_text(encoding="utf-8")
+
+
+@cache
+def grammar() -> Lark:
+    """Return the parser, which builds the syntax tree as it goes, so that depth costs no recursion."""
+    reserved = "|".join(sorted(RESERVED))
+    return Lark(
+        grammar_text().replace("RESERVED", f"(?:{reserved})"),
+        parser="lalr",
+        lexer="contextual",
+        start="mission",
+        keep_all_tokens=True,
+        maybe_placeholders=True,
+        transformer=_Build(),
+        edit_terminals=_match_whole_words,
+    )
+
+
+@cache
+def spellings() -> dict[str, str]:
+    """Return what the user writes for each terminal of the grammar that is one word or symbol."""
+    return {
+        terminal.name: terminal.pattern.value.removesuffix(_WORD_END)
+        if isinstance(terminal.pattern, PatternStr) or terminal.pattern.value.endswith(_WORD_END)
+        else ""
+        for terminal in grammar().terminals
+    }
+
+
+@cache
+def keywords() -> frozenset[str]:
+    """Return all words of the language."""
+    return frozenset(word for word in spellings().values() if re.fullmatch(r"\w\w+", word))
+
+
+_WORD_END: Final = r"(?!\w)"
+
+
+def _match_whole_words(terminal: TerminalDef) -> None:
+    """Make a keyword match as a whole word, before any name; lark would match the `let` of `letter`."""
+    if isinstance(terminal.pattern, PatternStr) and re.fullmatch(r"\w+", terminal.pattern.value):
+        terminal.pattern = PatternRE(terminal.pattern.value + _WORD_END)
+        terminal.priority = 2
+    elif terminal.name == "DROPPING":
+        terminal.priority = 1

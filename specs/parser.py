@@ -1,0 +1,78 @@
+"""From a mission's text to its syntax tree, or to the mistakes in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from lark import UnexpectedInput
+from lark.parsers.lalr_interactive_parser import InteractiveParser
+
+from specs.building import Mistake, rule_mistake
+from specs.codes import Code
+from specs.diagnostics import Diagnostic, MissionError, Source
+from specs.grammar import grammar
+from specs.syntax import Mission, Node, RuleBody, Span, parts, walk
+from specs.syntax_errors import explain_syntax_error
+from specs.text import Prepared, decode, prepare
+
+MAX_DEPTH: Final = 200
+
+
+def parse(source: Source) -> Mission:
+    """Return the syntax tree of a mission; raises MissionError.
+
+    Linear in the text and free of recursion; the tree is at most 200 deep. A syntax error is reported alone, with no
+    search for others; mistakes in the bodies of rules are reported together.
+    """
+    mission = build(prepare(source), source)
+    mistakes = list(_mistakes(mission))
+    if mistakes:
+        raise MissionError(source, mistakes)
+    return mission
+
+
+def parse_bytes(name: str, data: bytes) -> tuple[Source, Mission]:
+    """Return a file's source and its syntax tree; raises MissionError."""
+    source = decode(name, data)
+    return source, parse(source)
+
+
+def build(prepared: Prepared, source: Source) -> Mission:
+    """Return the tree of a prepared text, its depth and rules not yet looked at; raises MissionError."""
+    run = grammar().parse_interactive(prepared.text)
+    try:
+        return _run(run)
+    except Mistake as mistake:
+        raise MissionError(source, [mistake.diagnostic]) from None
+    except UnexpectedInput as found:
+        raise MissionError(source, [explain_syntax_error(found, run, prepared)]) from None
+
+
+def _run(run: InteractiveParser) -> Mission:
+    last = None
+    for last in run.iter_parse():
+        pass
+    mission: Mission = run.feed_eof(last)
+    return mission
+
+
+def _mistakes(mission: Mission) -> Iterator[Diagnostic]:
+    deepest = _too_deep(mission)
+    if deepest:
+        message = f"nested more than {MAX_DEPTH} deep"
+        hint = "define behaviours with def and name values with let"
+        yield Diagnostic(Code.NESTED_TOO_DEEPLY, deepest, message, hint)
+        return
+    for node in walk(mission):
+        if isinstance(node, RuleBody) and node.term is None and (mistake := rule_mistake(node)):
+            yield mistake
+
+
+def _too_deep(mission: Mission) -> Span | None:
+    layer: list[Node] = [mission]
+    for _ in range(MAX_DEPTH):
+        layer = [part for node in layer for part in parts(node)]
+        if not layer:
+            return None
+    return min(node.span for node in layer)

@@ -1,0 +1,81 @@
+"""Control actions: what `control` requests, and the bodies of reaction rules."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from bigraphs.notation.paper import RuleTerm
+from specs.syntax.expressions import Expression
+from specs.syntax.nodes import Name, Node
+
+
+@dataclass(frozen=True, slots=True)
+class MoveHost(Node):
+    """`MOVE_HOST_TO e`: move the agent's host into a place."""
+
+    destination: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Move(Node):
+    """`MOVE u TO e`: move another entity into a place."""
+
+    entity: Expression
+    destination: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Connect(Node):
+    """`CONNECT_HOST_TO e`: join a channel of a node."""
+
+    node: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Disconnect(Node):
+    """`DISCONNECT_HOST_FROM e`: leave the channels shared with a node."""
+
+    node: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class HandOver(Node):
+    """`HAND u TO g`: hand the control authority over an entity to a station."""
+
+    entity: Expression
+    station: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Put(Node):
+    """`PUT x IN e`: put what a carrier holds where the carrier is, or into a carrier."""
+
+    entity: Expression
+    place: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class ApplyRule(Node):
+    """`land(uav0, base0)`: a named reaction rule, its parameters given."""
+
+    rule: Name
+    arguments: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RuleBody(Node):
+    """`{ u[c] || b.$0 -> b.(u[c] | $0) }`: a reaction rule in the notation of the paper's runtime.
+
+    `text` has its white space collapsed; `raw` is what stands between the braces, comments blanked
+    out, so that an offset into it is an offset from `raw_start` in the mission. `term` is what it says, never
+    None in a parsed mission.
+    """
+
+    text: str
+    term: RuleTerm | None = field(default=None, compare=False, repr=False)
+    raw: str = field(default="", compare=False, repr=False)
+    raw_start: int = field(default=0, compare=False, repr=False)
+
+
+Action: TypeAlias = MoveHost | Move | Connect | Disconnect | HandOver | Put | ApplyRule | RuleBody

@@ -1,0 +1,57 @@
+"""What every node of the syntax tree is: a frozen value that knows where it was written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Span:
+    """A stretch of the mission's text: offsets in characters, `end` excluded."""
+
+    start: int
+    end: int
+
+    def to(self, other: Span) -> Span:
+        """Return the span from the start of this one to the end of `other`."""
+        return Span(self.start, other.end)
+
+
+NOWHERE = Span(0, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A piece of syntax. Two nodes are equal when they say the same, wherever they were written."""
+
+    span: Span = field(default=NOWHERE, compare=False, repr=False, kw_only=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Name(Node):
+    """`uav0`, `control:gcs0`.
+
+    A name, of whatever the place it stands in asks for (entity, kind, channel, variable).
+    """
+
+    text: str
+
+
+def parts(node: Node) -> Iterator[Node]:
+    """Yield the nodes directly below `node`, in the order of its fields."""
+    for spec in fields(node):
+        value = getattr(node, spec.name)
+        if isinstance(value, Node):
+            yield value
+        elif isinstance(value, tuple):
+            yield from (item for item in value if isinstance(item, Node))
+
+
+def walk(node: Node) -> Iterator[Node]:
+    """Yield `node` and every node below it, parents before their parts."""
+    waiting = [node]
+    while waiting:
+        current = waiting.pop()
+        yield current
+        waiting.extend(reversed(tuple(parts(current))))

@@ -1,0 +1,190 @@
+"""Statements: what a bigActor does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from specs.syntax.actions import Action
+from specs.syntax.expressions import Expression, Query
+from specs.syntax.nodes import Name, Node
+from specs.syntax.patterns import Pattern
+
+
+@dataclass(frozen=True, slots=True)
+class Case(Node):
+    """`case pattern if guard => statements`: one alternative of a `react` or a `match`."""
+
+    pattern: Pattern
+    guard: Expression | None
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Observe(Node):
+    """`observe(q)`: request an observation."""
+
+    query: Query
+
+
+@dataclass(frozen=True, slots=True)
+class Control(Node):
+    """`control(r)`: request a control action."""
+
+    action: Action
+
+
+@dataclass(frozen=True, slots=True)
+class React(Node):
+    """`react { case ... }`: wait for an observation or a message that a case takes."""
+
+    cases: tuple[Case, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Send(Node):
+    """`send e to a`, or `send(e, a)`: send a message to an agent."""
+
+    message: Expression
+    recipient: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Migrate(Node):
+    """`migrate(h)`: request to move the agent to another host."""
+
+    host: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Call(Node):
+    """`visit(oilSpill0)`: run a behaviour defined by `def`."""
+
+    behaviour: Name
+    arguments: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Spawn(Node):
+    """`spawn(visit(place0), hosted_at uav0)`, or `spawn b hosted_at uav0 with_behavior visit(place0)`.
+
+    Start an agent.
+    """
+
+    name: Name | None
+    behaviour: Call
+    host: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Display(Node):
+    """`display(e)`: show a value to whoever watches; no effect on the configuration."""
+
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Let(Node):
+    """`let x = e`: bind a new variable."""
+
+    variable: Name
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Assign(Node):
+    """`x = e`: give a variable that is bound already another value."""
+
+    variable: Name
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class If(Node):
+    """`if e { ... } else if e { ... } else { ... }`: an `else if` is an `If` alone in `otherwise`."""
+
+    condition: Expression
+    then: tuple[Statement, ...]
+    otherwise: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Loop(Node):
+    """`loop { ... }`: for ever."""
+
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class While(Node):
+    """`while e { ... }`: as long as the condition holds."""
+
+    condition: Expression
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class For(Node):
+    """`for x in e { ... }`: once for each element, in the order of the names."""
+
+    variable: Name
+    collection: Expression
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Match(Node):
+    """`match e { case ... }`: the first case that fits a stored observation, message or value."""
+
+    subject: Expression
+    cases: tuple[Case, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Alternative(Node):
+    """`case => statements`, or one block of `choose { ... } or { ... }`."""
+
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Choose(Node):
+    """`choose { case => ... case => ... }`, or `choose { ... } or { ... }`: any of the alternatives."""
+
+    alternatives: tuple[Alternative, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ChooseFrom(Node):
+    """`choose x in e { ... }`: once, for any one element."""
+
+    variable: Name
+    collection: Expression
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Skip(Node):
+    """`skip`: nothing."""
+
+
+Statement: TypeAlias = (
+    Observe
+    | Control
+    | React
+    | Send
+    | Migrate
+    | Spawn
+    | Display
+    | Let
+    | Assign
+    | If
+    | Loop
+    | While
+    | For
+    | Match
+    | Choose
+    | ChooseFrom
+    | Call
+    | Skip
+)

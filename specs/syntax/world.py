@@ -1,0 +1,212 @@
+"""The signature, the world and what is believed of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from specs.syntax.expressions import TextLiteral
+from specs.syntax.nodes import Name, Node
+
+# --- geometry
+
+
+@dataclass(frozen=True, slots=True)
+class Length(Node):
+    """`400 m`, `1.5 km`: `unit` is `m` or `km`."""
+
+    value: float
+    unit: str
+
+    @property
+    def metres(self) -> float:
+        """The length in metres."""
+        return self.value * 1000 if self.unit == "km" else self.value
+
+
+@dataclass(frozen=True, slots=True)
+class Coordinate(Node):
+    """`(37.04, -8.59)`.
+
+    Latitude, then longitude, WGS 84, in degrees; finite, but not yet known to be in range.
+    """
+
+    latitude: float
+    longitude: float
+
+
+@dataclass(frozen=True, slots=True)
+class Point(Node):
+    """`point (37.08, -8.55)`."""
+
+    position: Coordinate
+
+
+@dataclass(frozen=True, slots=True)
+class Box(Node):
+    """`box (37.04, -8.59) (36.94, -8.79)`: two opposite corners, as in the paper's Example 1."""
+
+    first: Coordinate
+    second: Coordinate
+
+
+@dataclass(frozen=True, slots=True)
+class Polygon(Node):
+    """`polygon (37.10, -8.60) (37.10, -8.50) (37.06, -8.50)`.
+
+    The corners in order, the last joined to the first.
+    """
+
+    corners: tuple[Coordinate, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Circle(Node):
+    """`circle (37.00, -8.70) radius 400 m`."""
+
+    centre: Coordinate
+    radius: Length
+
+
+Geometry: TypeAlias = Point | Box | Polygon | Circle
+
+
+@dataclass(frozen=True, slots=True)
+class AltitudeBand(Node):
+    """`altitude 100 m to 300 m`, or `altitude 100 m` for a band of no height."""
+
+    lowest: Length
+    highest: Length
+
+
+@dataclass(frozen=True, slots=True)
+class Placement(Node):
+    """`circle (37.00, -8.70) radius 400 m altitude 0 m to 50 m`.
+
+    Where something is, the altitude optional.
+    """
+
+    geometry: Geometry
+    altitude: AltitudeBand | None = None
+
+
+# --- signature
+
+
+@dataclass(frozen=True, slots=True)
+class Kind(Node):
+    """`kind Vessel driven carries Drifter, Station contains Person passive`.
+
+    What follows the name in any order, or not.
+    """
+
+    name: Name
+    contains: tuple[Name, ...] = ()
+    carries: tuple[Name, ...] = ()
+    driven: bool = False
+    passive: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Signature(Node):
+    """`signature { kind ... }`: the kinds of nodes there are."""
+
+    kinds: tuple[Kind, ...]
+
+
+# --- world
+
+
+@dataclass(frozen=True, slots=True)
+class Entity(Node):
+    """`uav0: UAV = point (37.08, -8.55) altitude 90 m to 300 m linked control:gcs0, wifi`.
+
+    Also `drifter0: Drifter carried by vessel0` and `ghost0: UAV absent`, which is declared and appears
+    later. Everything after the kind is optional.
+    """
+
+    name: Name
+    kind: Name
+    placement: Placement | None = None
+    carrier: Name | None = None
+    channels: tuple[Name, ...] = ()
+    absent: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelDeclaration(Node):
+    """`channel wifi`: a channel, declared without a member."""
+
+    name: Name
+
+
+@dataclass(frozen=True, slots=True)
+class Keep(Node):
+    """`BaseStation as Station`, or `Vessel` for `Vessel as Vessel`.
+
+    Which kind of the recording becomes which of the mission.
+    """
+
+    recorded: Name
+    kind: Name
+
+
+@dataclass(frozen=True, slots=True)
+class FromSource(Node):
+    """`from "workum.nmea" at "2020-04-07T21:42:00Z" within box (53.1, 5.3) (52.9, 5.5) limit 12`.
+
+    A GeoJSON file or an AIS recording beside the mission; everything after the file is optional. Before
+    `limit`, `keep Vessel, BaseStation as Station` may choose among the recorded kinds.
+    """
+
+    file: TextLiteral
+    time: TextLiteral | None = None
+    within: Geometry | None = None
+    keep: tuple[Keep, ...] = ()
+    limit: int | None = None
+
+
+WorldEntry: TypeAlias = Entity | ChannelDeclaration | FromSource
+
+
+@dataclass(frozen=True, slots=True)
+class World(Node):
+    """`world { ... }`: places, entities, channels and the files they come from."""
+
+    entries: tuple[WorldEntry, ...]
+
+
+# --- believes
+
+
+@dataclass(frozen=True, slots=True)
+class BelievedIn(Node):
+    """`uav0 in searchArea0`, or `uav0 in region` for whereabouts unknown (`place` is None)."""
+
+    entity: Name
+    place: Name | None
+
+
+@dataclass(frozen=True, slots=True)
+class BelievedUnknown(Node):
+    """`oilSpill0 unknown`: not in L at all."""
+
+    entity: Name
+
+
+@dataclass(frozen=True, slots=True)
+class BelievedLinked(Node):
+    """`uav0 linked control:gcs0, wifi`: exactly these links; `uav0 unlinked` for none."""
+
+    entity: Name
+    channels: tuple[Name, ...]
+
+
+Belief: TypeAlias = BelievedIn | BelievedUnknown | BelievedLinked
+
+
+@dataclass(frozen=True, slots=True)
+class Believes(Node):
+    """`believes { ... }`: what L holds at first where it differs from A(P)."""
+
+    beliefs: tuple[Belief, ...]

@@ -1,0 +1,208 @@
+"""What is done with a mission's text before the grammar sees it: bounds, comments, brackets, printed line numbers.
+
+Everything here is linear in the text, and replaces characters by spaces only, so that offsets stay what they were.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from specs.codes import Code
+from specs.diagnostics import Diagnostic, MissionError, Source
+from specs.syntax.nodes import Span
+
+MAX_BYTES: Final = 1_000_000
+MAX_WORD: Final = 10_000
+MAX_NESTING: Final = 200
+MAX_WORDS: Final = 150_000
+
+_SCAN: Final = re.compile(
+    r"""(?P<comment>(?://|\#)[^\n]*)
+      | (?P<string>"(?:[^"\\\n]|\\.)*+")
+      | (?P<quote>")
+      | (?P<open>[(\[{])
+      | (?P<close>[)\]}])
+      | \w+ | [^\w\s]""",
+    re.VERBOSE,
+)
+_RUN: Final = re.compile(r"""[^\s"()\[\]{},;/\#]+""")
+_CONTROL: Final = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
+_NUMBERED: Final = re.compile(r"[ \t]*(?P<number>[0-9]{1,6})(?=\s|$)")
+_NUMBERED_ACTOR: Final = re.compile(r"[ \t]*[0-9]{1,6}[ \t]+BigActor\b")
+_QUOTED: Final = re.compile(r'"(?:[^"\\\n]|\\.)*+"')
+_PARTNER: Final = {"(": ")", "[": "]", "{": "}"}
+
+
+@dataclass(frozen=True, slots=True)
+class Comment:
+    """A comment, `text` with its `//` or `#`."""
+
+    span: Span
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """A text ready for the grammar, and what was seen in it: `unmatched` is the first bracket that fits no other."""
+
+    text: str
+    comments: tuple[Comment, ...]
+    unmatched: tuple[int, Diagnostic] | None
+    open_at_end: tuple[int, ...]
+
+
+def decode(name: str, data: bytes) -> Source:
+    """Return the source that a file's bytes hold, with line feeds as line ends; raises MissionError."""
+    if len(data) > MAX_BYTES:
+        raise MissionError(Source(name, ""), [_too_large(len(data))])
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        before = _line_ends(data[: error.start].decode("utf-8-sig", "replace"))
+        source = Source(name, before + "\N{REPLACEMENT CHARACTER}")
+        message = f"byte {error.start} of the file is not UTF-8 (0x{data[error.start]:02x})"
+        span = Span(len(before), len(before) + 1)
+        raise MissionError(
+            source, [Diagnostic(Code.NOT_UTF8, span, message, "save the file as UTF-8")]
+        ) from None
+    return Source(name, _line_ends(text))
+
+
+def prepare(source: Source) -> Prepared:
+    """Check the bounds and blank out comments and printed line numbers; raises MissionError."""
+    text = source.text
+    problem = _out_of_bounds(text)
+    if problem:
+        raise MissionError(
+            Source(source.name, "") if problem.code is Code.FILE_TOO_LARGE else source, [problem]
+        )
+    try:
+        comments, unmatched, open_at_end = _scan(text)
+    except _Refused as refused:
+        raise MissionError(source, [refused.diagnostic]) from None
+    blanked = _without_line_numbers(_blank(text, [comment.span for comment in comments]))
+    return Prepared(blanked, comments, unmatched, open_at_end)
+
+
+class _Refused(Exception):
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        self.diagnostic = diagnostic
+        super().__init__(diagnostic)
+
+
+def _line_ends(text: str) -> str:
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _too_large(size: int) -> Diagnostic:
+    message = f"the file has {size:,} bytes, more than {MAX_BYTES:,}"
+    return Diagnostic(Code.FILE_TOO_LARGE, Span(0, 0), message, "put large worlds into GeoJSON files")
+
+
+def _out_of_bounds(text: str) -> Diagnostic | None:
+    if (size := len(text)) > MAX_BYTES or (size := len(text.encode("utf-8", "surrogatepass"))) > MAX_BYTES:
+        return _too_large(size)
+    if found := _CONTROL.search(text):
+        message = f"control character U+{ord(found.group()):04X}"
+        hint = "a mission file is text in UTF-8; remove it"
+        return Diagnostic(Code.CONTROL_CHARACTER, Span(found.start(), found.end()), message, hint)
+    return next((_too_long(run.start(), run.end()) for run in _RUN.finditer(text) if _long(run)), None)
+
+
+def _long(found: re.Match[str]) -> bool:
+    return found.end() - found.start() > MAX_WORD
+
+
+def _too_long(start: int, end: int) -> Diagnostic:
+    message = f"a word of {end - start:,} characters, more than {MAX_WORD:,}"
+    return Diagnostic(
+        Code.WORD_TOO_LONG, Span(start, end), message, "is a space, a quote or a brace missing?"
+    )
+
+
+def _scan(text: str) -> tuple[tuple[Comment, ...], tuple[int, Diagnostic] | None, tuple[int, ...]]:
+    comments: list[Comment] = []
+    unmatched: tuple[int, Diagnostic] | None = None
+    waiting: list[int] = []
+    words = 0
+    for found in _SCAN.finditer(text):
+        start, end, sort = found.start(), found.end(), found.lastgroup
+        if sort == "comment":
+            comments.append(Comment(Span(start, end), found.group().rstrip()))
+            continue
+        words += 1
+        _refuse(sort, start, end, words, len(waiting))
+        if sort == "open":
+            waiting.append(start)
+        elif sort == "close":
+            if waiting and _PARTNER[text[waiting[-1]]] == found.group():
+                waiting.pop()
+            elif unmatched is None:
+                unmatched = start, _mismatch(text, waiting, start)
+    return tuple(comments), unmatched, tuple(waiting)
+
+
+def _refuse(sort: str | None, start: int, end: int, words: int, depth: int) -> None:
+    if words > MAX_WORDS:
+        message = f"more than {MAX_WORDS:,} words and symbols"
+        hint = "put large worlds into GeoJSON files"
+        raise _Refused(Diagnostic(Code.TOO_MANY_WORDS, Span(start, end), message, hint))
+    if sort == "open" and depth >= MAX_NESTING:
+        message = f"brackets nested more than {MAX_NESTING} deep"
+        hint = "define behaviours with def and name values with let"
+        raise _Refused(Diagnostic(Code.NESTED_TOO_DEEPLY, Span(start, end), message, hint))
+    if sort == "string" and end - start > MAX_WORD:
+        raise _Refused(_too_long(start, end))
+    if sort == "quote":
+        message = "the string that begins here does not end on its line"
+        raise _Refused(Diagnostic(Code.UNCLOSED_STRING, Span(start, end), message, 'close it with "'))
+
+
+def _mismatch(text: str, waiting: list[int], start: int) -> Diagnostic:
+    closing = text[start]
+    if not waiting:
+        message = f"'{closing}' closes nothing"
+        hint = "remove it, or look for an opening bracket that is missing or commented out"
+        return Diagnostic(Code.UNOPENED_BRACKET, Span(start, start + 1), message, hint)
+    opening = waiting[-1]
+    message = (
+        f"'{text[opening]}' is not closed before the '{closing}' in line {text.count(chr(10), 0, start) + 1}"
+    )
+    hint = f"close it with '{_PARTNER[text[opening]]}'"
+    return Diagnostic(Code.UNCLOSED_BRACKET, Span(opening, opening + 1), message, hint)
+
+
+def _blank(text: str, spans: list[Span]) -> str:
+    pieces, last = [], 0
+    for span in spans:
+        pieces += [text[last : span.start], " " * (span.end - span.start)]
+        last = span.end
+    return "".join([*pieces, text[last:]])
+
+
+def _without_line_numbers(text: str) -> str:
+    """Blank out the line numbers of programs pasted from print, such as the paper's Figure 8.
+
+    That is, where a line begins with a number and `BigActor`, its number and those of the following lines as far as
+    they count on and the block is open.
+    """
+    return _blank(text, list(_line_numbers(text))) if _NUMBERED_ACTOR.search(text) else text
+
+
+def _line_numbers(text: str) -> Iterator[Span]:
+    offset, expected, depth = 0, None, 0
+    for line in text.splitlines(keepends=True):
+        found = _NUMBERED.match(line)
+        if found and _NUMBERED_ACTOR.match(line):
+            expected, depth = int(found["number"]), 0
+        if found and int(found["number"]) == expected:
+            yield Span(offset + found.start("number"), offset + found.end("number"))
+            code = _QUOTED.sub("", line)
+            depth += code.count("{") - code.count("}")
+            expected = expected + 1 if depth > 0 else None
+        elif line.strip():
+            expected = None
+        offset += len(line)

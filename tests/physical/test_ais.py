@@ -1,0 +1,179 @@
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from physical.ais import GROUP_TABLE, Ear, hear
+from physical.ais_fragments import FRAGMENT_TABLE
+from physical.ais_reports import PositionReport, StaticReport
+from physical.nmea import MAX_LINE, Reason, checksum
+
+POSITION = b"!AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61"
+NAME = (
+    b"!AIVDM,2,1,9,B,55R3Vn82=ILTQ3KKS>1<D60Dq@E918U<F222221J1`?164vc03S1CCAD,0*2A",
+    b"!AIVDM,2,2,9,B,`88888888888880,2*76",
+)
+PGHP = b"$PGHP,1,2010,6,11,11,46,11,390,231,45,992190934,1,2B*5B"
+RMC = b"$GPRMC,213950.00,A,5250.53669,N,00542.34920,E,0.020,,070420,,,A*7D"
+
+
+def tagged(body, sentence):
+    return b"\\%s*%02X\\" % (body, checksum(body)) + sentence
+
+
+def heard_all(*lines, now=None):
+    """Hear lines one after the other: all reports, all reasons, the last state."""
+    ear, reports, reasons = Ear(), [], []
+    for line in lines:
+        heard = hear(ear, line, now)
+        ear = heard.ear
+        reports += heard.reports
+        reasons += heard.reasons
+    return reports, reasons, ear
+
+
+def time_of(*lines, now=None):
+    (report,), _, _ = heard_all(*lines, now=now)
+    return report.time
+
+
+def test_a_position_is_heard():
+    heard = hear(Ear(), POSITION + b"\r\n")
+    assert heard.reports == (PositionReport(None, 3, 376427000, 37.346935, 23.44798, 0.0, None, 25.0),)
+    assert (heard.msg_type, heard.reasons, heard.sentence) == (3, (), True)
+
+
+def test_hearing_a_whole_message_leaves_the_state_the_same_object():
+    ear = Ear(clock=1.0)
+    assert hear(ear, POSITION).ear is ear
+
+
+def test_a_message_in_two_parts_is_heard_with_its_second():
+    reports, reasons, ear = heard_all(*NAME)
+    assert reports == [StaticReport(None, 5, 371255000, "SEA ENTERPRISE", 90)]
+    assert (reasons, ear.fragments.waiting) == ([], ())
+
+
+def test_the_parts_may_come_in_the_other_order():
+    assert heard_all(*reversed(NAME))[0] == heard_all(*NAME)[0]
+
+
+def test_the_time_is_that_of_the_latest_pghp_line():
+    assert time_of(PGHP, POSITION) == 1276256771.39
+
+
+def test_the_time_is_that_of_the_latest_rmc_line():
+    assert time_of(PGHP, RMC, POSITION) == 1586295590.0
+
+
+def test_a_receiver_that_lost_its_fix_gives_no_time_any_more():
+    lost = b"GPRMC,213951.00,V,,,,,,,070420,,,N"
+    assert time_of(RMC, b"$%s*%02X" % (lost, checksum(lost)), POSITION) is None
+
+
+def test_the_moment_of_reception_comes_before_the_clock_of_the_recording():
+    assert time_of(RMC, POSITION, now=7.0) == 7.0
+
+
+def test_an_appended_time_comes_before_the_moment_of_reception():
+    assert time_of(POSITION + b",1276256770", now=7.0) == 1276256770.0
+
+
+def test_a_tag_block_comes_before_every_other_time():
+    assert time_of(PGHP, tagged(b"c:1671533231", POSITION + b",1276256770"), now=7.0) == 1671533231.0
+
+
+def test_a_tag_block_gives_its_time_to_its_own_line_only():
+    reports, _, _ = heard_all(tagged(b"c:1671533231", POSITION), POSITION)
+    assert [report.time for report in reports] == [1671533231.0, None]
+
+
+def test_the_lines_of_a_group_share_the_time_of_its_first():
+    lines = tagged(b"g:1-2-7,s:r1,c:1671533231", NAME[0]), tagged(b"g:2-2-7", NAME[1])
+    assert time_of(*lines) == 1671533231.0
+    assert (
+        time_of(tagged(b"g:1-2-7,c:1671533231", b"$ABVSI,r1,1"), tagged(b"g:2-2-7", POSITION)) == 1671533231.0
+    )
+
+
+def test_a_new_group_with_an_old_number_has_its_own_time():
+    old, new = tagged(b"g:1-2-7,s:r1,c:1671533231", POSITION), tagged(b"g:1-2-7,s:r2,c:1671533299", POSITION)
+    reports, _, _ = heard_all(old, new, tagged(b"g:2-2-7", POSITION))
+    assert [report.time for report in reports] == [1671533231.0, 1671533299.0, 1671533299.0]
+
+
+def test_a_damaged_tag_block_costs_its_time_but_not_the_sentence():
+    reports, reasons, _ = heard_all(b"\\c:1671533231*00\\" + POSITION)
+    assert [report.time for report in reports] == [None]
+    assert reasons == [Reason.TAG_BLOCK]
+
+
+def test_other_sentences_comments_and_blank_lines_bring_nothing():
+    for line in (b"", b"  \r\n", b"# synthetic", b"$GPGSV,3,1,10*00", b"!AIABM,1,1,1,B,,0*00"):
+        heard = hear(Ear(), line)
+        assert (heard.reports, heard.reasons, heard.sentence) == ((), (), False)
+
+
+def test_what_is_no_sentence_is_malformed():
+    assert hear(Ear(), b"AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61").reasons == (Reason.MALFORMED,)
+
+
+def test_a_line_beyond_the_limit_is_refused():
+    assert hear(Ear(), b" " * MAX_LINE + POSITION).reasons == (Reason.OVERLONG,)
+
+
+def test_a_damaged_time_leaves_the_clock_as_it_was():
+    heard = hear(Ear(clock=1.0), PGHP[:-1] + b"0")
+    assert (heard.ear.clock, heard.reasons) == (1.0, (Reason.CHECKSUM,))
+
+
+def test_a_lost_part_is_told_when_its_place_is_taken():
+    other = b"AIVDM,2,1,9,B,55R3Vn82,0"
+    _, reasons, _ = heard_all(NAME[0], b"!%s*%02X" % (other, checksum(other)))
+    assert reasons == [Reason.INCOMPLETE]
+
+
+LINES = [
+    POSITION,
+    *NAME,
+    PGHP,
+    RMC,
+    tagged(b"g:1-2-7,s:r1,c:1671533231", NAME[0]),
+    tagged(b"g:2-2-7", NAME[1]),
+]
+
+
+@st.composite
+def mutated(draw):
+    """A real line with some bytes replaced, removed or put in; its checksum made right again, or not."""
+    line = bytearray(draw(st.sampled_from(LINES)))
+    for _ in range(draw(st.integers(0, 4))):
+        place = draw(st.integers(0, len(line)))
+        line[place : place + draw(st.integers(0, 3))] = draw(st.binary(max_size=2))
+    text = bytes(line)
+    start, star = max(text.rfind(b"!"), text.rfind(b"$"), 0), text.rfind(b"*")
+    if draw(st.booleans()) and star > start:
+        text = text[: star + 1] + b"%02X" % checksum(text[start + 1 : star])
+    return text
+
+
+@given(st.lists(mutated() | st.binary(max_size=60) | st.sampled_from(LINES), max_size=30))
+@example([b"\\", b"\\\\", b"\\*", b"!*00", b"$*00", b"!VDM*00", b"\\g:--*2A\\!"])
+def test_no_lines_raise_and_the_state_stays_small(lines):
+    reports, reasons, ear = heard_all(*lines)
+    assert all(isinstance(report, PositionReport | StaticReport) for report in reports)
+    assert all(isinstance(reason, Reason) for reason in reasons)
+    assert len(ear.fragments.waiting) <= FRAGMENT_TABLE
+    assert len(ear.groups) <= GROUP_TABLE
+
+
+@given(st.lists(mutated(), max_size=10))
+def test_hearing_is_a_function(lines):
+    assert heard_all(*lines) == heard_all(*lines)
+
+
+def test_the_state_is_bounded_however_many_groups_and_parts_are_heard():
+    first = b"AIVDM,2,1,%d,%c,55R3Vn82,0"
+    bodies = [first % (number % 10, 65 + number % 26) for number in range(500)]
+    lines = [b"!%s*%02X" % (body, checksum(body)) for body in bodies]
+    tags = [b"g:1-2-%d,c:1671533231" % number for number in range(500)]
+    _, _, ear = heard_all(*(tagged(tag, line) for tag, line in zip(tags, lines, strict=True)))
+    assert (len(ear.fragments.waiting), len(ear.groups)) == (FRAGMENT_TABLE, GROUP_TABLE)

@@ -1,0 +1,75 @@
+"""The recording that the project encodes itself says what it was made to say."""
+
+import runpy
+from pathlib import Path
+
+import pytest
+
+from physical.ais_recording import read_recording
+from physical.ais_world import world_at
+from physical.geometry import box
+
+DATA = Path(__file__).parents[1] / "data"
+SYNTHETIC = DATA / "synthetic_harbour.nmea"
+START = 1717236000.0
+
+
+@pytest.fixture(scope="module")
+def maker():
+    return runpy.run_path(str(DATA / "make_synthetic_harbour.py"))
+
+
+@pytest.fixture(scope="module")
+def recording():
+    return read_recording(SYNTHETIC)
+
+
+def in_basin(recording, maker, second):
+    return [known.entity for known in world_at(recording, START + second, area=box(*maker["BASIN"]))]
+
+
+def test_encoding_it_again_gives_the_same_bytes(maker):
+    assert maker["encode"]() == SYNTHETIC.read_bytes()
+
+
+def test_its_first_line_says_that_it_is_synthetic():
+    assert SYNTHETIC.read_bytes().startswith(b"# SYNTHETIC")
+
+
+def test_it_has_eight_vessels_a_buoy_and_a_base_station(recording):
+    world = world_at(recording)
+    assert sorted(known.kind for known in world) == ["AidToNavigation", "BaseStation", *["Vessel"] * 8]
+    assert {known.entity for known in world} >= {"mmsi992449991", "mmsi002449990"}
+
+
+def test_three_vessels_lie_in_the_basin_and_a_fourth_sails_in(recording, maker):
+    lying = ["mmsi244999001", "mmsi244999002", "mmsi244999003"]
+    assert in_basin(recording, maker, 30) == lying
+    assert in_basin(recording, maker, 102) == lying
+    assert in_basin(recording, maker, 103) == [*lying, "mmsi244999004"]
+
+
+def test_it_tells_the_name_and_type_of_every_vessel(recording, maker):
+    told = {}
+    for report in recording.statics:
+        name, ship_type = told.get(report.mmsi, (None, None))
+        told[report.mmsi] = (report.name or name, report.ship_type or ship_type)
+    for vessel in maker["VESSELS"]:
+        assert told[vessel.mmsi] == (vessel.name, vessel.ship_type)
+
+
+def test_its_damage_is_counted(recording):
+    assert recording.counts.rows() == (
+        "224 lines, 97 AIS sentences, 92 messages",
+        "1 x checksum missing",
+        "1 x checksum wrong",
+        "1 x malformed sentence",
+        "1 x message too short",
+        "1 x multi-part message incomplete",
+        "1 x payload with characters that AIS does not use",
+        "1 x position not available",
+    )
+
+
+def test_its_times_are_those_of_its_receiver(recording):
+    assert (recording.positions[0].time, recording.positions[-1].time) == (START, START + 117)

@@ -1,0 +1,131 @@
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from physical.ais_recording import Counts, Recording
+from physical.ais_reports import AisError, PositionReport, StaticReport
+from physical.ais_world import KNOT, TIME_TO_LIVE, physical_property, world_at
+from physical.geometry import box, point
+from physical.property import Velocity
+
+NOWHERE = Counts(0, 0, (), ())
+VESSEL, BUOY, STATION = 244660274, 992446001, 2442103
+
+
+def at(time, lat=52.97, lon=5.41, mmsi=VESSEL, msg_type=1):
+    return PositionReport(time, msg_type, mmsi, lat, lon)
+
+
+def recording(*reports):
+    return Recording(tuple(reports), NOWHERE)
+
+
+def places(world):
+    return {known.entity: known.geometry for known in world}
+
+
+def test_a_position_becomes_the_property_of_its_sender():
+    report = PositionReport(7.0, 1, VESSEL, 52.97, 5.41, sog_kn=4.5, cog_deg=90.0, heading_deg=88.0)
+    known = physical_property(report)
+    assert (known.entity, known.kind) == ("mmsi244660274", "Vessel")
+    assert known.geometry is point(52.97, 5.41)
+    assert (known.time, known.source, known.velocity) == (7.0, "ais", Velocity(4.5 * KNOT, 90.0))
+
+
+@pytest.mark.parametrize("motion", [{"sog_kn": 4.5}, {"cog_deg": 90.0}, {}])
+def test_without_speed_or_course_there_is_no_velocity(motion):
+    assert physical_property(PositionReport(7.0, 1, VESSEL, 52.97, 5.41, **motion)).velocity is None
+
+
+def test_the_newest_position_at_or_before_the_time_counts():
+    heard = recording(at(1.0, lat=1.0), at(2.0, lat=2.0), at(3.0, lat=3.0))
+    assert places(world_at(heard, 2.0)) == {"mmsi244660274": point(2.0, 5.41)}
+    assert places(world_at(heard, 2.9)) == {"mmsi244660274": point(2.0, 5.41)}
+    assert world_at(heard, 0.5) == ()
+
+
+def test_without_a_time_the_end_counts():
+    assert places(world_at(recording(at(1.0, lat=1.0), at(2.0, lat=2.0)))) == {
+        "mmsi244660274": point(2.0, 5.41)
+    }
+
+
+def test_the_newest_is_newest_by_time_whatever_the_order_of_arrival():
+    assert places(world_at(recording(at(2.0, lat=2.0), at(1.0, lat=1.0)))) == {
+        "mmsi244660274": point(2.0, 5.41)
+    }
+
+
+def test_of_positions_at_one_time_the_last_to_arrive_counts():
+    assert places(world_at(recording(at(1.0, lat=1.0), at(1.0, lat=2.0)))) == {
+        "mmsi244660274": point(2.0, 5.41)
+    }
+
+
+def test_a_position_older_than_its_time_to_live_is_left_out():
+    heard = recording(at(0.0), at(TIME_TO_LIVE, mmsi=BUOY))
+    assert len(world_at(heard)) == 2
+    assert len(world_at(heard, TIME_TO_LIVE + 1)) == 1
+    assert world_at(heard, TIME_TO_LIVE + 31, time_to_live=30) == ()
+
+
+def test_without_times_the_last_to_arrive_counts():
+    assert places(world_at(recording(at(None, lat=1.0), at(None, lat=2.0)))) == {
+        "mmsi244660274": point(2.0, 5.41)
+    }
+
+
+def test_a_time_cannot_be_asked_of_a_recording_without_times():
+    with pytest.raises(AisError, match="no times"):
+        world_at(recording(at(None)), 5.0)
+
+
+def test_a_position_without_a_time_is_left_out_among_others_that_have_one():
+    assert [known.entity for known in world_at(recording(at(None), at(1.0, mmsi=BUOY)))] == ["mmsi992446001"]
+
+
+def test_a_coarse_position_counts_only_where_there_is_no_better():
+    heard = recording(at(1.0, lat=1.0), at(2.0, lat=2.0, msg_type=27))
+    assert places(world_at(heard)) == {"mmsi244660274": point(1.0, 5.41)}
+    assert places(world_at(heard, 2.0, time_to_live=0.5)) == {"mmsi244660274": point(2.0, 5.41)}
+
+
+def test_only_what_is_inside_the_area_is_kept():
+    heard = recording(at(1.0), at(1.0, lat=53.5, mmsi=BUOY))
+    assert [known.entity for known in world_at(heard, area=box((52, 5), (53, 6)))] == ["mmsi244660274"]
+
+
+def test_a_vessel_that_left_the_area_is_not_in_it_any_more():
+    assert world_at(recording(at(1.0), at(2.0, lat=53.5)), area=box((52, 5), (53, 6))) == ()
+
+
+def test_an_area_may_lie_across_the_antimeridian():
+    heard = recording(at(1.0, lon=179.95), at(1.0, lon=-179.95, mmsi=BUOY), at(1.0, lon=0.0, mmsi=STATION))
+    assert len(world_at(heard, area=box((52, 179.9), (53, -179.9)))) == 2
+
+
+def test_only_the_kinds_asked_for_are_kept_sorted_by_name():
+    heard = recording(at(1.0, mmsi=BUOY), at(1.0), at(1.0, mmsi=STATION, msg_type=4))
+    assert [known.kind for known in world_at(heard)] == ["BaseStation", "Vessel", "AidToNavigation"]
+    assert [known.kind for known in world_at(heard, kinds={"Vessel"})] == ["Vessel"]
+    assert world_at(heard, kinds=()) == ()
+
+
+def test_an_unknown_kind_is_refused_by_name():
+    with pytest.raises(AisError, match="'Submarine'") as caught:
+        world_at(recording(), kinds=["Submarine"])
+    assert "DistressBeacon" in caught.value.hint
+
+
+def test_static_reports_place_nothing():
+    assert world_at(recording(StaticReport(1.0, 5, VESSEL, "KOKMEEUW", 52))) == ()
+
+
+moments = st.integers(0, 50).map(float)
+
+
+@given(st.lists(st.builds(at, moments, st.floats(-89, 89), mmsi=st.sampled_from([VESSEL, BUOY]))), moments)
+def test_later_arrivals_do_not_change_the_world_of_before(reports, time):
+    before = tuple(report for report in reports if report.time <= time)
+    if reports:
+        assert world_at(recording(*reports), time) == world_at(recording(*before), time)

@@ -1,0 +1,191 @@
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from physical.nmea import (
+    Part,
+    Reason,
+    Sentence,
+    TagBlock,
+    address,
+    checksum,
+    clock_of,
+    parse_sentence,
+    parse_tag_block,
+    part_of,
+    split_tag_block,
+)
+
+
+def closed(body, start=b"!"):
+    return start + body + b"*%02X" % checksum(body)
+
+
+def clock(body):
+    sentence = parse_sentence(closed(body, b"$"))
+    assert isinstance(sentence, Sentence)
+    return clock_of(sentence)
+
+
+def part(body):
+    sentence = parse_sentence(closed(body))
+    assert isinstance(sentence, Sentence)
+    return part_of(sentence)
+
+
+def test_a_sentence_with_the_right_checksum_is_split_into_its_fields():
+    sentence = parse_sentence(b"!AIVDM,1,1,,B,,0*25")
+    assert sentence == Sentence(b"!AIVDM,1,1,,B,,0*25", "AIVDM", (b"1", b"1", b"", b"B", b"", b"0"))
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        (b"!AIVDM,1,1,,B,,0*26", Reason.CHECKSUM),
+        (b"!AIVDM,1,1,,B,,1*25", Reason.CHECKSUM),
+        (b"!AIVDM,1,1,,B,,0*zz", Reason.CHECKSUM),
+        (b"!AIVDM,1,1,,B,,0*-1", Reason.CHECKSUM),
+        (b"!AIVDM,1,1,,B,,0*2", Reason.NO_CHECKSUM),
+        (b"!AIVDM,1,1,,B,,0", Reason.NO_CHECKSUM),
+        (b"!AIVDM,1,1,,B,,0*25x", Reason.MALFORMED),
+        (b"!AIVDM,1,1,,\xff,,0*25", Reason.MALFORMED),
+    ],
+)
+def test_a_damaged_sentence_is_refused_with_its_reason(text, reason):
+    assert parse_sentence(text) is reason
+
+
+def test_a_time_that_a_coast_guard_appends_is_read_and_the_rest_cut_off():
+    sentence = parse_sentence(b"!AIVDM,1,1,,B,,0*25,d-106,r003669945,1306879500")
+    assert isinstance(sentence, Sentence)
+    assert (sentence.raw, sentence.time) == (b"!AIVDM,1,1,,B,,0*25", 1306879500.0)
+
+
+def test_an_appended_station_is_no_time():
+    sentence = parse_sentence(b"!AIVDM,1,1,,B,,0*25,r003669945")
+    assert isinstance(sentence, Sentence)
+    assert sentence.time is None
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        (b"$GPRMC,1", "GPRMC"),
+        (b"!--VDM,1", "--VDM"),
+        (b"AIVDM,1", ""),
+        (b"", ""),
+        (b"!", ""),
+        (b"!\xff\xffVDM,1", ""),
+    ],
+)
+def test_the_address_is_read_from_what_starts_like_a_sentence(text, name):
+    assert address(text) == name
+
+
+def test_a_part_carries_six_bits_a_character_less_the_fill_bits():
+    assert part(b"AIVDM,2,1,9,B,55R3Vn,2") == Part(
+        parse_sentence(closed(b"AIVDM,2,1,9,B,55R3Vn,2")).raw, "AI", b"9", b"B", 2, 1, b"55R3Vn", 34
+    )
+
+
+@pytest.mark.parametrize(
+    ("body", "reason"),
+    [
+        (b"AIVDM,1,1,,B,,0", Reason.EMPTY),
+        (b"AIVDM,1,1,,B,15[0,0", Reason.ARMOUR),
+        (b"AIVDM,1,1,,B,15 0,0", Reason.ARMOUR),
+        (b"AIVDM,1,2,,B,1550,0", Reason.MALFORMED),
+        (b"AIVDM,0,0,,B,1550,0", Reason.MALFORMED),
+        (b"AIVDM,x,1,,B,1550,0", Reason.MALFORMED),
+        (b"AIVDM,10,1,,B,1550,0", Reason.MALFORMED),
+        (b"AIVDM,1,1,,B,1550,6", Reason.MALFORMED),
+        (b"AIVDM,1,1,,B,1550", Reason.MALFORMED),
+        (b"AIVDM,1,1,,B,1550,0,0", Reason.MALFORMED),
+        (b"AIVDM,1,1,,AB,1550,0", Reason.MALFORMED),
+    ],
+)
+def test_a_sound_sentence_that_carries_no_payload_is_refused_with_its_reason(body, reason):
+    assert part(body) is reason
+
+
+def test_a_tag_block_stands_between_backslashes():
+    assert split_tag_block(rb"\s:r1*2A\!AIVDM,1*00") == (b"s:r1*2A", b"!AIVDM,1*00")
+    assert split_tag_block(rb"\s:r1*2A") == (b"s:r1*2A", b"")
+    assert split_tag_block(b"!AIVDM") == (None, b"!AIVDM")
+
+
+@pytest.mark.parametrize(
+    ("body", "tag"),
+    [
+        (b"c:1671533231", TagBlock(time=1671533231.0)),
+        (b"c:1671533231250", TagBlock(time=1671533231.25)),
+        (b"s:r3669961,n:157036,i:something", TagBlock(source="r3669961")),
+        (b"g:2-2-73874", TagBlock(group="73874")),
+        (b"", TagBlock()),
+    ],
+)
+def test_a_tag_block_gives_time_source_and_group(body, tag):
+    assert parse_tag_block(body + b"*%02X" % checksum(body)) == tag
+
+
+@pytest.mark.parametrize(
+    "body", [b"c:yesterday", b"c:-5", b"c:1e999", b"c:" + b"9" * 400, b"g:1-2", b"g:a-b-c"]
+)
+def test_a_tag_block_that_cannot_be_read_is_refused(body):
+    assert parse_tag_block(body + b"*%02X" % checksum(body)) is Reason.TAG_BLOCK
+
+
+def test_a_tag_block_with_a_wrong_checksum_is_refused():
+    assert parse_tag_block(b"c:1671533231*00") is Reason.TAG_BLOCK
+    assert parse_tag_block(b"c:1671533231") is Reason.TAG_BLOCK
+
+
+def test_pghp_gives_a_time_to_the_millisecond():
+    assert clock(b"PGHP,1,2010,6,11,11,46,11,390,231,45,992190934,1,2B") == 1276256771.39
+
+
+def test_rmc_gives_the_time_of_the_receiver():
+    assert clock(b"GPRMC,213950.00,A,5250.53669,N,00542.34920,E,0.020,,070420,,,A") == 1586295590.0
+
+
+def test_rmc_without_a_fix_gives_no_time():
+    assert clock(b"GPRMC,213950.00,V,,,,,,,070420,,,N") is None
+
+
+def test_the_years_of_rmc_begin_in_1980():
+    assert clock(b"GPRMC,000000,A,,,,,,,010180,,,A") == 315532800.0
+    assert clock(b"GPRMC,000000,A,,,,,,,010179,,,A") == 3439756800.0
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        b"PGHP,1,2010,13,11,11,46,11,390",
+        b"PGHP,1,2010",
+        b"PGHP,1,2010,6,11,11,46,11," + b"9" * 400,
+        b"GPRMC",
+        b"GPRMC,213950.00,A",
+        b"GPRMC,253950.00,A,,,,,,,070420,,,A",
+        b"GPRMC,2139nan,A,,,,,,,070420,,,A",
+        b"GPRMC,213950.00,A,,,,,,,310220,,,A",
+        b"GPRMC,213950.00,A,,,,,,,07042020,,,A",
+    ],
+)
+def test_a_time_that_does_not_exist_is_refused(body):
+    assert clock(body) is Reason.TIME
+
+
+@given(st.binary(max_size=120))
+@example(b"--\xff")
+def test_no_bytes_raise(text):
+    assert isinstance(address(text), str)
+    assert isinstance(split_tag_block(text)[1], bytes)
+    assert isinstance(parse_tag_block(text), TagBlock | Reason)
+    assert isinstance(parse_sentence(text), Sentence | Reason)
+
+
+@given(st.lists(st.binary(max_size=12), max_size=14), st.sampled_from(["PGHP", "GPRMC"]))
+def test_no_fields_raise(fields, name):
+    sentence = Sentence(b"", name, tuple(fields))
+    assert isinstance(clock_of(sentence), float | Reason | None)
+    assert isinstance(part_of(sentence), Part | Reason)
