@@ -1,1 +1,32 @@
-"""checker."""
+"""The model checker: explores every interleaving of a mission and decides its properties, with shortest traces.
+
+It knows the calculus by `semantics.successors` alone: nothing of files, vehicles or the mission language.
+"""
+
+from checker.check import check
+from checker.exploration import Exploration, Limits, Progress, explore
+from checker.ownership import owned
+from checker.report import report_json, report_text
+from checker.traces import ReplayError, Step, Trace, print_trace, replay, to_json
+from checker.verdicts import Outcome, Report, Verdict, Violation
+
+__all__ = [
+    "Exploration",
+    "Limits",
+    "Outcome",
+    "Progress",
+    "ReplayError",
+    "Report",
+    "Step",
+    "Trace",
+    "Verdict",
+    "Violation",
+    "check",
+    "explore",
+    "owned",
+    "print_trace",
+    "replay",
+    "report_json",
+    "report_text",
+    "to_json",
+]

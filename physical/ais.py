@@ -102,7 +102,7 @@ def _clock(ear: Ear, text: bytes) -> Heard:
     clock = sentence if isinstance(sentence, Reason) else clock_of(sentence)
     if isinstance(clock, Reason):
         return Heard(ear, reasons=(clock,))
-    return Heard(replace(ear, clock=clock))
+    return Heard(Ear(clock, ear.fragments, ear.groups))
 
 
 def _ais(ear: Ear, text: bytes, now: float | None, tag: TagBlock | None) -> Heard:

@@ -6,7 +6,7 @@ without a position or static data (binary data, acknowledgements, channel manage
 
 from collections.abc import Callable
 from functools import cache
-from typing import Protocol
+from typing import Protocol, cast
 
 from physical.ais_reports import AisError, PositionReport, Report, StaticReport
 from physical.nmea import Part, Reason
@@ -53,10 +53,9 @@ def decode(parts: tuple[Part, ...], time: float | None) -> tuple[tuple[Report, .
         return (), None
     if sum(part.bits for part in parts) < _NEEDED_BITS[msg_type]:
         return (), Reason.TRUNCATED
+    pyais_decode = _pyais_decode()
     try:
-        message = _pyais_decode()(*(part.raw for part in parts))
-    except AisError:
-        raise
+        message = pyais_decode(*(part.raw for part in parts))
     except Exception:  # pyais raises whatever hostile payloads meet in its converters; none may end a feed
         return (), Reason.UNDECODABLE
     return _reports(message, time) if message.mmsi <= _HIGHEST_MMSI else ((), Reason.UNDECODABLE)
@@ -69,7 +68,7 @@ def _pyais_decode() -> Callable[..., _Message]:
     except ImportError as missing:
         hint = "install the extra: pip install 'bigactors[ais]'"
         raise AisError("ais-extra", "reading AIS needs pyais, which is not installed", hint) from missing
-    return pyais_decode
+    return cast("Callable[..., _Message]", pyais_decode)
 
 
 def _reports(message: _Message, time: float | None) -> tuple[tuple[Report, ...], Reason | None]:

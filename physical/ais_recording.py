@@ -88,7 +88,8 @@ def record(lines: Iterable[bytes]) -> Recording:
         sentences += heard.sentence
         if heard.msg_type is not None:
             messages[heard.msg_type] += 1
-        reasons.update(heard.reasons)
+        if heard.reasons:
+            reasons.update(heard.reasons)
     reasons[Reason.INCOMPLETE] += len(ear.fragments.waiting)
     found = tuple(sorted((reason, number) for reason, number in reasons.items() if number))
     return Recording(tuple(reports), Counts(count, sentences, tuple(sorted(messages.items())), found))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
+from typing import Final
 
 from physical.errors import PhysicalError
+
+LIMIT: Final = 1_000_000
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -20,19 +22,22 @@ class Band:
     high: float
 
     def __post_init__(self) -> None:
-        for name in ("low", "high"):
-            metres = getattr(self, name)
-            if isinstance(metres, bool) or not isinstance(metres, int | float) or not math.isfinite(metres):
-                raise PhysicalError(
-                    "altitude", f"the altitude {metres!r:.60} is not a finite number", "write it in metres"
-                )
-            object.__setattr__(self, name, float(metres) + 0.0)  # -0.0 becomes 0.0
+        object.__setattr__(self, "low", _metres(self.low))
+        object.__setattr__(self, "high", _metres(self.high))
         if self.low > self.high:
             raise PhysicalError(
                 "altitude",
                 f"the band from {self.low} m to {self.high} m is upside down",
                 "write the lower end first",
             )
+
+
+def _metres(value: float) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise PhysicalError("altitude", f"the altitude {value!r:.60} is not a number", "write it in metres")
+    if not -LIMIT <= value <= LIMIT:  # false of NaN too
+        raise PhysicalError("altitude", f"an altitude is not between -{LIMIT:,} m and {LIMIT:,} m")
+    return float(value) + 0.0  # -0.0 becomes 0.0
 
 
 def band_contains(outer: Band | None, inner: Band | None) -> bool:

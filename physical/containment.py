@@ -109,7 +109,7 @@ def _reason(a: Place, b: Place) -> str:
     if equal(a.geometry, b.geometry) and not a.geometry.is_point:
         return "are the same place" if a.altitude == b.altitude else "have one border and overlap in altitude"
     if contains(a.geometry, b.geometry) or contains(b.geometry, a.geometry):
-        return "are inside each other on the ground, and partly overlap in altitude"
+        return "nest on the ground, but not in altitude"
     if overlaps(a.geometry, b.geometry):
         return (
             "partly overlap"

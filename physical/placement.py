@@ -110,7 +110,7 @@ def _stands(mover: Geometry | None, target: Geometry, holes: Iterable[Geometry])
 
 def swallows(hole: Geometry, mover: Geometry) -> bool:
     """Whether a mover is in a hole: a point in or on the border of it, a polygon contained in it."""
-    if not mover.is_point:
+    if hole.is_point or not mover.is_point:
         return contains(hole, mover)
     fixed = planar(hole)
     return bool(shapely.intersects(fixed, beside(fixed, planar(mover))))
@@ -118,9 +118,10 @@ def swallows(hole: Geometry, mover: Geometry) -> bool:
 
 def _free(mover: Geometry, frame: Frame, target: Geometry, holes: Iterable[Geometry]) -> shapely.Geometry:
     space = frame.project(planar(target))
-    taken = [shape for shape in map(frame.project, map(planar, holes)) if shape.intersects(space)]
+    shapes = [frame.project(planar(hole)) for hole in holes if not hole.is_point]
+    taken = [shape for shape in shapes if shape.intersects(space)]
     if not mover.is_point:
-        space, taken = room(space, mover), [room(hole, mover) for hole in taken if hole.geom_type != "Point"]
+        space, taken = room(space, mover), [room(hole, mover) for hole in taken]
     return space.difference(shapely.union_all(taken)) if taken else space
 
 

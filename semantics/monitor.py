@@ -11,7 +11,7 @@ from semantics.agents import Watch, watch_cell
 from semantics.cells import MONITOR, QUEUE, Cell, Changes
 from semantics.configuration import Configuration, Transition
 from semantics.eta import line_cell, sends_cell
-from semantics.provenance import SLOT, Dependency, Key, Provenance, differences
+from semantics.provenance import NOTHING, SLOT, Dependency, Key, Provenance, differences
 from semantics.queries import Query, evaluate
 from semantics.requests import CTR, FLY, Request
 from semantics.signature import Name
@@ -105,3 +105,18 @@ def _mark_agent(c: Configuration, agent: Name, mark: Mark) -> Changes:
                 for request, each in zip(requests, kept, strict=True)
             )
     return changes
+
+
+def monitored(c: Configuration) -> Configuration:
+    """Return a configuration in which the monitor begins to remember; nothing rests on anything yet."""
+    setting = c.setting.with_(monitored=True)
+    cells: Changes = {}
+    for agent in c.alpha.names():
+        agents = c.alpha
+        lengths = (len(agents.code(agent)), len(agents.store(agent)), len(agents.mailbox(agent)))
+        cells[watch_cell(agent)] = Watch(*((NOTHING,) * length for length in lengths))
+        lines = (line_cell(agent), sends_cell(agent), QUEUE)
+        cells |= {
+            (MONITOR, *cell): (NOTHING,) * len(c.read(cell)) for cell in lines if c.read(cell) is not None
+        }
+    return Configuration(setting, c.state.with_(cells))

@@ -7,6 +7,7 @@ from semantics.configuration import Configuration
 from semantics.physical_model import Carried, InTransit, PhysicalModel, Placement
 from semantics.requests import READY
 from semantics.signature import REGION, Name
+from semantics.statements import Statement
 from semantics.values import show
 
 
@@ -15,7 +16,7 @@ def print_agent(c: Configuration, a: Name) -> str:
     agents, names = c.alpha, frozenset(c.setting.kinds)
     code = agents.code(a)
     line = c.setting.program.lines[code[0]] if code and c.setting.program.lines else None
-    at = type(c.setting.program.statements[code[0]]).__name__.lower() if code else "ended"
+    at = word_of(c.setting.program.statements[code[0]]) if code else "ended"
     variables = ", ".join(
         f"{name.split('#')[0]} = {show(value, names)}"
         for name, value in agents.store(a)
@@ -26,6 +27,19 @@ def print_agent(c: Configuration, a: Name) -> str:
     return " ".join(
         [*parts, *([f"[{variables}]"] if variables else []), *([f"mail [{mail}]"] if mail else [])]
     )
+
+
+def word_of(statement: Statement) -> str:
+    """Return the word of the language that a statement begins with."""
+    words = {
+        "ControlBy": "control",
+        "Tested": "guard",
+        "ForEach": "for",
+        "ChooseFrom": "choose",
+        "Assign": "let",
+    }
+    name = type(statement).__name__
+    return words.get(name, name.lower())
 
 
 def print_place(c: Configuration, place: Name, indent: int) -> Iterator[str]:

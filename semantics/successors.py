@@ -1,6 +1,7 @@
 """All transitions of a configuration: the rules, agent by agent, the scheduler's turn, and the environment's clauses."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from semantics.configuration import Configuration, Transition
 from semantics.expressions import Fault
@@ -33,27 +34,66 @@ def steps(c: Configuration, a: Name) -> Iterator[Transition]:
         raise
 
 
-def agent_transitions(c: Configuration) -> tuple[Transition, ...]:
-    """Return the transitions of all agents: under `fcfs` the enabled request asked first is served, no other.
+@dataclass(frozen=True, slots=True)
+class Expansion:
+    """Everything that one configuration allows.
 
-    Raises:
-        Fault: An agent's computation fails or diverges.
+    Attributes:
+        by_agents: The transitions of agents, in their turn.
+        by_environment: Those of `env` and `say`.
+        out_of_turn: What is enabled, but for the scheduler's turn (`fcfs`).
+        faults: The agents' computations that fail or diverge here.
     """
-    allowed = [transition for a in c.alpha.names() for transition in steps(c, a)]
+
+    by_agents: tuple[Transition, ...]
+    by_environment: tuple[Transition, ...]
+    out_of_turn: tuple[Transition, ...] = ()
+    faults: tuple[Fault, ...] = ()
+
+    @property
+    def transitions(self) -> tuple[Transition, ...]:
+        """All transitions, once each, in one order."""
+        return self.by_agents + self.by_environment
+
+    @property
+    def enabled(self) -> tuple[Transition, ...]:
+        """The transitions of agents apart from the scheduler's turn."""
+        return self.by_agents + self.out_of_turn
+
+
+def expand(c: Configuration) -> Expansion:
+    """Return everything that a configuration allows: rule by rule, agent by agent, clause by clause."""
+    found: list[Transition] = []
+    faults: list[Fault] = []
+    for a in c.alpha.names():
+        try:
+            found.extend(steps(c, a))
+        except Fault as fault:
+            faults.append(fault)
+    found.sort(
+        key=lambda transition: transition.served is None
+    )  # as in the paper's run: what is asked is served first
+    allowed = tuple(dict.fromkeys(marked(c, transition) for transition in found))
+    waiting: tuple[Transition, ...] = ()
     if c.setting.scheduler is Scheduler.FCFS:
-        allowed = _in_turn(allowed)
-    return tuple(dict.fromkeys(marked(c, transition) for transition in allowed))
+        allowed, waiting = _in_turn(allowed)
+    return Expansion(allowed, _by_environment(c), waiting, tuple(faults))
 
 
-def _in_turn(allowed: list[Transition]) -> list[Transition]:
-    turns = [t.served.position for t in allowed if t.served is not None and t.label.rule not in TURNLESS]
-    return [
-        t for t in allowed if t.served is None or t.label.rule in TURNLESS or t.served.position == min(turns)
-    ]
+def _in_turn(found: tuple[Transition, ...]) -> tuple[tuple[Transition, ...], tuple[Transition, ...]]:
+    """Divide transitions into those whose turn it is under `fcfs` (the enabled request asked first), and the others."""
+    turns = [_turn(transition) for transition in found]
+    first = min((turn for turn in turns if turn is not None), default=None)
+    allowed = tuple(t for t, turn in zip(found, turns, strict=True) if turn in (None, first))
+    return allowed, tuple(t for t, turn in zip(found, turns, strict=True) if turn not in (None, first))
 
 
-def environment_transitions(c: Configuration) -> tuple[Transition, ...]:
-    """Return what `env` and `say` allow."""
+def _turn(transition: Transition) -> int | None:
+    served = transition.served
+    return None if served is None or transition.label.rule in TURNLESS else served.position
+
+
+def _by_environment(c: Configuration) -> tuple[Transition, ...]:
     clauses = c.setting.environment
     return tuple(dict.fromkeys(t for clause in clauses for rule in (env, say) for t in rule(c, clause)))
 
@@ -64,4 +104,7 @@ def successors(c: Configuration) -> tuple[Transition, ...]:
     Raises:
         Fault: An agent's computation fails or diverges.
     """
-    return agent_transitions(c) + environment_transitions(c)
+    expansion = expand(c)
+    if expansion.faults:
+        raise expansion.faults[0]
+    return expansion.transitions

@@ -1,7 +1,7 @@
 """What the two builders of the syntax tree share: children of a grammar rule, taken apart.
 
-lark gives each rule its children with all tokens kept, and None for each that an optional part lacks; so a child's place
-is its place in the grammar.
+lark gives each rule its children with all tokens kept, and None for each that an optional part lacks; so a
+child's place is its place in the grammar.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Mistake(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """What a grammar rule yields that is no node of its own: a block's statements, a clause's names, a number."""
+    """What a grammar rule yields that is no node of its own: a block's statements, a number."""
 
     span: Span
     value: Any

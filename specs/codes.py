@@ -34,8 +34,8 @@ class Code(Enum):
     NOT_UTF8 = (
         "LS002",
         "not UTF-8",
-        """A mission file is text in UTF-8. The message gives the offset of the first byte that is not; save
-        the file as UTF-8.""",
+        """A mission file is text in UTF-8. The message gives the offset of the first byte that is not;
+        save the file as UTF-8.""",
     )
     CONTROL_CHARACTER = (
         "LS003",
@@ -46,38 +46,39 @@ class Code(Enum):
     WORD_TOO_LONG = (
         "LS004",
         "word too long",
-        """A single name, number, string or rule body holds ten kilobytes at the most. Is a quote or a brace
-        missing?""",
+        """A single name, number, string or rule body holds ten kilobytes at the most. Is a quote or a
+        brace missing?""",
     )
     NESTED_TOO_DEEPLY = (
         "LS005",
         "nested too deeply",
-        """Brackets, blocks and operators nest two hundred levels deep at the most. Define behaviours with
-        `def`, name values with `let`, and split long conditions.""",
+        """Brackets, blocks and operators nest two hundred levels deep at the most. Define behaviours
+        with `def`, name values with `let`, and split long conditions.""",
     )
     TOO_MANY_WORDS = (
         "LS006",
         "too many words",
-        """A mission file holds a hundred and fifty thousand words and symbols at the most. Large worlds belong
-        into GeoJSON files: `from "harbour.geojson"`.""",
+        """A mission file holds a hundred and fifty thousand words and symbols at the most. Large worlds
+        belong into GeoJSON files: `from "harbour.geojson"`.""",
     )
     UNREADABLE_FILE = (
         "LS007",
         "unreadable file",
-        """The mission file, or a file it names with `from`, is missing, is not a file or may not be read.""",
+        """The mission file, or a file it names with `from`, is missing, is not a file or may not be
+        read.""",
     )
     # --- LS1: syntax
     UNEXPECTED = (
         "LS101",
         "unexpected word",
-        """Something stands where it cannot; the message lists what can stand there. The mistake may be just
-        before it.""",
+        """Something stands where it cannot; the message lists what can stand there. The mistake may be
+        just before it.""",
     )
     UNEXPECTED_END = (
         "LS102",
         "the file ends too early",
-        """The file ends inside a declaration. Mostly a closing brace is missing; the hint says which one is
-        open.""",
+        """The file ends inside a declaration. Mostly a closing brace is missing; the hint says which one
+        is open.""",
     )
     UNCLOSED_BRACKET = (
         "LS103",
@@ -87,14 +88,14 @@ class Code(Enum):
     UNOPENED_BRACKET = (
         "LS104",
         "bracket never opened",
-        """A closing bracket has no opening one. Mostly there is one too many, or the opening one was commented
-        out.""",
+        """A closing bracket has no opening one. Mostly there is one too many, or the opening one was
+        commented out.""",
     )
     UNCLOSED_STRING = (
         "LS105",
         "string never closed",
-        """A string begins and ends with a double quote on the same line. Within it write `\\"` for a quote,
-        `\\\\` for a backslash, `\\n` for a line end and `\\t` for a tab.""",
+        """A string begins and ends with a double quote on the same line. Within it write `\\"` for a
+        quote, `\\\\` for a backslash, `\\n` for a line end and `\\t` for a tab.""",
     )
     UNKNOWN_CHARACTER = (
         "LS106",
@@ -116,14 +117,15 @@ class Code(Enum):
     MISSING_DESTINATION = (
         "LS109",
         "control action without its destination",
-        """Control actions are written `MOVE_HOST_TO place`, `MOVE entity TO place`, `CONNECT_HOST_TO node`,
-        `DISCONNECT_HOST_FROM node`, `HAND entity TO station`, `PUT entity IN place`, `rule(arguments)` or
-        `{ redex -> reactum }`.""",
+        """Control actions are written `MOVE_HOST_TO place`, `MOVE entity TO place`, `CONNECT_HOST_TO
+        node`, `DISCONNECT_HOST_FROM node`, `HAND entity TO station`, `PUT entity IN place`,
+        `rule(arguments)` or `{ redex -> reactum }`.""",
     )
     MISSPELT_KEYWORD = (
         "LS110",
         "misspelt keyword",
-        """A word stands where the language has words of its own, and it nearly is one of them. Case matters.""",
+        """A word stands where the language has words of its own, and it nearly is one of them. Case
+        matters.""",
     )
     RESERVED_WORD = (
         "LS111",
@@ -133,8 +135,8 @@ class Code(Enum):
     BAD_NUMBER = (
         "LS112",
         "bad number",
-        """Coordinates and lengths are finite decimal numbers, such as `37.04`, `-8.59` or `4e2`; counts and
-        the numbers of expressions are whole.""",
+        """Coordinates and lengths are finite decimal numbers, such as `37.04`, `-8.59` or `4e2`; counts
+        and the numbers of expressions are whole.""",
     )
     MISSING_RECIPIENT = (
         "LS113",
@@ -149,8 +151,8 @@ class Code(Enum):
     UNKNOWN_OPTION = (
         "LS115",
         "unknown option",
-        """`scheduler` is program_order, unordered or fcfs; `control` is atomic or timed; a pattern's type is
-        Observation or Message.""",
+        """`scheduler` is program_order, unordered or fcfs; `control` is atomic or timed; a pattern's
+        type is Observation or Message.""",
     )
     MISSING_COMMA = (
         "LS116",
@@ -170,8 +172,8 @@ class Code(Enum):
     MISPLACED_STATEMENT = (
         "LS119",
         "statement outside a behaviour",
-        """Statements stand in the body of a bigActor, `BigActor a hosted_at h with_behavior { ... }`, or of a
-        behaviour, `def b() = { ... }`.""",
+        """Statements stand in the body of a bigActor, `BigActor a hosted_at h with_behavior { ... }`, or
+        of a behaviour, `def b() = { ... }`.""",
     )
     MISSING_BRACE = (
         "LS120",
@@ -181,13 +183,14 @@ class Code(Enum):
     MISSING_HOST = (
         "LS121",
         "bigActor without a host",
-        """A bigActor is written `BigActor name hosted_at host with_behavior { ... }`; the name may be left
-        out.""",
+        """A bigActor is written `BigActor name hosted_at host with_behavior { ... }`; the name may be
+        left out.""",
     )
     MISSING_EQUALS = (
         "LS122",
         "definition without '='",
-        """A behaviour is defined by `def name(parameters) = { ... }`, and a variable by `let name = value`.""",
+        """A behaviour is defined by `def name(parameters) = { ... }`, and a variable by `let name =
+        value`.""",
     )
     MISSING_KIND = (
         "LS123",

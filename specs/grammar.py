@@ -5,26 +5,64 @@ from __future__ import annotations
 import re
 from functools import cache
 from importlib.resources import files
-from typing import Final
+from typing import Final, Protocol
 
-from lark import Lark
+from lark import Lark, Token
 from lark.lexer import PatternRE, PatternStr, TerminalDef
 
 from specs.build_behaviour import BuildBehaviour
 from specs.build_world import BuildWorld
+from specs.syntax import Mission
 
 SECTIONS: Final = frozenset(
-    "mission signature world believes rule def BigActor environment scheduler check".split()
+    [
+        "mission",
+        "signature",
+        "world",
+        "believes",
+        "rule",
+        "def",
+        "BigActor",
+        "environment",
+        "scheduler",
+        "check",
+    ]
 )
 STATEMENTS: Final = frozenset(
-    "observe control react send migrate spawn display let if loop while for match choose skip".split()
+    [
+        "observe",
+        "control",
+        "react",
+        "send",
+        "migrate",
+        "spawn",
+        "display",
+        "let",
+        "if",
+        "loop",
+        "while",
+        "for",
+        "match",
+        "choose",
+        "skip",
+    ]
 )
-OPERATION_WORDS: Final = frozenset("in not and or of true false HOST SELF".split())
+OPERATION_WORDS: Final = frozenset(["in", "not", "and", "or", "of", "true", "false", "HOST", "SELF"])
 QUERY_WORDS: Final = frozenset(
-    "ALL PARENT CHILDREN LINKED_TO HOSTED_AT PARENT_HOST CHILDREN_HOST LINKED_TO_HOST HOSTED_AT_HOST".split()
+    [
+        "ALL",
+        "PARENT",
+        "CHILDREN",
+        "LINKED_TO",
+        "HOSTED_AT",
+        "PARENT_HOST",
+        "CHILDREN_HOST",
+        "LINKED_TO_HOST",
+        "HOSTED_AT_HOST",
+    ]
 )
 ACTION_WORDS: Final = frozenset(
-    "MOVE_HOST_TO MOVE TO CONNECT_HOST_TO DISCONNECT_HOST_FROM HAND PUT IN".split()
+    ["MOVE_HOST_TO", "MOVE", "TO", "CONNECT_HOST_TO", "DISCONNECT_HOST_FROM", "HAND", "PUT", "IN"]
 )
 RESERVED: Final = (
     SECTIONS
@@ -32,7 +70,7 @@ RESERVED: Final = (
     | OPERATION_WORDS
     | QUERY_WORDS
     | ACTION_WORDS
-    | frozenset("case else hosted_at with_behavior to at says someone".split())
+    | frozenset(["case", "else", "hosted_at", "with_behavior", "to", "at", "says", "someone"])
 )
 
 
@@ -59,6 +97,25 @@ def grammar() -> Lark:
         transformer=_Build(),
         edit_terminals=_match_whole_words,
     )
+
+
+class Run(Protocol):
+    """A parse under way; lark's interactive parser, as far as it is used here."""
+
+    def exhaust_lexer(self) -> list[Token]:
+        """Parse to the end of the text, not included, and return what was read."""
+
+    def feed_eof(self, last_token: Token | None) -> Mission:
+        """Tell that the text has ended, and return what it says."""
+
+    def accepts(self) -> set[str]:
+        """Return the grammar's names of what could come next."""
+
+
+def start(text: str) -> Run:
+    """Begin to parse a prepared text."""
+    run: Run = grammar().parse_interactive(text)
+    return run
 
 
 @cache

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Final
 
 from lark import UnexpectedInput
-from lark.parsers.lalr_interactive_parser import InteractiveParser
 
 from specs.building import Mistake, rule_mistake
 from specs.codes import Code
 from specs.diagnostics import Diagnostic, MissionError, Source
-from specs.grammar import grammar
+from specs.grammar import start
 from specs.syntax import Mission, Node, RuleBody, Span, parts, walk
 from specs.syntax_errors import explain_syntax_error
 from specs.text import Prepared, decode, prepare
@@ -22,11 +20,12 @@ MAX_DEPTH: Final = 200
 def parse(source: Source) -> Mission:
     """Return the syntax tree of a mission; raises MissionError.
 
-    Linear in the text and free of recursion; the tree is at most 200 deep. A syntax error is reported alone, with no
-    search for others; mistakes in the bodies of rules are reported together.
+    Linear in the text and free of recursion; the tree is at most 200 deep. A syntax error is reported alone, with
+    no search for others; mistakes in the bodies of rules are reported together.
     """
     mission = build(prepare(source), source)
-    mistakes = list(_mistakes(mission))
+    bodies = (node for node in walk(mission) if isinstance(node, RuleBody) and node.term is None)
+    mistakes = [mistake for body in bodies if (mistake := rule_mistake(body))]
     if mistakes:
         raise MissionError(source, mistakes)
     return mission
@@ -39,34 +38,21 @@ def parse_bytes(name: str, data: bytes) -> tuple[Source, Mission]:
 
 
 def build(prepared: Prepared, source: Source) -> Mission:
-    """Return the tree of a prepared text, its depth and rules not yet looked at; raises MissionError."""
-    run = grammar().parse_interactive(prepared.text)
+    """Return the tree of a prepared text, the bodies of its rules not looked at; raises MissionError."""
+    run = start(prepared.text)
     try:
-        return _run(run)
+        read = run.exhaust_lexer()
+        mission = run.feed_eof(read[-1] if read else None)
     except Mistake as mistake:
         raise MissionError(source, [mistake.diagnostic]) from None
     except UnexpectedInput as found:
         raise MissionError(source, [explain_syntax_error(found, run, prepared)]) from None
-
-
-def _run(run: InteractiveParser) -> Mission:
-    last = None
-    for last in run.iter_parse():
-        pass
-    mission: Mission = run.feed_eof(last)
-    return mission
-
-
-def _mistakes(mission: Mission) -> Iterator[Diagnostic]:
     deepest = _too_deep(mission)
     if deepest:
         message = f"nested more than {MAX_DEPTH} deep"
         hint = "define behaviours with def and name values with let"
-        yield Diagnostic(Code.NESTED_TOO_DEEPLY, deepest, message, hint)
-        return
-    for node in walk(mission):
-        if isinstance(node, RuleBody) and node.term is None and (mistake := rule_mistake(node)):
-            yield mistake
+        raise MissionError(source, [Diagnostic(Code.NESTED_TOO_DEEPLY, deepest, message, hint)])
+    return mission
 
 
 def _too_deep(mission: Mission) -> Span | None:

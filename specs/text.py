@@ -1,6 +1,7 @@
-"""What is done with a mission's text before the grammar sees it: bounds, comments, brackets, printed line numbers.
+"""What is done with a mission's text before the grammar sees it.
 
-Everything here is linear in the text, and replaces characters by spaces only, so that offsets stay what they were.
+That is: bounds, comments, brackets, printed line numbers. Everything here is linear in the text, and replaces
+characters by spaces only, so that offsets stay what they were.
 """
 
 from __future__ import annotations
@@ -46,7 +47,10 @@ class Comment:
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """A text ready for the grammar, and what was seen in it: `unmatched` is the first bracket that fits no other."""
+    """A text ready for the grammar, and what was seen in it.
+
+    `unmatched` is where the first bracket that fits no other was noticed, and what to say of it.
+    """
 
     text: str
     comments: tuple[Comment, ...]
@@ -163,7 +167,7 @@ def _refuse(sort: str | None, start: int, end: int, words: int, depth: int) -> N
 
 def _mismatch(text: str, waiting: list[int], start: int) -> Diagnostic:
     closing = text[start]
-    if not waiting:
+    if not any(_PARTNER[text[opening]] == closing for opening in waiting):
         message = f"'{closing}' closes nothing"
         hint = "remove it, or look for an opening bracket that is missing or commented out"
         return Diagnostic(Code.UNOPENED_BRACKET, Span(start, start + 1), message, hint)
@@ -186,8 +190,8 @@ def _blank(text: str, spans: list[Span]) -> str:
 def _without_line_numbers(text: str) -> str:
     """Blank out the line numbers of programs pasted from print, such as the paper's Figure 8.
 
-    That is, where a line begins with a number and `BigActor`, its number and those of the following lines as far as
-    they count on and the block is open.
+    That is, where a line begins with a number and `BigActor`, its number and those of the following lines as far
+    as they count on and the block is open.
     """
     return _blank(text, list(_line_numbers(text))) if _NUMBERED_ACTOR.search(text) else text
 

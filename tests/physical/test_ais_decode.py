@@ -1,4 +1,5 @@
 import builtins
+import subprocess
 import sys
 
 import pytest
@@ -199,3 +200,8 @@ def test_no_payload_of_a_type_that_is_decoded_raises(text, first):
     part = payload(f"{first}{text}".encode())[0]
     assert isinstance(part, Part)
     assert isinstance(decode((part,), None), tuple)
+
+
+def test_pyais_is_imported_only_when_something_is_decoded():
+    program = "import sys, physical.ais_world; sys.exit('pyais' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0

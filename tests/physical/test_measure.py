@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from pyproj import Geod
 
@@ -36,6 +36,7 @@ def test_a_circle_has_its_radius_and_area_in_metres_everywhere(latitude, longitu
     assert distance(centroid(disc), centre) < 0.05
 
 
+@settings(deadline=None)
 @given(st.floats(-85, 84), st.floats(-180, 180), st.floats(0.01, 1), st.floats(0.01, 60))
 def test_the_area_of_a_box_is_that_of_the_ellipsoid_between_its_parallels(south, west, high, wide):
     north, east = south + high, (west + wide + 180) % 360 - 180
@@ -51,7 +52,10 @@ def test_a_point_has_no_area():
     assert area(point(1, 2)) == 0.0
 
 
-@given(st.tuples(st.floats(-90, 90), st.floats(-180, 180)), st.tuples(st.floats(-90, 90), st.floats(-180, 180)))
+@settings(deadline=None)
+@given(
+    st.tuples(st.floats(-90, 90), st.floats(-180, 180)), st.tuples(st.floats(-90, 90), st.floats(-180, 180))
+)
 def test_the_distance_of_points_is_the_geodesic(a, b):
     reference = GEOD.inv(a[1], a[0], b[1], b[0])[2]
     assert distance(point(*a), point(*b)) == pytest.approx(reference, abs=0.05)
@@ -77,7 +81,9 @@ def test_what_meets_is_at_no_distance():
 
 def test_centroid_is_the_centre_of_area():
     assert centroid(box((1, 179), (-1, -179))) is point(0, 180)
-    assert centroid(box((37.04, -8.59), (36.94, -8.79))).vertices[0] == pytest.approx((36.99, -8.69), abs=1e-4)
+    assert centroid(box((37.04, -8.59), (36.94, -8.79))).vertices[0] == pytest.approx(
+        (36.99, -8.69), abs=1e-4
+    )
     assert centroid(point(3, 4)) is point(3, 4)
 
 
@@ -88,14 +94,25 @@ def test_a_waypoint_is_the_centroid_where_it_lies_inside():
 
 
 def test_a_waypoint_lies_inside_where_the_centroid_does_not():
-    bay = polygon([(lat / 100, lon / 100) for lat, lon in [(0, 0), (0, 9), (9, 9), (9, 8), (1, 8), (1, 1), (9, 1), (9, 0)]])
+    bay = polygon(
+        [
+            (lat / 100, lon / 100)
+            for lat, lon in [(0, 0), (0, 9), (9, 9), (9, 8), (1, 8), (1, 1), (9, 1), (9, 0)]
+        ]
+    )
     assert not contains(bay, centroid(bay))
     assert contains(bay, waypoint(bay))
 
 
+@settings(deadline=None)
 @given(st.floats(0.00001, 1), st.floats(-80, 80))
 def test_an_interior_point_is_inside(size, latitude):
-    shape = polygon([(latitude + y * size, 179.99 + x * size if 179.99 + x * size <= 180 else x * size - 180.01) for y, x in U])
+    shape = polygon(
+        [
+            (latitude + y * size, 179.99 + x * size if 179.99 + x * size <= 180 else x * size - 180.01)
+            for y, x in U
+        ]
+    )
     assert contains(shape, interior_point(shape))
     assert interior_point(interior_point(shape)) is interior_point(shape)
 

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from physical import (
@@ -43,7 +43,9 @@ def stars(draw, home):
     return polygon(
         (
             home[0] + reach * r * math.sin((i + 0.4) * 2 * math.pi / n),
-            wrapped(home[1] + reach * r * math.cos((i + 0.4) * 2 * math.pi / n) / math.cos(math.radians(home[0]))),
+            wrapped(
+                home[1] + reach * r * math.cos((i + 0.4) * 2 * math.pi / n) / math.cos(math.radians(home[0]))
+            ),
         )
         for i, r in enumerate(radii)
     )
@@ -59,6 +61,7 @@ def tasks(draw):
     return mover, target, holes
 
 
+@settings(deadline=None)
 @given(tasks())
 def test_the_nearest_placement_is_inside_the_target_and_swallowed_by_no_hole(task):
     mover, target, holes = task
@@ -69,6 +72,7 @@ def test_the_nearest_placement_is_inside_the_target_and_swallowed_by_no_hole(tas
     assert found is nearest_placement(mover, target, holes[::-1])
 
 
+@settings(deadline=None)
 @given(tasks(), st.lists(st.tuples(st.floats(-1, 1), st.floats(-1, 1)), min_size=20, max_size=20))
 def test_no_placement_with_room_around_it_is_nearer(task, offsets):
     mover, target, holes = task
@@ -122,16 +126,12 @@ def test_what_fits_nowhere_has_no_placement():
 
 def test_a_hole_elsewhere_or_of_no_extent_does_not_matter():
     ship = circle((52, 5), 40)
-    holes = [point(52.976, 5.441), box((0, 0), (1, 1))]
+    holes = [centroid(HARBOUR), box((0, 0), (1, 1))]
+    assert nearest_placement(point(0, 0), HARBOUR, holes) is centroid(HARBOUR)
     assert nearest_placement(ship, HARBOUR, holes) is nearest_placement(ship, HARBOUR)
 
 
-def test_a_point_is_not_put_onto_a_hole_of_no_extent():
-    found = nearest_placement(point(0, 0), HARBOUR, [centroid(HARBOUR)])
-    assert found is not centroid(HARBOUR)
-    assert distance(found, centroid(HARBOUR)) < 1
-
-
+@settings(deadline=None)
 @given(st.floats(-85, 85), st.floats(-180, 180))
 def test_translation_preserves_the_metric_shape(latitude, longitude):
     there = translate_to(HOOK, point(latitude, longitude))

@@ -1,0 +1,155 @@
+"""Check a mission: explore it, decide each property, and find shortest traces."""
+
+from collections.abc import Callable, Iterable
+
+from checker.exploration import Exploration, Inspect, Limits, Progress, explore
+from checker.findings import Collected, Finding
+from checker.inspections import Computation, DeadlockFreedom, Invariant, LocalConsistency, Reachability
+from checker.ownership import owned
+from checker.races import ControlRaces, StaleObservationRaces
+from checker.traces import Trace, trace_to
+from checker.verdicts import Outcome, Report, Verdict, Violation
+from semantics.configuration import Configuration
+from semantics.monitor import monitored
+from semantics.propositions import Property
+
+Reporter = Callable[[Progress], None]
+
+
+def check(
+    initial: Configuration,
+    properties: Iterable[Property],
+    limits: Limits | None = None,
+    report: Reporter | None = None,
+    notes: tuple[str, ...] = (),
+) -> Report:
+    """Explore everything that is reachable and decide the properties.
+
+    Race-freedom is first looked for in the text (by ownership); where that doesn't settle it, the mission is explored
+    once more with what observations rest on remembered. Configurations are counted without that memory.
+    """
+    return _Check(initial, tuple(properties), limits or Limits(), report).run(notes)
+
+
+class _Check:
+    def __init__(
+        self,
+        initial: Configuration,
+        properties: tuple[Property, ...],
+        limits: Limits,
+        report: Reporter | None,
+    ) -> None:
+        self.initial = initial
+        self.properties = properties
+        self.limits = limits
+        self.report = report
+        self.deadlock = DeadlockFreedom()
+        self.consistency = LocalConsistency()
+        self.computation = Computation()
+        self.races = ControlRaces()
+        self.stale = StaleObservationRaces()
+        self.formulas = {
+            each: Invariant(each.formula) if each.kind == "invariant" else Reachability(each.formula)
+            for each in self.properties
+            if each.kind in ("invariant", "reachable")
+        }
+        asked = any(each.kind == "race_freedom" for each in self.properties)
+        self.owned = asked and owned(initial)
+        self.searching = asked and not self.owned
+        self.remembered: Exploration | None = None
+
+    def run(self, notes: tuple[str, ...]) -> Report:
+        races = (self.races,) if self.searching else ()
+        inspections: tuple[Inspect, ...] = (self.deadlock, self.consistency, self.computation, *races)
+        self.found = explore(self.initial, (*inspections, *self.formulas.values()), self.limits, self.report)
+        if self.searching:
+            start = monitored(self.initial)
+            self.remembered = explore(start, (self.stale,), self.limits, self.report)
+        later = self.remembered.bounds if self.remembered else []
+        return Report(
+            verdicts=tuple(map(self.decide, self.properties)),
+            configurations=len(self.found.configurations),
+            transitions=self.found.transitions,
+            depth=max(self.found.depths),
+            bounds=tuple(dict.fromkeys([*self.found.bounds, *later])),
+            rules=dict(sorted(self.found.rules.items())),
+            notes=notes,
+            seconds=self.found.seconds + (self.remembered.seconds if self.remembered else 0.0),
+        )
+
+    def decide(self, asked: Property) -> Verdict:
+        """Return the verdict on one property."""
+        match asked.kind:
+            case "race_freedom":
+                return self.decide_races(asked)
+            case "reachable":
+                return self.decide_reachable(asked)
+            case "deadlock_freedom":
+                return self.decide_deadlock(asked)
+            case "local_consistency":
+                return self.verdict(asked, self.consistency.collected)
+            case "arrival":
+                return self.verdict(asked, self.deadlock.arrival, note="flights declared to arrive are fair")
+            case "computation":
+                return self.verdict(asked, self.computation.collected)
+            case _:
+                return self.verdict(asked, self.formulas[asked].collected)
+
+    def verdict(self, asked: Property, collected: Collected, note: str = "") -> Verdict:
+        """Return the verdict of a property that no finding may speak against."""
+        violations = self.violations(collected, self.found)
+        outcome = self.outcome(bool(violations), self.found)
+        witness = None if violations else self.witness(collected, self.found)
+        return Verdict(asked, outcome, violations, collected.count, collected.examined, witness, note)
+
+    def decide_deadlock(self, asked: Property) -> Verdict:
+        late = self.deadlock.arrival.first.get("not arrived")
+        note = f"{late.message}; declare that it arrives, or check arrival" if late else ""
+        return self.verdict(asked, self.deadlock.collected, note)
+
+    def decide_reachable(self, asked: Property) -> Verdict:
+        collected = self.formulas[asked].collected
+        if collected.example is not None:
+            witness = trace_to(self.found, collected.example)
+            return Verdict(asked, Outcome.HOLDS, examined=collected.examined, witness=witness)
+        note = f"no reachable configuration satisfies: {asked.formula}" if self.found.complete else ""
+        outcome = Outcome.VIOLATED if self.found.complete else Outcome.INCOMPLETE
+        return Verdict(asked, outcome, note=note)
+
+    def decide_races(self, asked: Property) -> Verdict:
+        if self.owned:
+            note = "by ownership, without a search: no agent may write what another's control rests on"
+            return Verdict(asked, Outcome.HOLDS, note=note)
+        assert self.remembered is not None
+        control, stale = self.races.collected, self.stale.collected
+        violations = self.violations(control, self.found) + self.violations(stale, self.remembered)
+        outcome = self.outcome(bool(violations), self.found, self.remembered)
+        witness = None if violations else self.witness(stale, self.remembered)
+        shortest = tuple(sorted(violations, key=lambda violation: len(violation.trace)))
+        count, examined = control.count + stale.count, control.examined + stale.examined
+        note = (
+            f"searched over {len(self.remembered.configurations):,} configurations with the monitor's memory"
+        )
+        return Verdict(asked, outcome, shortest, count, examined, witness, note)
+
+    def outcome(self, violated: bool, *explorations: Exploration) -> Outcome:
+        if violated:
+            return Outcome.VIOLATED
+        return Outcome.HOLDS if all(each.complete for each in explorations) else Outcome.INCOMPLETE
+
+    def violations(self, collected: Collected, found: Exploration) -> tuple[Violation, ...]:
+        return tuple(
+            Violation(each.kind, each.message, _trace(found, each), each.details)
+            for each in collected.first.values()
+        )
+
+    def witness(self, collected: Collected, found: Exploration) -> Trace | None:
+        if collected.example is None:
+            return None
+        trace = trace_to(found, collected.example)
+        return trace.extended(collected.example_by) if collected.example_by else trace
+
+
+def _trace(found: Exploration, finding: Finding) -> Trace:
+    trace = trace_to(found, finding.at)
+    return trace.extended(finding.by) if finding.by else trace

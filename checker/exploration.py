@@ -1,0 +1,181 @@
+"""The reference explorer: breadth-first, exact and simple; the yardstick for every faster one.
+
+It visits each configuration once, in the order of its distance from the first, so a path to it is a shortest one.
+"""
+
+import time
+from collections import Counter
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+
+from semantics.configuration import Configuration, Label, Transition
+from semantics.successors import Expansion, expand
+
+MOST_PENDING = 64
+"""Requests of one agent, or messages in one mailbox, beyond which a configuration is not explored further."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Where an exploration stops: then it is *incomplete*, and says so.
+
+    Attributes:
+        configurations: How many are visited at most.
+        seconds: For how long.
+        pending: How many requests an agent may have pending, or messages in its mailbox.
+    """
+
+    configurations: int | None = 2_000_000
+    seconds: float | None = None
+    pending: int = MOST_PENDING
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far an exploration has come; `rate` is in configurations a second."""
+
+    configurations: int
+    transitions: int
+    depth: int
+    frontier: int
+    rate: float
+
+
+Inspect = Callable[[int, Configuration, Expansion], None]
+"""What looks at each configuration as it is expanded, given its number."""
+
+
+@dataclass(slots=True)
+class Exploration:
+    """What was explored.
+
+    Attributes:
+        configurations: In the order of discovery; the first is the initial one.
+        origins: For each, the number of the one that it was first reached from (-1 for the initial one).
+        labels: For each, the label of the transition that first reached it.
+        depths: For each, its distance from the initial one.
+        transitions: How many transitions there are.
+        rules: How many transitions each rule has.
+        bounds: The limits that were met; empty where the exploration is complete.
+        seconds: How long it took.
+    """
+
+    configurations: list[Configuration]
+    origins: list[int] = field(default_factory=lambda: [-1])
+    labels: list[Label | None] = field(default_factory=lambda: [None])
+    depths: list[int] = field(default_factory=lambda: [0])
+    transitions: int = 0
+    rules: Counter[str] = field(default_factory=Counter)
+    bounds: list[str] = field(default_factory=list)
+    seconds: float = 0.0
+
+    @property
+    def complete(self) -> bool:
+        """Whether everything reachable was visited."""
+        return not self.bounds
+
+    def path(self, number: int) -> tuple[int, ...]:
+        """Return the numbers of the configurations on a shortest path to one, both ends included."""
+        path = [number]
+        while self.origins[path[-1]] >= 0:
+            path.append(self.origins[path[-1]])
+        return tuple(reversed(path))
+
+
+def explore(
+    initial: Configuration,
+    inspect: Iterable[Inspect] = (),
+    limits: Limits | None = None,
+    report: Callable[[Progress], None] | None = None,
+    every: float = 0.5,
+) -> Exploration:
+    """Visit everything that is reachable, breadth-first.
+
+    Args:
+        initial: Where to start.
+        inspect: Called with each configuration as it is expanded, in the order of discovery.
+        limits: Where to stop.
+        report: Called about once in `every` seconds.
+        every: Seconds.
+    """
+    return _Explorer(initial, tuple(inspect), limits or Limits(), report, every).run()
+
+
+class _Explorer:
+    def __init__(
+        self,
+        initial: Configuration,
+        inspect: tuple[Inspect, ...],
+        limits: Limits,
+        report: Callable[[Progress], None] | None,
+        every: float,
+    ) -> None:
+        self.found = Exploration([initial])
+        self.numbers = {initial: 0}
+        self.inspect = inspect
+        self.limits = limits
+        self.report = report
+        self.every = every
+
+    def run(self) -> Exploration:
+        started = time.monotonic()
+        try:
+            self.visit_all(started)
+        except KeyboardInterrupt:
+            self.bound("an interruption")
+        self.found.seconds = time.monotonic() - started
+        return self.found
+
+    def visit_all(self, started: float) -> None:
+        found, reported = self.found, started
+        for number, configuration in enumerate(found.configurations):  # grows while it is gone through
+            now = time.monotonic()
+            if self.limits.seconds is not None and now - started > self.limits.seconds:
+                self.bound(f"the time limit of {self.limits.seconds:g} s")
+                break
+            if self.report is not None and now - reported >= self.every:
+                self.report(self.progress(number, now - started))
+                reported = now
+            self.expand(number, configuration)
+
+    def expand(self, number: int, configuration: Configuration) -> None:
+        expansion = expand(configuration)
+        for look in self.inspect:
+            look(number, configuration, expansion)
+        if crowded(configuration, self.limits.pending):
+            self.bound(f"more than {self.limits.pending} requests or messages of one agent pending")
+            return
+        for transition in expansion.transitions:
+            self.follow(number, transition)
+
+    def follow(self, number: int, transition: Transition) -> None:
+        found, label = self.found, transition.label
+        found.transitions += 1
+        found.rules[label.rule] += 1
+        if transition.target in self.numbers:
+            return
+        most = self.limits.configurations
+        if most is not None and len(found.configurations) >= most:
+            self.bound(f"the limit of {most:,} configurations")
+            return
+        self.numbers[transition.target] = len(found.configurations)
+        found.configurations.append(transition.target)
+        found.origins.append(number)
+        found.labels.append(label)
+        found.depths.append(found.depths[number] + 1)
+
+    def bound(self, reason: str) -> None:
+        if reason not in self.found.bounds:
+            self.found.bounds.append(reason)
+
+    def progress(self, number: int, seconds: float) -> Progress:
+        found = self.found
+        total = len(found.configurations)
+        return Progress(
+            total, found.transitions, found.depths[number], total - number, number / max(seconds, 1e-9)
+        )
+
+
+def crowded(c: Configuration, most: int) -> bool:
+    """Tell whether some agent has more pending requests or messages than are explored."""
+    return any(len(c.eta.of(a)) > most or len(c.alpha.mailbox(a)) > most for a in c.alpha.names())

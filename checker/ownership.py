@@ -1,0 +1,237 @@
+"""Race-freedom by ownership, without a search: the paper's sufficient condition, over-approximated from the text.
+
+No agent may write a slot that another's redex, missing site or tested observation may read or write.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from semantics.configuration import Configuration
+from semantics.expressions import Apply, Either, Expression, Host, Literal, QueryOf, SetOf, TupleOf, Variable
+from semantics.reactions import Pattern, Reaction, Term
+from semantics.setting import Scheduler
+from semantics.signature import Name
+from semantics.statements import (
+    Assign,
+    Call,
+    Case,
+    Choose,
+    ChooseFrom,
+    ControlBy,
+    Display,
+    For,
+    ForEach,
+    If,
+    Loop,
+    Match,
+    Migrate,
+    Observe,
+    React,
+    Send,
+    Spawn,
+    Statement,
+    While,
+)
+
+ANY = "*"
+"""Stands for every name."""
+
+Slot = tuple[str, Name]
+"""`("parent", n)`, `("links", n)` or `("children", n)`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Footprint:
+    """What one agent may write, and what its controls may rest on."""
+
+    agent: Name
+    writes: frozenset[Slot]
+    reads: frozenset[Slot]
+
+
+def owned(c: Configuration) -> bool:
+    """Tell whether a mission is race-free by ownership."""
+    footprints = [footprint(c, a) for a in c.alpha.names()]
+    texts = [_Text(c, a) for a in c.alpha.names()]
+    if any(isinstance(s, Spawn) for text in texts for s in text.statements):
+        return False  # the spawned are not there yet to be looked at
+    if any(isinstance(s, Send) for text in texts for s in text.statements):
+        tested = frozenset[Slot]().union(*(text.tested for text in texts))  # a message carries tests along
+        footprints = [
+            Footprint(f.agent, f.writes, f.reads | tested if f.writes else f.reads) for f in footprints
+        ]
+    if c.setting.scheduler is Scheduler.UNORDERED and any(f.writes for f in footprints):
+        return False  # an agent may race with itself
+    return not any(interferes(one, other) for one in footprints for other in footprints if one != other)
+
+
+def interferes(one: Footprint, other: Footprint) -> bool:
+    """Tell whether one may write what another may read or write."""
+    return any(_overlaps(write, slot) for write in one.writes for slot in other.reads | other.writes)
+
+
+def _overlaps(one: Slot, other: Slot) -> bool:
+    return one[0] == other[0] and (ANY in (one[1], other[1]) or one[1] == other[1])
+
+
+def footprint(c: Configuration, agent: Name) -> Footprint:
+    """Return what an agent may write and read, from its text alone."""
+    text = _Text(c, agent)
+    writes = frozenset[Slot]().union(*(text.writes(reaction) for reaction in text.reactions))
+    reads = frozenset[Slot]().union(*(text.redex(reaction) for reaction in text.reactions))
+    return Footprint(agent, writes, reads | text.tested if text.reactions else frozenset())
+
+
+class _Text:
+    """All that one agent's behaviour may lead to."""
+
+    def __init__(self, c: Configuration, agent: Name) -> None:
+        self.c = c
+        self.agent = agent
+        self.program = c.setting.program
+
+    @cached_property
+    def statements(self) -> tuple[Statement, ...]:
+        """The statements that the agent may come to."""
+        seen: set[int] = set()
+        waiting = list(self.c.alpha.code(self.agent))
+        while waiting:
+            number = waiting.pop()
+            if number not in seen:
+                seen.add(number)
+                waiting.extend(self._leads_to(self.program.statements[number]))
+        return tuple(self.program.statements[number] for number in sorted(seen))
+
+    def _leads_to(self, statement: Statement) -> Iterator[int]:
+        match statement:
+            case If(_, then, otherwise):
+                yield from (*then, *otherwise)
+            case While(_, body, _) | Loop(body) | ForEach(_, _, body) | ChooseFrom(_, _, body):
+                yield from body
+            case For(_, _, each):
+                yield each
+            case Choose(alternatives):
+                yield from (number for block in alternatives for number in block)
+            case React(cases) | Match(_, cases):
+                yield from (number for case in cases for number in case.body)
+            case Call(behaviour):
+                yield from self.program.behaviours[behaviour].body
+
+    @cached_property
+    def host(self) -> Name:
+        """The agent's host, `ANY` if it may migrate."""
+        migrates = any(isinstance(statement, Migrate) for statement in self.statements)
+        return ANY if migrates else self.c.alpha.host(self.agent)
+
+    def name(self, expression: Expression) -> Name:
+        """Return the name that an expression stands for, `ANY` where that isn't known from the text."""
+        if isinstance(expression, Host):
+            return self.host
+        known = isinstance(expression, Literal) and isinstance(expression.value, str)
+        return str(expression.value) if known and isinstance(expression, Literal) else ANY
+
+    @cached_property
+    def reactions(self) -> tuple[Reaction, ...]:
+        """The reactions that the agent may request."""
+        controls = [statement for statement in self.statements if isinstance(statement, ControlBy)]
+        make = self.program.reactions
+        return tuple(make[each.name](self.host, *map(self.name, each.arguments)) for each in controls)
+
+    def writes(self, reaction: Reaction) -> frozenset[Slot]:
+        """Return the slots that a reaction may change; what may contain something takes everything along."""
+        before, after = reaction.redex, reaction.reactum
+        moved = {self._term(node) for node, _ in set(after.parents) - set(before.parents)}
+        linked = {self._term(node) for _, node in set(after.links) ^ set(before.links)}
+        places = {("children", ANY)} if moved else set()
+        slots = {("parent", node) for node in moved} | {("links", node) for node in linked} | places
+        return frozenset(slots | ({("parent", ANY)} if any(map(self._holds, moved)) else set()))
+
+    def _holds(self, node: Name) -> bool:
+        setting = self.c.setting
+        return node == ANY or bool(setting.signature[setting.kind(node)].contains)
+
+    def redex(self, reaction: Reaction) -> frozenset[Slot]:
+        """Return the slots that a redex uses, missing sites included."""
+        pattern: Pattern = reaction.redex
+        parents = {("parent", self._term(node)) for node, _ in pattern.parents}
+        links = {("links", self._term(node)) for _, node in pattern.links}
+        return frozenset(parents | links | {("children", self._term(node)) for node in pattern.closed})
+
+    def _term(self, term: Name | Term) -> Name:
+        return term if isinstance(term, str) else ANY
+
+    @cached_property
+    def tested(self) -> frozenset[Slot]:
+        """The slots that the agent's tests of observations may read."""
+        tests = [test for statement in self.statements for test in self._tests(statement)]
+        if not tests:
+            return frozenset()
+        asked: set[Slot] = set()
+        for statement in self.statements:
+            if isinstance(statement, Observe):
+                asked |= set(self._asked(statement.query, tests))
+        return frozenset(asked)
+
+    def _tests(self, statement: Statement) -> Iterator[Name]:
+        """Yield the name that each use of a variable's value asks for: `ANY` unless it is `name in variable`."""
+        if isinstance(statement, Display):
+            return
+        for expression in expressions_of(statement):
+            yield from self._asks(expression)
+
+    def _asks(self, expression: Expression) -> Iterator[Name]:
+        match expression:
+            case Apply("in", (item, Variable(_))):
+                yield self.name(item)
+            case Apply(_, parts) | TupleOf(parts) | SetOf(parts):
+                for part in parts:
+                    yield from self._asks(part)
+            case Either(_, first, second):
+                yield from (*self._asks(first), *self._asks(second))
+            case Variable(_):
+                yield ANY
+
+    def _asked(self, query: QueryOf, tests: list[Name]) -> Iterator[Slot]:
+        """Yield the slots that decide whether the tested names are shown."""
+        inner = query.argument
+        names = tests if query.operator == "CHILDREN" else [ANY]
+        kind = "links" if query.operator == "LINKED_TO" else "parent"
+        if query.operator == "PARENT" and not isinstance(inner, QueryOf) and inner is not None:
+            names = [self.name(inner)]
+        if query.operator is not None or inner is None:
+            yield from ((kind, name) for name in names)
+        if inner is None:
+            yield ("links", ANY)
+        if isinstance(inner, QueryOf):
+            yield from self._asked(inner, tests)
+
+
+def expressions_of(statement: Statement) -> Iterable[Expression]:
+    """Return the expressions whose value decides something, or is kept, sent or used."""
+    match statement:
+        case Assign(_, expression) | If(expression, _, _) | While(expression, _, _) | For(expression, _, _):
+            return (expression,)
+        case ChooseFrom(_, expression, _) | Migrate(expression):
+            return (expression,)
+        case Send(message, to):
+            return (message, to)
+        case ControlBy(_, arguments) | Call(_, arguments):
+            return arguments
+        case Match(value, cases):
+            return (value, *_guards(cases))
+        case React(cases):
+            return _guards(cases)
+        case Observe(query):
+            return _leaves(query)
+        case _:
+            return ()
+
+
+def _guards(cases: tuple[Case, ...]) -> tuple[Expression, ...]:
+    return tuple(case.guard for case in cases if case.guard is not None)
+
+
+def _leaves(query: QueryOf) -> tuple[Expression, ...]:
+    inner = query.argument
+    return () if inner is None else _leaves(inner) if isinstance(inner, QueryOf) else (inner,)

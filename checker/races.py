@@ -1,0 +1,108 @@
+"""Race-freedom (semantics.md, check 2): control races in a configuration, stale-observation races at a transition."""
+
+from collections.abc import Iterator
+from itertools import combinations
+
+from checker.findings import Collected, Finding
+from semantics.configuration import Configuration, Transition
+from semantics.control import applicable
+from semantics.eta import Pending
+from semantics.monitor import CONTROLS, slots_used, stale_tests
+from semantics.requests import CTR, FLY, Request
+from semantics.rules import TIMED_RULES, actuate
+from semantics.setting import Scheduler
+from semantics.successors import Expansion
+
+
+class ControlRaces:
+    """Two enabled controls, where serving one disables the other, or the two orders end differently."""
+
+    def __init__(self) -> None:
+        self.collected = Collected()
+
+    def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
+        """Look at every pair of controls that are enabled, apart from the scheduler's turn."""
+        served: dict[tuple[object, int], list[Transition]] = {}
+        for transition in expansion.enabled:
+            if transition.label.rule in CONTROLS and transition.served is not None:
+                served.setdefault((transition.served.cell, transition.served.position), []).append(transition)
+        for one, other in combinations(served.values(), 2):
+            if one[0].label.agent == other[0].label.agent and c.setting.scheduler is not Scheduler.UNORDERED:
+                continue
+            problem = conflict(one, other) or conflict(other, one) or different_ends(one, other)
+            if problem is None:
+                self.collected.looked(number, one[0])
+            else:
+                self.collected.add(Finding("control race", problem, number, details=_both(one, other)))
+
+
+def conflict(one: list[Transition], other: list[Transition]) -> str | None:
+    """Return in words that serving one control disables another, None where it doesn't."""
+    request = _request(other[0])
+    for transition in one:
+        if not list(serving(transition.target, request)):
+            return f"serving {_request(transition)} disables {request}"
+    return None
+
+
+def different_ends(one: list[Transition], other: list[Transition]) -> str | None:
+    """Return in words that the two orders end differently, None where they don't; η's order aside."""
+    if _ends(one, _request(other[0])) == _ends(other, _request(one[0])):
+        return None
+    return f"{_request(one[0])} and {_request(other[0])} end differently in the two orders"
+
+
+def _ends(first: list[Transition], then: Request) -> set[Configuration]:
+    return {after.target.unmonitored() for transition in first for after in serving(transition.target, then)}
+
+
+def serving(c: Configuration, request: Request) -> Iterator[Transition]:
+    """Yield the transitions that serve a control, apart from the scheduler's turn."""
+    for rule in (actuate, *TIMED_RULES):
+        for transition in rule(c, request.agent):
+            if transition.served is not None and transition.served.request == request:
+                yield transition
+
+
+def _request(transition: Transition) -> Request:
+    assert transition.served is not None
+    return transition.served.request
+
+
+def _both(one: list[Transition], other: list[Transition]) -> tuple[str, ...]:
+    return (f"enabled here: {one[0].label} and {other[0].label}",)
+
+
+class StaleObservationRaces:
+    """A control that rests on a test whose answer another agent's control has changed since it was observed."""
+
+    def __init__(self) -> None:
+        self.collected = Collected()
+
+    def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
+        """Look at every control that is served; c must be monitored."""
+        for transition in expansion.by_agents:
+            pending = transition.served
+            if transition.label.rule not in CONTROLS or pending is None:
+                continue
+            stale = stale_tests(pending.request, pending.rests_on, used_slots(c, pending))
+            if not stale:
+                self.collected.looked(number, transition)
+                continue
+            asked = " ".join(stale[0].asked or ())
+            changed = "that answer" if stale[0].stale else "a relation that it uses"
+            message = (
+                f"{pending.request} rests on '{asked}' of observe({stale[0].query}), "
+                f"and another agent has changed {changed} since it was sensed"
+            )
+            self.collected.add(Finding("stale-observation race", message, number, by=transition))
+
+
+def used_slots(c: Configuration, pending: Pending) -> frozenset[tuple[str, ...]]:
+    """Return the slots that the redex of a pending control uses, in whichever match."""
+    request = pending.request
+    assert isinstance(request, CTR | FLY)
+    redex = request.reaction.redex
+    found = [request.match] if isinstance(request, FLY) else applicable(c, request.agent, request.reaction)
+    used = (slots_used(m.relations(redex), tuple(node for node, _ in m.closed(redex))) for m in found)
+    return frozenset[tuple[str, ...]]().union(*used)

@@ -1,0 +1,97 @@
+"""Reports as text for people and as plain data for machines."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from checker.traces import Trace, print_trace, to_json
+from checker.verdicts import Outcome, Report, Verdict, Violation
+from semantics.setting import Control
+from semantics.successors import rules_of
+
+SCHEMA = "bigactors.report/1"
+"""The version of the report's schema (docs/json.md)."""
+
+MARKS = {Outcome.HOLDS: "✓", Outcome.VIOLATED: "✗", Outcome.INCOMPLETE: "?"}
+
+
+def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[str]:
+    """Yield a report line by line."""
+    size = (
+        f"{report.configurations:,} configurations, {report.transitions:,} transitions, depth {report.depth}"
+    )
+    yield f"{name}: {size}, {'complete' if report.complete else 'INCOMPLETE'}, {report.seconds:.2f} s"
+    for bound in report.bounds:
+        yield f"  stopped at {bound}: what lies beyond was not explored"
+    width = max((len(verdict.property.name) for verdict in report.verdicts), default=0)
+    for verdict in report.verdicts:
+        yield from _verdict(verdict, width, traces=traces)
+    yield "  rules: " + ", ".join(f"{rule} {count:,}" for rule, count in report.rules.items())
+    yield from (f"  note: {note}" for note in report.notes)
+
+
+def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
+    line = f"  {MARKS[verdict.outcome]} {verdict.property.name:<{width}}  {verdict.outcome.value}"
+    remarks = [verdict.note, *_sizes(verdict)]
+    yield line + "".join(f"; {remark}" for remark in remarks if remark)
+    for violation in verdict.violations:
+        yield from _violation(violation, traces=traces)
+
+
+def _sizes(verdict: Verdict) -> Iterator[str]:
+    if verdict.outcome is Outcome.VIOLATED:
+        if verdict.violations:
+            yield f"found {verdict.count:,} times"
+    elif verdict.witness is not None:
+        yield f"examined {verdict.examined:,}, a witness of {len(verdict.witness)} steps"
+    elif verdict.property.kind not in ("race_freedom", "arrival") and verdict.outcome is Outcome.HOLDS:
+        yield "vacuous: nothing that it is about was ever reached"
+
+
+def _violation(violation: Violation, *, traces: bool) -> Iterator[str]:
+    yield f"      {violation.kind}: {violation.message}"
+    yield from (f"        {detail}" for detail in violation.details)
+    yield f"      a shortest trace, {len(violation.trace)} steps{':' if traces else ''}"
+    if traces:
+        yield from (f"        {line}" for line in print_trace(violation.trace))
+
+
+def report_json(name: str, digest: str, report: Report, control: Control) -> dict[str, Any]:
+    """Return a report as plain data; the schema is documented in docs/json.md."""
+    silent = [rule.__name__ for rule in rules_of(control) if rule.__name__ not in report.rules]
+    return {
+        "schema": SCHEMA,
+        "mission": name,
+        "digest": digest,
+        "complete": report.complete,
+        "bounds": list(report.bounds),
+        "configurations": report.configurations,
+        "transitions": report.transitions,
+        "depth": report.depth,
+        "exit_code": report.exit_code,
+        "properties": [_property_json(name, digest, verdict) for verdict in report.verdicts],
+        "rules": dict(report.rules),
+        "rules_never_used": silent,
+        "notes": list(report.notes),
+        "seconds": round(report.seconds, 3),
+    }
+
+
+def _property_json(name: str, digest: str, verdict: Verdict) -> dict[str, Any]:
+    def trace(run: Trace | None) -> dict[str, Any] | None:
+        return None if run is None else to_json(run, name, digest)
+
+    return {
+        "name": verdict.property.name,
+        "kind": verdict.property.kind,
+        "line": verdict.property.line,
+        "verdict": verdict.outcome.value,
+        "trace": trace(verdict.violations[0].trace if verdict.violations else None),
+        "violations": [
+            {"kind": v.kind, "message": v.message, "details": list(v.details), "trace": trace(v.trace)}
+            for v in verdict.violations
+        ],
+        "count": verdict.count,
+        "examined": verdict.examined,
+        "witness": trace(verdict.witness),
+        "note": verdict.note,
+    }

@@ -1,0 +1,269 @@
+"""The mistakes that people make, each recognised by what was found and by what could have stood there.
+
+lark's `match_examples` compares the state of the parser with those of a table of bad snippets, and misses the
+same mistake one state further on (`if x = y`, `if f(x) = y`); asking what could have stood there doesn't. The
+table of bad snippets is in the tests.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Callable, Iterable
+from typing import Final
+
+from specs.codes import Code
+from specs.diagnostics import Diagnostic
+from specs.grammar import ACTION_WORDS, QUERY_WORDS, RESERVED, SECTIONS, STATEMENTS
+from specs.situation import Situation, Word, is_keyword, line_of, open_brackets
+from specs.syntax.nodes import Span
+
+_GEOMETRIES: Final = frozenset({"point", "box", "polygon", "circle"})
+_QUOTES: Final = "'`\u2018\u2019\u201c\u201d\u201e\u00ab\u00bb"
+_COMPARISONS: Final = frozenset({"==", "!=", "<", "<=", ">", ">=", "in", "not"})
+_SYMBOL: Final = re.compile(r"[\w\s\"()\[\]{},;:.=<>!&|+\-]")
+_CLOSE: Final = 0.7
+
+
+def misplaced_header(at: Situation) -> Diagnostic | None:
+    """`mission` anywhere but at the beginning."""
+    if at.found.text == "mission" and "mission" not in at.accepted and "NAME" not in at.sorts:
+        return at.mistake(
+            Code.REPEATED_HEADER, "'mission' stands once, before all declarations", "remove it here"
+        )
+    return None
+
+
+def unknown_character(at: Situation) -> Diagnostic | None:
+    """A character without a meaning."""
+    if at.found.text and not _SYMBOL.match(at.found.text):
+        quote = at.found.text in _QUOTES
+        hint = 'strings take straight double quotes: "handover"' if quote else "remove it"
+        return at.mistake(Code.UNKNOWN_CHARACTER, f"{at.found.shown} has no meaning here", hint)
+    return None
+
+
+def single_equals(at: Situation) -> Diagnostic | None:
+    """`if x = y`."""
+    if at.found.text == "=" and (at.in_expression or "==" in at.accepted):
+        hint = "write == to compare; an assignment is a statement of its own"
+        return at.mistake(Code.SINGLE_EQUALS, "'=' does not compare", hint)
+    return None
+
+
+def unclosed_section(at: Situation) -> Diagnostic | None:
+    """A section that begins within another, or within a behaviour."""
+    line_start = at.prepared.text.rfind("\n", 0, at.found.span.start) + 1
+    first = not at.prepared.text[line_start : at.found.span.start].strip()
+    if at.found.text not in SECTIONS or at.at_declaration or not first:
+        return None
+    waiting = open_brackets(at.prepared.text, at.found.span.start)
+    if not waiting:
+        return None
+    opening = waiting[-1]
+    message = f"'{at.prepared.text[opening]}' is not closed before {at.found.shown}"
+    hint = f"close it before line {line_of(at.prepared.text, at.found.span.start)}"
+    return Diagnostic(Code.UNCLOSED_BRACKET, Span(opening, opening + 1), message, hint)
+
+
+def misspelt_word(at: Situation) -> Diagnostic | None:
+    """`enviroment { ... }`: nearly one of the words that could have stood here."""
+    return _misspelt(at.found, at.accepted)
+
+
+def misspelt_word_before(at: Situation) -> Diagnostic | None:
+    """`raect { ... }`: a name could stand there, but what follows fits no name."""
+    if at.accepted == {"=", "("}:
+        return _misspelt(at.before, STATEMENTS)
+    if at.accepted == {")"} and at.found.text == "(":
+        return _misspelt(at.before, QUERY_WORDS)
+    if at.accepted == {"("}:
+        return _misspelt(at.before, ACTION_WORDS)
+    if at.accepted == {":"}:
+        return _misspelt(at.before, {"channel", "from"})
+    if "drifts" in at.accepted:
+        return _misspelt(at.before, {"someone", "says"})
+    return None
+
+
+def misplaced_statement(at: Situation) -> Diagnostic | None:
+    """A statement in the middle of nowhere, or of another section."""
+    control = at.found.text == "(" and at.before.text == "control" and at.accepted == frozenset()
+    section = at.at_declaration or bool(at.accepted & {"channel", "says", "invariant", "kind"})
+    statement = at.found.text in STATEMENTS and section and not at.in_expression
+    if not (control or statement):
+        return None
+    word = at.before if control else at.found
+    hint = "write it into BigActor ... with_behavior { ... } or def name() = { ... }"
+    return Diagnostic(Code.MISPLACED_STATEMENT, word.span, f"{word.shown} stands outside a behaviour", hint)
+
+
+def missing_destination(at: Situation) -> Diagnostic | None:
+    """`control(MOVE uav0)`."""
+    for word in ("TO", "IN"):
+        if word in at.accepted:
+            message = f"expected '{word}' and a {'place' if word == 'IN' else 'destination'}, found {at.found.shown}"
+            hint = "control actions are MOVE u TO place, HAND u TO station, PUT x IN place"
+            return at.mistake(Code.MISSING_DESTINATION, message, hint)
+    if at.before.text in ACTION_WORDS and at.at_expression and at.found.text == ")":
+        return at.mistake(Code.MISSING_DESTINATION, f"'{at.before.text}' needs a name behind it", "say which")
+    return None
+
+
+def missing_arrow(at: Situation) -> Diagnostic | None:
+    """`case obs: Observation display(obs)`."""
+    if "=>" in at.accepted:
+        return at.mistake(
+            Code.MISSING_ARROW, f"expected '=>' before {at.found.shown}", "write case pattern => statements"
+        )
+    return None
+
+
+def chained_comparison(at: Situation) -> Diagnostic | None:
+    """`a < b < c`."""
+    if at.found.text in _COMPARISONS and at.in_expression:
+        return at.mistake(
+            Code.CHAINED_COMPARISON, "comparisons do not chain", "join two comparisons with and"
+        )
+    return None
+
+
+def missing_unit(at: Situation) -> Diagnostic | None:
+    """`radius 400`."""
+    if {"m", "km"} <= at.accepted:
+        return at.mistake(
+            Code.MISSING_UNIT, f"expected 'm' or 'km', found {at.found.shown}", "write 400 m or 1.5 km"
+        )
+    return None
+
+
+def reserved_word(at: Situation) -> Diagnostic | None:
+    """`let if = 3`."""
+    if (
+        at.found.text in RESERVED
+        and at.sorts & {"NAME", "CHANNEL"}
+        and not at.at_statement
+        and not at.at_expression
+    ):
+        message = f"{at.found.shown} is a word of the language and cannot be a name"
+        return at.mistake(Code.RESERVED_WORD, message, "choose another name")
+    return None
+
+
+def missing_host(at: Situation) -> Diagnostic | None:
+    """`BigActor a { ... }`."""
+    if at.accepted == {"hosted_at"}:
+        message = f"expected 'hosted_at' and a host, found {at.found.shown}"
+        return at.mistake(
+            Code.MISSING_HOST, message, "write BigActor name hosted_at host with_behavior { ... }"
+        )
+    return None
+
+
+def missing_comma(at: Situation) -> Diagnostic | None:
+    """`visit(a b)` or `(37.0 -8.5)`."""
+    starts = at.found.is_name or at.found.is_number or at.found.text[:1] in {'"', "(", "-"}
+    if "," in at.accepted and starts and ("]" in at.accepted or ")" in at.accepted or at.accepted == {","}):
+        return at.mistake(
+            Code.MISSING_COMMA, f"expected ',' before {at.found.shown}", "separate items by commas"
+        )
+    return None
+
+
+def missing_brace(at: Situation) -> Diagnostic | None:
+    """`loop observe(HOST)`."""
+    opens = "{" in at.accepted and not at.at_expression
+    if opens or ("RULE_BODY" in at.sorts and at.before.text != "("):
+        return at.mistake(
+            Code.MISSING_BRACE, f"expected '{{' before {at.found.shown}", "open the block with {"
+        )
+    return None
+
+
+def missing_equals(at: Situation) -> Diagnostic | None:
+    """`def visit(place) { ... }`, or `uav0: UAV point (37.0, -8.5)`."""
+    if at.accepted == {"="} or ("=" in at.accepted and at.found.text in _GEOMETRIES):
+        return at.mistake(Code.MISSING_EQUALS, f"expected '=' before {at.found.shown}", "put = before it")
+    return None
+
+
+def missing_kind(at: Situation) -> Diagnostic | None:
+    """`uav0 = point (37.0, -8.5)`."""
+    if at.accepted == {":"} and at.before.text in _GEOMETRIES:
+        message = f"expected '=' before {at.before.shown}"
+        return Diagnostic(Code.MISSING_EQUALS, at.before.span, message, "write name: Kind = where it is")
+    if at.accepted == {":"} and at.before.is_name:
+        message = f"expected ':' and a kind behind {at.before.shown}, found {at.found.shown}"
+        return at.mistake(Code.MISSING_KIND, message, "write name: Kind")
+    return None
+
+
+def bad_number(at: Situation) -> Diagnostic | None:
+    """`point (NaN, 3)`, `37.`, `.5`."""
+    if at.found.text == "." and (at.before.is_number or "NUMBER" in at.sorts):
+        return at.mistake(
+            Code.BAD_NUMBER, "a number has digits on both sides of its '.'", "write 37.0 or 0.5"
+        )
+    if "NUMBER" in at.sorts and at.found.is_name and not at.at_expression:
+        return at.mistake(
+            Code.BAD_NUMBER, f"expected a number, found {at.found.shown}", "write one such as 37.04"
+        )
+    return None
+
+
+def bad_coordinate(at: Situation) -> Diagnostic | None:
+    """`point 37.0, -8.5`, or `point (37.0)`."""
+    opening = at.accepted == {"("} and (at.before.text in _GEOMETRIES or at.before.text == ")")
+    if opening or (at.accepted == {","} and at.found.text == ")"):
+        message = (
+            f"expected a coordinate, found {at.found.shown}" if opening else "a coordinate has two numbers"
+        )
+        return at.mistake(Code.BAD_COORDINATE, message, "write (latitude, longitude) in degrees")
+    return None
+
+
+def loose_number(at: Situation) -> Diagnostic | None:
+    """A line number that does not count on from the line before."""
+    if at.at_statement and at.found.is_number:
+        hint = "printed line numbers must count on from the line of BigActor"
+        return at.mistake(Code.UNEXPECTED, f"expected a statement, found {at.found.shown}", hint)
+    return None
+
+
+MISTAKES: Final[tuple[Callable[[Situation], Diagnostic | None], ...]] = (
+    unknown_character,
+    unclosed_section,
+    misplaced_header,
+    single_equals,
+    bad_number,
+    misspelt_word,
+    misspelt_word_before,
+    misplaced_statement,
+    missing_destination,
+    missing_arrow,
+    chained_comparison,
+    missing_unit,
+    missing_host,
+    bad_coordinate,
+    missing_comma,
+    missing_brace,
+    missing_equals,
+    missing_kind,
+    reserved_word,
+    loose_number,
+)
+
+
+def _misspelt(word: Word, candidates: Iterable[str]) -> Diagnostic | None:
+    if not word.is_name or is_keyword(word):
+        return None
+    possible = sorted(
+        candidate for candidate in candidates if len(candidate) > 1 and candidate.isidentifier()
+    )
+    nearest = difflib.get_close_matches(word.text[:40], possible, n=1, cutoff=_CLOSE)
+    if not nearest:
+        nearest = [candidate for candidate in possible if candidate.lower() == word.text.lower()][:1]
+    if not nearest:
+        return None
+    message = f"{word.shown} is not a word of the language here"
+    return Diagnostic(Code.MISSPELT_KEYWORD, word.span, message, f"did you mean '{nearest[0]}'?")

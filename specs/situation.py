@@ -1,0 +1,126 @@
+"""Where a parse stopped: the word found there, the word before it, and what could have stood there."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Final
+
+from specs.codes import Code
+from specs.diagnostics import Diagnostic
+from specs.grammar import keywords, spellings
+from specs.syntax.nodes import Span
+from specs.text import Prepared
+
+_WORD: Final = re.compile(r'"(?:[^"\\\n]|\\.)*+"|\w+|<->|=>|==|!=|<=|>=|->|\|\||&&|\S')
+_NAME: Final = re.compile(r"[^\W\d_]\w*")
+_SEEN: Final = 200  # characters looked back for the previous word
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """A word or symbol of the text, or its end (an empty `text`)."""
+
+    text: str
+    span: Span
+
+    @property
+    def is_name(self) -> bool:
+        """Whether it could be a name, but for being reserved."""
+        return bool(_NAME.fullmatch(self.text))
+
+    @property
+    def is_number(self) -> bool:
+        """Whether it is a number."""
+        return self.text[:1].isdecimal()
+
+    @property
+    def shown(self) -> str:
+        """The word as messages show it."""
+        if not self.text:
+            return "the end of the file"
+        if self.text.startswith('"') and len(self.text) > 1:
+            return "a string"
+        return f"'{self.text if len(self.text) <= 40 else self.text[:37] + '...'}'"
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """`accepted` are the words and symbols that could stand there, `sorts` the grammar's names of all that could."""
+
+    found: Word
+    before: Word
+    accepted: frozenset[str]
+    sorts: frozenset[str]
+    prepared: Prepared
+
+    @property
+    def in_expression(self) -> bool:
+        """Whether what is before is an expression that could go on."""
+        return bool(self.accepted & {"of", "&&"})
+
+    @property
+    def at_expression(self) -> bool:
+        """Whether an expression could begin here."""
+        return "SELF" in self.accepted
+
+    @property
+    def at_statement(self) -> bool:
+        """Whether a statement could begin here."""
+        return "observe" in self.accepted
+
+    @property
+    def at_declaration(self) -> bool:
+        """Whether a declaration could begin here."""
+        return "signature" in self.accepted
+
+    def mistake(self, code: Code, message: str, hint: str = "") -> Diagnostic:
+        """Return a diagnostic at the word that was found."""
+        return Diagnostic(code, self.found.span, message, hint)
+
+
+def situation(prepared: Prepared, offset: int, sorts: frozenset[str]) -> Situation:
+    """Describe a parse that stopped at `offset`, or at the end, where `sorts` were accepted."""
+    spelt = frozenset(word for sort in sorts if (word := spellings().get(sort)))
+    return Situation(
+        word_at(prepared.text, offset), word_before(prepared.text, offset), spelt, sorts, prepared
+    )
+
+
+def word_at(text: str, offset: int) -> Word:
+    """Return the word that begins at `offset`, or the end just behind the last word."""
+    found = _WORD.search(text, offset)
+    if found is None:
+        end = len(text.rstrip())
+        return Word("", Span(end, end))
+    return Word(found.group(), Span(found.start(), found.end()))
+
+
+def word_before(text: str, offset: int) -> Word:
+    """Return the last word that ends at or before `offset`, looked for a little way back."""
+    start = max(0, offset - _SEEN, text.rfind("\n", 0, text.rfind("\n", 0, max(0, offset - 1))) + 1)
+    last = Word("", Span(offset, offset))
+    for found in _WORD.finditer(text, start, offset):
+        last = Word(found.group(), Span(found.start(), found.end()))
+    return last
+
+
+def open_brackets(text: str, offset: int) -> list[int]:
+    """Return the offsets of the brackets that are open at `offset`, outermost first."""
+    waiting = []
+    for found in _WORD.finditer(text, 0, offset):
+        if found.group() in "([{":
+            waiting.append(found.start())
+        elif found.group() in ")]}" and waiting:
+            waiting.pop()
+    return waiting
+
+
+def line_of(text: str, offset: int) -> int:
+    """Return the number of the line that holds `offset`, counted from 1."""
+    return text.count("\n", 0, offset) + 1
+
+
+def is_keyword(word: Word) -> bool:
+    """Whether a word is one of the language's own."""
+    return word.text in keywords()

@@ -1,0 +1,338 @@
+"""The text of what fits on one line: expressions, queries, patterns, control actions, formulas, placements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import singledispatch
+from typing import Final
+
+from specs import syntax as s
+
+_ESCAPES: Final = str.maketrans({'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t"})
+
+# How tightly an operator binds, and how tightly what stands on its two sides must; 8 binds tightest.
+_BINARY: Final = {"or": (1, 1, 2), "and": (2, 2, 3), "+": (5, 5, 6), "-": (5, 5, 6)}
+_COMPARISON: Final = (4, 5, 5)
+_CONNECTIVE: Final = {"<->": (1, 1, 2), "->": (2, 3, 2), "or": (3, 3, 4), "and": (4, 4, 5)}
+_ATOM: Final = 8
+
+
+@singledispatch
+def write(node: s.Node) -> str:
+    """Return the canonical text of a node that fits on one line."""
+    raise TypeError(f"{type(node).__name__} does not fit on one line")
+
+
+def inner(node: s.Node, least: int) -> str:
+    """Return the text of an operand, in parentheses where it binds less tightly than `least`."""
+    return write(node) if binding(node) >= least else f"({write(node)})"
+
+
+def listed(nodes: Iterable[s.Node]) -> str:
+    """Return the texts with commas between."""
+    return ", ".join(write(node) for node in nodes)
+
+
+def binding(node: s.Node) -> int:
+    """Return how tightly the outermost operator of an expression or a formula binds."""
+    match node:
+        case s.BinaryOperation():
+            return _BINARY.get(node.operator, _COMPARISON)[0]
+        case s.UnaryOperation():
+            return 3 if node.operator == "not" else 7
+        case s.OfKind():
+            return 6
+        case s.Connective():
+            return _CONNECTIVE[node.operator][0]
+        case s.Negation():
+            return 8 if isinstance(node.operand, s.SameName | s.Stored) else 5
+        case s.Quantified():
+            return 0
+    return _ATOM
+
+
+# --- expressions and queries
+
+
+@write.register
+def _(node: s.Name) -> str:
+    return node.text
+
+
+@write.register
+def _(node: s.TextLiteral) -> str:
+    return f'"{node.value.translate(_ESCAPES)}"'
+
+
+@write.register
+def _(node: s.IntegerLiteral) -> str:
+    return str(node.value)
+
+
+@write.register
+def _(node: s.TruthLiteral) -> str:
+    return "true" if node.value else "false"
+
+
+@write.register
+def _(_node: s.HostReference) -> str:
+    return "HOST"
+
+
+@write.register
+def _(_node: s.SelfReference) -> str:
+    return "SELF"
+
+
+@write.register
+def _(node: s.TupleLiteral) -> str:
+    return f"({listed(node.items)})"
+
+
+@write.register
+def _(node: s.SetLiteral) -> str:
+    return f"{{{listed(node.items)}}}"
+
+
+@write.register
+def _(node: s.UnaryOperation) -> str:
+    if node.operator == "not":
+        return f"not {inner(node.operand, 3)}"
+    return f"-{inner(node.operand, 7)}"
+
+
+@write.register
+def _(node: s.BinaryOperation) -> str:
+    _, left, right = _BINARY.get(node.operator, _COMPARISON)
+    return f"{inner(node.left, left)} {node.operator} {inner(node.right, right)}"
+
+
+@write.register
+def _(node: s.OfKind) -> str:
+    return f"{inner(node.operand, 6)} of {write(node.kind)}"
+
+
+@write.register
+def _(node: s.FunctionCall) -> str:
+    return f"{write(node.function)}({listed(node.arguments)})"
+
+
+@write.register
+def _(_node: s.AllNodes) -> str:
+    return "ALL"
+
+
+@write.register
+def _(node: s.QueryApplication) -> str:
+    if isinstance(node.argument, s.HostReference) and node.argument.span == node.span:
+        return f"{node.relation}_HOST"
+    return f"{node.relation}({write(node.argument)})"
+
+
+# --- control actions
+
+
+@write.register
+def _(node: s.MoveHost) -> str:
+    return f"MOVE_HOST_TO {write(node.destination)}"
+
+
+@write.register
+def _(node: s.Move) -> str:
+    return f"MOVE {write(node.entity)} TO {write(node.destination)}"
+
+
+@write.register
+def _(node: s.Connect) -> str:
+    return f"CONNECT_HOST_TO {write(node.node)}"
+
+
+@write.register
+def _(node: s.Disconnect) -> str:
+    return f"DISCONNECT_HOST_FROM {write(node.node)}"
+
+
+@write.register
+def _(node: s.HandOver) -> str:
+    return f"HAND {write(node.entity)} TO {write(node.station)}"
+
+
+@write.register
+def _(node: s.Put) -> str:
+    return f"PUT {write(node.entity)} IN {write(node.place)}"
+
+
+@write.register
+def _(node: s.ApplyRule) -> str:
+    return f"{write(node.rule)}({listed(node.arguments)})"
+
+
+@write.register
+def _(node: s.RuleBody) -> str:
+    return f"{{ {node.text} }}"
+
+
+# --- patterns
+
+
+@write.register
+def _(node: s.ObservationPattern) -> str:
+    return f"{write(node.variable) if node.variable else '_'}: Observation"
+
+
+@write.register
+def _(node: s.MessagePattern) -> str:
+    return f"{write(node.variable) if node.variable else '_'}: Message"
+
+
+@write.register
+def _(node: s.VariablePattern) -> str:
+    return write(node.variable)
+
+
+@write.register
+def _(_node: s.Wildcard) -> str:
+    return "_"
+
+
+@write.register
+def _(node: s.LiteralPattern) -> str:
+    return write(node.value)
+
+
+@write.register
+def _(node: s.ConstantPattern) -> str:
+    return f"={write(node.name)}"
+
+
+@write.register
+def _(node: s.TuplePattern) -> str:
+    return f"({listed(node.items)})"
+
+
+# --- formulas
+
+
+@write.register
+def _(node: s.Negation) -> str:
+    claim = node.operand
+    if isinstance(claim, s.SameName):
+        return f"{write(claim.left)} != {write(claim.right)}"
+    if isinstance(claim, s.Stored):
+        return f"{write(claim.agent)}.{write(claim.variable)} != {inner(claim.value, _ATOM)}"
+    return f"not {inner(claim, 5)}"
+
+
+@write.register
+def _(node: s.Connective) -> str:
+    _, left, right = _CONNECTIVE[node.operator]
+    return f"{inner(node.left, left)} {node.operator} {inner(node.right, right)}"
+
+
+@write.register
+def _(node: s.Quantified) -> str:
+    return f"{node.quantifier} {write(node.variable)}: {write(node.kind)} . {write(node.body)}"
+
+
+@write.register
+def _(node: s.Inside) -> str:
+    relation = "directly in" if node.directly else "in"
+    return f"{_whose(node.actually)}{write(node.entity)} {relation} {write(node.place)}"
+
+
+@write.register
+def _(node: s.LinkedTo) -> str:
+    return f"{_whose(node.actually)}{write(node.entity)} linked {write(node.other)}"
+
+
+def _whose(actually: bool) -> str:
+    return "actually " if actually else ""
+
+
+@write.register
+def _(node: s.Present) -> str:
+    return f"present {write(node.entity)}"
+
+
+@write.register
+def _(node: s.Known) -> str:
+    return f"known {write(node.entity)}"
+
+
+@write.register
+def _(node: s.Pending) -> str:
+    return f"pending {node.request} {write(node.agent)}" if node.request else f"pending {write(node.agent)}"
+
+
+@write.register
+def _(node: s.Ended) -> str:
+    return f"ended {write(node.agent)}"
+
+
+@write.register
+def _(node: s.Waiting) -> str:
+    return f"waiting {write(node.agent)}"
+
+
+@write.register
+def _(node: s.HostedAt) -> str:
+    return f"{write(node.agent)} hosted_at {write(node.host)}"
+
+
+@write.register
+def _(node: s.SameName) -> str:
+    return f"{write(node.left)} == {write(node.right)}"
+
+
+@write.register
+def _(node: s.Stored) -> str:
+    return f"{write(node.agent)}.{write(node.variable)} == {inner(node.value, _ATOM)}"
+
+
+# --- placements
+
+
+@write.register
+def _(node: s.Placement) -> str:
+    return " ".join(placed(node))
+
+
+@write.register
+def _(node: s.Coordinate) -> str:
+    return f"({decimal(node.latitude)}, {decimal(node.longitude)})"
+
+
+@write.register
+def _(node: s.Length) -> str:
+    return f"{decimal(node.value)} {node.unit}"
+
+
+def decimal(value: float) -> str:
+    """Return the shortest text that reads as the same number, without a fraction where there is none.
+
+    >>> decimal(400.0), decimal(37.1), decimal(1e-07)
+    ('400', '37.1', '1e-07')
+    """
+    return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+
+
+def placed(placement: s.Placement) -> list[str]:
+    """Return the text of a placement in pieces between which a line may be broken."""
+    pieces = shape(placement.geometry)
+    if placement.altitude:
+        low, high = placement.altitude.lowest, placement.altitude.highest
+        pieces.append(f"altitude {write(low)}" if low == high else f"altitude {write(low)} to {write(high)}")
+    return pieces
+
+
+def shape(geometry: s.Geometry) -> list[str]:
+    """Return the text of a geometry in pieces between which a line may be broken."""
+    match geometry:
+        case s.Point(position):
+            return [f"point {write(position)}"]
+        case s.Box(first, second):
+            return [f"box {write(first)}", write(second)]
+        case s.Circle(centre, radius):
+            return [f"circle {write(centre)}", f"radius {write(radius)}"]
+        case s.Polygon(corners):
+            return ["polygon", *(write(corner) for corner in corners)]

@@ -1,0 +1,185 @@
+import pytest
+from bigraph_strategies import PLAIN, SIGNATURE, grounds, redexes, shuffled
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from naive_matching import naive_matches
+
+from bigraphs.algebra import atom, close, ion, merge, nest, placing, substitution
+from bigraphs.bigraph import find
+from bigraphs.decomposition import recompose, take_apart
+from bigraphs.errors import BigraphError
+from bigraphs.matching import find_matches
+from bigraphs.relations import from_relations
+
+SLOT, ONE = merge(1), merge(0)
+
+
+def node(control, *links, inside=SLOT, name=None):
+    return nest(ion(SIGNATURE, control, links, name), inside)
+
+
+def count(redex, target, **options):
+    return len(list(find_matches(redex, target, **options)))
+
+
+@st.composite
+def redex_and_target(draw, *, sharing=False, size=5, redex_size=3):
+    """Draw a redex and a target that holds it, often."""
+    redex = draw(redexes(max_nodes=redex_size, sharing=sharing))
+    if draw(st.booleans()):
+        return redex, draw(grounds(max_nodes=size, sharing=sharing, named=True, controls=(*PLAIN, "P")))
+    parts = [draw(grounds(max_nodes=2, names=("x",), controls=PLAIN)) for _ in redex.sites]
+    filling = ONE if not parts else parts[0]
+    for part in parts[1:]:
+        filling = filling // part
+    flat = [draw(grounds(max_nodes=1, names=("x",), controls=("A", "P")))]
+    width = filling.regions if parts else 0
+    tops = [{draw(st.integers(0, max(0, len(redex.sites) - 1)))} for _ in range(width)]
+    inner = (placing(tops, len(redex.sites)) // substitution("x", ["x"])) if parts else None
+    whole = redex if inner is None else (redex // substitution("x", ["x"])) @ inner @ (filling // substitution("x", []))
+    found = whole | flat[0]
+    closing = [name for name in found.outer_names if draw(st.booleans())]
+    return redex, named(close(found, *closing)) if len(found.nodes) <= size else (named(flat[0]))
+
+
+def named(bigraph):
+    from dataclasses import replace
+
+    return replace(
+        bigraph, nodes=tuple(replace(node, name=f"n{number}") for number, node in enumerate(bigraph.nodes))
+    )
+
+
+@settings(max_examples=150)
+@given(redex_and_target())
+def test_matches_are_those_of_the_naive_enumerator(pair):
+    redex, target = pair
+    found = list(find_matches(redex, target))
+    assert len(found) == len(set(found))
+    assert set(found) == naive_matches(redex, target)
+
+
+@given(redex_and_target(sharing=True, size=4, redex_size=2))
+def test_matches_in_shared_places_are_those_of_the_naive_enumerator(pair):
+    redex, target = pair
+    found = list(find_matches(redex, target))
+    assert len(found) == len(set(found))
+    assert set(found) == naive_matches(redex, target, sharing=True)
+
+
+@settings(max_examples=150)
+@given(redex_and_target(size=8, sharing=True))
+def test_context_redex_and_parameter_make_the_target_again(pair):
+    redex, target = pair
+    for match in find_matches(redex, target):
+        assert recompose(take_apart(match)) == target
+
+
+@given(redex_and_target(size=6).flatmap(lambda pair: st.tuples(st.just(pair), shuffled(pair[0]))))
+def test_the_number_of_matches_does_not_depend_on_the_order_of_nodes(given_):
+    (redex, target), other = given_
+    assert count(redex, target) == count(other, target)
+
+
+def test_a_node_without_a_site_has_no_further_child():
+    target = node("A", inside=node("A", inside=ONE))
+    assert count(node("A", inside=ONE), target) == 1
+    assert count(node("A"), target) == 2
+
+
+def test_a_closed_link_matches_an_edge_all_of_whose_points_are_matched():
+    pair = close(atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["x"]), "x")
+    three = close(atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["x"]), "x")
+    assert count(pair, pair) == 2
+    assert count(pair, three) == 0
+    assert count(pair, atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["x"])) == 0
+
+
+def test_open_links_match_any_link_and_may_share_it():
+    redex = atom(SIGNATURE, "B", ["r"]) | atom(SIGNATURE, "B", ["s"])
+    assert count(redex, atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["y"])) == 2
+    assert count(redex, close(atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["x"]), "x")) == 2
+
+
+def test_a_link_constant_matches_its_namesake_only():
+    target = atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["y"])
+    assert count(atom(SIGNATURE, "B", ["x"]), target) == 2
+    assert count(atom(SIGNATURE, "B", ["x"]), target, link_constants=frozenset("x")) == 1
+
+
+def test_an_idle_name_stands_for_any_link():
+    redex = atom(SIGNATURE, "A") // substitution("r", [])
+    assert count(redex, atom(SIGNATURE, "A") | atom(SIGNATURE, "B", ["x"])) == 1
+    assert count(redex, close(atom(SIGNATURE, "A") | atom(SIGNATURE, "C", ["x", "y"]), "x")) == 2
+
+
+def test_an_idle_edge_matches_idle_edges_only():
+    redex = close(atom(SIGNATURE, "A") // substitution("r", []), "r")
+    assert count(redex, atom(SIGNATURE, "A") | close(atom(SIGNATURE, "B", ["x"]), "x")) == 0
+    assert count(redex, redex) == 1
+
+
+def test_the_regions_of_a_wide_redex_may_lie_anywhere_but_inside_each_other():
+    redex = node("A") // atom(SIGNATURE, "B", ["r"])
+    b = atom(SIGNATURE, "B", ["x"])
+    assert count(redex, node("A", inside=ONE) | b) == 1
+    assert count(redex, node("A", inside=ONE) // node("A", inside=b)) == 1
+    assert count(redex, node("A", inside=b)) == 0
+
+
+def test_nothing_matches_inside_a_passive_control():
+    inside = node("P", inside=node("A", inside=ONE))
+    assert count(node("A"), inside) == 0
+    assert count(node("P", inside=node("A")), inside) == 1
+    assert count(node("A"), node("A", inside=inside)) == 1
+
+
+def test_two_sites_side_by_side_are_filled_in_every_way():
+    redex = nest(ion(SIGNATURE, "A"), placing([{0}, {0}], 1))
+    target = node("A", inside=atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["x"]))
+    assert count(redex, target) == 4
+
+
+def test_a_site_in_a_region_holds_any_of_the_neighbours():
+    target = atom(SIGNATURE, "A") | atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["x"])
+    assert count(atom(SIGNATURE, "A") | SLOT, target) == 4
+
+
+def test_unordered_ports_match_in_any_order():
+    target = close(atom(SIGNATURE, "U", ["x", "y"]), "x")
+    assert count(atom(SIGNATURE, "U", ["r", "s"]), target) == 2
+    assert count(close(atom(SIGNATURE, "U", ["r", "s"]), "s"), target) == 1
+    assert count(atom(SIGNATURE, "U", ["r", "r"]), target) == 0
+
+
+def test_a_named_node_matches_its_namesake_and_a_variable_any():
+    target = from_relations({"a": "K", "b": "K"}, {}, {})
+    redex = from_relations({"a": "K"}, {}, {})
+    assert [match.nodes for match in find_matches(redex, target)] == [(find(target, "a"),)]
+    assert count(redex, target, node_variables=frozenset("a")) == 2
+
+
+def test_a_shared_node_matches_only_with_all_its_parents_or_a_region():
+    both = node("A", name="p") * node("A", name="q")
+    target = both @ placing([{0, 1}], 2) @ atom(SIGNATURE, "B", ["x"], name="s") if False else None
+    target = (both // substitution("x", ["x"])) @ (placing([{0, 1}], 2) // substitution("x", ["x"])) @ atom(
+        SIGNATURE, "B", ["x"], name="s"
+    )
+    assert count(node("A", inside=atom(SIGNATURE, "B", ["r"])), target) == 0
+    assert count(atom(SIGNATURE, "B", ["r"]), target) == 1
+    shared = (node("A") * node("A")) @ placing([{0, 1}], 2)
+    assert count(shared, target) == 2
+
+
+@pytest.mark.parametrize(
+    ("redex", "target", "message"),
+    [
+        (merge(1), ONE, "region 0 of the redex has no node, so it would match anywhere"),
+        (atom(SIGNATURE, "A"), merge(1), "rules apply to ground bigraphs, this one has <1, {}>"),
+        (atom(SIGNATURE, "A") // substitution("x", ["x"]), ONE, "a redex with inner names cannot be matched"),
+    ],
+)
+def test_what_cannot_be_matched_is_refused(redex, target, message):
+    with pytest.raises(BigraphError) as found:
+        count(redex, target)
+    assert found.value.message == message

@@ -1,0 +1,136 @@
+"""The index of places, and whether places nest."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from physical import (
+    Band,
+    Conflict,
+    Place,
+    PlaceIndex,
+    area,
+    box,
+    check_places,
+    circle,
+    contains,
+    overlaps,
+    point,
+)
+
+OCEAN = box((38, -10), (36, -7))
+SEARCH = box((37.04, -8.59), (36.94, -8.79))
+SPILL = circle((37.0, -8.7), 1000)
+
+
+def wrapped(longitude):
+    return (longitude + 180) % 360 - 180
+
+
+corners = st.tuples(st.integers(-8, 8), st.integers(-8, 8))
+
+
+@st.composite
+def boxes(draw, at):
+    """A box on a coarse grid, so that borders meet often."""
+    lat, lon = draw(corners)
+    high, wide = draw(st.integers(1, 8)), draw(st.integers(1, 8))
+    return box((lat, wrapped(at + lon)), (lat + high, wrapped(at + lon + wide)))
+
+
+@st.composite
+def worlds(draw):
+    """Boxes and a query, at the Gulf of Guinea or at the antimeridian."""
+    at = draw(st.sampled_from([0, 180]))
+    shapes = draw(st.lists(boxes(at), max_size=12))
+    query = draw(boxes(at) | st.builds(lambda c: point(c[0], wrapped(at + c[1])), corners))
+    return {f"p{i}": shape for i, shape in enumerate(shapes)}, query
+
+
+@settings(deadline=None)
+@given(worlds())
+def test_the_index_answers_like_brute_force(world):
+    places, query = world
+    index = PlaceIndex(places)
+    expected = sorted((area(shape), name) for name, shape in places.items() if contains(shape, query))
+    assert index.containers(query) == tuple(name for _, name in expected)
+    assert index.smallest(query) == (expected[0][1] if expected else None)
+    held = [name for _, name in expected]
+    assert index.minimal(query) == tuple(
+        sorted(n for n in held if not any(contains(places[n], places[m]) for m in held))
+    )
+
+
+@settings(deadline=None)
+@given(worlds())
+def test_every_two_places_that_do_not_nest_are_named(world):
+    places, _ = world
+    expected = {
+        (a, b)
+        for a, one in places.items()
+        for b, other in places.items()
+        if a < b and (one is other or overlaps(one, other))
+    }
+    assert {(found.first, found.second) for found in check_places(places)} == expected
+
+
+def test_the_parent_is_the_smallest_place_that_contains():
+    index = PlaceIndex({"ocean": OCEAN, "searchArea0": SEARCH, "oilSpill0": SPILL})
+    assert index.containers(point(37, -8.7)) == ("oilSpill0", "searchArea0", "ocean")
+    assert index.smallest(SPILL) == "searchArea0"
+    assert index.smallest(OCEAN) is None
+    assert index.smallest(point(0, 0)) is None
+
+
+def test_ties_of_area_go_by_name():
+    assert PlaceIndex({"b": SEARCH, "a": SEARCH}).smallest(SPILL) == "a"
+
+
+def test_with_sharing_every_minimal_container_is_a_parent():
+    index = PlaceIndex({"a": box((0, 0), (2, 2)), "b": box((1, 1), (3, 3)), "all": box((-1, -1), (9, 9))})
+    assert index.minimal(point(1.5, 1.5)) == ("a", "b")
+    assert index.minimal(point(0.5, 0.5)) == ("a",)
+    assert index.minimal(point(8, 8)) == ("all",)
+
+
+def test_altitude_counts_where_both_have_a_band():
+    index = PlaceIndex({"low": Place(SEARCH, Band(0, 50)), "high": Place(SEARCH, Band(50, 500))})
+    assert index.containers(SPILL, Band(10, 20)) == ("low",)
+    assert index.containers(SPILL, Band(60, 70)) == ("high",)
+    assert index.containers(SPILL) == ("high", "low")
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "reason"),
+    [
+        (SEARCH, SEARCH, "are the same place"),
+        (SEARCH, box((37.0, -8.6), (38.0, -8.5)), "partly overlap"),
+        (box((0, 0), (2, 2)), box((0, 0), (1, 1)), "share border: neither is inside the other"),
+        (Place(SEARCH, Band(0, 9)), Place(SEARCH, Band(0, 5)), "have one border and overlap in altitude"),
+        (
+            Place(SEARCH, Band(0, 9)),
+            Place(SPILL, Band(5, 20)),
+            "nest on the ground, but not in altitude",
+        ),
+    ],
+)
+def test_a_conflict_names_both_places_and_says_why(a, b, reason):
+    (found,) = check_places({"x": a, "w": b})
+    assert found == Conflict("w", "x", reason)
+    assert str(found) == f"w and x {reason}"
+    assert found.hint == "places must nest or be apart: change one of the two, or allow sharing"
+
+
+@pytest.mark.parametrize(
+    ("a", "b"),
+    [
+        (OCEAN, SEARCH),
+        (box((0, 0), (1, 1)), box((0, 1), (1, 2))),
+        (Place(SEARCH, Band(0, 50)), Place(SEARCH, Band(50, 500))),
+        (Place(OCEAN, Band(0, 50)), SEARCH),
+        (SEARCH, point(37, -8.7)),
+        (point(1, 1), point(1, 1)),
+    ],
+)
+def test_places_that_nest_or_are_apart_are_no_conflict(a, b):
+    assert check_places({"a": a, "b": b}) == ()

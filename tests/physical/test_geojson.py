@@ -1,0 +1,251 @@
+"""GeoJSON, read and written."""
+
+import json
+import math
+from contextlib import suppress
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from physical import (
+    Band,
+    GeoJSONError,
+    PhysicalProperty,
+    area,
+    box,
+    circle,
+    point,
+    polygon,
+    read_geojson,
+    write_geojson,
+)
+
+SQUARE = [[[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]]
+words = st.text(st.characters(categories=["L", "N"]), min_size=1, max_size=8)
+
+
+def wrapped(longitude):
+    return (longitude + 180) % 360 - 180
+
+
+@st.composite
+def shapes(draw):
+    """A point or a star, often at the antimeridian."""
+    lat = draw(st.floats(-80, 80))
+    lon = draw(st.sampled_from([180.0, -179.9, 179.5]) | st.floats(-180, 180))
+    n = draw(st.integers(0, 9))
+    if n < 3:
+        return point(lat, lon)
+    radii = draw(st.lists(st.floats(0.2, 1.0), min_size=n, max_size=n))
+    turns = [(i + 0.4) * 2 * math.pi / n for i in range(n)]
+    return polygon(
+        (lat + r * math.sin(a), wrapped(lon + r * math.cos(a))) for r, a in zip(radii, turns, strict=True)
+    )
+
+
+properties = st.builds(
+    PhysicalProperty,
+    entity=words,
+    kind=words,
+    geometry=shapes(),
+    altitude=st.none() | st.tuples(st.integers(0, 50), st.integers(50, 99)).map(lambda x: Band(*x)),
+    channels=st.lists(words, max_size=3).map(tuple),
+    carried_by=st.none() | words,
+)
+
+
+def collection(*features):
+    return json.dumps({"type": "FeatureCollection", "features": list(features)})
+
+
+def feature(geometry="Polygon", coordinates=SQUARE, /, **members):
+    members = {"name": "a", "kind": "K"} | members
+    kept = {key: value for key, value in members.items() if value is not None}
+    return {"type": "Feature", "geometry": {"type": geometry, "coordinates": coordinates}, "properties": kept}
+
+
+@settings(deadline=None)
+@given(st.lists(properties, max_size=6, unique_by=lambda item: item.entity))
+def test_what_is_written_is_read_back(items):
+    text = write_geojson(items)
+    assert read_geojson(text) == tuple(sorted(items, key=lambda item: item.entity))
+    assert read_geojson(text.encode()) == read_geojson(text)
+
+
+def test_names_kinds_and_the_rest_are_in_the_properties():
+    text = write_geojson([PhysicalProperty("uav0", "UAV", point(1, 2), Band(0, 9), ("wifi",), "vessel0")])
+    assert json.loads(text)["features"] == [
+        {
+            "type": "Feature",
+            "properties": {
+                "name": "uav0",
+                "kind": "UAV",
+                "altitude": [0.0, 9.0],
+                "channels": ["wifi"],
+                "carried_by": "vessel0",
+            },
+            "geometry": {"type": "Point", "coordinates": [2.0, 1.0]},
+        }
+    ]
+
+
+def test_rings_are_written_closed_and_counter_clockwise():
+    (written,) = json.loads(write_geojson([PhysicalProperty("a", "K", box((0, 0), (1, 2)))]))["features"]
+    assert written["geometry"] == {
+        "type": "Polygon",
+        "coordinates": [[[0, 0], [2, 0], [2, 1], [0, 1], [0, 0]]],
+    }
+
+
+def test_what_crosses_the_antimeridian_is_written_cut():
+    fiji = PhysicalProperty("fiji", "Place", box((-10, 177), (-20, -178)))
+    (written,) = json.loads(write_geojson([fiji]))["features"]
+    assert written["geometry"]["type"] == "MultiPolygon"
+    easts = [sorted({lon for lon, _ in ring}) for (ring,) in written["geometry"]["coordinates"]]
+    assert easts == [[177, 180], [-180, -178]]
+    assert read_geojson(write_geojson([fiji])) == (fiji,)
+
+
+def test_what_only_touches_the_antimeridian_is_written_whole_on_its_side():
+    east = PhysicalProperty("east", "Place", box((0, 170), (1, 180)))
+    west = PhysicalProperty("west", "Place", box((0, -180), (1, -170)))
+    features = json.loads(write_geojson([east, west]))["features"]
+    easts = [sorted({lon for lon, _ in item["geometry"]["coordinates"][0]}) for item in features]
+    assert easts == [[170, 180], [-180, -170]]
+    assert read_geojson(write_geojson([east, west])) == (east, west)
+
+
+def test_a_point_with_a_radius_is_a_circle():
+    (found,) = read_geojson(collection(feature("Point", [5.44, 52.97], radius_m=250)))
+    assert found.geometry is circle((52.97, 5.44), 250)
+    assert area(found.geometry) == pytest.approx(math.pi * 250**2, rel=0.01)
+
+
+def test_a_third_coordinate_and_foreign_members_are_left_alone():
+    item = feature("Point", [1, 2, 30], colour="red") | {"bbox": [0, 0, 1, 1], "id": 7}
+    assert read_geojson(collection(item)) == (PhysicalProperty("a", "K", point(2, 1)),)
+
+
+def problem(text):
+    with pytest.raises(GeoJSONError) as caught:
+        read_geojson(text)
+    return str(caught.value).splitlines()[0]
+
+
+@pytest.mark.parametrize(
+    ("item", "message"),
+    [
+        (3, "feature 0: this is no Feature"),
+        ({"type": "Feature"}, "feature 0: the feature has no properties"),
+        (feature(name=None), "feature 0: the feature has no name"),
+        (feature(kind=None), "feature 0 (a): the feature has no kind"),
+        (feature(name=3), "feature 0: the name 3 is no word"),
+        (feature(name=" "), "feature 0 ( ): the name ' ' is no word"),
+        (feature(kind="a\nb"), r"feature 0 (a): the kind 'a\nb' is no word"),
+        (feature(altitude=5), "feature 0 (a): the altitude 5 is no band"),
+        (feature(altitude=[1]), "feature 0 (a): the altitude [1] is no band"),
+        (feature(altitude=[2, 1]), "feature 0 (a): the band from 2.0 m to 1.0 m is upside down"),
+        (feature(altitude=["a", 1]), "feature 0 (a): the altitude 'a' is not a number"),
+        (feature(channels="wifi"), "feature 0 (a): the channels 'wifi' are no list"),
+        (feature(channels=[1]), "feature 0 (a): the channel 1 is no word"),
+        (feature(carried_by=[]), "feature 0 (a): the carried_by [] is no word"),
+        (feature(radius_m=4), "feature 0 (a): only a Point can have a radius_m"),
+        (feature("Point", [0, 0], radius_m="x"), "feature 0 (a): the radius 'x' is not a number"),
+        (feature("Point", [0, 0], radius_m=0), "feature 0 (a): the radius 0 m is under 0.5 m"),
+        (feature("Point", [0]), "feature 0 (a): [0] is no position"),
+        (feature("Point", [0, 91]), "feature 0 (a): the latitude 91 is not between -90 and 90"),
+        (feature("Point", ["x", 1]), "feature 0 (a): the longitude 'x' is not a number"),
+        (feature("Point", None), "feature 0 (a): None is no position"),
+        (feature("Polygon", 3), "feature 0 (a): 3 is no list of coordinates"),
+        (feature("Polygon", []), "feature 0 (a): None is no list of coordinates"),
+        (feature("Polygon", [[]]), "feature 0 (a): the polygon's ring is not closed"),
+        (feature("Polygon", [SQUARE[0][:4]]), "feature 0 (a): the polygon's ring is not closed"),
+        (feature("Polygon", SQUARE * 2), "feature 0 (a): the polygon has 1 hole(s)"),
+        (
+            feature("Polygon", [[[0, 0], [1, 1], [0, 1], [1, 0], [0, 0]]]),
+            "feature 0 (a): the polygon's border crosses or touches itself at (0.5000000, 0.5000000)",
+        ),
+        (
+            feature("MultiPolygon", [SQUARE, SQUARE]),
+            "feature 0 (a): a MultiPolygon of 2 parts that are not one polygon cut along the antimeridian",
+        ),
+        (feature("MultiPoint", [[0, 0]]), "feature 0 (a): a MultiPoint is neither a Point nor a Polygon"),
+        (
+            feature("LineString", [[0, 0], [1, 1]]),
+            "feature 0 (a): a LineString is neither a Point nor a Polygon",
+        ),
+        (
+            {"type": "Feature", "properties": {"name": "a", "kind": "K"}, "geometry": None},
+            "feature 0 (a): the feature has no geometry",
+        ),
+    ],
+)
+def test_a_bad_feature_is_refused_by_index_and_name(item, message):
+    assert problem(collection(item)) == message
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "{",
+            "the text is not JSON: Expecting property name enclosed in double quotes: line 1 column 2 (char 1)",
+        ),
+        ('{"a": NaN}', "the text is not JSON: NaN is no number"),
+        (b'{"a": "\xff"}', "the text is not UTF-8: byte 7 is not valid"),
+        ("[" * 100_000, "the text is nested too deeply"),
+        ("[]", "the text is no FeatureCollection"),
+        ('{"type": "Feature"}', "the text is no FeatureCollection"),
+        ('{"type": "FeatureCollection"}', "the collection has no list of features"),
+        (" " * 10_000_001, "the text is over 10,000,000 bytes"),
+        (collection(*[0] * 10_001), "the collection has over 10,000 features"),
+        (collection(feature("Polygon", [[[0, 0]] * 100_001])), "the collection has over 100,000 vertices"),
+        (
+            '{"type": "FeatureCollection", "crs": {"properties": {"name": "EPSG:28992"}}, "features": []}',
+            'the coordinates are not WGS 84 but {"properties": {"name": "EPSG:28992"}}',
+        ),
+    ],
+)
+def test_a_text_that_is_no_collection_is_refused(text, message):
+    assert problem(text) == message
+
+
+def test_all_problems_are_reported_at_once_and_carry_their_hints():
+    items = [feature(kind=None), feature(name="b"), feature(name="b"), feature("Point", [0, 99], name="c")]
+    with pytest.raises(GeoJSONError) as caught:
+        read_geojson(collection(*items))
+    assert [found.code for found in caught.value.problems] == ["kind", "latitude", "duplicate-name"]
+    assert str(caught.value) == (
+        "feature 0 (a): the feature has no kind\n"
+        'hint: write "kind" into its properties\n'
+        "feature 3 (c): the latitude 99 is not between -90 and 90\n"
+        "hint: positions are (latitude, longitude), in degrees, north and east positive\n"
+        "2 features have the name b\n"
+        "hint: names are unique"
+    )
+
+
+@settings(deadline=None)
+@given(
+    st.recursive(
+        st.none() | st.booleans() | st.floats() | st.text(max_size=3),
+        lambda x: (
+            st.lists(x, max_size=3)
+            | st.dictionaries(
+                st.sampled_from(["type", "features", "geometry", "coordinates", "properties", "name"]),
+                x,
+                max_size=4,
+            )
+        ),
+    )
+)
+def test_nothing_but_a_diagnostic_comes_out(value):
+    for text in (
+        json.dumps(value),
+        collection(value),
+        collection(feature("Polygon", value)),
+        collection(feature("MultiPolygon", value)),
+    ):
+        with suppress(GeoJSONError):
+            read_geojson(text)
