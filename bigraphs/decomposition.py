@@ -36,11 +36,11 @@ def take_apart(match: Match) -> Parts:
     inside = _inside(match)
     wires = _wires(match, inside)
     outside = [number for number in range(len(match.target.nodes)) if number not in {*inside, *match.nodes}]
-    spares = [number for number in inside if not set(outside).isdisjoint(_above(match, number))]
+    spares = {number: places for number in inside if (places := _spare_places(match, inside, number))}
     return Parts(
-        _context(match, outside, spares, wires),
+        _context(match, outside, list(spares.values()), wires),
         _instance(match),
-        _parameter(match, inside, spares, wires),
+        _parameter(match, inside, list(spares), wires),
         len(spares),
         tuple(sorted(wires.values())),
     )
@@ -63,8 +63,14 @@ def _inside(match: Match) -> list[int]:
     return sorted(found)
 
 
-def _above(match: Match, number: int) -> tuple[Place, ...]:
-    return match.target.nodes[number].parents
+def _spare_places(match: Match, inside: Sequence[int], number: int) -> list[Place]:
+    """Return the places of a node that are in the context, and that no site of the redex accounts for."""
+    accounted = {*inside, *match.nodes}
+    for site, tops in enumerate(match.sites):
+        if number in tops:
+            regions = (match.regions[~parent] for parent in match.redex.sites[site] if parent < 0)
+            accounted.update(place for places in regions for place in places)
+    return [place for place in match.target.nodes[number].parents if place not in accounted]
 
 
 def _wires(match: Match, inside: Sequence[int]) -> dict[Link, str]:
@@ -92,7 +98,7 @@ def _instance(match: Match) -> Bigraph:
 
 
 def _context(
-    match: Match, outside: Sequence[int], spares: Sequence[int], wires: Mapping[Link, str]
+    match: Match, outside: Sequence[int], spares: Sequence[Sequence[Place]], wires: Mapping[Link, str]
 ) -> Bigraph:
     """Return what is around the redex; it owns every edge that the redex does not."""
     target = match.target
@@ -101,20 +107,19 @@ def _context(
     kept = [edge for edge in range(target.edges) if edge not in matched]
     edges = {edge: place for place, edge in enumerate(kept)}
 
-    def places(place: Place) -> tuple[Place, ...]:
-        return (place,) if place < 0 else (rank[place],) if place in rank else ()
+    def places(place: Place) -> tuple[Place]:
+        return (rank.get(place, place),)
 
     def link(old: Link) -> Link:
         return edges[old] if isinstance(old, int) else old
 
     passing = {name: link(old) for old, name in wires.items()}
     wanted = {name: link(image) for name, image in match.links if isinstance(name, str)}
-    around = [*match.regions, *(_above(match, number) for number in spares)]
     return assemble(
         target.signature,
         [moved(target.nodes[number], places, link) for number in outside],
         regions=target.regions,
-        sites=[[found for place in above for found in places(place)] for above in around],
+        sites=[[rank.get(place, place) for place in around] for around in (*match.regions, *spares)],
         edges=len(kept),
         inner_links=passing | wanted,
         outer_names=target.outer_names,

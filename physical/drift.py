@@ -108,11 +108,17 @@ def _quotient(mover: Geometry, within: Geometry, places: tuple[tuple[str, Geomet
     plane = plane_of(mover, within)
     polygons = {name: place for name, place in places if not place.is_point}
     pieces = _pieces(plane, within, list(polygons.values()))
+    spots = {i: deep_spot(piece, CLEARANCE) for i, piece in enumerate(pieces)}
+    put = {i: plane.put(*spot) for i, spot in spots.items() if spot is not None}
     index = PlaceIndex(polygons)
-    found = ((i, _cell(piece, plane, within, index)) for i, piece in enumerate(pieces))
-    cells = {i: cell for i, cell in found if cell is not None}
+    cells = {
+        i: Cell(pieces[i], representative, tuple(sorted(index.containers(representative))))
+        for i, representative in put.items()
+        if contains(within, representative)
+    }
     links = _shared_edges(pieces)
-    return _merged(cells, links | _across_slivers(pieces, cells, links))
+    slivers = frozenset(spots.keys() - put.keys())
+    return _merged(cells, links | _across(slivers, cells, links))
 
 
 def _check(mover: Geometry, within: Geometry) -> None:
@@ -184,17 +190,6 @@ def _pieces(plane: Plane, within: Geometry, places: Sequence[Geometry]) -> list[
     return [piece for piece in shapely.get_parts(shapely.polygonize([borders])) if piece.intersects(space)]
 
 
-def _cell(piece: shapely.Polygon, plane: Plane, within: Geometry, index: PlaceIndex) -> Cell | None:
-    """Return the cell that a piece is; None where the piece is a sliver or outside the place drifted in."""
-    spot = deep_spot(piece, CLEARANCE)
-    if spot is None:
-        return None
-    representative = plane.put(*spot)
-    if not contains(within, representative):
-        return None
-    return Cell(piece, representative, tuple(sorted(index.containers(representative))))
-
-
 # --- adjacency ------------------------------------------------------------------------------------
 
 Links = frozenset[tuple[int, int]]
@@ -211,16 +206,15 @@ def _shared_edges(pieces: Sequence[shapely.Polygon]) -> Links:
     return frozenset((min(pair), max(pair)) for pair in owners.values() if len(pair) == 2)
 
 
-def _across_slivers(pieces: Sequence[shapely.Polygon], cells: Mapping[int, Cell], links: Links) -> Links:
+def _across(slivers: frozenset[int], cells: Mapping[int, Cell], links: Links) -> Links:
     """Return which cells face each other across a sliver, along a metre or so."""
-    slivers = {i for i, piece in enumerate(pieces) if deep_spot(piece, CLEARANCE) is None}
     beside_one = sorted({i for link in links if slivers & set(link) for i in link if i in cells})
     reach = 4 * CLEARANCE
-    grown = {i: pieces[i].buffer(reach) for i in beside_one}
+    grown = {i: cells[i].shape.buffer(reach) for i in beside_one}
     return frozenset(
         (i, j)
         for i, j in combinations(beside_one, 2)
-        if grown[i].intersects(pieces[j]) and grown[i].intersection(pieces[j]).area > 4 * reach**2
+        if grown[i].intersects(cells[j].shape) and grown[i].intersection(cells[j].shape).area > 4 * reach**2
     )
 
 

@@ -105,12 +105,12 @@ def interior_point(geometry: Geometry) -> Geometry:
 
 
 def deep_spot(shape: shapely.Polygon, clearance: float) -> tuple[float, float] | None:
-    """Return a spot of a polygon about as far from its border as any; None if no farther than `clearance`.
+    """Return a spot of a polygon well inside it; None if that isn't farther from its border than `clearance`.
 
-    The middle of what is left when the border is moved inwards as far as possible, in steps of a fifth.
+    The middle of what is left when the border is moved inwards, as far as possible in steps of a fifth. The area
+    is at most length of the border times the greatest depth, so something is left at the ratio of the two.
     """
-    west, south, east, north = shape.bounds
-    depth = min(east - west, north - south) / 2
+    depth = 2 * shape.area / shape.length
     while depth > clearance:
         core = max(
             shapely.get_parts(shape.buffer(-depth, quad_segs=2)), key=lambda part: part.area, default=None

@@ -6,12 +6,14 @@ heading in the frame; every placement is computed from the polygon as first give
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from itertools import pairwise
 from typing import Final
 
 import shapely
+from shapely.affinity import translate
 
 from physical.errors import GeometryError
 from physical.frame import Frame, local_frame
@@ -21,7 +23,7 @@ from physical.shape import Geometry, beside, canonical, contains, intern, planar
 MARGINS: Final = (0.05, 0.5, 5.0)
 """Metres that a placement keeps from borders: the first with which it stands as it should after rounding."""
 
-MAX_PIECES: Final = 200_000
+MAX_PIECES: Final = 60_000
 """How many pieces the erosion of a polygon by a mover may have."""
 
 CONVEXITY: Final = 0.03
@@ -121,25 +123,37 @@ def _free(mover: Geometry, frame: Frame, target: Geometry, holes: Iterable[Geome
     shapes = [frame.project(planar(hole)) for hole in holes if not hole.is_point]
     taken = [shape for shape in shapes if shape.intersects(space)]
     if not mover.is_point:
-        space, taken = room(space, mover), [room(hole, mover) for hole in taken]
+        reach = _reach(space, taken, outline(mover))
+        space, taken = room(space, mover, reach), [room(hole, mover, reach) for hole in taken]
+        space = space.intersection(shapely.Point(0, 0).buffer(reach)) if reach < math.inf else space
     return space.difference(shapely.union_all(taken)) if taken else space
 
 
-def room(space: shapely.Polygon, mover: Geometry) -> shapely.Geometry:
+def _reach(space: shapely.Polygon, taken: Sequence[shapely.Polygon], offsets: Sequence[Offset]) -> float:
+    """Return how far from the origin a nearest placement can be: some way beyond where a disc around it fits.
+
+    Borders farther away don't matter, which makes placing in a country as quick as in a harbour.
+    """
+    radius = max(math.hypot(*offset) for offset in offsets) + 2 * MARGINS[-1]
+    roomy = space.buffer(-radius).difference(shapely.union_all([hole.buffer(radius) for hole in taken]))
+    spot = _nearest_spot(roomy)
+    return math.inf if spot is None else 1.01 * math.hypot(*spot) + 2 * MARGINS[-1]
+
+
+def room(space: shapely.Polygon, mover: Geometry, reach: float = math.inf) -> shapely.Geometry:
     """Return where an unmoved mover's centroid may be for it to be inside a polygon in a metric frame.
 
     The Minkowski erosion: the mover is inside where one of its vertices is, and its border doesn't meet the
-    polygon's.
+    polygon's. Only what is within reach of the origin, in metres, is asked for.
     """
     offsets = outline(mover)
-    dx, dy = offsets[0]
-    return shapely.transform(space, lambda at: at - (dx, dy)).difference(_obstacle(space.boundary, offsets))
+    far = reach + max(math.hypot(*offset) for offset in offsets)
+    edges = [edge for edge in pairwise(space.exterior.coords) if math.hypot(*_foot(*edge)) <= far]
+    return translate(space, -offsets[0][0], -offsets[0][1]).difference(_obstacle(edges, offsets))
 
 
-def _obstacle(border: shapely.Geometry, offsets: Sequence[Offset]) -> shapely.Geometry:
-    """Return where a mover's centroid is when its border (of a convex one, any of it) meets a border."""
-    rings = shapely.get_parts(border)
-    edges = [edge for ring in rings for edge in pairwise(ring.coords)]
+def _obstacle(edges: Sequence[tuple[Offset, Offset]], offsets: Sequence[Offset]) -> shapely.Geometry:
+    """Return where a mover's centroid is when its border (of a convex one, any of it) meets an edge."""
     parts = [offsets] if is_convex(offsets) else list(pairwise([*offsets, offsets[0]]))
     if len(edges) * len(parts) > MAX_PIECES:
         raise GeometryError(
@@ -147,12 +161,10 @@ def _obstacle(border: shapely.Geometry, offsets: Sequence[Offset]) -> shapely.Ge
             f"a border of {len(edges)} edges is too detailed for a mover of {len(offsets)} vertices",
             "simplify the place or the mover",
         )
-    swept = [
-        shapely.LineString([(x - dx, y - dy) for x, y in edge for dx, dy in part])
-        for edge in edges
-        for part in parts
-    ]
-    return shapely.union_all(shapely.convex_hull(swept))
+    if not edges:
+        return shapely.Polygon()
+    swept = [[(x - dx, y - dy) for x, y in edge for dx, dy in part] for edge in edges for part in parts]
+    return shapely.union_all(shapely.convex_hull(shapely.linestrings(swept)))
 
 
 def is_convex(offsets: Sequence[Offset]) -> bool:

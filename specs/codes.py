@@ -58,7 +58,7 @@ class Code(Enum):
     TOO_MANY_WORDS = (
         "LS006",
         "too many words",
-        """A mission file holds a hundred and fifty thousand words and symbols at the most. Large worlds
+        """A mission file holds sixty thousand words and symbols at the most. Large worlds
         belong into GeoJSON files: `from "harbour.geojson"`.""",
     )
     UNREADABLE_FILE = (
@@ -214,8 +214,128 @@ class Code(Enum):
         """In a string, a backslash stands before a quote, a backslash, `n` or `t`.""",
     )
     # --- LS2: names and kinds
+    UNKNOWN_NAME = (
+        "LS201",
+        "unknown name",
+        """A name is used that nothing declares: no entity, place, channel, bigActor, behaviour, rule, function
+        or variable in scope.""",
+    )
+    UNKNOWN_KIND = (
+        "LS202",
+        "unknown kind",
+        """A kind is used that the signature does not declare: `signature { kind UAV driven }`.""",
+    )
+    DUPLICATE_NAME = (
+        "LS203",
+        "name declared twice",
+        """Every entity, kind, bigActor and channel has a name of its own, and so has each rule among the rules
+        and each behaviour among the behaviours. `region` is taken: it is what lies around
+        everything.""",
+    )
+    WRONG_SORT = (
+        "LS204",
+        "name of another sort",
+        """The name is declared, but as something else than what can stand here: a bigActor where a node is
+        expected, a kind where an entity is.""",
+    )
+    UNUSABLE_NAME = (
+        "LS205",
+        "name that cannot be written",
+        """An entity read from a file has a name that cannot be written in a mission. Names are letters, digits
+        and `_`, a letter first, and no reserved word.""",
+    )
     # --- LS3: world and geometry
+    BAD_GEOMETRY = (
+        "LS301",
+        "no geometry on the earth",
+        """Latitudes are between -90 and 90 degrees, longitudes between -180 and 180; borders do not cross
+        themselves; circles have a radius; a band of altitudes has its lower end first.""",
+    )
+    NO_WHEREABOUTS = (
+        "LS302",
+        "entity without one placement",
+        """An entity has one of: a placement (`= point (37.08, -8.55)`), a carrier (`carried by vessel0`), or
+        neither, `absent`, until it appears.""",
+    )
+    BAD_CARRIER = (
+        "LS303",
+        "nothing to be carried by",
+        """Who is carried needs a carrier that is there, of a kind that carries its kind: `kind Vessel carries
+        Drifter`.""",
+    )
+    CYCLIC_NESTING = (
+        "LS304",
+        "cyclic nesting",
+        """Nothing is inside itself, neither directly nor by way of others.""",
+    )
+    PLACES_OVERLAP = (
+        "LS305",
+        "places that do not nest",
+        """Two places that never move, each of a kind that may contain something, must nest or be apart: else
+        what is in both has no one parent.""",
+    )
+    BAD_FILE = (
+        "LS306",
+        "mistake in a world file",
+        """A file named with `from` has a mistake, or what is asked of it does not fit its format. The message
+        says which.""",
+    )
+    TOO_MANY_ENTITIES = (
+        "LS307",
+        "too many entities",
+        """A mission has two thousand entities at the most. Of a file, `within` keeps an area, `keep` the kinds
+        that matter, `limit` the first so many.""",
+    )
+    MISSING_EXTRA = (
+        "LS308",
+        "extra not installed",
+        """Recordings of AIS are read with pyais, which the extra `ais` installs.""",
+    )
+    BAD_BELIEF = (
+        "LS309",
+        "impossible belief",
+        """What L holds at first is a bigraph: nodes are in the region or in nodes of L whose kind may contain
+        them, and each is said to be in one place only.""",
+    )
     # --- LS4: behaviour
+    WRONG_ARITY = (
+        "LS401",
+        "wrong number of arguments",
+        """A behaviour, rule or function is given more or fewer arguments than it has parameters.""",
+    )
+    UNBOUND_VARIABLE = (
+        "LS402",
+        "assignment to no variable",
+        """`x = e` gives a variable another value. A new one is bound by `let x = e`.""",
+    )
+    UNBOUNDED_RECURSION = (
+        "LS403",
+        "recursion that is not the last thing",
+        """A behaviour may call itself, or those that call it, as the last thing it does only: otherwise what
+        is left to run grows without bound.""",
+    )
+    EMPTY_LOOP = (
+        "LS404",
+        "empty loop",
+        """A `loop` without a statement runs for ever and does nothing.""",
+    )
+    NAMELESS_SPAWN = (
+        "LS405",
+        "spawned bigActor without a name",
+        """A spawned bigActor has a name: `spawn b hosted_at h with_behavior visit(place0)`.""",
+    )
+    WRONG_QUERY = (
+        "LS406",
+        "query of what has no answer",
+        """`HOSTED_AT(q)` gives bigActors, and these have no parents, children or links: it stands outermost
+        only.""",
+    )
+    WRONG_VALUE = (
+        "LS407",
+        "value of another type",
+        """A number, a truth value, a tuple or a text that is no name stands where a node or a bigActor is
+        expected.""",
+    )
     # --- LS5: reaction rules
     RULE_SYNTAX = (
         "LS501",
@@ -223,7 +343,98 @@ class Code(Enum):
         """The body of a reaction rule is `redex -> reactum` in the notation of the paper's runtime:
         `name_Control[links].(children | $0)`, with `|` between neighbours and `||` between regions.""",
     )
+    CREATES_OR_DELETES = (
+        "LS502",
+        "rule that creates or deletes",
+        """A control moves and links what is there; nothing creates or deletes a node. Both sides of a rule
+        name the same nodes, and each node has a name.""",
+    )
+    MOVED_CONTENT = (
+        "LS503",
+        "rule that moves unknown content",
+        """A site `$0` stands for whatever else is in a node, and in missions it stays there: on both sides it
+        is under the same node.""",
+    )
+    UNPLACED_NODE = (
+        "LS504",
+        "node moved to no place",
+        """A node that moves goes into a node of the rule, or beside one that stays: `b.(u | $0) -> b.$0 | u`
+        puts u beside b.""",
+    )
+    RULE_WITHOUT_HOST = (
+        "LS505",
+        "rule without its host",
+        """A bigActor controls what its host takes part in: the redex names `HOST`, or a node that can be the
+        host.""",
+    )
+    UNREALISABLE = (
+        "LS506",
+        "unrealisable control",
+        """What the control asks for can never be made true: nothing can drive the node, its new place may not
+        contain its kind, or has no room for it.""",
+    )
+    KIND_MISMATCH = (
+        "LS507",
+        "node of another kind",
+        """A node is written with a kind that is not its own: `uav0_Vessel` where uav0 is a UAV.""",
+    )
     # --- LS6: environment and checks
+    SAME_PLACEMENT = (
+        "LS601",
+        "placement listed twice",
+        """The placements among which something drifts, or at which it appears, differ from each other.""",
+    )
+    TWO_DRIFTS = (
+        "LS602",
+        "entity with two drifts",
+        """An entity drifts by one clause. List all its placements in it.""",
+    )
+    INEXACT_DRIFT = (
+        "LS603",
+        "drift within that would not be exact",
+        """`drifts within` explores finitely many placements for infinitely many, which is exact for one entity
+        among places that stand still. Elsewhere list placements: `drifts among`.""",
+    )
+    POINTLESS_CLAUSE = (
+        "LS604",
+        "clause that can never apply",
+        """The environment is said to do what it never can: bring something in that is there already, return
+        something to a channel that it never was on.""",
+    )
+    NO_RECIPIENT = (
+        "LS605",
+        "saying without a recipient",
+        """`says` needs `to` and a bigActor, unless there is exactly one.""",
+    )
+    REPEATED_SETTING = (
+        "LS606",
+        "said twice",
+        """`scheduler` and `control` are said once, and each property, channel drop and departure is named
+        once.""",
+    )
+    FORMULA_TOO_LARGE = (
+        "LS607",
+        "formula too large",
+        """Quantifiers are written out over all entities of their kind, and `<->` doubles its sides: a property
+        may come to fifty thousand atoms.""",
+    )
+    NOT_QUANTIFIED = (
+        "LS608",
+        "comparison of two fixed names",
+        """In properties `x == y` compares names of which one at least is quantified: `forall x: UAV . forall
+        y: UAV . x == y or ...`.""",
+    )
+    NOT_CONSTANT = (
+        "LS609",
+        "value that is not fixed",
+        """What someone outside says, and what a property compares a variable with, is fixed: a text, number,
+        truth value, name, or a tuple or set of these.""",
+    )
+    TOO_MANY_MISTAKES = (
+        "LS610",
+        "more mistakes",
+        """A hundred mistakes are shown at the most; the others are counted.""",
+    )
 
     @property
     def range(self) -> str:

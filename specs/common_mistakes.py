@@ -204,7 +204,7 @@ def bad_number(at: Situation) -> Diagnostic | None:
         return at.mistake(
             Code.BAD_NUMBER, "a number has digits on both sides of its '.'", "write 37.0 or 0.5"
         )
-    if "NUMBER" in at.sorts and at.found.is_name and not at.at_expression:
+    if "NUMBER" in at.sorts and "STRING" not in at.sorts and at.found.is_name:
         return at.mistake(
             Code.BAD_NUMBER, f"expected a number, found {at.found.shown}", "write one such as 37.04"
         )

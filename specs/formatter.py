@@ -62,19 +62,30 @@ def _rows(lines: Sequence[_Commented], source: str) -> Iterator[str]:
     opened = True  # at the start, and behind an opening brace, there is no empty line
     for item in lines:
         closing = item.line is None or item.line.pieces[0].startswith("}")
-        depth = item.line.depth + closing if item.line else 0
         apart = item.line is not None and item.line.apart
-        for comment in [*item.before, *item.behind[:-1]]:
-            if not opened and (apart or _follows_empty_line(source, comment.span.start)):
+        for row, place, is_comment in _own_rows(item, closing):
+            gap = apart or (place is not None and _follows_empty_line(source, place))
+            if gap and not opened and (is_comment or not closing):
                 yield ""
-            yield "  " * depth + comment.text
+            yield row
             opened = apart = False
-        if item.line is None:
-            return
-        if not opened and not closing and (apart or _follows_empty_line(source, item.line.anchor)):
-            yield ""
-        yield item.line.text() + "".join(f"  {comment.text}" for comment in item.behind[-1:])
-        opened = item.line.pieces[-1].endswith("{")
+        opened = item.line is not None and item.line.pieces[-1].endswith("{")
+
+
+def _own_rows(item: _Commented, closing: bool) -> Iterator[tuple[str, int | None, bool]]:
+    """Yield a line and its comments, the place whose empty line each keeps, and whether it is a comment.
+
+    Of several comments behind what becomes one line, the last stays behind it and the others go before it.
+    """
+    indent = "  " * (item.line.depth + closing) if item.line else ""
+    place = item.line.anchor if item.line else None
+    for comment in item.before:
+        yield indent + comment.text, comment.span.start, True
+    for comment in item.behind[:-1]:
+        yield indent + comment.text, place, True
+        place = None
+    if item.line:
+        yield item.line.text() + "".join(f"  {comment.text}" for comment in item.behind[-1:]), place, False
 
 
 def _follows_empty_line(source: str, offset: int) -> bool:

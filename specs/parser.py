@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from typing import Final
 
 from lark import UnexpectedInput
@@ -15,6 +16,7 @@ from specs.syntax_errors import explain_syntax_error
 from specs.text import Prepared, decode, prepare
 
 MAX_DEPTH: Final = 200
+MAX_REPORTED: Final = 50  # mistakes in rule bodies
 
 
 def parse(source: Source) -> Mission:
@@ -25,7 +27,7 @@ def parse(source: Source) -> Mission:
     """
     mission = build(prepare(source), source)
     bodies = (node for node in walk(mission) if isinstance(node, RuleBody) and node.term is None)
-    mistakes = [mistake for body in bodies if (mistake := rule_mistake(body))]
+    mistakes = [mistake for body in islice(bodies, MAX_REPORTED) if (mistake := rule_mistake(body))]
     if mistakes:
         raise MissionError(source, mistakes)
     return mission

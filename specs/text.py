@@ -18,7 +18,7 @@ from specs.syntax.nodes import Span
 MAX_BYTES: Final = 1_000_000
 MAX_WORD: Final = 10_000
 MAX_NESTING: Final = 200
-MAX_WORDS: Final = 150_000
+MAX_WORDS: Final = 60_000
 
 _SCAN: Final = re.compile(
     r"""(?P<comment>(?://|\#)[^\n]*)

@@ -1,3 +1,5 @@
+from itertools import islice
+
 import pytest
 from bigraph_strategies import PLAIN, SIGNATURE, grounds, redexes, shuffled
 from hypothesis import given, settings
@@ -50,7 +52,7 @@ def named(bigraph):
     )
 
 
-@settings(max_examples=150)
+@settings(max_examples=150, deadline=None)
 @given(redex_and_target())
 def test_matches_are_those_of_the_naive_enumerator(pair):
     redex, target = pair
@@ -59,6 +61,7 @@ def test_matches_are_those_of_the_naive_enumerator(pair):
     assert set(found) == naive_matches(redex, target)
 
 
+@settings(deadline=None)
 @given(redex_and_target(sharing=True, size=4, redex_size=2))
 def test_matches_in_shared_places_are_those_of_the_naive_enumerator(pair):
     redex, target = pair
@@ -67,14 +70,15 @@ def test_matches_in_shared_places_are_those_of_the_naive_enumerator(pair):
     assert set(found) == naive_matches(redex, target, sharing=True)
 
 
-@settings(max_examples=150)
-@given(redex_and_target(size=8, sharing=True))
+@settings(max_examples=150, deadline=None)
+@given(redex_and_target(size=6, sharing=True))
 def test_context_redex_and_parameter_make_the_target_again(pair):
     redex, target = pair
-    for match in find_matches(redex, target):
+    for match in islice(find_matches(redex, target), 100):
         assert recompose(take_apart(match)) == target
 
 
+@settings(deadline=None)
 @given(redex_and_target(size=6).flatmap(lambda pair: st.tuples(st.just(pair), shuffled(pair[0]))))
 def test_the_number_of_matches_does_not_depend_on_the_order_of_nodes(given_):
     (redex, target), other = given_

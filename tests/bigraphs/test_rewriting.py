@@ -21,7 +21,7 @@ def node(control, inside=SLOT, name=None):
     return nest(ion(SIGNATURE, control, (), name), inside)
 
 
-@settings(max_examples=150)
+@settings(max_examples=150, deadline=None)
 @given(rules(), grounds(max_nodes=7, controls=PLAIN))
 def test_rewriting_keeps_bigraphs_well_formed_and_their_outer_face(given_rule, target):
     for _, found in successors(given_rule, target):
@@ -99,7 +99,7 @@ def test_a_dropped_site_leaves_what_other_places_hold_too():
     both = (node("A") * node("P")) @ placing([{0, 1}], 2) @ atom(SIGNATURE, "A", name="s")
     drop = rule(node("A"), node("A", ONE), ())
     (found,) = [result for match, result in successors(drop, both) if match.nodes != (0,)]
-    assert [str(each) for each in found.nodes] == ["s:A", "A", "P"]
+    assert [str(each) for each in found.nodes] == ["s:A", "P", "A"]
     assert len(found.nodes[0].parents) == 1
 
 

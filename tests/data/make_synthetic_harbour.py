@@ -1,7 +1,7 @@
-"""Encode `synthetic_harbour.nmea`: an invented harbour, invented vessels, not a word of it ever received.
+"""Encode `harbour_watch.nmea`, which the mission of that name reads: invented vessels, not a word of it ever received.
 
-Run it to write the file anew; a test checks that this gives the same bytes. Two minutes from 2024-06-01
-10:00:00 UTC around a restricted basin of 200 m by 200 m (`BASIN`): three vessels lie in it, one (`GLASAAL`)
+Run it to write the file anew; a test checks that this gives the same bytes. Two minutes from 2020-04-07
+21:40:33 UTC around a restricted basin of 200 m by 200 m (`BASIN`): three vessels lie in it, one (`GLASAAL`)
 is heard inside from second 103 on, four stay outside. There are a buoy and a base station, the receiver's own
 time and position, and damaged lines.
 """
@@ -15,17 +15,17 @@ from pathlib import Path
 
 from pyais.encode import encode_dict
 
-PATH = Path(__file__).with_name("synthetic_harbour.nmea")
-START = datetime(2024, 6, 1, 10, 0, 0, tzinfo=UTC)
+PATH = Path(__file__).parents[2] / "specs" / "missions" / "harbour_watch.nmea"
+START = datetime(2020, 4, 7, 21, 40, 33, tzinfo=UTC)
 SECONDS = 120
 
-BASIN = ((52.9691, 5.4085), (52.9709, 5.4115))
+BASIN = ((52.83910, 5.71050), (52.84090, 5.71350))
 """Two opposite corners (latitude, longitude) of the restricted basin."""
 
 HEADING = b"""\
 # SYNTHETIC: encoded by tests/data/make_synthetic_harbour.py, never received.
-# Harbour, vessels and their numbers are invented. Two minutes from 2024-06-01 10:00:00 UTC.
-# Restricted basin, 200 m by 200 m: from 52.9691, 5.4085 to 52.9709, 5.4115.
+# Vessels and their numbers are invented. Two minutes from 2020-04-07 21:40:33 UTC.
+# Restricted basin, 200 m by 200 m: from 52.8391, 5.7105 to 52.8409, 5.7135.
 """
 
 
@@ -44,17 +44,17 @@ class Vessel:
 
 
 VESSELS = (
-    Vessel(244999001, "A", "KOKMEEUW", 52, 52.97020, 5.40930, 0.0, 0.0),
-    Vessel(244999002, "B", "SPIERING", 37, 52.96950, 5.41080, 0.0, 0.0),
-    Vessel(244999003, "B", "DRIEHOEK", 36, 52.97050, 5.41110, 0.1, 45.0),
-    Vessel(244999004, "A", "GLASAAL", 31, 52.97000, 5.40510, 4.5, 90.0),
-    Vessel(211999005, "A", "NORDLICHT", 70, 52.96500, 5.40200, 7.2, 350.0),
-    Vessel(219999006, "B", "SVANE", 36, 52.97180, 5.41500, 2.0, 200.0),
-    Vessel(232999007, "B", "PUFFIN", 37, 52.96830, 5.41300, 0.0, 0.0),
-    Vessel(244999008, "A", "ZEEDUIVEL", 30, 52.97400, 5.40000, 0.0, 0.0),
+    Vessel(244999001, "A", "KOKMEEUW", 52, 52.84020, 5.71130, 0.0, 0.0),
+    Vessel(244999002, "B", "SPIERING", 37, 52.83950, 5.71280, 0.0, 0.0),
+    Vessel(244999003, "B", "DRIEHOEK", 36, 52.84050, 5.71310, 0.1, 45.0),
+    Vessel(244999004, "A", "GLASAAL", 31, 52.84000, 5.70710, 4.5, 90.0),
+    Vessel(211999005, "A", "NORDLICHT", 70, 52.83500, 5.70400, 7.2, 350.0),
+    Vessel(219999006, "B", "SVANE", 36, 52.84180, 5.71700, 2.0, 200.0),
+    Vessel(232999007, "B", "PUFFIN", 37, 52.83830, 5.71500, 0.0, 0.0),
+    Vessel(244999008, "A", "ZEEDUIVEL", 30, 52.84400, 5.70200, 0.0, 0.0),
 )
-BASE_STATION = {"type": 4, "mmsi": 2449990, "lat": 52.96880, "lon": 5.40800}
-BUOY = {"type": 21, "mmsi": 992449991, "name": "NOORDERHOEK 1", "aid_type": 24, "lat": 52.97, "lon": 5.4035}
+BASE_STATION = {"type": 4, "mmsi": 2449990, "lat": 52.83880, "lon": 5.71000}
+BUOY = {"type": 21, "mmsi": 992449991, "name": "NOORDERHOEK 1", "aid_type": 24, "lat": 52.84000, "lon": 5.70550}
 
 REFUSED = {"type": 1, "mmsi": 244999008, "lat": 91, "lon": 181, "course": 360, "heading": 511}
 """A position that is *not available*."""
@@ -150,7 +150,7 @@ def _sentences(fields, sequence=None):
 
 
 def _rmc(now):
-    body = f"GPRMC,{now:%H%M%S}.00,A,5258.12800,N,00524.48000,E,0.000,,{now:%d%m%y},,,A"
+    body = f"GPRMC,{now:%H%M%S}.00,A,5250.32800,N,00542.60000,E,0.000,,{now:%d%m%y},,,A"
     return _closed(b"$", body.encode("ascii"))
 
 

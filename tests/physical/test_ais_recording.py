@@ -13,7 +13,7 @@ from physical.nmea import MAX_LINE, Reason
 
 ROOT = Path(__file__).parents[2]
 DATA = Path(os.environ.get("BIGACTORS_DATA", ROOT.parent / "shared" / "data")) / "ais"
-SYNTHETIC = ROOT / "tests" / "data" / "synthetic_harbour.nmea"
+SYNTHETIC = ROOT / "specs" / "missions" / "harbour_watch.nmea"
 POSITION = b"!AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61\n"
 PART = b"!AIVDM,2,1,9,B,55R3Vn82=ILTQ3KKS>1<D60Dq@E918U<F222221J1`?164vc03S1CCAD,0*2A\n"
 

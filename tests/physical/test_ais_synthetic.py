@@ -10,8 +10,8 @@ from physical.ais_world import world_at
 from physical.geometry import box
 
 DATA = Path(__file__).parents[1] / "data"
-SYNTHETIC = DATA / "synthetic_harbour.nmea"
-START = 1717236000.0
+SYNTHETIC = DATA.parents[1] / "specs" / "missions" / "harbour_watch.nmea"
+START = 1586295633.0
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,153 @@
+"""Where the labels of a map go: a pure function of boxes, in points, the same in every process."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+Spot = tuple[float, float]
+"""To the right and up, in points (or in metres, where a view is spoken of)."""
+
+GAP: Final = 2.0
+"""Points kept free between labels."""
+
+RINGS: Final = (3.0, 8.0, 15.0, 24.0, 36.0, 50.0, 68.0, 90.0, 120.0, 160.0)
+"""Points from the clearance to the label, tried in turn."""
+
+DIRECTIONS: Final = (0, 180, 90, 270, 45, 315, 135, 225, 22, 338, 158, 202, 68, 292, 112, 248)
+"""Degrees counter-clockwise from the right, those that read best first."""
+
+FORBIDDEN: Final = 1e3
+ON_A_LINE: Final = 4.0
+
+
+class Box(NamedTuple):
+    """A rectangle."""
+
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+    @property
+    def width(self) -> float:
+        """How wide it is."""
+        return self.right - self.left
+
+    @property
+    def height(self) -> float:
+        """How high it is."""
+        return self.top - self.bottom
+
+    @property
+    def centre(self) -> Spot:
+        """Its middle."""
+        return ((self.left + self.right) / 2, (self.bottom + self.top) / 2)
+
+    def grown(self, by: float) -> Box:
+        """Return the box with more on every side."""
+        return Box(self.left - by, self.bottom - by, self.right + by, self.top + by)
+
+    def shared(self, other: Box) -> float:
+        """Return the area that two boxes share, 0 where they only touch."""
+        wide = min(self.right, other.right) - max(self.left, other.left)
+        high = min(self.top, other.top) - max(self.bottom, other.bottom)
+        return wide * high if wide > 0 and high > 0 else 0.0
+
+    def holds(self, spot: Spot) -> bool:
+        """Tell whether a spot is inside or on the border."""
+        return self.left <= spot[0] <= self.right and self.bottom <= spot[1] <= self.top
+
+    def nearest(self, spot: Spot) -> Spot:
+        """Return the spot of the box that is nearest to another."""
+        return (min(max(spot[0], self.left), self.right), min(max(spot[1], self.bottom), self.top))
+
+
+def around(centre: Spot, size: Spot) -> Box:
+    """Return the box of a size (width and height) about its middle."""
+    return Box(
+        centre[0] - size[0] / 2, centre[1] - size[1] / 2, centre[0] + size[0] / 2, centre[1] + size[1] / 2
+    )
+
+
+def union(boxes: Sequence[Box]) -> Box:
+    """Return the smallest box around some, at least one."""
+    lefts, bottoms, rights, tops = zip(*boxes, strict=True)
+    return Box(min(lefts), min(bottoms), max(rights), max(tops))
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """A label to be placed.
+
+    Attributes:
+        at: The spot that it names.
+        size: Its width and height.
+        clearance: How far around the spot nothing may be written.
+        inside: Middles of the label that are tried first, best first.
+    """
+
+    at: Spot
+    size: Spot
+    clearance: float = 0.0
+    inside: tuple[Spot, ...] = ()
+
+
+def place_labels(
+    wanted: Sequence[Wanted], obstacles: Sequence[Box], lines: Sequence[Spot], view: Box
+) -> tuple[Box, ...]:
+    """Return a box for each label: in the view, off the obstacles, off each other, near what it names.
+
+    Labels are placed in the order given, each where it costs least. `lines` are spots that are better not
+    written over. Where there is no room, labels overlap as little as can be.
+    """
+    taken = list(obstacles)
+    for label in wanted:
+        taken.append(_cheapest(label, taken, lines, view))
+    return tuple(taken[len(obstacles) :])
+
+
+def _cheapest(label: Wanted, taken: Sequence[Box], lines: Sequence[Spot], view: Box) -> Box:
+    best, least = around(label.at, label.size), math.inf
+    for price, box in _candidates(label):
+        if price >= least:
+            break  # candidates come cheapest first
+        cost = price + _cost(box, taken, lines, view)
+        if cost < least:
+            best, least = box, cost
+    return best
+
+
+def _candidates(label: Wanted) -> Iterator[tuple[float, Box]]:
+    for rank, centre in enumerate(label.inside):
+        yield rank * 0.5, around(centre, label.size)
+    start = len(label.inside) * 0.5
+    for ring in RINGS:
+        for rank, direction in enumerate(DIRECTIONS):
+            price = start + ring + rank * 0.1
+            yield price, _beside(label, math.radians(direction), label.clearance + ring)
+        start += 2.0  # hence no later candidate is cheaper
+
+
+def _beside(label: Wanted, direction: float, distance: float) -> Box:
+    """Return the label's box when it touches a circle about what it names, seen in a direction."""
+    east, north = math.cos(direction), math.sin(direction)
+    wide, high = label.size
+    # The box's support in that direction; a label to the side stays level with what it names.
+    x = label.at[0] + east * distance + _sign(east) * wide / 2
+    y = label.at[1] + north * distance + _sign(north) * high / 2
+    return around((x, y), label.size)
+
+
+def _sign(value: float) -> int:
+    return 0 if abs(value) < 1e-9 else (1 if value > 0 else -1)
+
+
+def _cost(box: Box, taken: Sequence[Box], lines: Sequence[Spot], view: Box) -> float:
+    wide = box.grown(GAP)
+    over = sum(wide.shared(other) for other in taken)
+    outside = wide.width * wide.height - wide.shared(view)
+    crossed = sum(box.holds(spot) for spot in lines)
+    return FORBIDDEN * (over + outside) + ON_A_LINE * crossed

@@ -1,0 +1,106 @@
+"""How a map looks: colours and markers of kinds, inks, and the size of written text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from functools import lru_cache
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from matplotlib.path import Path
+
+INK: Final = "#1f2933"
+QUIET: Final = "#66727f"
+FAINT: Final = "#e1e6eb"
+PAPER: Final = "#f5f7f9"
+HALO: Final = "#f5b301"
+"""Behind what is highlighted."""
+
+DIFFERS: Final = "#d11149"
+"""Around what is marked."""
+
+PALETTE: Final = (
+    "#3b6fb6",
+    "#2a9d8f",
+    "#c8702a",
+    "#8a5fb0",
+    "#b0476f",
+    "#5e8c31",
+    "#2b8db8",
+    "#9a7b1c",
+    "#6b5b4b",
+    "#5b6b9e",
+)
+"""Calm colours of one lightness, dark enough for text on white."""
+
+Outline = tuple[tuple[float, float], ...]
+
+
+def _regular(corners: int, turn: float = 0.0) -> Outline:
+    angles = [math.radians(90.0 + turn + 360.0 * corner / corners) for corner in range(corners)]
+    return tuple((math.cos(angle), math.sin(angle)) for angle in angles)
+
+
+DART: Final = ((0.0, 1.1), (0.85, -0.85), (0.0, -0.42), (-0.85, -0.85))
+HULL: Final = ((0.0, 1.2), (0.45, 0.65), (0.6, 0.1), (0.55, -1.0), (-0.55, -1.0), (-0.6, 0.1), (-0.45, 0.65))
+SQUARE: Final = ((0.8, 0.8), (0.8, -0.8), (-0.8, -0.8), (-0.8, 0.8))
+DISC: Final = tuple((0.8 * x, 0.8 * y) for x, y in _regular(32))
+DIAMOND: Final = _regular(4)
+SHAPES: Final = (DISC, DIAMOND, _regular(6), _regular(3, 60.0), _regular(5), _regular(3))
+
+WORDS: Final = (
+    (("uav", "drone", "aircraft", "plane", "copter"), DART),
+    (("vessel", "ship", "boat", "usv", "ferry"), HULL),
+    (("station", "gcs", "base", "tower", "home"), SQUARE),
+    (("drifter", "buoy", "float"), DISC),
+    (("aton", "beacon", "light"), DIAMOND),
+)
+"""Shapes of kinds whose names have these words in them."""
+
+
+def kind_colours(kinds: Iterable[str]) -> dict[str, str]:
+    """Return a colour for each kind: the palette, in the order of their names."""
+    return {kind: PALETTE[rank % len(PALETTE)] for rank, kind in enumerate(sorted(set(kinds)))}
+
+
+def kind_shapes(kinds: Iterable[str]) -> dict[str, Outline]:
+    """Return the outline of each kind's marker, about one unit in radius; unknown kinds take what is left."""
+    found: dict[str, Outline] = {}
+    for kind in sorted(set(kinds)):
+        lower = kind.lower()
+        named = (shape for words, shape in WORDS if any(word in lower for word in words))
+        left = [shape for shape in SHAPES if shape not in found.values()] or [DISC]
+        found[kind] = next(named, left[0])
+    return found
+
+
+@lru_cache(maxsize=64)
+def marker(shape: Outline) -> Path:
+    """Return an outline as a marker's path."""
+    from matplotlib.path import Path  # noqa: PLC0415 - only who draws needs matplotlib
+
+    return Path([*shape, shape[0]], closed=True)
+
+
+@lru_cache(maxsize=1 << 12)
+def text_width(text: str, size: float, bold: bool = False) -> float:
+    """Return how wide a line of text is, in points, in the font that matplotlib brings along."""
+    from matplotlib.font_manager import FontProperties  # noqa: PLC0415 - the same
+    from matplotlib.textpath import text_to_path  # noqa: PLC0415 - the same
+
+    font = FontProperties(family="DejaVu Sans", size=size, weight="bold" if bold else "normal")
+    width: float = text_to_path.get_text_width_height_descent(text, font, ismath=False)[0]
+    return width
+
+
+def shortened(text: str, width: float, size: float, bold: bool = False) -> str:
+    """Return the text, cut with an ellipsis where it is wider than so many points."""
+    if text_width(text, size, bold) <= width:
+        return text
+    low, high = 0, len(text)
+    while low < high:
+        middle = (low + high + 1) // 2
+        fits = text_width(text[:middle].rstrip() + "…", size, bold) <= width
+        low, high = (middle, high) if fits else (low, middle - 1)
+    return text[:low].rstrip() + "…"

@@ -1,0 +1,175 @@
+"""What a map shows, apart from how it is drawn: the plane, the view, the ticks and the scale bar."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import accumulate, pairwise
+from typing import Final
+
+from physical.frame import Position
+from physical.map_labels import Box, Spot, union
+from physical.shape import Geometry
+
+SEMI_MAJOR: Final = 6_378_137.0
+ECCENTRICITY_SQUARED: Final = 0.006_694_379_990_14
+STEEPEST: Final = 89.5
+"""The latitude to which the plane is scaled at most: at a pole a degree of longitude has no length."""
+
+NARROWEST: Final = 60.0
+"""Metres that a view is wide at least."""
+
+FAR: Final = 4.0
+"""How many times smaller the view must get for far entities to be left out of it."""
+
+STEPS: Final = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0)
+FINE_STEPS: Final = tuple(digit * 10.0**-power for power in range(7, 0, -1) for digit in (1, 2, 5))
+
+
+@dataclass(frozen=True, slots=True)
+class Plane:
+    """Metres to the east and north of a position; a degree has everywhere the length that it has there.
+
+    So edges, straight in latitude and longitude, stay straight, and so do parallels and meridians.
+    """
+
+    latitude: float
+    longitude: float
+
+    @property
+    def scale(self) -> Spot:
+        """Metres in a degree of longitude and of latitude."""
+        latitude = math.radians(min(max(self.latitude, -STEEPEST), STEEPEST))
+        flat = 1.0 - ECCENTRICITY_SQUARED * math.sin(latitude) ** 2
+        across = SEMI_MAJOR / math.sqrt(flat)
+        along = across * (1.0 - ECCENTRICITY_SQUARED) / flat
+        return (math.radians(across * math.cos(latitude)), math.radians(along))
+
+    def metres(self, position: Position) -> Spot:
+        """Return where a position is; the world is cut opposite to the plane's own."""
+        east, north = self.scale
+        return (turned(position[1] - self.longitude) * east, (position[0] - self.latitude) * north)
+
+    def degrees(self, spot: Spot) -> Position:
+        """Return latitude and longitude, the latter not brought into [-180, 180)."""
+        east, north = self.scale
+        return (self.latitude + spot[1] / north, self.longitude + spot[0] / east)
+
+    def outline(self, geometry: Geometry) -> tuple[Spot, ...]:
+        """Return the vertices of a geometry, in one piece across the antimeridian."""
+        east, north = self.scale
+        vertices = geometry.vertices
+        steps = [turned(there[1] - here[1]) for here, there in pairwise(vertices)]
+        longitudes = accumulate(steps, initial=turned(vertices[0][1] - self.longitude))
+        return tuple(
+            (x * east, (latitude - self.latitude) * north)
+            for (latitude, _), x in zip(vertices, longitudes, strict=True)
+        )
+
+
+def turned(longitude: float) -> float:
+    """Bring a longitude into [-180, 180).
+
+    >>> turned(190.0)
+    -170.0
+    """
+    return (longitude + 180.0) % 360.0 - 180.0
+
+
+def plane_of(geometries: Sequence[Geometry]) -> Plane:
+    """Return the plane around the middle of some geometries, cut where the earth is emptiest."""
+    positions = [vertex for geometry in geometries for vertex in geometry.vertices] or [(0.0, 0.0)]
+    latitudes = [latitude for latitude, _ in positions]
+    longitudes = sorted({turned(longitude) for _, longitude in positions})
+    gaps = [there - here for here, there in pairwise([*longitudes, longitudes[0] + 360.0])]
+    widest = max(range(len(gaps)), key=gaps.__getitem__)
+    east, west = longitudes[widest], longitudes[widest] + gaps[widest] - 360.0
+    return Plane((min(latitudes) + max(latitudes)) / 2, turned((west + east) / 2))
+
+
+def bounds(outline: Sequence[Spot]) -> Box:
+    """Return the box around some spots."""
+    xs, ys = zip(*outline, strict=True)
+    return Box(min(xs), min(ys), max(xs), max(ys))
+
+
+def focus(boxes: Sequence[Box]) -> tuple[int, ...]:
+    """Return which of some boxes a view should hold: all but a few far ones (a quarter at most), sorted.
+
+    Far ones are left out, as few as can be, where the view gets four times smaller by that.
+    """
+    everything = tuple(range(len(boxes)))
+    if len(boxes) < 4:
+        return everything
+    middle = (_median([box.centre[0] for box in boxes]), _median([box.centre[1] for box in boxes]))
+    by_distance = sorted(everything, key=lambda each: (math.dist(boxes[each].nearest(middle), middle), each))
+    whole = _span(boxes)
+    for left_out in range(1, len(boxes) // 4 + 1):
+        kept = by_distance[: len(boxes) - left_out]
+        if max(_span([boxes[each] for each in kept]), NARROWEST) * FAR < whole:
+            return tuple(sorted(kept))
+    return everything
+
+
+def _median(values: Sequence[float]) -> float:
+    return sorted(values)[len(values) // 2]
+
+
+def _span(boxes: Sequence[Box]) -> float:
+    around = union(boxes)
+    return max(around.width, around.height)
+
+
+def view_of(boxes: Sequence[Box], aspect: float, margin: float = 0.1) -> Box:
+    """Return the view around boxes with an aspect (width by height) and a margin, a share of its size."""
+    around = union(boxes)
+    room = 1.0 - 2.0 * margin
+    width = max(around.width / room, around.height / room * aspect, NARROWEST)
+    (x, y), height = around.centre, width / aspect
+    return Box(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
+
+
+# --- ticks and the scale bar ----------------------------------------------------------------------
+
+
+def tick_step(span: float, most: int) -> float:
+    """Return the finest round number of degrees that divides a span into at most so many parts."""
+    return next((step for step in (*FINE_STEPS, *STEPS) if span <= step * most), STEPS[-1])
+
+
+def ticks(low: float, high: float, most: int) -> tuple[float, ...]:
+    """Return the round degrees between two, at most one more than so many."""
+    step = tick_step(high - low, most)
+    return tuple(index * step for index in range(math.ceil(low / step), math.floor(high / step) + 1))
+
+
+def degrees_text(degrees: float, step: float, letters: str) -> str:
+    """Write a latitude or longitude with the digits that its step needs.
+
+    >>> degrees_text(-8.8, 0.05, "EW"), degrees_text(36.95, 0.05, "NS"), degrees_text(190, 10, "EW")
+    ('8.80°W', '36.95°N', '170°W')
+    """
+    value = turned(degrees) if letters == "EW" else degrees
+    digits = max(0, math.ceil(-math.log10(step) - 1e-9))
+    shown = f"{abs(value):.{digits}f}"
+    letter = "" if float(shown) in (0.0, 180.0) else letters[value < 0]
+    return f"{shown}°{letter}"
+
+
+def scale_length(width: float) -> float:
+    """Return the longest round number of metres, at most a quarter of a view's width."""
+    power = 10.0 ** math.floor(math.log10(width / 4))
+    return max(digit * power for digit in (1, 2, 5) if digit * power <= width / 4)
+
+
+def metres_text(metres: float) -> str:
+    """Write a length.
+
+    >>> metres_text(500.0), metres_text(2400.0), metres_text(5000.0), metres_text(1234567.0)
+    ('500 m', '2.4 km', '5 km', '1,235 km')
+    """
+    if metres < 1000:
+        return f"{metres:,.0f} m"
+    digits = 0 if metres >= 10_000 or metres % 1000 < 50 else 1
+    return f"{metres / 1000:,.{digits}f} km"

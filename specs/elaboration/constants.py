@@ -1,0 +1,37 @@
+"""Values that are fixed in the text: what someone says, what a property compares with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from semantics.values import Truth, Value
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.names import Names
+
+
+def elaborate_constant(node: s.Expression, names: Names, bound: Mapping[str, str] | None = None) -> Value:
+    """Return the value of a constant; reports what is none. `bound` are quantified names."""
+    match node:
+        case s.TextLiteral(text):
+            return text
+        case s.IntegerLiteral(number):
+            return number
+        case s.TruthLiteral(truth):
+            return Truth.of(truth)
+        case s.UnaryOperation("-", s.IntegerLiteral(number)):
+            return -number
+        case s.TupleLiteral(items):
+            return tuple(elaborate_constant(item, names, bound) for item in items)
+        case s.SetLiteral(items):
+            return frozenset(elaborate_constant(item, names, bound) for item in items)
+        case s.Name(name):
+            if bound and name in bound:
+                return bound[name]
+            if name not in names.agents:
+                names.entity(node)
+            return name
+        case _:
+            hint = "write a text, a number, a name, true, false, or a tuple or set of these"
+            names.findings.add(Code.NOT_CONSTANT, node, "this is not a fixed value", hint)
+            return ""

@@ -1,0 +1,173 @@
+"""Drifts: among placements that are listed, and within a place by its finite quotient."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from physical import Geometry, PhysicalError, band_contains, drift_faces, face_at
+from semantics.environment import Drifts
+from semantics.physical_model import Carried, Placed
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.findings import shorten
+from specs.elaboration.geometry import elaborate_placement, moved_to
+from specs.elaboration.names import Names
+from specs.elaboration.places import Mobility, moves
+from specs.elaboration.world import World
+
+LIST_THEM: Final = "list its placements: drifts among ..."
+
+
+@dataclass(slots=True)
+class Spots:
+    """Turns what stands for a placement, written out or a place's name, into one for an entity."""
+
+    names: Names
+    world: World
+
+    def placed(self, spot: s.Placement | s.Name, entity: str) -> Placed | None:
+        """Return the placement; a named place and a mere point give the entity's shape with its centre there."""
+        shape = self.world.shape(entity)
+        if isinstance(spot, s.Placement):
+            placed = elaborate_placement(spot, self.names.findings)
+            if placed is None or shape is None:
+                return placed
+            altitude = placed.altitude or shape.altitude
+            translated = placed.geometry.is_point and not shape.geometry.is_point
+            geometry = self._translated(shape, placed.geometry, spot) if translated else placed.geometry
+            return geometry and Placed(geometry, altitude)
+        if self.names.entity(spot) is None:
+            return None
+        place = self.world.position(spot.text)
+        if place is None:
+            if spot.text in self.world.absent:
+                message = f"'{spot.text}' is absent at first, so it has no centre"
+                self.names.findings.add(Code.NO_WHEREABOUTS, spot, message, "write the placement out")
+            return None
+        geometry = self._translated(shape, place.geometry, spot)
+        return geometry and Placed(geometry, shape.altitude if shape else None)
+
+    def _translated(self, shape: Placed | None, to: Geometry, where: s.Node) -> Geometry | None:
+        try:
+            return moved_to(shape, to).geometry
+        except PhysicalError as error:
+            self.names.findings.add(Code.BAD_GEOMETRY, where, error.message, error.hint)
+            return None
+
+    def check_different(self, spots: Sequence[s.Node], placements: Sequence[object]) -> None:
+        """Report placements that are listed twice."""
+        seen: set[object] = set()
+        for spot, placement in zip(spots, placements, strict=True):
+            if placement is not None and placement in seen:
+                hint = "leave one of the two out"
+                self.names.findings.add(Code.SAME_PLACEMENT, spot, "this placement is listed before", hint)
+            seen.add(placement)
+
+    def called(self, spot: s.Node) -> str:
+        """Return what a placement is called: its text."""
+        text = self.names.findings.source.text[spot.span.start : spot.span.end]
+        return shorten(" ".join(text.split()))
+
+
+def drifts_among(clause: s.DriftsAmong, spots: Spots) -> Drifts | None:
+    """Return the drift among listed placements, from each to each other."""
+    if spots.names.entity(clause.entity) is None:
+        return None
+    placements = [spots.placed(spot, clause.entity.text) for spot in clause.placements]
+    spots.check_different(clause.placements, placements)
+    found = tuple(placement for placement in placements if placement is not None)
+    every = tuple(range(len(found)))
+    others = tuple(tuple(to for to in every if to != at) for at in every)
+    called = tuple(map(spots.called, clause.placements))
+    return Drifts(clause.entity.text, found, called, others, every) if len(found) == len(placements) else None
+
+
+def drifts_within(
+    clause: s.DriftsWithin, spots: Spots, mobility: Mobility, clauses: Sequence[s.EnvironmentClause]
+) -> Drifts | None:
+    """Return the drift within a place by its faces; reports one that would not be exact."""
+    names, world = spots.names, spots.world
+    if names.entity(clause.entity) is None or names.entity(clause.place) is None:
+        return None
+    reason = _inexact(clause, spots, mobility, clauses)
+    if reason:
+        names.findings.add(Code.INEXACT_DRIFT, clause, reason, LIST_THEM)
+        return None
+    here, within = world.placements.get(clause.entity.text), world.placements.get(clause.place.text)
+    if not isinstance(here, Placed) or not isinstance(within, Placed):
+        return None
+    places = dict(_arrangement(clause.entity.text, here, spots, mobility, clauses))
+    try:
+        faces = drift_faces(here.geometry, within.geometry, places)
+        at = face_at(here.geometry, within.geometry, places)
+    except PhysicalError as error:
+        names.findings.add(Code.INEXACT_DRIFT, clause, error.message, error.hint or LIST_THEM)
+        return None
+    if at is None:
+        message = f"'{clause.entity.text}' is not within '{clause.place.text}' at first"
+        names.findings.add(Code.INEXACT_DRIFT, clause.place, message, "put it there, or choose another place")
+        return None
+    world.notes.append(f"borders are left out of the drift of {clause.entity.text}")
+    placements = tuple(Placed(face.representative, here.altitude) for face in faces)
+    called = tuple(_face(clause.place.text, face.inside) for face in faces)
+    return Drifts(clause.entity.text, placements, called, tuple(face.adjacent for face in faces), faces[at].adjacent)
+
+
+def _face(within: str, inside: tuple[str, ...]) -> str:
+    others = [name for name in inside if name != within]
+    return " and ".join([f"somewhere in {within}", *others])
+
+
+def _inexact(
+    clause: s.DriftsWithin, spots: Spots, mobility: Mobility, clauses: Sequence[s.EnvironmentClause]
+) -> str:
+    """Say why a drift within a place would not be exact."""
+    names, world = spots.names, spots.world
+    entity, place = clause.entity.text, clause.place.text
+    here, within, kind = world.placements.get(entity), world.placements.get(place), names.kinds[entity]
+    if not isinstance(here, Placed):
+        return f"'{entity}' is {'carried' if isinstance(here, Carried) else 'absent'} at first"
+    if entity in mobility.coming and any(isinstance(c, s.Appears) and c.entity.text == entity for c in clauses):
+        return f"'{entity}' also appears elsewhere"
+    if names.signature[kind].driven:
+        return f"'{entity}' is not only drifting: its kind {kind} is driven"
+    if not isinstance(within, Placed) or within.geometry.is_point:
+        return f"'{place}' is no place with a border that is there at first"
+    if moves(place, names, mobility):
+        return f"'{place}' may move itself"
+    inside = [other for other, of in sorted(names.kinds.items()) if of in names.signature[kind].contains and other != entity]
+    if inside and not here.geometry.is_point:
+        return f"'{entity}' may itself contain '{inside[0]}'"
+    swallowing = next((o for o in _containers(entity, names) if _roams(o, spots, mobility, clauses)), None)
+    return f"'{swallowing}', which may contain it, moves too" if swallowing else ""
+
+
+def _containers(entity: str, names: Names) -> list[str]:
+    kind = names.kinds[entity]
+    return [name for name, of in sorted(names.kinds.items()) if kind in names.signature[of].contains and name != entity]
+
+
+def _roams(name: str, spots: Spots, mobility: Mobility, clauses: Sequence[s.EnvironmentClause]) -> bool:
+    """Tell whether a polygon may be in places that are not listed."""
+    shape = spots.world.shape(name)
+    if shape is not None and shape.geometry.is_point and name not in mobility.drifting | mobility.coming:
+        return False
+    within = any(isinstance(clause, s.DriftsWithin) and clause.entity.text == name for clause in clauses)
+    return within or spots.names.signature[spots.names.kinds[name]].driven or name in mobility.carried
+
+
+def _arrangement(
+    entity: str, here: Placed, spots: Spots, mobility: Mobility, clauses: Sequence[s.EnvironmentClause]
+) -> Iterator[tuple[str, Geometry]]:
+    """Yield all polygons that may ever contain an entity: where they are, and where it is listed that they may be."""
+    for name in _containers(entity, spots.names):
+        where = [(name, spots.world.placements.get(name))]
+        for clause in clauses:
+            if isinstance(clause, s.DriftsAmong | s.Appears) and clause.entity.text == name:
+                listed = [spots.placed(spot, name) for spot in clause.placements]
+                where += [(f"{name} ({number})", placed) for number, placed in enumerate(listed, 1)]
+        for called, placed in where:
+            if isinstance(placed, Placed) and not placed.geometry.is_point and band_contains(placed.altitude, here.altitude):
+                yield called, placed.geometry

@@ -1,0 +1,166 @@
+"""The environment phase: what may happen without an agent."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from semantics.environment import Appears, Clause, Drops, Leaves, Says, Vanishes
+from semantics.physical_model import Carried, Placed
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.constants import elaborate_constant
+from specs.elaboration.drifts import Spots, drifts_among, drifts_within
+from specs.elaboration.names import Names
+from specs.elaboration.places import Mobility, carries
+from specs.elaboration.world import World
+
+
+@dataclass(slots=True)
+class _Clauses:
+    """What the phase knows and gathers."""
+
+    names: Names
+    world: World
+    mobility: Mobility
+    spots: Spots
+    all: tuple[s.EnvironmentClause, ...]
+    arriving: set[str] = field(default_factory=set)
+
+
+def elaborate_environment(
+    mission: s.Mission, names: Names, world: World, mobility: Mobility
+) -> tuple[tuple[Clause, ...], frozenset[str]]:
+    """Return the clauses of a mission, and the entities whose flights always end."""
+    written = tuple(clause for section in mission.each(s.Environment) for clause in section.clauses)
+    phase = _Clauses(names, world, mobility, Spots(names, world), written)
+    _check_repeated(phase)
+    clauses = [_CLAUSES[type(clause)](phase, clause) for clause in written]
+    found = tuple(clause for clause in clauses if clause is not None)
+    return found, frozenset(phase.arriving)
+
+
+def appearing_channels(mission: s.Mission, names: Names) -> None:
+    """Declare the channels that only those who appear are on."""
+    for section in mission.each(s.Environment):
+        for clause in section.clauses:
+            for channel in clause.channels if isinstance(clause, s.Appears) else ():
+                if channel.text not in names.channels:
+                    names.channels.add(channel.text)
+                    names.declare("channel", channel.text, channel)
+
+
+def _check_repeated(phase: _Clauses) -> None:
+    seen: set[tuple[object, ...]] = set()
+    for clause in phase.all:
+        match clause:
+            case s.DriftsAmong(entity) | s.DriftsWithin(entity):
+                key, code = ("drifts", entity.text), Code.TWO_DRIFTS
+            case s.Drops(channel):
+                key, code = ("drops", channel.text), Code.REPEATED_SETTING
+            case s.Leaves(entity, channel):
+                key, code = ("leaves", f"{entity.text} {channel.text}"), Code.REPEATED_SETTING
+            case s.Appears(entity):
+                key, code = ("appears", entity.text), Code.REPEATED_SETTING
+            case s.Vanishes(entity):
+                key, code = ("vanishes", entity.text), Code.REPEATED_SETTING
+            case _:
+                continue
+        if key in seen:
+            phase.names.findings.add(code, clause, f"'{key[1]}' {key[0]} by two clauses", "make one of the two")
+        seen.add(key)
+
+
+def _drifts_among(phase: _Clauses, clause: s.DriftsAmong) -> Clause | None:
+    return drifts_among(clause, phase.spots)
+
+
+def _drifts_within(phase: _Clauses, clause: s.DriftsWithin) -> Clause | None:
+    return drifts_within(clause, phase.spots, phase.mobility, phase.all)
+
+
+def _drops(phase: _Clauses, clause: s.Drops) -> Clause | None:
+    return Drops(clause.channel.text, clause.returns) if phase.names.channel(clause.channel) else None
+
+
+def _leaves(phase: _Clauses, clause: s.Leaves) -> Clause | None:
+    kind, known = phase.names.entity(clause.entity), phase.names.channel(clause.channel)
+    if kind is None or not known:
+        return None
+    entity, channel = clause.entity.text, clause.channel.text
+    appearing = {
+        each.text
+        for other in phase.all
+        if isinstance(other, s.Appears) and other.entity.text == entity
+        for each in other.channels
+    }
+    if clause.returns and channel not in {*phase.world.channels.get(entity, ()), *appearing}:
+        message = f"'{entity}' is not on '{channel}' and cannot return to it"
+        phase.names.findings.add(
+            Code.POINTLESS_CLAUSE, clause, message, f"write 'linked {channel}' where '{entity}' is declared"
+        )
+    return Leaves(entity, channel, clause.returns)
+
+
+def _appears(phase: _Clauses, clause: s.Appears) -> Clause | None:
+    if phase.names.entity(clause.entity) is None:
+        return None
+    entity, world = clause.entity.text, phase.world
+    vanishes = any(isinstance(other, s.Vanishes) and other.entity.text == entity for other in phase.all)
+    if entity not in world.absent and not vanishes:
+        message = f"'{entity}' is there already and never vanishes"
+        hint = "declare it absent, or let it vanish"
+        phase.names.findings.add(Code.POINTLESS_CLAUSE, clause, message, hint)
+    placements = [_spot(phase, spot, entity) for spot in clause.placements]
+    found = [placement for placement in placements if placement is not None]
+    phase.spots.check_different(clause.placements, placements)
+    channels = sorted({channel.text for channel in clause.channels}) or world.channels.get(entity, ())
+    return Appears(entity, tuple(found), tuple(channels)) if found else None
+
+
+def _spot(phase: _Clauses, spot: s.Placement | s.Name, entity: str) -> Placed | Carried | None:
+    if isinstance(spot, s.Name) and carries(phase.names, spot.text, entity):
+        placed = phase.spots.placed(spot, entity)
+        return placed and Carried(spot.text, placed)
+    return phase.spots.placed(spot, entity)
+
+
+def _vanishes(phase: _Clauses, clause: s.Vanishes) -> Clause | None:
+    return Vanishes(clause.entity.text) if phase.names.entity(clause.entity) is not None else None
+
+
+def _says(phase: _Clauses, clause: s.Says) -> Clause | None:
+    message = elaborate_constant(clause.message, phase.names)
+    agents = phase.names.agents
+    if clause.recipient is not None:
+        known = phase.names.agent(clause.recipient)
+        agent = clause.recipient.text
+    else:
+        known, agent = len(agents) == 1, min(agents, default="")
+        if not known:
+            several = f"there are {len(agents)} bigActors" if agents else "there is no bigActor"
+            hint = f"write 'to' and one of {', '.join(sorted(agents)[:5])}" if agents else "declare one"
+            phase.names.findings.add(Code.NO_RECIPIENT, clause, f"nothing says to whom: {several}", hint)
+    return Says(message, agent, clause.times, phase.all.index(clause)) if known else None
+
+
+def _arrives(phase: _Clauses, clause: s.Arrives) -> Clause | None:
+    kind = phase.names.entity(clause.entity)
+    if kind is not None and not phase.names.signature[kind].driven:
+        message = f"'{clause.entity.text}' never flies: nothing can drive its kind {kind}"
+        phase.names.findings.add(Code.POINTLESS_CLAUSE, clause, message, f"declare it: kind {kind} driven")
+    phase.arriving.add(clause.entity.text)
+    return None
+
+
+_CLAUSES: Final[Mapping[type, Callable[[_Clauses, Any], Clause | None]]] = {
+    s.DriftsAmong: _drifts_among,
+    s.DriftsWithin: _drifts_within,
+    s.Drops: _drops,
+    s.Leaves: _leaves,
+    s.Appears: _appears,
+    s.Vanishes: _vanishes,
+    s.Says: _says,
+    s.Arrives: _arrives,
+}

@@ -1,0 +1,173 @@
+"""Worlds from files: GeoJSON, and recordings of AIS as of a time."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Final
+
+from physical import GeoJSONError, Geometry, PhysicalProperty, contains, read_geojson
+from physical.ais_recording import read_recording
+from physical.ais_reports import AisError
+from physical.ais_world import world_at
+from physical.geojson import MAX_BYTES as MAX_GEOJSON
+from physical.mmsi import KINDS
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.findings import shorten
+from specs.elaboration.geometry import elaborate_geometry
+from specs.elaboration.names import Names
+from specs.grammar import RESERVED
+
+GEOJSON: Final = (".geojson", ".json")
+AIS: Final = (".nmea", ".ais", ".txt", ".log")
+_NAME: Final = re.compile(r"[^\W\d_]\w*")
+_CHANNEL: Final = re.compile(r"\w+(?:[:.\-]\w+)*")
+
+
+class Refused(Exception):
+    """A file that cannot be used; what to tell the user."""
+
+    def __init__(self, code: Code, message: str, hint: str = "") -> None:
+        self.code, self.message, self.hint = code, message, hint
+        super().__init__(message)
+
+
+def read_source(
+    entry: s.FromSource, directory: Path, names: Names, notes: list[str]
+) -> tuple[PhysicalProperty, ...]:
+    """Return what a file holds of the world, of kinds of the signature; reports what is wrong, and adds to `notes`."""
+    area = entry.within and elaborate_geometry(entry.within, names.findings)
+    for keep in entry.keep:
+        names.kind(keep.kind)
+    try:
+        found = _read(entry, _locate(entry.file.value, directory), area)
+    except Refused as refused:
+        names.findings.add(refused.code, entry.file, refused.message, refused.hint)
+        return ()
+    _check_keep(entry, found, names)
+    kept = tuple(_kept(found, entry.keep, area))
+    limited = kept if entry.limit is None else kept[: entry.limit]
+    if len(limited) < len(kept):
+        notes.append(
+            f"of the {len(kept)} entities in {entry.file.value} the first {len(limited)} are in the world"
+        )
+    return tuple(item for item in limited if _usable(item, entry, names))
+
+
+def _locate(name: str, directory: Path) -> Path:
+    try:
+        if Path(name).is_absolute() or re.match(r"[A-Za-z]:|[\\/~]", name):
+            raise Refused(
+                Code.UNREADABLE_FILE,
+                f"'{shorten(name)}' is an absolute path",
+                "give it relative to the mission",
+            )
+        path = (directory / name).resolve()
+        if not path.is_file():
+            raise Refused(
+                Code.UNREADABLE_FILE,
+                f"there is no file '{shorten(name)}' beside the mission",
+                "check the path",
+            )
+    except (OSError, ValueError, RuntimeError) as error:
+        raise Refused(Code.UNREADABLE_FILE, f"'{shorten(name)}' is no path of a file") from error
+    return path
+
+
+def _read(entry: s.FromSource, path: Path, area: Geometry | None) -> tuple[PhysicalProperty, ...]:
+    suffix = path.suffix.lower()
+    if suffix in GEOJSON:
+        if entry.time is not None:
+            raise Refused(Code.BAD_FILE, "a GeoJSON file has no times", "leave out 'at'")
+        return tuple(sorted(_geojson(path), key=lambda item: item.entity))
+    if suffix in AIS:
+        return _ais(entry, path, area)
+    known = ", ".join((*GEOJSON, *AIS))
+    raise Refused(
+        Code.BAD_FILE,
+        f"'{shorten(suffix)}' is the ending of no format that is read here",
+        f"they are {known}",
+    )
+
+
+def _geojson(path: Path) -> tuple[PhysicalProperty, ...]:
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_GEOJSON + 1)
+        return read_geojson(data)
+    except OSError as error:
+        raise Refused(Code.UNREADABLE_FILE, f"it cannot be read: {error.strerror or error}") from error
+    except GeoJSONError as error:
+        several = f" (and {len(error.problems) - 1} more)" if len(error.problems) > 1 else ""
+        where = f"{error.where}: " if error.where else ""
+        raise Refused(Code.BAD_FILE, f"{where}{error.message}{several}", error.hint) from error
+
+
+def _ais(entry: s.FromSource, path: Path, area: Geometry | None) -> tuple[PhysicalProperty, ...]:
+    kinds = {keep.recorded.text for keep in entry.keep} or None
+    time = None if entry.time is None else _seconds(entry.time.value)
+    try:
+        return world_at(read_recording(path), time, area, kinds)
+    except AisError as error:
+        code = Code.MISSING_EXTRA if error.code == "ais-extra" else Code.BAD_FILE
+        unread = Code.UNREADABLE_FILE if error.code == "ais-unreadable" else code
+        raise Refused(unread, error.message, error.hint) from error
+
+
+def _seconds(text: str) -> float:
+    try:
+        time = datetime.fromisoformat(text)
+        return (time if time.tzinfo else time.replace(tzinfo=UTC)).timestamp()
+    except (ValueError, OverflowError) as error:
+        hint = "write it as 2020-04-07T21:42:00Z; without a zone it is UTC"
+        raise Refused(Code.BAD_FILE, f"'{shorten(text)}' is no time", hint) from error
+
+
+def _check_keep(entry: s.FromSource, found: tuple[PhysicalProperty, ...], names: Names) -> None:
+    kinds = {item.kind for item in found} | (set(KINDS) if Path(entry.file.value).suffix.lower() in AIS else set())
+    for keep in entry.keep:
+        if keep.recorded.text not in kinds:
+            otherwise = f"its kinds are {', '.join(map(shorten, sorted(kinds)[:10]))}" if kinds else "it is empty"
+            names.findings.unknown(
+                keep.recorded, kinds, sort="kind of the file", code=Code.UNKNOWN_KIND, otherwise=otherwise
+            )
+
+
+def _kept(
+    found: tuple[PhysicalProperty, ...], keep: tuple[s.Keep, ...], area: Geometry | None
+) -> Iterator[PhysicalProperty]:
+    kinds = {each.recorded.text: each.kind.text for each in keep}
+    for item in found:
+        if (not keep or item.kind in kinds) and (area is None or contains(area, item.geometry)):
+            yield replace(item, kind=kinds.get(item.kind, item.kind))
+
+
+def _usable(item: PhysicalProperty, entry: s.FromSource, names: Names) -> bool:
+    if not _NAME.fullmatch(item.entity) or item.entity in RESERVED:
+        message = f"the file names an entity '{shorten(item.entity)}', which cannot be written in a mission"
+        hint = "rename it there: letters, digits and _, a letter first"
+        names.findings.add(Code.UNUSABLE_NAME, entry.file, message, hint)
+        return False
+    odd = next((channel for channel in item.channels if not _CHANNEL.fullmatch(channel)), None)
+    if odd is not None:
+        message = f"the file names a channel '{shorten(odd)}', which cannot be written in a mission"
+        names.findings.add(
+            Code.UNUSABLE_NAME, entry.file, message, "rename it there: such as wifi or control:gcs0"
+        )
+        return False
+    if item.kind not in names.signature.kinds and not entry.keep:
+        message = f"the file has entities of a kind '{shorten(item.kind)}' that the signature does not have"
+        hint = names.findings.suggest(item.kind, names.signature.kinds)
+        hint = f"declare it, or choose: keep {item.kind} as {_example(hint, names)}"
+        names.findings.add(Code.UNKNOWN_KIND, entry.file, message, hint)
+        return False
+    return True
+
+
+def _example(hint: str, names: Names) -> str:
+    meant = re.search(r"'(.+)'", hint)
+    return meant[1] if meant else min(names.signature.kinds, default="Place")

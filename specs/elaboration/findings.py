@@ -1,0 +1,80 @@
+"""The mistakes found so far: every phase adds to them, and none stops at the first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import Final
+
+from specs.codes import Code
+from specs.diagnostics import Diagnostic, MissionError, Source
+from specs.syntax import Name, Node, Span
+
+MOST_SHOWN: Final = 100
+MOST_SUGGESTIONS: Final = 50
+MOST_COMPARED: Final = 2_000
+LONGEST: Final = 60
+
+
+class Findings:
+    """Collects the mistakes of one mission."""
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self._found: dict[Diagnostic, None] = {}
+        self._suggested = 0
+
+    def __bool__(self) -> bool:
+        return bool(self._found)
+
+    def add(self, code: Code, where: Node | Span, message: str, hint: str = "") -> None:
+        """Note a mistake, once."""
+        span = where if isinstance(where, Span) else where.span
+        self._found.setdefault(Diagnostic(code, span, message, hint))
+
+    def unknown(
+        self,
+        name: Name,
+        among: Iterable[str],
+        *,
+        sort: str = "name",
+        code: Code = Code.UNKNOWN_NAME,
+        otherwise: str = "",
+    ) -> None:
+        """Note a name that means nothing, and what may have been meant; else hint at `otherwise`."""
+        hint = self.suggest(name.text, among) or otherwise
+        self.add(code, name, f"unknown {sort} '{shorten(name.text)}'", hint)
+
+    def suggest(self, word: str, among: Iterable[str]) -> str:
+        """Return `did you mean ...?`, or nothing; after fifty it isn't asked any more, since it is slow."""
+        self._suggested += 1
+        if self._suggested > MOST_SUGGESTIONS or len(word) > LONGEST:
+            return ""
+        candidates = {one.lower(): one for one in sorted(set(among))[:MOST_COMPARED] if len(one) <= LONGEST}
+        close = get_close_matches(word.lower(), candidates, 1, 0.6)
+        return f"did you mean '{candidates[close[0]]}'?" if close else ""
+
+    def error(self) -> MissionError:
+        """Return the mistakes as one error, by position: the first hundred, and how many more there are."""
+        found = MissionError(self.source, self._found).diagnostics
+        shown, more = found[:MOST_SHOWN], found[MOST_SHOWN:]
+        if more:
+            rest = Diagnostic(Code.TOO_MANY_MISTAKES, more[0].span, f"{len(more)} more mistakes from here on")
+            shown = (*shown, rest)
+        return MissionError(self.source, shown)
+
+
+def shorten(text: str) -> str:
+    """Cut a long word for a message."""
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
+
+
+def a(word: str) -> str:
+    """Put the article before a word.
+
+    >>> a("OilSpill"), a("UAV"), a("Vessel")
+    ('an OilSpill', 'a UAV', 'a Vessel')
+    """
+    spelt = word[1:2].isupper()
+    vowel = word[:1] in "AEFHILMNORSX" if spelt else word[:1].lower() in "aeiou"
+    return f"an {word}" if vowel else f"a {word}"

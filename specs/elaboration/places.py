@@ -1,0 +1,76 @@
+"""Which entities can move at all, and whether the places that cannot nest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from physical import Place, check_places
+from semantics.physical_model import Carried, Placed
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.names import Names
+from specs.elaboration.world import World
+
+
+@dataclass(slots=True)
+class Mobility:
+    """Who moves, and how.
+
+    Attributes:
+        drifting: Entities that drift.
+        coming: Entities that appear or vanish.
+        carried: Entities that may be carried: at first, or when they appear, or because they can be loaded.
+    """
+
+    drifting: set[str] = field(default_factory=set)
+    coming: set[str] = field(default_factory=set)
+    carried: set[str] = field(default_factory=set)
+
+
+def elaborate_mobility(mission: s.Mission, names: Names, world: World) -> Mobility:
+    """Gather who moves from the world and the environment section."""
+    clauses = [clause for section in mission.each(s.Environment) for clause in section.clauses]
+    found = Mobility()
+    found.drifting = {each.entity.text for each in clauses if isinstance(each, s.DriftsAmong | s.DriftsWithin)}
+    found.coming = {each.entity.text for each in clauses if isinstance(each, s.Appears | s.Vanishes)}
+    found.carried = {name for name, placement in world.placements.items() if isinstance(placement, Carried)}
+    for each in clauses:
+        spots = each.placements if isinstance(each, s.Appears) else ()
+        if any(isinstance(spot, s.Name) and carries(names, spot.text, each.entity.text) for spot in spots):
+            found.carried.add(each.entity.text)
+    return found
+
+
+def carries(names: Names, carrier: str, name: str) -> bool:
+    """Tell whether one entity's kind carries another's."""
+    kind = names.kinds.get(carrier)
+    return kind is not None and names.kinds.get(name) in names.signature[kind].carries
+
+
+def moves(name: str, names: Names, mobility: Mobility) -> bool:
+    """Tell whether an entity may be somewhere else later: driven, carried or drifting."""
+    kind = names.kinds[name]
+    return names.signature[kind].driven or name in mobility.drifting or name in mobility.carried
+
+
+def fixed_entities(names: Names, mobility: Mobility) -> frozenset[str]:
+    """Return the entities whose place neither agents nor the environment can ever change."""
+    return frozenset(
+        name for name in names.kinds if name not in mobility.coming and not moves(name, names, mobility)
+    )
+
+
+def check_nesting(names: Names, world: World, mobility: Mobility) -> None:
+    """Report every two places that never move and neither nest nor are apart."""
+    places = {
+        name: Place(placement.geometry, placement.altitude)
+        for name, placement in world.placements.items()
+        if isinstance(placement, Placed)
+        and not placement.geometry.is_point
+        and names.signature[names.kinds[name]].contains
+        and not moves(name, names, mobility)
+    }
+    for conflict in check_places(places):
+        spans = [names.spans["entity", name] for name in (conflict.first, conflict.second)]
+        hint = "places must nest or be apart: change one of the two"
+        names.findings.add(Code.PLACES_OVERLAP, max(spans), str(conflict), hint)

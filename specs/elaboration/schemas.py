@@ -1,0 +1,128 @@
+"""Reaction rules as elaborated: a pattern on each side, open in the host and the parameters."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+from semantics.expressions import Fault
+from semantics.reactions import NodeTerm, NodeVariable, Pattern, PlaceTerm, PlaceVariable, Reaction
+from semantics.signature import Name
+from semantics.values import Value, show
+from specs import syntax as s
+
+HOST: Final = "HOST"
+"""Stands for the agent's host in a schema; no entity has this name, since it is reserved."""
+
+_WORD: Final = re.compile(r"[^\W\d]\w*")
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter of a rule: the name that it stands as in the patterns (`u#`), and its kind, if that is known."""
+
+    name: str
+    kind: str | None
+
+    @property
+    def shown(self) -> str:
+        """The parameter as the programmer wrote it."""
+        return self.name.removesuffix("#")
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """A node that gets another parent, and where the reactum says so."""
+
+    node: NodeTerm
+    place: PlaceTerm
+    where: s.Span
+
+
+@dataclass(frozen=True)
+class Schema:
+    """A rule of which `HOST` and the parameters are still open.
+
+    Attributes:
+        name: Its name; empty for one written in the control itself.
+        text: The body of one without a name.
+        words: For each word of that text that is open, what it stands for and the rest of the word.
+        kinds: The kind of each term of the redex, as far as it is known.
+    """
+
+    name: str
+    text: str
+    parameters: tuple[Parameter, ...]
+    redex: Pattern
+    reactum: Pattern
+    moves: tuple[Moved, ...] = ()
+    words: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    kinds: Mapping[NodeTerm, str | None] = field(default_factory=dict)
+
+    def involves(self, host: Name, kind: str, arguments: Mapping[str, Name]) -> bool:
+        """Tell whether the redex can involve a host of a kind, given the arguments that are known."""
+        for term in self.redex.nodes:
+            if isinstance(term, NodeVariable):
+                if term.kind in (None, kind):
+                    return True
+            elif term == HOST or arguments.get(term, term) == host:
+                return True
+            elif term.endswith("#") and term not in arguments and self.kinds.get(term) in (None, kind):
+                return True
+        return False
+
+
+@dataclass(frozen=True, slots=True)
+class Maker:
+    """Makes the reactions of a schema: what `Program.reactions` holds for a rule."""
+
+    schema: Schema
+    kinds: Mapping[Name, str]
+
+    def __call__(self, host: Name, *arguments: Value) -> Reaction:
+        """Return R ⇒ R'.
+
+        Raises:
+            Fault: An argument is no node, or one of another kind.
+        """
+        schema = self.schema
+        given = zip(schema.parameters, arguments, strict=True)
+        values = {parameter.name: self._node(parameter, value) for parameter, value in given} | {HOST: host}
+        text = self._text(values)
+        return Reaction(text, _put(schema.redex, values), _put(schema.reactum, values))
+
+    def _node(self, parameter: Parameter, value: Value) -> Name:
+        shown = show(value, frozenset(self.kinds))
+        if not isinstance(value, str) or value not in self.kinds:
+            raise Fault(f"a node was expected for {parameter.shown}, not {shown}")
+        if parameter.kind is not None and self.kinds[value] != parameter.kind:
+            raise Fault(f"{parameter.shown} is of kind {parameter.kind}, and {shown} is of kind {self.kinds[value]}")
+        return value
+
+    def _text(self, values: Mapping[str, Name]) -> str:
+        schema = self.schema
+        if schema.name:
+            return f"{schema.name}({', '.join(values[each.name] for each in schema.parameters)})"
+
+        def word(found: re.Match[str]) -> str:
+            stands, rest = schema.words.get(found[0], ("", ""))
+            return values[stands] + rest if stands else found[0]
+
+        return _WORD.sub(word, schema.text)
+
+
+def _put(pattern: Pattern, values: Mapping[str, Name]) -> Pattern:
+    def node(term: NodeTerm) -> NodeTerm:
+        return values.get(term, term) if isinstance(term, str) else term
+
+    def place(term: PlaceTerm) -> PlaceTerm:
+        return term if isinstance(term, PlaceVariable) else node(term)
+
+    return Pattern(
+        tuple(map(node, pattern.nodes)),
+        tuple((node(child), place(parent)) for child, parent in pattern.parents),
+        tuple((link, node(point)) for link, point in pattern.links),
+        tuple(map(node, pattern.closed)),
+    )

@@ -1,0 +1,191 @@
+"""The world phase: entities, where they are, what carries them, and their channels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+from physical import centroid, point
+from semantics.physical_model import Carried, Placed, Placement
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.files import read_source
+from specs.elaboration.findings import a
+from specs.elaboration.geometry import elaborate_placement
+from specs.elaboration.names import Names
+
+MOST_ENTITIES: Final = 2_000
+_NOWHERE: Final = point(0, 0)
+
+
+@dataclass(slots=True)
+class World:
+    """P at first, and what is known of entities that are not there yet.
+
+    Attributes:
+        placements: Where each entity is that is there.
+        channels: The channels of each entity, of absent ones too.
+        absent: Entities that are declared and not there.
+        notes: What a verdict has to say of the world.
+    """
+
+    placements: dict[str, Placement] = field(default_factory=dict)
+    channels: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    absent: set[str] = field(default_factory=set)
+    notes: list[str] = field(default_factory=list)
+
+    def position(self, entity: str) -> Placed | None:
+        """Return where an entity is, or its outermost carrier."""
+        seen: set[str] = set()
+        placement = self.placements.get(entity)
+        while isinstance(placement, Carried) and placement.by not in seen:
+            seen.add(placement.by)
+            placement = self.placements.get(placement.by)
+        return placement if isinstance(placement, Placed) else None
+
+    def shape(self, entity: str) -> Placed | None:
+        """Return what an entity takes up, wherever it is."""
+        placement = self.placements.get(entity)
+        return (
+            placement.shape
+            if isinstance(placement, Carried)
+            else placement
+            if isinstance(placement, Placed)
+            else None
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Load:
+    """Who is carried by whom, and where that is said."""
+
+    name: str
+    by: str
+    where: s.Node
+    shape: Placed | None
+
+
+def elaborate_world(mission: s.Mission, names: Names, directory: Path) -> World:
+    """Declare all entities and channels, and return P."""
+    world, loads = World(), list[_Load]()
+    entries = [entry for section in mission.each(s.World) for entry in section.entries]
+    for entry in entries:
+        if isinstance(entry, s.Entity):
+            loads += _entity(entry, names, world)
+        elif isinstance(entry, s.FromSource):
+            loads += _from_file(entry, names, world, directory)
+    for entry in entries:
+        if isinstance(entry, s.ChannelDeclaration):
+            names.channels.add(entry.name.text)
+            names.declare("channel", entry.name.text, entry.name)
+        elif isinstance(entry, s.Entity):
+            _join(entry.channels, names)
+    if len(names.kinds) > MOST_ENTITIES:
+        first = entries[0] if entries else mission
+        message = f"the mission has {len(names.kinds):,} entities, more than {MOST_ENTITIES:,}"
+        names.findings.add(Code.TOO_MANY_ENTITIES, first, message, "keep what matters: within, keep, limit")
+    _load(loads, names, world)
+    return world
+
+
+def _join(channels: tuple[s.Name, ...], names: Names) -> None:
+    for channel in channels:
+        if channel.text not in names.channels:
+            names.channels.add(channel.text)
+            names.declare("channel", channel.text, channel)
+
+
+def _entity(entry: s.Entity, names: Names, world: World) -> Iterator[_Load]:
+    name = entry.name.text
+    names.kind(entry.kind)
+    placed = entry.placement and elaborate_placement(entry.placement, names.findings)
+    if not names.declare("entity", name, entry.name):
+        return
+    names.kinds[name] = entry.kind.text
+    world.channels[name] = tuple(sorted({channel.text for channel in entry.channels}))
+    if entry.absent:
+        world.absent.add(name)
+    if problem := _whereabouts(entry):
+        names.findings.add(Code.NO_WHEREABOUTS, entry.name, *problem)
+    elif entry.carrier is not None:
+        yield _Load(name, entry.carrier.text, entry.carrier, placed)
+    elif placed is not None:
+        world.placements[name] = placed
+
+
+def _whereabouts(entry: s.Entity) -> tuple[str, str] | None:
+    name = entry.name.text
+    if entry.absent and (entry.placement or entry.carrier):
+        return (
+            f"'{name}' is absent and yet somewhere",
+            f"say where it may appear: environment {{ {name} appears at ... }}",
+        )
+    if not entry.absent and entry.placement is None and entry.carrier is None:
+        return (
+            f"nothing says where '{name}' is",
+            "write '= point (latitude, longitude)', 'carried by' or 'absent'",
+        )
+    return None
+
+
+def _from_file(entry: s.FromSource, names: Names, world: World, directory: Path) -> Iterator[_Load]:
+    found = read_source(entry, directory, names, world.notes)
+    for item in found:
+        if names.declare("entity", item.entity, entry.file):
+            names.kinds[item.entity] = item.kind
+            world.channels[item.entity] = item.channels
+            placed = Placed(item.geometry, item.altitude)
+            if item.carried_by is None:
+                world.placements[item.entity] = placed
+            else:
+                yield _Load(item.entity, item.carried_by, entry.file, placed)
+    for channel in sorted({channel for item in found for channel in item.channels}):
+        _join((s.Name(channel, span=entry.file.span),), names)
+
+
+# --- what is carried ------------------------------------------------------------------------------------------
+
+
+def _load(loads: list[_Load], names: Names, world: World) -> None:
+    sound = [load for load in loads if _check_load(load, names, world)]
+    by = {load.name: load.by for load in sound}
+    for load in sound:
+        if _is_cyclic(load.name, by):
+            message = f"'{load.name}' is carried by '{load.by}', which is carried by it"
+            hint = "break the circle: one of them is carried by nothing"
+            names.findings.add(Code.CYCLIC_NESTING, load.where, message, hint)
+        else:
+            world.placements[load.name] = Carried(load.by, load.shape or Placed(_NOWHERE))
+    for load in sound:
+        here = world.position(load.name)
+        if load.shape is None and here is not None and load.name in world.placements:
+            world.placements[load.name] = Carried(load.by, Placed(centroid(here.geometry)))
+
+
+def _check_load(load: _Load, names: Names, world: World) -> bool:
+    kind = names.entity(
+        load.where if isinstance(load.where, s.Name) else s.Name(load.by, span=load.where.span)
+    )
+    if kind is None:
+        return False
+    cargo = names.kinds[load.name]
+    if cargo not in names.signature[kind].carries:
+        message = f"'{load.by}' is {a(kind)}, which does not carry {a(cargo)}"
+        names.findings.add(Code.BAD_CARRIER, load.where, message, f"declare it: kind {kind} carries {cargo}")
+        return False
+    if load.by in world.absent:
+        message = f"'{load.name}' is carried by '{load.by}', which is absent"
+        names.findings.add(Code.BAD_CARRIER, load.where, message, f"make '{load.name}' absent too")
+        return False
+    return True
+
+
+def _is_cyclic(start: str, by: Mapping[str, str]) -> bool:
+    slow = fast = start
+    while fast in by and by[fast] in by:
+        slow, fast = by[slow], by[by[fast]]
+        if slow == fast:
+            return True
+    return False

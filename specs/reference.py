@@ -1,0 +1,255 @@
+"""The reference of the mission language, generated from the grammar and the docstrings of the syntax tree."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Iterator
+from typing import Final
+
+from specs import syntax as s
+from specs.codes import code_table
+from specs.grammar import RESERVED, grammar_text
+
+INTRODUCTION: Final = """\
+# The mission language
+
+A mission is one text file in UTF-8. White space and line ends separate words and mean nothing else, outside
+strings; `//` and `#` begin comments that reach to the end of the line; `;` may stand between declarations and
+between statements. A program pasted from print with its line numbers, such as the paper's Figure 8, is read
+without them.
+
+Files over a megabyte, words over ten kilobytes, more than sixty thousand words and nesting over two hundred are
+refused.
+
+The grammar of each part is shown in EBNF: words in quotes are literal, `[x]` may be missing, `x*` may repeat, `x+`
+repeats at least once. `bigactors fmt` writes any mission in the layout used here.
+"""
+
+WORDS: Final = r"""A name is a letter, then letters, digits and underscores. A channel's name may begin with a digit
+and have `:`, `-` and `.` between its parts: `control:gcs0`, `3g`, `wifi-1`. A number is decimal: `37.04`, `4e2`. A
+string stands in double quotes, with `\"`, `\\`, `\n` and `\t` in it. These words cannot be names:
+"""
+
+MISTAKES: Final = "`bigactors explain CODE` prints one of these.\n"
+
+# For each heading of the grammar: what is shown under it, and a mission that uses it.
+NODES: Final[dict[str, tuple[type[s.Node], ...]]] = {
+    "Missions": (s.Mission,),
+    "Signature": (s.Signature, s.Kind),
+    "World": (s.World, s.Entity, s.ChannelDeclaration, s.FromSource, s.Keep),
+    "Geometry": (s.Point, s.Box, s.Polygon, s.Circle, s.AltitudeBand, s.Length, s.Coordinate, s.Placement),
+    "Beliefs": (s.Believes, s.BelievedIn, s.BelievedUnknown, s.BelievedLinked),
+    "Reaction rules": (s.Rule, s.Parameter, s.RuleBody),
+    "Behaviours and bigActors": (s.Definition, s.BigActor),
+    "Statements": (
+        s.Observe,
+        s.Control,
+        s.React,
+        s.Send,
+        s.Migrate,
+        s.Spawn,
+        s.Display,
+        s.Let,
+        s.Assign,
+        s.If,
+        s.Loop,
+        s.While,
+        s.For,
+        s.Match,
+        s.Choose,
+        s.Alternative,
+        s.ChooseFrom,
+        s.Call,
+        s.Skip,
+    ),
+    "Patterns": (
+        s.Case,
+        s.ObservationPattern,
+        s.MessagePattern,
+        s.VariablePattern,
+        s.Wildcard,
+        s.LiteralPattern,
+        s.ConstantPattern,
+        s.TuplePattern,
+    ),
+    "Queries": (s.HostReference, s.AllNodes, s.QueryApplication),
+    "Control actions": (s.MoveHost, s.Move, s.Connect, s.Disconnect, s.HandOver, s.Put, s.ApplyRule),
+    "Expressions": (
+        s.Name,
+        s.TextLiteral,
+        s.IntegerLiteral,
+        s.TruthLiteral,
+        s.SelfReference,
+        s.TupleLiteral,
+        s.SetLiteral,
+        s.UnaryOperation,
+        s.BinaryOperation,
+        s.OfKind,
+        s.FunctionCall,
+    ),
+    "Environment": (
+        s.Environment,
+        s.DriftsAmong,
+        s.DriftsWithin,
+        s.Drops,
+        s.Leaves,
+        s.Appears,
+        s.Vanishes,
+        s.Says,
+        s.Arrives,
+    ),
+    "Scheduler and control": (s.Scheduler, s.ControlMode),
+    "Checks": (s.Check, s.StandardProperty, s.Invariant, s.Reachable),
+    "Formulas": (
+        s.Inside,
+        s.LinkedTo,
+        s.Present,
+        s.Known,
+        s.Pending,
+        s.Ended,
+        s.Waiting,
+        s.HostedAt,
+        s.SameName,
+        s.Stored,
+        s.Negation,
+        s.Connective,
+        s.Quantified,
+    ),
+}
+
+EXAMPLES: Final[dict[str, str]] = {
+    "Signature": """\
+signature {
+  kind Location contains Location, OilSpill, UAV, Vessel
+  kind OilSpill contains UAV, Drifter
+  kind UAV driven
+  kind Vessel driven carries Drifter
+  kind Drifter
+}
+""",
+    "World": """\
+world {
+  searchArea0: Location = box (37.04, -8.59) (36.94, -8.79)  // (latitude, longitude)
+  uav0: UAV = point (37.08, -8.55) altitude 100 m to 300 m linked control:gcs0, wifi
+  drifter0: Drifter carried by vessel0
+  tanker0: Vessel absent
+  from "harbour.geojson"
+}
+""",
+    "Beliefs": """\
+believes {
+  uav0 in searchArea0
+  oilSpill0 in region
+  uav1 linked wifi
+  uav2 unlinked
+}
+""",
+    "Reaction rules": """\
+rule land(u: UAV, b: Location) { u[c] || b.$0 -> b.(u[c] | $0) }
+""",
+    "Behaviours and bigActors": """\
+def visit(place) = {
+  control(MOVE_HOST_TO place)
+  observe(CHILDREN(PARENT(HOST)))
+}
+
+BigActor a hosted_at uav0 with_behavior {
+  visit(searchArea0)
+  react {
+    case obs: Observation if oilSpill0 in obs => control(MOVE_HOST_TO oilSpill0)
+    case "home" => visit(base0)
+  }
+}
+""",
+    "Statements": """\
+def patrol(places) = {
+  for place in places {
+    choose {
+      case => control(MOVE_HOST_TO place)
+      case => skip
+    }
+    observe(CHILDREN(PARENT(HOST)))
+    react {
+      case obs: Observation =>
+        let seen = obs of Vessel
+        if not empty(seen) {
+          send ("seen", first(seen)) to leader
+        } else {
+          display(obs)
+        }
+    }
+  }
+}
+""",
+    "Environment": """\
+environment {
+  oilSpill0 drifts among circle (37, -8.7) radius 400 m, circle (37.01, -8.72) radius 400 m
+  boat0 drifts within harbour0
+  wifi drops and returns
+  uav0 leaves wifi
+  tanker0 appears at point (37, -8.7) linked ais
+  says "handover" to a at most 3 times
+  uav0 arrives
+}
+""",
+    "Checks": """\
+check {
+  local_consistency
+  race_freedom
+  invariant "one at a time": forall x: UAV . x in basin0 -> not pending a
+  reachable "found": uav0 in oilSpill0 and a.found == true
+}
+""",
+}
+
+_HEADING: Final = re.compile(r"^//: (.+)$", re.MULTILINE)
+_RULE_CLEANUPS: Final = (
+    (re.compile(r' \| ";"'), ""),  # separators
+    (re.compile(r" -> \w+"), ""),  # names of alternatives
+    (re.compile(r"\((\w+)\)([*+])"), r"\1\2"),
+    (re.compile(r"(?<![\w\"])[?_](?=[a-z])"), ""),  # what a rule leaves in the tree
+)
+
+
+def language_reference() -> str:
+    """Return the reference page, in Markdown."""
+    parts = [INTRODUCTION]
+    for heading, rules in grammar_parts():
+        if heading in NODES:
+            parts += [f"## {heading}\n", *_constructs(heading), _fenced(rules, "ebnf")]
+        if heading in EXAMPLES:
+            parts += ["Example:\n", _fenced(EXAMPLES[heading], "mission")]
+    reserved = ", ".join(f"`{word}`" for word in sorted(RESERVED))
+    parts += ["## Words\n", WORDS, f"{reserved}\n", "## Mistakes\n", MISTAKES, code_table()]
+    return "\n".join(parts)
+
+
+def grammar_parts() -> Iterator[tuple[str, str]]:
+    """Yield the headings of the grammar with their rules, as a reader wants them."""
+    _, *parts = _HEADING.split(grammar_text())
+    for heading, rules in zip(parts[::2], parts[1::2], strict=True):
+        shown = rules
+        for pattern, replacement in _RULE_CLEANUPS:
+            shown = pattern.sub(replacement, shown)
+        yield heading, shown.strip() + "\n"
+
+
+def forms(node: type[s.Node]) -> tuple[str, ...]:
+    """Return the concrete syntax that a node's docstring shows, in its first line."""
+    return tuple(re.findall(r"`([^`]+)`", _documentation(node).split("\n", 1)[0]))
+
+
+def _constructs(heading: str) -> Iterator[str]:
+    for node in NODES[heading]:
+        first, _, rest = _documentation(node).partition("\n")
+        yield f"- {first}" + (f" {' '.join(rest.split())}" if rest.strip() else "")
+    yield ""
+
+
+def _documentation(node: type[s.Node]) -> str:
+    return inspect.getdoc(node) or ""
+
+
+def _fenced(text: str, language: str) -> str:
+    return f"```{language}\n{text}```\n"
