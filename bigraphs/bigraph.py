@@ -1,8 +1,9 @@
 """Concrete bigraphs: a place graph and a link graph over the same nodes, as one immutable value.
 
-Places are numbered: a node counts from 0, and region `r` is `~r` (-1, -2, ...), so that a parent is one integer. A link
-is the number of an edge or, as a string, an outer name. A node may have several parents: that is sharing (Sevegnani and
-Calder). A name identifies its node; nodes without a name, and all edges, are anonymous.
+Places are numbered: a node counts from 0, and region `r` is `~r` (-1, -2, ...), so that a parent is one
+integer. A link is the number of an edge or, as a string, an outer name. A node may have several parents: that
+is sharing (Sevegnani and Calder). A name identifies its node; nodes without a name, and all edges, are
+anonymous.
 """
 
 from __future__ import annotations
@@ -36,9 +37,9 @@ class Node:
 class Bigraph:
     """A bigraph in normal order; build it with `assemble`, `from_relations`, the algebra or a notation.
 
-    `sites` holds the parents of each site, `inner_links` the link of each inner name, sorted. Two bigraphs whose nodes
-    all have names are equal if they are the same bigraph; for anonymous nodes compare `canonical` forms. The operators
-    are `|` merge product, `//` parallel product, `*` tensor product, `@` composition.
+    `sites` holds the parents of each site, `inner_links` the link of each inner name, sorted. Two bigraphs
+    whose nodes all have names are equal if they are the same bigraph; for anonymous nodes compare `canonical`
+    forms. The operators are `|` merge product, `//` parallel product, `*` tensor product, `@` composition.
     """
 
     signature: Signature
@@ -148,8 +149,8 @@ def assemble(
 ) -> Bigraph:
     """Return the bigraph in normal order; raises BigraphError if it is none.
 
-    Named nodes come first, sorted by name; anonymous ones follow in the order given. Parents are sorted, and edges are
-    numbered by their points, so that the order in which a bigraph was put together leaves no trace.
+    Named nodes come first, sorted by name; anonymous ones follow in the order given. Parents are sorted, and
+    edges are numbered by their points, so that the order in which a bigraph was put together leaves no trace.
     """
     given = Bigraph(
         signature,

@@ -1,9 +1,9 @@
 """Equality up to renaming: an exact canonical form by colour refinement and individualisation.
 
-Named nodes are fixed points. Anonymous nodes are coloured by what they are and touch; where colours leave a tie, each
-tied node is tried, and the least encoding wins. Ties that a symmetry explains are tried once: equal subtrees side by
-side are told apart at the start, and a symmetry found at a leaf prunes what it maps to what was seen (McKay). The
-worst case is exponential, on large strongly regular link graphs.
+Named nodes are fixed points. Anonymous nodes are coloured by what they are and touch; where colours leave a
+tie, each tied node is tried, and the least encoding wins. Ties that a symmetry explains are tried once: equal
+subtrees side by side are told apart at the start, and a symmetry found at a leaf prunes what it maps to what
+was seen (McKay). The worst case is exponential, on large strongly regular link graphs.
 """
 
 from __future__ import annotations

@@ -15,8 +15,9 @@ from bigraphs.matching import Match
 class Parts:
     """What a match leaves around its redex.
 
-    The first regions of `parameter` go into the redex's sites; the `spare` ones after them (only shared places need
-    any) and the names `wires` pass by the redex into `context`. `instance` is the redex with the target's node names.
+    The first regions of `parameter` go into the redex's sites; the `spare` ones after them (only shared
+    places need any) and the names `wires` pass by the redex into `context`. `instance` is the redex with the
+    target's node names.
     """
 
     context: Bigraph

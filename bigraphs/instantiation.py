@@ -12,8 +12,8 @@ from bigraphs.errors import BigraphError
 def instantiate(parameter: Bigraph, regions: Sequence[int], width: int) -> Bigraph:
     """Return a parameter whose region `i` is what region `regions[i]` was; those from `width` on stay, at the end.
 
-    What is in no region any more is gone. Raises BigraphError where a copy would take a named node, or a node that is
-    in another region, too: which of the copies would it be?
+    What is in no region any more is gone. Raises BigraphError where a copy would take a named node, or a node
+    that is in another region, too: which of the copies would it be?
     """
     if list(regions) == list(range(width)):
         return parameter

@@ -1,8 +1,9 @@
 """Matching: every occurrence of a redex in a target, place and link graph together.
 
-An occurrence maps nodes injectively and keeps controls, nesting and links. A node without a site has no further child;
-a closed link is matched by an edge all of whose points are matched; an open link by any other link, which it may share.
-Regions may lie anywhere that is active and neither matched nor below what is matched (Milner's disjointness).
+An occurrence maps nodes injectively and keeps controls, nesting and links. A node without a site has no
+further child; a closed link is matched by an edge all of whose points are matched; an open link by any other
+link, which it may share. Regions may lie anywhere that is active and neither matched nor below what is
+matched (Milner's disjointness).
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ from bigraphs.placement import placements
 class Match:
     """One occurrence of `redex` in `target`.
 
-    `nodes` gives the target node of each redex node, `links` the target link of each redex link, `regions` the places
-    of each region, and `sites` the topmost target nodes in each site.
+    `nodes` gives the target node of each redex node, `links` the target link of each redex link, `regions`
+    the places of each region, and `sites` the topmost target nodes in each site.
     """
 
     redex: Bigraph
@@ -42,9 +43,9 @@ def find_matches(
 ) -> Iterator[Match]:
     """Yield every occurrence once, in one order.
 
-    A redex node matches its namesake, or any node if it is anonymous or a variable; an outer name matches any link, or
-    its namesake if it is a constant. Raises BigraphError if the redex has inner names or a region without a node (it
-    would be anywhere), or if the target is not ground.
+    A redex node matches its namesake, or any node if it is anonymous or a variable; an outer name matches any
+    link, or its namesake if it is a constant. Raises BigraphError if the redex has inner names or a region
+    without a node (it would be anywhere), or if the target is not ground.
     """
     _check(redex, target)
     search = _Search(redex, target, node_variables, link_constants)

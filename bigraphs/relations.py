@@ -17,8 +17,8 @@ def from_relations(
 ) -> Bigraph:
     """Return one region of named nodes: `nodes` gives controls, `parent` None is the region, links are outer names.
 
-    A node that `parent` leaves out is in the region. Without a signature, controls are open: any arity, ports without
-    order. Raises BigraphError for a name that `nodes` does not have, and for a cycle.
+    A node that `parent` leaves out is in the region. Without a signature, controls are open: any arity, ports
+    without order. Raises BigraphError for a name that `nodes` does not have, and for a cycle.
     """
     order = sorted(nodes)
     number = {name: place for place, name in enumerate(order)}

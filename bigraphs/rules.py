@@ -15,9 +15,10 @@ from bigraphs.matching import Match, find_matches
 class ReactionRule:
     """A parametric reaction rule; build it with `rule`.
 
-    Site `i` of the reactum is filled with what site `instantiation[i]` of the redex held. A named redex node matches
-    its namesake only, unless its name is among `node_variables`: then it matches any node, and the same name in the
-    reactum is that node. An outer name of the redex stands for any link, unless it is among `link_constants`.
+    Site `i` of the reactum is filled with what site `instantiation[i]` of the redex held. A named redex node
+    matches its namesake only, unless its name is among `node_variables`: then it matches any node, and the
+    same name in the reactum is that node. An outer name of the redex stands for any link, unless it is among
+    `link_constants`.
     """
 
     redex: Bigraph

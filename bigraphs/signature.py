@@ -16,8 +16,8 @@ Status: TypeAlias = Literal["active", "passive", "atomic"]
 class Control:
     """A kind of node.
 
-    `arity` is the number of its ports, None for any number. Rules apply inside *active* nodes only; an *atomic* one
-    contains nothing. Ports that are not `ordered` are interchangeable, as in BigraphER.
+    `arity` is the number of its ports, None for any number. Rules apply inside *active* nodes only; an
+    *atomic* one contains nothing. Ports that are not `ordered` are interchangeable, as in BigraphER.
     """
 
     name: str

@@ -20,7 +20,7 @@ DIRECTIONS: Final = (0, 180, 90, 270, 45, 315, 135, 225, 22, 338, 158, 202, 68, 
 """Degrees counter-clockwise from the right, those that read best first."""
 
 FORBIDDEN: Final = 1e3
-ON_A_LINE: Final = 4.0
+ON_A_LINE: Final = 1.5
 
 
 class Box(NamedTuple):

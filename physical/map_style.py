@@ -5,34 +5,29 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from functools import lru_cache
-from typing import TYPE_CHECKING, Final
-
-if TYPE_CHECKING:
-    from matplotlib.path import Path
+from typing import Final
 
 INK: Final = "#1f2933"
 QUIET: Final = "#66727f"
 FAINT: Final = "#e1e6eb"
 PAPER: Final = "#f5f7f9"
-HALO: Final = "#f5b301"
+HALO: Final = "#e4572e"
 """Behind what is highlighted."""
 
-DIFFERS: Final = "#d11149"
-"""Around what is marked."""
+MARK: Final = "#1f2933"
+"""Around what is marked, dashed."""
 
 PALETTE: Final = (
-    "#3b6fb6",
-    "#2a9d8f",
-    "#c8702a",
-    "#8a5fb0",
-    "#b0476f",
-    "#5e8c31",
-    "#2b8db8",
-    "#9a7b1c",
-    "#6b5b4b",
-    "#5b6b9e",
+    "#4f86c6",
+    "#4fa672",
+    "#d08a3c",
+    "#8e6bbf",
+    "#cf6363",
+    "#3f9ea3",
+    "#a8973a",
+    "#7b8494",
 )
-"""Calm colours of one lightness, dark enough for text on white."""
+"""Calm colours of one lightness."""
 
 Outline = tuple[tuple[float, float], ...]
 
@@ -64,6 +59,16 @@ def kind_colours(kinds: Iterable[str]) -> dict[str, str]:
     return {kind: PALETTE[rank % len(PALETTE)] for rank, kind in enumerate(sorted(set(kinds)))}
 
 
+def darker(colour: str) -> str:
+    """Return a `#rrggbb` colour dark enough for text on white.
+
+    >>> darker("#4f86c6")
+    '#2f5076'
+    """
+    parts = (int(colour[at : at + 2], 16) for at in (1, 3, 5))
+    return "#" + "".join(f"{int(part * 0.6):02x}" for part in parts)
+
+
 def kind_shapes(kinds: Iterable[str]) -> dict[str, Outline]:
     """Return the outline of each kind's marker, about one unit in radius; unknown kinds take what is left."""
     found: dict[str, Outline] = {}
@@ -75,18 +80,10 @@ def kind_shapes(kinds: Iterable[str]) -> dict[str, Outline]:
     return found
 
 
-@lru_cache(maxsize=64)
-def marker(shape: Outline) -> Path:
-    """Return an outline as a marker's path."""
-    from matplotlib.path import Path  # noqa: PLC0415 - only who draws needs matplotlib
-
-    return Path([*shape, shape[0]], closed=True)
-
-
 @lru_cache(maxsize=1 << 12)
 def text_width(text: str, size: float, bold: bool = False) -> float:
     """Return how wide a line of text is, in points, in the font that matplotlib brings along."""
-    from matplotlib.font_manager import FontProperties  # noqa: PLC0415 - the same
+    from matplotlib.font_manager import FontProperties  # noqa: PLC0415 - only who draws needs matplotlib
     from matplotlib.textpath import text_to_path  # noqa: PLC0415 - the same
 
     font = FontProperties(family="DejaVu Sans", size=size, weight="bold" if bold else "normal")

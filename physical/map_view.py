@@ -17,7 +17,7 @@ ECCENTRICITY_SQUARED: Final = 0.006_694_379_990_14
 STEEPEST: Final = 89.5
 """The latitude to which the plane is scaled at most: at a pole a degree of longitude has no length."""
 
-NARROWEST: Final = 60.0
+NARROWEST: Final = 400.0
 """Metres that a view is wide at least."""
 
 FAR: Final = 4.0

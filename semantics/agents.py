@@ -51,7 +51,7 @@ def mailbox_cell(agent: Name) -> Cell:
 
 def watch_cell(agent: Name) -> Cell:
     """Address an agent's `Watch`; a monitor cell."""
-    return (MONITOR, agent)
+    return (MONITOR, "agent", agent)
 
 
 class Agents:

@@ -13,7 +13,7 @@ from semantics.agents import Code, Store
 from semantics.expressions import Expression, Fault, Scope, evaluated, truth
 from semantics.patterns import bind
 from semantics.program import Behaviour, Program
-from semantics.provenance import NOTHING, Provenance
+from semantics.provenance import EVERYTHING, NOTHING, Provenance, asking
 from semantics.queries import Observation
 from semantics.statements import (
     Assign,
@@ -83,6 +83,11 @@ class Process:
         """Return a value with what it rests on."""
         return evaluated(expression, self.scope)
 
+    def members(self, expression: Expression) -> tuple[tuple[Value, ...], Provenance]:
+        """Return what to go through, with what it rests on: of an observation, everything that it showed."""
+        value, rests_on = self.evaluate(expression)
+        return members_of(value), asking(rests_on, (EVERYTHING,))
+
     def variables(self) -> tuple[Store, tuple[Provenance, ...]]:
         """Return the variables that what is left may read, sorted, with what each rests on."""
         alive = sorted(self.program.live(self.code).intersection(self.scope.store))
@@ -125,8 +130,10 @@ def _choose(process: Process, statement: Choice) -> Iterator[Process]:
             chosen.enter(block, chosen.leave())
             yield chosen
         return
-    members, rests_on = process.evaluate(statement.members)
-    for member in members_of(members):
+    members, rests_on = process.members(statement.members)
+    if not members:
+        raise Fault("there is nothing to choose from")
+    for member in members:
         chosen = process.fork()
         chosen.scope.binding({statement.variable: member}, rests_on)
         chosen.enter(statement.body, chosen.leave() | rests_on)
@@ -134,13 +141,13 @@ def _choose(process: Process, statement: Choice) -> Iterator[Process]:
 
 
 def members_of(value: Value) -> tuple[Value, ...]:
-    """Return what a `for` or `choose` goes through: a set's members or an observation's nodes, in order.
+    """Return what a `for` or `choose` goes through: the members of a set or an observation, in order.
 
     Raises:
         Fault: It is neither.
     """
     if isinstance(value, Observation):
-        return value.shown
+        return tuple(sorted({*value.shown, *value.agents}))
     if isinstance(value, frozenset):
         return in_order(value)
     raise Fault(f"a set or an observation was expected, not {show(value)}")
@@ -163,9 +170,9 @@ def _step(process: Process, statement: Internal) -> None:
         case While(test, body, after):
             _step_while(process, test, body, after)
         case For(members, rest, each):
-            value, rests_on = process.evaluate(members)
-            here = process.leave() | tested(rests_on)
-            process.scope.binding({rest: members_of(value)}, here)
+            found, rests_on = process.members(members)
+            here = process.leave() | rests_on
+            process.scope.binding({rest: found}, here)
             process.enter((each,), here)
         case ForEach(variable, rest, body):
             _step_for(process, variable, rest, body)

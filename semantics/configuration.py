@@ -38,17 +38,17 @@ class Configuration:
     @property
     def alpha(self) -> Agents:
         """The agents."""
-        return Agents(self)
+        return Agents(self.state)
 
     @property
     def structure(self) -> Structure:
         """The structure S = (L, P, β, γ)."""
-        return Structure(self, self.setting)
+        return Structure(self.state, self.setting)
 
     @property
     def eta(self) -> Eta:
         """The pending requests."""
-        return Eta(self, self.setting)
+        return Eta(self.state, self.setting)
 
     def with_(self, *changes: Changes) -> "Configuration":
         """Return the configuration with these cells written; later changes win."""

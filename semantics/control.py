@@ -6,10 +6,10 @@ from enum import Enum
 
 from semantics.cells import Changes
 from semantics.configuration import Configuration
-from semantics.drive import drive
+from semantics.drive import drive, unloaded
 from semantics.logical_model import LogicalModel
-from semantics.physical_model import InTransit, Placed
-from semantics.reactions import Match, Reaction, is_full, matches, moved, relinked, stays_forest
+from semantics.physical_model import Carried, InTransit
+from semantics.reactions import Match, Reaction, is_active, is_full, matches, moved, relinked, stays_forest
 from semantics.requests import CTR, FLY
 from semantics.signature import Name
 from semantics.structure import Parent, Relation
@@ -40,8 +40,10 @@ class Realisation:
         physical = c.structure.physical
         changes: Changes = {}
         for node, place in self.flying:
-            origin = physical.position(node)
-            assert isinstance(origin, Placed)
+            origin, placement = physical.position(node), physical.placement(node)
+            assert origin is not None
+            if isinstance(placement, Carried):
+                origin = unloaded(placement, origin)
             changes |= physical.placing(node, InTransit(origin, place))
         return changes
 
@@ -113,7 +115,7 @@ def flight_obstacle(c: Configuration, fly: FLY) -> Obstacle | None:
     believed = all(map(structure.believes, unmoved)) and all(node in structure.logical for node in nodes)
     if not believed or not is_full(match, reaction.redex, structure.logical):
         return Obstacle.UNMATCHED
-    if not stays_forest(reaction, match, structure.logical):
+    if not is_active(nodes, structure.logical) or not stays_forest(reaction, match, structure.logical):
         return Obstacle.UNMATCHED
     consistent = structure.consistent(unmoved) and is_full(match, reaction.redex, structure.physical)
     return None if consistent else Obstacle.INCONSISTENT
@@ -137,8 +139,8 @@ def obstacle(c: Configuration, request: CTR | FLY) -> Obstacle | None:
     if not consistent:
         waiting = any(_waits(c, request.reaction, match) for match in found)
         return None if waiting else Obstacle.INCONSISTENT
-    realised = any(drive(c, c.setting, request.reaction, match) for match in consistent)
-    return None if realised else Obstacle.UNREALISABLE
+    served = (drive(c, c.setting, request.reaction, m) or _waits(c, request.reaction, m) for m in consistent)
+    return None if any(served) else Obstacle.UNREALISABLE
 
 
 def _waits(c: Configuration, reaction: Reaction, match: Match) -> bool:

@@ -89,9 +89,14 @@ def _put_down(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carr
     if physical.setting.carries(place, node):
         together = place in physical.carriers(by) or by == place or physical.abstract_parent(place) == by
         return Carried(place, carried.shape) if together else None
-    shape = carried.shape
-    at = Placed(translate_to(shape.geometry, centroid(here.geometry)), shape.altitude)
+    at = unloaded(carried, here)
     return at if encloses(there, at) else None
+
+
+def unloaded(carried: Carried, here: Placed) -> Placed:
+    """Return what is carried as it stands by itself where its carrier is."""
+    shape = carried.shape
+    return Placed(translate_to(shape.geometry, centroid(here.geometry)), shape.altitude)
 
 
 def _reach(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carried | None:
@@ -100,6 +105,8 @@ def _reach(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carried
     origin, target = physical.position(node), None if place == REGION else physical.position(place)
     if origin is None or target is None or not setting.signature[setting.kind(node)].driven:
         return None
+    if node in physical.carriers(place):
+        return None  # what rides on it cannot hold it
     shape = _shape(physical, node, origin)
     if setting.carries(place, node):
         return Carried(place, shape)
@@ -120,7 +127,8 @@ def _holes(
     """Return what would swallow a node inside a place: smaller places that may hold it, at its altitude."""
     kind = physical.setting.kind(node)
     others = set(physical.setting.containers(kind)) - {node, place} - physical.cargo(node)
-    found = [position for position in map(physical.position, others) if position is not None]
+    standing = sorted(other for other in others if physical.carrier(other) is None)
+    found = [position for position in map(physical.position, standing) if position is not None]
     smaller = (hole for hole in found if measure(hole.geometry) <= measure(target.geometry))
     holes = {
         hole.geometry

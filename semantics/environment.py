@@ -8,9 +8,7 @@ from semantics.physical_model import (
     Carried,
     PhysicalModel,
     Placed,
-    channels_cell,
     down_cell,
-    placement_cell,
 )
 from semantics.signature import Name
 from semantics.values import Value
@@ -141,18 +139,3 @@ class Says:
 
 
 Clause = Drifts | Drops | Leaves | Appears | Vanishes | Says
-
-
-def touched(clause: Clause) -> tuple[Cell, ...]:
-    """Return the cells that a clause may write."""
-    match clause:
-        case Drifts(entity):
-            return (placement_cell(entity),)
-        case Drops(channel):
-            return (down_cell(channel),)
-        case Leaves(entity):
-            return (channels_cell(entity),)
-        case Says():
-            return (clause.counter,)
-        case Appears(entity) | Vanishes(entity):
-            return (placement_cell(entity), channels_cell(entity))

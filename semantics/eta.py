@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from semantics.cells import AGENTS, MONITOR, QUEUE, Cell, Cells, Changes
 from semantics.provenance import NOTHING, Provenance
-from semantics.requests import READY, SND, Request
+from semantics.requests import READY, SND, Request, request_key
 from semantics.setting import Scheduler
 from semantics.signature import Name
 
@@ -93,14 +93,20 @@ class Eta:
         return (line_cell(agent), sends_cell(agent))
 
     def _at(self, cell: Cell) -> Iterator[Pending]:
-        requests: tuple[Request, ...] = self.cells.read(cell) or ()
-        rests_on = self.cells.read((MONITOR, *cell)) or (NOTHING,) * len(requests)
+        requests: tuple[Request, ...] = self.cells.read(cell)
+        if not requests:
+            return
+        rests_on = (NOTHING,) * len(requests)
+        if self.setting.monitored:
+            rests_on = self.cells.read((MONITOR, *cell))
         for position, (request, kept) in enumerate(zip(requests, rests_on, strict=True)):
             yield Pending(request, cell, position, kept)
 
     def _write(self, cell: Cell, line: list[Pending]) -> Changes:
         if self.setting.scheduler is Scheduler.UNORDERED or cell[0] == "sends":
-            line = sorted(line, key=lambda each: (repr(each.request), sorted(map(repr, each.rests_on))))
+            line = sorted(
+                line, key=lambda each: (request_key(each.request), sorted(map(repr, each.rests_on)))
+            )
         changes: Changes = {cell: tuple(each.request for each in line)}
         if self.setting.monitored:
             changes[MONITOR, *cell] = tuple(each.rests_on for each in line)

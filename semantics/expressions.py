@@ -7,7 +7,7 @@ from typing import Any
 from semantics.provenance import EVERYTHING, NOTHING, Key, Provenance, asking
 from semantics.queries import All, Nodes, Observation, Of, Query
 from semantics.signature import Name
-from semantics.values import Truth, Value, in_order
+from semantics.values import LARGEST_NUMBER, MOST_PARTS, Truth, Value, in_order, parts, show
 
 
 class Fault(Exception):
@@ -131,9 +131,9 @@ def evaluate(expression: Expression, scope: Scope) -> Value:
         case Self():
             return scope.agent
         case TupleOf(items):
-            return tuple(evaluate(item, scope) for item in items)
+            return _small(tuple(evaluate(item, scope) for item in items))
         case SetOf(items):
-            return frozenset(evaluate(item, scope) for item in items)
+            return _small(frozenset(evaluate(item, scope) for item in items))
         case Either(stop_at, first, second):
             value = truth(evaluate(first, scope))
             return Truth.of(value) if value is stop_at else Truth.of(truth(evaluate(second, scope)))
@@ -157,8 +157,14 @@ def _apply(operator: "Operator", name: str, arguments: tuple[Expression, ...], s
     try:
         return operator.apply(scope, *values)
     except (TypeError, ValueError, KeyError, IndexError) as error:
-        shown = ", ".join(str(value) for value in values)
+        shown = ", ".join(map(show, values))
         raise Fault(f"'{name}' can't be computed of ({shown}): {error}") from error
+
+
+def _small(value: Value) -> Value:
+    if parts(value) > MOST_PARTS:
+        raise Fault(f"a value has more than {MOST_PARTS} parts")
+    return value
 
 
 def truth(value: Value) -> bool:
@@ -169,7 +175,7 @@ def truth(value: Value) -> bool:
     """
     if isinstance(value, Truth):
         return bool(value)
-    raise Fault(f"a test needs true or false, not {value}")
+    raise Fault(f"a test needs true or false, not {show(value)}")
 
 
 def query_of(template: QueryOf, scope: Scope) -> Query:
@@ -195,8 +201,20 @@ def names_in(value: Value) -> tuple[Name, ...]:
     """
     members = in_order(value) if isinstance(value, frozenset) else (value,)
     if not all(isinstance(member, str) for member in members):
-        raise Fault(f"a name was expected, not {value}")
+        raise Fault(f"a name was expected, not {show(value)}")
     return tuple(str(member) for member in members)
+
+
+def name_in(value: Value) -> Name:
+    """Return the one name that a value stands for.
+
+    Raises:
+        Fault: It stands for none or several.
+    """
+    names = names_in(value)
+    if len(names) != 1:
+        raise Fault(f"one name was expected, not {show(value)}")
+    return names[0]
 
 
 # --- operators ------------------------------------------------------------------------------------------------
@@ -233,6 +251,12 @@ def _number(value: Value) -> int:
     raise TypeError("a number was expected")
 
 
+def _bounded(number: int) -> int:
+    if abs(number) >= LARGEST_NUMBER:
+        raise ValueError(f"a number has more than {len(str(LARGEST_NUMBER)) - 1} digits")
+    return number
+
+
 def _seen(value: Value) -> Observation:
     if isinstance(value, Observation):
         return value
@@ -240,11 +264,11 @@ def _seen(value: Value) -> Observation:
 
 
 def _add(_: Scope, a: Value, b: Value) -> Value:
-    return a | _members(b) if isinstance(a, frozenset) else _number(a) + _number(b)
+    return a | _members(b) if isinstance(a, frozenset) else _bounded(_number(a) + _number(b))
 
 
 def _subtract(_: Scope, a: Value, b: Value) -> Value:
-    return _number(a) - _number(b) if isinstance(a, int) else _members(a) - _members(b)
+    return _bounded(_number(a) - _number(b)) if isinstance(a, int) else _members(a) - _members(b)
 
 
 def _of_kind(scope: Scope, value: Value, kind: Value) -> Value:

@@ -9,7 +9,7 @@ from semantics.cells import Changes
 from semantics.computation import bind_parameters, enter_case
 from semantics.configuration import Configuration, Label, Transition
 from semantics.environment import Clause, Says
-from semantics.expressions import Fault, evaluated, names_in
+from semantics.expressions import Fault, evaluated, name_in
 from semantics.provenance import NOTHING
 from semantics.requests import MGR, SND
 from semantics.rules import Rule
@@ -52,7 +52,7 @@ def req_snd(c: Configuration, a: Name) -> Iterator[Transition]:
     process = process_of(c, a)
     message, carried = evaluated(statement.message, process.scope)
     to, chosen = evaluated(statement.to, process.scope)
-    send = SND(a, names_in(to)[0], message)
+    send = SND(a, name_in(to), message)
     rests_on = resting_on(process, carried, chosen)
     process.leave()
     label = Label("req_snd", a, f"send({show(message)}, {send.to})")
@@ -151,10 +151,11 @@ def spawn(c: Configuration, a: Name) -> Iterator[Transition]:
     parent = process_of(c, a)
     host, _ = evaluated(statement.host, parent.scope)
     behaviour = c.setting.program.behaviours[statement.behaviour]
-    bind_parameters(parent, behaviour, statement.arguments, parent.rests_on[0])
+    bound = parent.fork()  # the parent may be running this very behaviour: its own parameters stay
+    bind_parameters(bound, behaviour, statement.arguments, parent.rests_on[0])
     child = new_process(c.setting, statement.name, node_named(c, host), behaviour.body)
     for name in behaviour.parameters:
-        child.scope.binding({name: parent.scope.store[name]}, parent.scope.rests_on[name])
+        child.scope.binding({name: bound.scope.store[name]}, bound.scope.rests_on[name])
     child.rests_on = (parent.rests_on[0],) * len(child.code)
     parent.leave()
     begun = starting(c.setting, statement.name, child.scope.host, child)
@@ -168,7 +169,7 @@ def node_named(c: Configuration, value: Value) -> Name:
     Raises:
         Fault: It names none.
     """
-    name = names_in(value)[0] if names_in(value) else ""
+    name = name_in(value)
     if name not in c.setting.kinds:
         raise Fault(f"there is no node {show(value, frozenset())}")
     return name

@@ -1,4 +1,4 @@
-"""The memory of the race monitor: what others change of the observations that an agent still rests on.
+"""The memory of the race monitor: what is changed, and by whom, of the observations that an agent still rests on.
 
 Rules only carry along what values rest on; here it is marked what has changed in that since.
 """
@@ -11,7 +11,7 @@ from semantics.agents import Watch, watch_cell
 from semantics.cells import MONITOR, QUEUE, Cell, Changes
 from semantics.configuration import Configuration, Transition
 from semantics.eta import line_cell, sends_cell
-from semantics.provenance import NOTHING, SLOT, Dependency, Key, Provenance, differences
+from semantics.provenance import NOTHING, SLOT, Change, Dependency, Key, Provenance, differences
 from semantics.queries import Query, evaluate
 from semantics.requests import CTR, FLY, Request
 from semantics.signature import Name
@@ -22,16 +22,20 @@ CONTROLS = frozenset({"actuate", "command", "commit"})
 
 
 def marked(c: Configuration, transition: Transition) -> Transition:
-    """Return the transition with what it changed for other agents marked, where that is monitored."""
+    """Return the transition with what it changed marked in what agents rest on, where that is monitored."""
     if not c.setting.monitored or transition.label.rule not in CONTROLS:
         return transition
     after = transition.target
     slots = changed_slots(c, after)
-    mark = partial(_mark, memo={}, answer=lambda query: slots | _changed_answers(c, after, query))
+    author = str(transition.label.agent)
+    mark = partial(
+        _mark,
+        memo={},
+        answer=lambda query: {(author, key) for key in slots | _changed_answers(c, after, query)},
+    )
     changes: Changes = {}
     for agent in after.alpha.names():
-        if agent != transition.label.agent:
-            changes |= _mark_agent(after, agent, mark)
+        changes |= _mark_agent(after, agent, author, mark)
     return replace(transition, target=after.with_(changes)) if changes else transition
 
 
@@ -59,9 +63,7 @@ def stale_tests(request: Request, rests_on: Provenance, used: frozenset[Key]) ->
     if not isinstance(request, CTR | FLY):
         return ()
     stale = (
-        each
-        for each in rests_on
-        if each.asked is not None and (each.stale or used.intersection(each.changed))
+        each for each in rests_on if each.asked is not None and (each.stale or used.intersection(each.keys()))
     )
     return tuple(sorted(stale, key=repr))
 
@@ -75,13 +77,13 @@ Mark = Callable[[Provenance], Provenance]
 
 
 def _mark(
-    provenance: Provenance, *, memo: dict[Query, frozenset[Key]], answer: Callable[[Query], frozenset[Key]]
+    provenance: Provenance, *, memo: dict[Query, set[Change]], answer: Callable[[Query], set[Change]]
 ) -> Provenance:
     return frozenset(_mark_one(each, memo, answer) for each in provenance)
 
 
 def _mark_one(
-    each: Dependency, memo: dict[Query, frozenset[Key]], answer: Callable[[Query], frozenset[Key]]
+    each: Dependency, memo: dict[Query, set[Change]], answer: Callable[[Query], set[Change]]
 ) -> Dependency:
     if each.query not in memo:
         memo[each.query] = answer(each.query)
@@ -89,7 +91,7 @@ def _mark_one(
     return replace(each, changed=tuple(sorted(changed.union(each.changed)))) if changed else each
 
 
-def _mark_agent(c: Configuration, agent: Name, mark: Mark) -> Changes:
+def _mark_agent(c: Configuration, agent: Name, author: Name, mark: Mark) -> Changes:
     changes: Changes = {}
     watch = c.alpha.watch(agent)
     if watch is not None:
@@ -101,10 +103,15 @@ def _mark_agent(c: Configuration, agent: Name, mark: Mark) -> Changes:
         requests: tuple[Request, ...] = c.read(cell) or ()
         if kept:
             changes[MONITOR, *cell] = tuple(
-                mark(each) if request.agent == agent else each
+                mark(each) if request.agent == agent and not _own(request, author) else each
                 for request, each in zip(requests, kept, strict=True)
             )
     return changes
+
+
+def _own(request: Request, author: Name) -> bool:
+    """Tell whether a control is its author's: what that changes itself makes nothing of its own stale."""
+    return isinstance(request, CTR | FLY) and request.agent == author
 
 
 def monitored(c: Configuration) -> Configuration:

@@ -121,9 +121,9 @@ class PhysicalModel:
         """Tell σ_P's `contains`.
 
         An entity in transit is contained only by what contains both ends of its flight, the destination itself
-        excepted: nobody sees it arrived before it has.
+        excepted: nobody sees it arrived before it has. What is carried takes up no room of its own: it contains nothing.
         """
-        if place == entity:
+        if place == entity or self.carrier(place) is not None:
             return False
         outer, inner = self.position(place), self.position(entity)
         if outer is None or inner is None or not encloses(outer, inner):

@@ -1,12 +1,14 @@
 """Configurations in the paper's notation: ⟨α | S | η⟩, and what changed between two."""
 
 from collections.abc import Iterator
+from textwrap import indent
 
+from bigraphs.text import draw_text
 from semantics.cells import AGENTS, MONITOR, NAMES, QUEUE, Cell
 from semantics.configuration import Configuration
 from semantics.physical_model import Carried, InTransit, PhysicalModel, Placement
 from semantics.requests import READY
-from semantics.signature import REGION, Name
+from semantics.signature import Name
 from semantics.statements import Statement
 from semantics.values import show
 
@@ -42,21 +44,11 @@ def word_of(statement: Statement) -> str:
     return words.get(name, name.lower())
 
 
-def print_place(c: Configuration, place: Name, indent: int) -> Iterator[str]:
-    """Print the nodes of L inside a place, nested."""
-    logical = c.structure.logical
-    for node in logical.children(place):
-        links = logical.links(node)
-        shown = f"[{', '.join(links)}]" if links else ""
-        yield f"{'  ' * indent}{node}_{c.setting.kind(node)}{shown}"
-        yield from print_place(c, node, indent + 1)
-
-
 def print_configuration(c: Configuration) -> str:
     """Print a configuration in three parts: the agents, the logical model as a tree, the pending requests."""
     alpha = "\n".join(f"  {print_agent(c, a)}" for a in c.alpha.names())
     eta = "\n".join(f"  {each.request}" for each in c.eta.all()) or "  ∅"
-    tree = "\n".join(print_place(c, REGION, 1)) or "  ∅"
+    tree = indent(draw_text(c.structure.logical.bigraph()), "  ")
     return f"⟨ α\n{alpha}\n| L\n{tree}\n| η\n{eta}\n⟩"
 
 
@@ -84,7 +76,7 @@ def _change(before: Configuration, after: Configuration, cell: Cell) -> Iterator
         shown = (
             after.alpha.host(whose)
             if what == "host"
-            else ", ".join(map(str, after.alpha.mailbox(whose))) or "∅"
+            else ", ".join(map(show, after.alpha.mailbox(whose))) or "∅"
         )
         yield f"α  {what}({whose}) = {shown}"
     elif what in ("parent", "links"):

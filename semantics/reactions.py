@@ -4,7 +4,7 @@ Matching is by relations: injective on nodes, and the image of one redex region 
 own disjointness is kept by `bigraphs.matching`, for `.big` systems.)
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from semantics.logical_model import LogicalModel
@@ -140,8 +140,7 @@ def relinked(
 ) -> tuple[tuple[Name, frozenset[Name], frozenset[Name]], ...]:
     """Return (node, links lost, links gained) for each node whose links the reaction changes.
 
-    A node that is on all that it would gain already keeps what it has: handing over to who has authority is the
-    identity.
+    A node that is on all that it would gain already loses nothing: handing over to who has authority is the identity.
     """
     before = {(match[link], match[node]) for link, node in reaction.redex.links}
     after = {(match[link], match[node]) for link, node in reaction.reactum.links}
@@ -149,8 +148,8 @@ def relinked(
     for node in sorted({node for _, node in before ^ after}):
         lost = frozenset(link for link, point in before - after if point == node)
         gained = frozenset(link for link, point in after - before if point == node)
-        if not gained or not gained.issubset(model.links(node)):
-            changes.append((node, lost, gained))
+        identity = bool(gained) and gained.issubset(model.links(node))
+        changes.append((node, frozenset() if identity else lost, gained))
     return tuple(changes)
 
 
@@ -169,12 +168,13 @@ def matches(redex: Pattern, logical: LogicalModel) -> tuple[Match, ...]:
 
 def _fits(match: Match, redex: Pattern, logical: LogicalModel) -> bool:
     nodes = match.nodes(redex)
-    active = not any(
-        logical.setting.signature[logical.setting.kind(a)].passive
-        for n in nodes
-        for a in logical.ancestors(n)
-    )
-    return active and len(set(nodes)) == len(nodes) and is_full(match, redex, logical)
+    return is_active(nodes, logical) and len(set(nodes)) == len(nodes) and is_full(match, redex, logical)
+
+
+def is_active(nodes: Iterable[Name], logical: LogicalModel) -> bool:
+    """Tell whether no node lies, at any depth, in one of a passive kind."""
+    signature, kind = logical.setting.signature, logical.setting.kind
+    return not any(signature[kind(place)].passive for node in nodes for place in logical.ancestors(node))
 
 
 def is_full(match: Match, redex: Pattern, model: LogicalModel | PhysicalModel) -> bool:
@@ -333,7 +333,7 @@ def disconnect_host_from(host: Name, node: Name) -> Reaction:
     )
 
 
-COMMANDS = {
+COMMANDS: Mapping[str, Callable[..., Reaction]] = {
     "MOVE_HOST_TO": move_host_to,
     "MOVE": move,
     "PUT": put,

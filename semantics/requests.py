@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from semantics.signature import Name
-from semantics.values import Value, show
+from semantics.values import Value, order_key, show
 
 if TYPE_CHECKING:
     from semantics.queries import Observation, Query
@@ -82,3 +82,10 @@ class MGR:
 
 Request = OBS | READY | CTR | FLY | SND | MGR
 REQUESTS: tuple[type, ...] = (OBS, READY, CTR, FLY, SND, MGR)
+
+
+def request_key(request: Request) -> tuple[str, str]:
+    """Order requests canonically, the same in every process: a message may hold sets, whose `repr` has no order."""
+    if isinstance(request, SND):
+        return ("SND", repr((request.agent, request.to, order_key(request.message))))
+    return (type(request).__name__, repr(request))

@@ -10,7 +10,7 @@ from semantics.computation import compute, enter_case
 from semantics.configuration import Configuration, Label, Transition
 from semantics.control import Realisation, commits, realisations
 from semantics.environment import Clause, Says
-from semantics.expressions import evaluated, query_of
+from semantics.expressions import evaluated, name_in, query_of
 from semantics.provenance import NOTHING, Dependency
 from semantics.queries import evaluate, overlay
 from semantics.reactions import Reaction
@@ -107,10 +107,10 @@ def req_ctr(c: Configuration, a: Name) -> Iterator[Transition]:
     process = process_of(c, a)
     arguments = [evaluated(argument, process.scope) for argument in statement.arguments]
     make = c.setting.program.reactions[statement.name]
-    reaction = make(process.scope.host, *(value for value, _ in arguments))
+    reaction = make(process.scope.host, *(name_in(value) for value, _ in arguments))
     assert isinstance(reaction, Reaction)
     rests_on = resting_on(process, *(kept for _, kept in arguments))
-    pruned = frozenset(each.pruned() for each in rests_on if each.asked is not None)
+    pruned = frozenset(each.pruned(a) for each in rests_on if each.asked is not None)
     process.leave()
     label = Label("req_ctr", a, f"control({reaction})")
     yield Transition(label, c.with_(continuing(c, process), c.eta.adding(CTR(a, reaction), pruned)))

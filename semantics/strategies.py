@@ -31,6 +31,7 @@ from semantics.expressions import (
 )
 from semantics.initial import Beliefs, initial
 from semantics.patterns import Anything, Elements, Exactly
+from semantics.patterns import Pattern as CasePattern
 from semantics.physical_model import Carried, Placed, Placement
 from semantics.program import Behaviour, Program
 from semantics.queries import All, Nodes, Of, Query
@@ -41,6 +42,7 @@ from semantics.reactions import (
     NodeTerm,
     NodeVariable,
     Pattern,
+    PlaceTerm,
     PlaceVariable,
     Reaction,
 )
@@ -74,7 +76,8 @@ from semantics.successors import successors
 from semantics.values import Truth, Value
 
 CHANNELS = ("control:g0", "control:g1", "wifi")
-AGENT_NAMES = ("a", "b", "c")
+AGENT_NAMES = ("a", "b", "c", "d")
+SPAWNED_NAMES = ("d", "c", "a")
 KIND_OF = {"place": "Place", "uav": "Uav", "vessel": "Vessel", "crate": "Crate", "station": "Station"}
 OPERATORS = ("PARENT", "CHILDREN", "LINKED_TO", "HOSTED_AT")
 
@@ -181,46 +184,46 @@ class _Ground:
 
 
 def signatures() -> st.SearchStrategy[Signature]:
-    """Yield signatures of the kinds Place, Uav, Vessel, Crate and Station: who contains, carries, is driven or passive."""
+    """Yield signatures of Place, Uav, Vessel, Crate and Station: who contains, carries, is driven or passive."""
     everyone = frozenset(KIND_OF.values())
     cargo = st.frozensets(st.sampled_from(["Crate", "Uav", "Station", "Vessel"]))
     return st.builds(
-        lambda carries, passive, uav, vessel: Signature.of(
+        lambda carries, holds, passive, driven: Signature.of(
             [
                 Kind("Place", everyone, passive=passive),
-                Kind("Uav", driven=uav),
-                Kind("Vessel", carries=carries, driven=vessel),
-                Kind("Crate"),
+                Kind("Uav", driven=driven),
+                Kind("Vessel", holds, carries, driven=driven),
+                Kind("Crate", holds),
                 Kind("Station"),
             ]
         ),
         st.just(frozenset({"Crate", "Uav"})) | cargo,
+        st.just(frozenset()) | cargo,
         st.just(False) | st.booleans(),
-        st.just(True) | st.booleans(),
         st.just(True) | st.booleans(),
     )
 
 
 @st.composite
 def worlds(draw: st.DrawFn, signature: st.SearchStrategy[Signature] | None = None) -> World:
-    """Yield small worlds: nested places, vehicles, carriers with cargo, links, absent entities; `uav0` is always there."""
+    """Yield small worlds: nested places, vehicles, carriers with cargo, links, absent entities; uav0 is there."""
     of = draw(signatures() if signature is None else signature)
     ground = _Ground()
-    names = [f"place{number}" for number in range(draw(st.integers(1, 3)))]
-    for name in names:
+    places = [f"place{number}" for number in range(pick(draw, [1, 2, 3]))]
+    for name in places:
         slot = ground.take(pick(draw, ground.room()))
         ground.placements[name] = slot.place()
         ground.slots[name], ground.taken[name] = slot, 0
-    names += _draw_names(draw)
-    for name in names[ground.taken.__len__() - 1 :]:
+    movers = _draw_names(draw)
+    for name in movers:
         placement = _draw_placement(draw, of, ground, name)
         if placement is not None:
             ground.placements[name] = placement
     return World(
         of,
-        {name: KIND_OF[name.rstrip("0123456789")] for name in names},
+        {name: _kind(name) for name in (*places, *movers)},
         ground.placements,
-        {name: draw(_channels) for name in names if name in ground.placements},
+        {name: draw(_channels) for name in sorted(ground.placements)},
         tuple(ground.take(place).point() for place in ground.room()),
     )
 
@@ -230,27 +233,30 @@ _channels: st.SearchStrategy[tuple[Name, ...]] = st.lists(
 ).map(lambda found: tuple(sorted(found)))
 
 
+def _kind(name: Name) -> str:
+    return KIND_OF[name.rstrip("0123456789")]
+
+
 def _draw_names(draw: st.DrawFn) -> list[Name]:
     numbers = {"vessel": (0, 2), "uav": (1, 2), "crate": (0, 1), "station": (0, 1)}
     return [
         f"{word}{number}"
         for word, (least, most) in numbers.items()
-        for number in range(draw(st.integers(least, most)))
+        for number in range(pick(draw, range(least, most + 1)))
     ]
 
 
 def _draw_placement(draw: st.DrawFn, signature: Signature, ground: _Ground, name: Name) -> Placement | None:
-    kind = KIND_OF[name.rstrip("0123456789")]
-    carriers = [
-        other for other in ground.placements if kind in signature[KIND_OF[other.rstrip("0123456789")]].carries
-    ]
-    if name != "uav0" and draw(st.integers(0, 5)) == 5:
+    kind = _kind(name)
+    carriers = [other for other in ground.placements if kind in signature[_kind(other)].carries]
+    if name != "uav0" and pick(draw, range(6)) == 5:
         return None
-    if carriers and pick(draw, [False, True]):
+    aboard = bool(carriers) and pick(draw, [False, True])
+    if aboard:
         shape = _Slot().hull() if kind == "Vessel" else _Slot().point()
         return Carried(pick(draw, carriers), shape)
     slot = ground.take(pick(draw, ground.room()))
-    return slot.hull() if kind == "Vessel" else slot.point(draw(st.none() | st.just(Band(50, 100))))
+    return slot.hull() if kind == "Vessel" else slot.point(pick(draw, [None, None, Band(50, 100)]))
 
 
 # --- structures -----------------------------------------------------------------------------------------------
@@ -342,19 +348,15 @@ def reactions(draw: st.DrawFn, names: Sequence[Name], host: Name) -> Reaction:
     if pick(draw, [False, True]):
         return draw(commands(host, names))
     redex = draw(patterns(names, host))
-    nodes = st.sampled_from(redex.nodes)
-    parents = tuple(
-        (
-            node,
-            draw(nodes.filter(lambda other, node=node: other != node))
-            if pick(draw, [False, True]) and len(redex.nodes) > 1
-            else place,
-        )  # type: ignore[misc]
-        for node, place in redex.parents
-    )
-    joined = [(link, draw(nodes)) for link, _ in redex.links if pick(draw, [False, True])]
-    links = tuple(pair for pair in dict.fromkeys([*redex.links, *joined]) if pick(draw, [False, True]))
+    parents = tuple((node, _elsewhere(draw, redex, node, place)) for node, place in redex.parents)
+    joined = [(link, pick(draw, redex.nodes)) for link, _ in redex.links if pick(draw, [False, True])]
+    links = tuple(pair for pair in dict.fromkeys([*redex.links, *joined]) if pick(draw, [True, False]))
     return Reaction("REACTION", redex, Pattern(redex.nodes, parents, links))
+
+
+def _elsewhere(draw: st.DrawFn, redex: Pattern, node: NodeTerm, place: PlaceTerm) -> PlaceTerm:
+    others: list[PlaceTerm] = [place, *(other for other in redex.nodes if other != node)]
+    return pick(draw, others)
 
 
 # --- behaviours -----------------------------------------------------------------------------------------------
@@ -375,6 +377,9 @@ class _Writer:
 
     def pick(self, options: Sequence[T]) -> T:
         return pick(self.draw, options)
+
+    def one(self, *options: Expression) -> Expression:
+        return self.pick(options)
 
     def fresh(self, letter: str = "v") -> str:
         self.variables += 1
@@ -402,15 +407,14 @@ class _Writer:
 
     def leaf(self, scope: Variables) -> Expression:
         values: list[Value] = [*self.names, "go", 1, Truth.TRUE]
-        return self.pick([*map(Variable, scope), *map(Literal, values), Host(), Self()])
+        return self.one(*map(Variable, scope), *map(Literal, values), Host(), Self())
 
     def expression(self, scope: Variables) -> Expression:
         leaf = self.leaf(scope)
         seen = [Apply("nodes", (Variable(name),)) for name in scope if name.startswith("o")]
         go = TupleOf((Literal("go"), leaf))
-        return self.pick(
-            [leaf, go, *seen, SetOf((leaf,)), Apply("==", (leaf, leaf)), Apply("first", (leaf,))]
-        )
+        one = SetOf((leaf,))
+        return self.one(leaf, go, *seen, one, Apply("first", (one,)))
 
     def name(self, scope: Variables) -> Expression:
         seen = [
@@ -418,7 +422,7 @@ class _Writer:
             for name in scope
             if name.startswith("o")
         ]
-        return self.pick([*map(Literal, self.names), Host(), *map(Variable, scope), *seen])
+        return self.one(*map(Literal, self.names), Host(), *map(Variable, scope), *seen)
 
     def test(self, scope: Variables) -> Expression:
         seen = [
@@ -428,11 +432,11 @@ class _Writer:
         ]
         same = Apply("==", (self.leaf(scope), self.leaf(scope)))
         either = [Either(self.pick([False, True]), test, same) for test in seen]
-        return self.pick([*seen, same, Apply("not", (same,)), *either])
+        return self.one(*seen, same, Apply("not", (same,)), *either)
 
     def members(self, scope: Variables) -> Expression:
         seen = [Variable(name) for name in scope if name.startswith("o")]
-        return self.pick([*seen, SetOf((Literal(self.pick(self.names)), Literal(self.pick(self.names))))])
+        return self.one(*seen, SetOf((Literal(self.pick(self.names)), Literal(self.pick(self.names)))))
 
     def query(self, depth: int = 3) -> QueryOf:
         operator = self.pick(["CHILDREN", "PARENT", "LINKED_TO", None, "HOSTED_AT"]) if depth else None
@@ -440,7 +444,7 @@ class _Writer:
             return QueryOf(operator, self.query(depth - 1))
         if self.pick(range(4)) == 3:
             return QueryOf("ALL", None)
-        return QueryOf(None, self.pick([Host(), *map(Literal, self.names)]))
+        return QueryOf(None, self.one(Host(), *map(Literal, self.names)))
 
     # commands
 
@@ -463,7 +467,7 @@ class _Writer:
     def write_spawn(self, scope: Variables, _: int) -> Statement:
         behaviour = self.behaviours[self.pick(sorted(self.behaviours))]
         arguments = tuple(self.expression(scope) for _ in behaviour.parameters)
-        return Spawn(self.pick(AGENT_NAMES[::-1]), self.name(scope), behaviour.name, arguments)
+        return Spawn(self.pick(SPAWNED_NAMES), self.name(scope), behaviour.name, arguments)
 
     # internal computation
 
@@ -484,8 +488,12 @@ class _Writer:
     def case(self, scope: Variables, depth: int) -> Case:
         letter = self.pick("oov")
         name = self.fresh(letter)
-        message = [Elements((Exactly("go"), Anything(name))), Anything(name, "message"), Anything(name)]
-        bound = Anything(name, "observation") if letter == "o" else self.pick(message)
+        message: list[CasePattern] = [
+            Elements((Exactly("go"), Anything(name))),
+            Anything(name, "message"),
+            Anything(name),
+        ]
+        bound: CasePattern = Anything(name, "observation") if letter == "o" else self.pick(message)
         inside = (*scope, name)
         guard = self.test(inside) if self.pick([False, True]) else None
         tested = (self.add(Tested()),) if guard is not None else ()
@@ -555,7 +563,7 @@ def environments(draw: st.DrawFn, world: World) -> tuple[Clause, ...]:
     absent = sorted(set(world.kinds) - set(world.placements))
     if absent:
         clauses.append(st.builds(Appears, st.sampled_from(absent), st.just(world.free[:2]), _channels))
-    return tuple(draw(st.lists(st.one_of(clauses), max_size=3, unique_by=_subject)))
+    return tuple(draw(st.lists(st.one_of(clauses), max_size=2, unique_by=_subject)))
 
 
 def _subject(clause: Clause) -> tuple[str, object]:
@@ -580,6 +588,7 @@ def initial_configurations(
     """Yield whole first configurations, with programs, an environment, any of the schedulers and controls.
 
     Args:
+        draw: Given by hypothesis.
         schedulers: The schedulers to draw from.
         controls: The controls to draw from.
         monitored: Whether observations are remembered; both where it is None.
@@ -588,8 +597,8 @@ def initial_configurations(
     world = draw(worlds())
     number = draw(st.integers(1, 2))
     program, code = draw(programs(sorted(world.kinds), number))
-    hosts = st.just("uav0") | st.sampled_from(sorted(world.kinds))
-    agents = {AGENT_NAMES[each]: (draw(hosts), code[each]) for each in range(number)}
+    hosts = ["uav0", *sorted(world.kinds)]
+    agents = {AGENT_NAMES[each]: (pick(draw, hosts), code[each]) for each in range(number)}
     setting = world.setting(program, draw(environments(world))).with_(
         scheduler=pick(draw, schedulers),
         control=pick(draw, controls),
@@ -603,9 +612,9 @@ def initial_configurations(
 def configurations(
     draw: st.DrawFn, start: st.SearchStrategy[Configuration] | None = None, steps: int = 12
 ) -> Configuration:
-    """Yield configurations reached by a random run of at most so many steps; one that ends in a fault stops before it."""
+    """Yield configurations reached by a random run of at most so many steps, none of them into a fault."""
     c = draw(initial_configurations() if start is None else start)
-    for turn in draw(st.lists(st.integers(0, 11), max_size=steps)):
+    for turn in [draw(_numbers(12)) for _ in range(pick(draw, range(steps + 1)))]:
         try:
             allowed = successors(c)
         except Fault:

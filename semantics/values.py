@@ -26,6 +26,18 @@ Value = Union[str, int, Truth, tuple["Value", ...], frozenset["Value"], "Observa
 """Names and texts are both strings: a text that spells a name is that name."""
 
 
+LARGEST_NUMBER = 10**18
+"""Numbers lie between this and its negative: what is printed, compared and stored stays small."""
+
+MOST_PARTS = 1000
+"""How many parts a tuple or set may have, parts of parts included."""
+
+
+def parts(value: Value) -> int:
+    """Count a value and its parts, as often as they occur."""
+    return 1 + sum(map(parts, value)) if isinstance(value, tuple | frozenset) else 1
+
+
 def order_key(value: Value) -> tuple[str, str]:
     """Order values of any types canonically, the same in every process."""
     if isinstance(value, frozenset):
@@ -33,8 +45,10 @@ def order_key(value: Value) -> tuple[str, str]:
     if isinstance(value, tuple):
         return ("tuple", repr([order_key(item) for item in value]))
     if isinstance(value, int):
-        return ("int", f"{value:+021d}")
-    return (type(value).__name__, str(value))
+        return ("int", f"{value + LARGEST_NUMBER:019d}")
+    if isinstance(value, str | Truth):
+        return (type(value).__name__, str(value))
+    return (type(value).__name__, repr(value))  # an observation shows less than it holds
 
 
 def in_order(values: "frozenset[Value] | tuple[Value, ...]") -> tuple[Value, ...]:

@@ -92,7 +92,9 @@ def _check_system(theory: Theory, text: str) -> None:
         _check_named(name, theory.system.offset, bigraphs, "bigraph", text)
 
 
-def _check_named(name: str, offset: int, known: Mapping[str, object] | set[str], what: str, text: str) -> None:
+def _check_named(
+    name: str, offset: int, known: Mapping[str, object] | set[str], what: str, text: str
+) -> None:
     if name not in known:
         raise _error("name", f"unknown {what} '{name}'", text, offset, name, "declare it above the system")
 
@@ -168,7 +170,9 @@ class _Elaboration:
         operators = [operator for operator, _ in chain.rest]
         found, start = operands[0], 0
         while start < len(operators):
-            end = next((n for n in range(start, len(operators)) if operators[n] != operators[start]), len(operators))
+            end = next(
+                (n for n in range(start, len(operators)) if operators[n] != operators[start]), len(operators)
+            )
             found = _halved(_OPERATORS[operators[start]], [found, *operands[start + 1 : end + 1]])
             start = end
         return found
@@ -190,7 +194,9 @@ def _halved(operator: Callable[[Bigraph, Bigraph], Bigraph], operands: list[Bigr
 
 
 def _size(bigraph: Bigraph) -> int:
-    return len(bigraph.nodes) + bigraph.regions + len(bigraph.sites) + len(bigraph.outer_names) + bigraph.edges
+    return (
+        len(bigraph.nodes) + bigraph.regions + len(bigraph.sites) + len(bigraph.outer_names) + bigraph.edges
+    )
 
 
 def _element(expression: Number | Identity | Placed | Close | Substitute | NewNames | Expression) -> Bigraph:
@@ -210,7 +216,9 @@ def _element(expression: Number | Identity | Placed | Close | Substitute | NewNa
         case NewNames(names):
             return _halved(algebra.parallel, [algebra.substitution(name, ()) for name in names])
         case _:
-            raise BigraphError("syntax", "a number is no bigraph", "write 0 for nothing, 1 for an empty region")
+            raise BigraphError(
+                "syntax", "a number is no bigraph", "write 0 for nothing, 1 for an empty region"
+            )
 
 
 def _closing(names: tuple[str, ...]) -> Bigraph:

@@ -39,7 +39,9 @@ def expression_of(bigraph: Bigraph) -> Expression:
     """Return an expression of a bigraph: closures, then places side by side, then wires."""
     for node in bigraph.nodes:
         if node.name is not None:
-            raise BigraphError("notation", f"this notation cannot name a node, as {node}", "use the paper's notation")
+            raise BigraphError(
+                "notation", f"this notation cannot name a node, as {node}", "use the paper's notation"
+            )
     edges = _edge_names(bigraph)
     shared = any(len(parents) > 1 for parents in [*(node.parents for node in bigraph.nodes), *bigraph.sites])
     places = _layers(bigraph, edges) if shared else _nested(bigraph, edges)

@@ -1,8 +1,8 @@
 """Reading BigraphER's notation: controls, named bigraphs, reactions and one system, or a single expression.
 
-`K{x, y}` is an ion, `K.e` nests, `|` merges, `||` sets side by side and `+` likewise without sharing names, `*`
-composes; `|` and `||` bind least, to the left. Each kind of syntax is one class in big_syntax.py and one method of
-the builder here, so the rest of the language joins by adding to both and to the grammar.
+`K{x, y}` is an ion, `K.e` nests, `|` merges, `||` sets side by side and `+` likewise without sharing names,
+`*` composes; `|` and `||` bind least, to the left. Each kind of syntax is one class in big_syntax.py and one
+method of the builder here, so the rest of the language joins by adding to both and to the grammar.
 """
 
 from __future__ import annotations
@@ -47,30 +47,15 @@ classes: class ("," class)*
 class: "{" names "}" -> ordinary | "(" names ")" -> instantaneous
 predicates: "preds" "=" "{" names "}" ";"
 
-?expression: sums (PRODUCT sums)* -> chain
-?sums: compositions (PLUS compositions)* -> chain
-?compositions: operand (TIMES operand)* -> chain
-?operand: simple | wire+ wired_body -> wired | share
-!share: "share" simple "by" simple "in" simple
-?wired_body: "(" expression ")" | ion | nest | ref
-?simple: "(" expression ")" | ion | nest | ref | wire | identity | merge | split | placing | new_names
-    | INT -> number
-ion: CONTROL ["{" names "}"]
-nest: ion "." simple
-ref: NAME
-?wire: close | close_joined | NAME "/" "{" names "}" -> substitute
-!close: "/" NAME
-!close_joined: "/" "{" names "}"
-!new_names: "{" names "}"
-!merge: "merge" ["(" INT ")"]
-!split: "split" ["(" INT ")"]
-!placing: "(" "[" [sets] "]" "," INT ")"
-sets: set ("," set)*
-!identity: "id" ["(" INT ")"] | "id" inner_names -> identity_of_names | "id" "(" INT "," inner_names ")" -> identity_of_both
-inner_names: "{" names "}"
-set: "{" numbers "}"
-names: NAME ("," NAME)*
-numbers: [INT ("," INT)*]
+?expression: sums (PRODUCT sums)* -> chain ?sums: compositions (PLUS compositions)* -> chain ?compositions:
+operand (TIMES operand)* -> chain ?operand: simple | wire+ wired_body -> wired | share !share: "share" simple
+"by" simple "in" simple ?wired_body: "(" expression ")" | ion | nest | ref ?simple: "(" expression ")" | ion |
+nest | ref | wire | identity | merge | split | placing | new_names | INT -> number ion: CONTROL ["{" names
+"}"] nest: ion "." simple ref: NAME ?wire: close | close_joined | NAME "/" "{" names "}" -> substitute !close:
+"/" NAME !close_joined: "/" "{" names "}" !new_names: "{" names "}" !merge: "merge" ["(" INT ")"] !split:
+"split" ["(" INT ")"] !placing: "(" "[" [sets] "]" "," INT ")" sets: set ("," set)* !identity: "id" ["(" INT
+")"] | "id" inner_names -> identity_of_names | "id" "(" INT "," inner_names ")" -> identity_of_both
+inner_names: "{" names "}" set: "{" numbers "}" names: NAME ("," NAME)* numbers: [INT ("," INT)*]
 
 ATOMIC: "atomic"
 PRODUCT.2: "||" | "|"
@@ -209,7 +194,9 @@ class _Build(Transformer[Token, Any]):
         pairs = zip(rest[::2], rest[1::2], strict=True)
         return Chain(first, tuple((str(operator), operand) for operator, operand in pairs)) if rest else first
 
-    def share(self, word: Token, what: Expression, _by: Token, by: Expression, _in: Token, where: Expression) -> Share:
+    def share(
+        self, word: Token, what: Expression, _by: Token, by: Expression, _in: Token, where: Expression
+    ) -> Share:
         return Share(what, by, where, _at(word))
 
     def control(self, atomic: Token | None, name: Token, arity: Token) -> ControlDeclaration:

@@ -73,7 +73,11 @@ def _operand(expression: Expression, level: int) -> str:
 
 
 def _wired_body(expression: Expression) -> str:
-    return _simple(expression) if isinstance(expression, Ion | Nest | Ref) else f"({format_expression(expression)})"
+    return (
+        _simple(expression)
+        if isinstance(expression, Ion | Nest | Ref)
+        else f"({format_expression(expression)})"
+    )
 
 
 def _simple(expression: Expression) -> str:

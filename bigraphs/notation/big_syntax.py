@@ -124,7 +124,9 @@ class Share:
 
 
 Wire: TypeAlias = Close | Substitute
-Expression: TypeAlias = Ref | Number | Ion | Nest | Identity | Placed | Wire | NewNames | Wired | Chain | Share
+Expression: TypeAlias = (
+    Ref | Number | Ion | Nest | Identity | Placed | Wire | NewNames | Wired | Chain | Share
+)
 
 
 @dataclass(frozen=True, slots=True)

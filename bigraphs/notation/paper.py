@@ -1,8 +1,9 @@
 """The notation of the paper's runtime, as syntax: `l0_Location.(u0_UAV[network] | $0) || l1_Location.$1`.
 
 A node is `name_Control[links].children`; name or control may be missing. The control is what follows the last
-underscore, if that begins with a capital: `my_uav_UAV` is a `UAV` named `my_uav`, `_UAV` is an anonymous one and
-`search_area` has no control. `||` separates regions, `|` neighbours, `->` redex and reactum; `1` is the empty region.
+underscore, if that begins with a capital: `my_uav_UAV` is a `UAV` named `my_uav`, `_UAV` is an anonymous one
+and `search_area` has no control. `||` separates regions, `|` neighbours, `->` redex and reactum; `1` is the
+empty region.
 """
 
 from __future__ import annotations

@@ -31,8 +31,12 @@ def read_bigraph(text: str, signature: Signature | None = None) -> Bigraph:
     order = _site_order(regions)
     if list(order) != list(range(len(order))):
         odd = next(site for site in sites(regions) if site.index >= len(order))
-        raise NotationError("site", f"there are {len(order)} sites, and one is {odd}", text, odd.offset, hint="count from $0")
-    return _bigraph(regions, signature or open_signature(_controls(regions)), [s.index for s in sites(regions)])
+        raise NotationError(
+            "site", f"there are {len(order)} sites, and one is {odd}", text, odd.offset, hint="count from $0"
+        )
+    return _bigraph(
+        regions, signature or open_signature(_controls(regions)), [s.index for s in sites(regions)]
+    )
 
 
 def read_rule(
@@ -84,7 +88,10 @@ def regions_of(
     done: dict[Place, RegionTerm] = {}
     for place in _bottom_up(inside, bigraph.regions):
         held = [SiteTerm(numbers[site] if numbers else site) for site in sited.get(place, ())]
-        below: RegionTerm = (*(_node_term(bigraph.nodes[child], done[child]) for child in inside[place]), *held)
+        below: RegionTerm = (
+            *(_node_term(bigraph.nodes[child], done[child]) for child in inside[place]),
+            *held,
+        )
         done[place] = below
     return tuple(done[~region] for region in range(bigraph.regions))
 
@@ -106,7 +113,9 @@ def _check_writable(bigraph: Bigraph, idle: frozenset[str]) -> None:
     if unsaid:
         raise BigraphError("notation", f"this notation cannot say the idle name '{unsaid[0]}'")
     if bigraph.edges or bigraph.inner_links:
-        raise BigraphError("notation", "this notation cannot say closed links or inner names", "write it as .big")
+        raise BigraphError(
+            "notation", "this notation cannot say closed links or inner names", "write it as .big"
+        )
     if any(len(parents) > 1 for parents in [*(node.parents for node in bigraph.nodes), *bigraph.sites]):
         raise BigraphError("notation", "this notation cannot say shared places", "write it as .big")
     if bigraph.regions == 0:
@@ -122,7 +131,9 @@ def _bigraph(
     found: list[Node] = []
     parents: dict[int, Place] = {}
     numbered = iter(numbers)
-    waiting = [(term, ~region) for region in reversed(range(len(regions))) for term in reversed(regions[region])]
+    waiting = [
+        (term, ~region) for region in reversed(range(len(regions))) for term in reversed(regions[region])
+    ]
     while waiting:
         term, place = waiting.pop()
         if isinstance(term, SiteTerm):
@@ -145,7 +156,9 @@ def _check_controls(regions: tuple[RegionTerm, ...], text: str, known: dict[str,
         if node.control is None and node.name not in known:
             hint = f"write '{node.name}_' and its control"
             length = len(node.name or "")
-            raise NotationError("control", f"'{node.name}' has no control", text, node.offset, length=length, hint=hint)
+            raise NotationError(
+                "control", f"'{node.name}' has no control", text, node.offset, length=length, hint=hint
+            )
 
 
 def _controls(regions: tuple[RegionTerm, ...]) -> list[str]:

@@ -55,7 +55,9 @@ def _check_known(mission: s.Mission, parents: dict[str, str | None], names: Name
             place = belief.place.text
             if place in parents and parents[place] is None:
                 message = f"'{belief.entity.text}' is believed in '{place}', which is believed not to exist"
-                names.findings.add(Code.BAD_BELIEF, belief, message, f"write '{belief.entity.text} in region'")
+                names.findings.add(
+                    Code.BAD_BELIEF, belief, message, f"write '{belief.entity.text} in region'"
+                )
 
 
 def settled(beliefs: Beliefs, actual: Configuration) -> Beliefs:
@@ -91,4 +93,6 @@ def check_forest(mission: s.Mission, c: Configuration, names: Names) -> None:
         elif place is None:
             around = belief.place.text if belief.place else REGION
             message = f"'{start}' is believed in '{around}', which is not in L"
-            names.findings.add(Code.BAD_BELIEF, belief, message, f"say where it is believed: '{around} in region'")
+            names.findings.add(
+                Code.BAD_BELIEF, belief, message, f"say where it is believed: '{around} in region'"
+            )

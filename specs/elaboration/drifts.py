@@ -37,7 +37,7 @@ class Spots:
             altitude = placed.altitude or shape.altitude
             translated = placed.geometry.is_point and not shape.geometry.is_point
             geometry = self._translated(shape, placed.geometry, spot) if translated else placed.geometry
-            return geometry and Placed(geometry, altitude)
+            return None if geometry is None else Placed(geometry, altitude)
         if self.names.entity(spot) is None:
             return None
         place = self.world.position(spot.text)
@@ -47,7 +47,7 @@ class Spots:
                 self.names.findings.add(Code.NO_WHEREABOUTS, spot, message, "write the placement out")
             return None
         geometry = self._translated(shape, place.geometry, spot)
-        return geometry and Placed(geometry, shape.altitude if shape else None)
+        return None if geometry is None else Placed(geometry, shape.altitude if shape else None)
 
     def _translated(self, shape: Placed | None, to: Geometry, where: s.Node) -> Geometry | None:
         try:
@@ -98,7 +98,7 @@ def drifts_within(
     here, within = world.placements.get(clause.entity.text), world.placements.get(clause.place.text)
     if not isinstance(here, Placed) or not isinstance(within, Placed):
         return None
-    places = dict(_arrangement(clause.entity.text, here, spots, mobility, clauses))
+    places = dict(_arrangement(clause.entity.text, here, spots, clauses))
     try:
         faces = drift_faces(here.geometry, within.geometry, places)
         at = face_at(here.geometry, within.geometry, places)
@@ -112,7 +112,9 @@ def drifts_within(
     world.notes.append(f"borders are left out of the drift of {clause.entity.text}")
     placements = tuple(Placed(face.representative, here.altitude) for face in faces)
     called = tuple(_face(clause.place.text, face.inside) for face in faces)
-    return Drifts(clause.entity.text, placements, called, tuple(face.adjacent for face in faces), faces[at].adjacent)
+    return Drifts(
+        clause.entity.text, placements, called, tuple(face.adjacent for face in faces), faces[at].adjacent
+    )
 
 
 def _face(within: str, inside: tuple[str, ...]) -> str:
@@ -129,7 +131,9 @@ def _inexact(
     here, within, kind = world.placements.get(entity), world.placements.get(place), names.kinds[entity]
     if not isinstance(here, Placed):
         return f"'{entity}' is {'carried' if isinstance(here, Carried) else 'absent'} at first"
-    if entity in mobility.coming and any(isinstance(c, s.Appears) and c.entity.text == entity for c in clauses):
+    if entity in mobility.coming and any(
+        isinstance(c, s.Appears) and c.entity.text == entity for c in clauses
+    ):
         return f"'{entity}' also appears elsewhere"
     if names.signature[kind].driven:
         return f"'{entity}' is not only drifting: its kind {kind} is driven"
@@ -137,7 +141,11 @@ def _inexact(
         return f"'{place}' is no place with a border that is there at first"
     if moves(place, names, mobility):
         return f"'{place}' may move itself"
-    inside = [other for other, of in sorted(names.kinds.items()) if of in names.signature[kind].contains and other != entity]
+    inside = [
+        other
+        for other, of in sorted(names.kinds.items())
+        if of in names.signature[kind].contains and other != entity
+    ]
     if inside and not here.geometry.is_point:
         return f"'{entity}' may itself contain '{inside[0]}'"
     swallowing = next((o for o in _containers(entity, names) if _roams(o, spots, mobility, clauses)), None)
@@ -146,7 +154,11 @@ def _inexact(
 
 def _containers(entity: str, names: Names) -> list[str]:
     kind = names.kinds[entity]
-    return [name for name, of in sorted(names.kinds.items()) if kind in names.signature[of].contains and name != entity]
+    return [
+        name
+        for name, of in sorted(names.kinds.items())
+        if kind in names.signature[of].contains and name != entity
+    ]
 
 
 def _roams(name: str, spots: Spots, mobility: Mobility, clauses: Sequence[s.EnvironmentClause]) -> bool:
@@ -159,7 +171,7 @@ def _roams(name: str, spots: Spots, mobility: Mobility, clauses: Sequence[s.Envi
 
 
 def _arrangement(
-    entity: str, here: Placed, spots: Spots, mobility: Mobility, clauses: Sequence[s.EnvironmentClause]
+    entity: str, here: Placed, spots: Spots, clauses: Sequence[s.EnvironmentClause]
 ) -> Iterator[tuple[str, Geometry]]:
     """Yield all polygons that may ever contain an entity: where they are, and where it is listed that they may be."""
     for name in _containers(entity, spots.names):
@@ -169,5 +181,9 @@ def _arrangement(
                 listed = [spots.placed(spot, name) for spot in clause.placements]
                 where += [(f"{name} ({number})", placed) for number, placed in enumerate(listed, 1)]
         for called, placed in where:
-            if isinstance(placed, Placed) and not placed.geometry.is_point and band_contains(placed.altitude, here.altitude):
+            if (
+                isinstance(placed, Placed)
+                and not placed.geometry.is_point
+                and band_contains(placed.altitude, here.altitude)
+            ):
                 yield called, placed.geometry

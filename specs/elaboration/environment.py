@@ -68,7 +68,9 @@ def _check_repeated(phase: _Clauses) -> None:
             case _:
                 continue
         if key in seen:
-            phase.names.findings.add(code, clause, f"'{key[1]}' {key[0]} by two clauses", "make one of the two")
+            phase.names.findings.add(
+                code, clause, f"'{key[1]}' {key[0]} by two clauses", "make one of the two"
+            )
         seen.add(key)
 
 
@@ -122,7 +124,7 @@ def _appears(phase: _Clauses, clause: s.Appears) -> Clause | None:
 def _spot(phase: _Clauses, spot: s.Placement | s.Name, entity: str) -> Placed | Carried | None:
     if isinstance(spot, s.Name) and carries(phase.names, spot.text, entity):
         placed = phase.spots.placed(spot, entity)
-        return placed and Carried(spot.text, placed)
+        return None if placed is None else Carried(spot.text, placed)
     return phase.spots.placed(spot, entity)
 
 

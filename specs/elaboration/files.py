@@ -40,7 +40,7 @@ def read_source(
     entry: s.FromSource, directory: Path, names: Names, notes: list[str]
 ) -> tuple[PhysicalProperty, ...]:
     """Return what a file holds of the world, of kinds of the signature; reports what is wrong, and adds to `notes`."""
-    area = entry.within and elaborate_geometry(entry.within, names.findings)
+    area = None if entry.within is None else elaborate_geometry(entry.within, names.findings)
     for keep in entry.keep:
         names.kind(keep.kind)
     try:
@@ -128,10 +128,14 @@ def _seconds(text: str) -> float:
 
 
 def _check_keep(entry: s.FromSource, found: tuple[PhysicalProperty, ...], names: Names) -> None:
-    kinds = {item.kind for item in found} | (set(KINDS) if Path(entry.file.value).suffix.lower() in AIS else set())
+    kinds = {item.kind for item in found} | (
+        set(KINDS) if Path(entry.file.value).suffix.lower() in AIS else set()
+    )
     for keep in entry.keep:
         if keep.recorded.text not in kinds:
-            otherwise = f"its kinds are {', '.join(map(shorten, sorted(kinds)[:10]))}" if kinds else "it is empty"
+            otherwise = (
+                f"its kinds are {', '.join(map(shorten, sorted(kinds)[:10]))}" if kinds else "it is empty"
+            )
             names.findings.unknown(
                 keep.recorded, kinds, sort="kind of the file", code=Code.UNKNOWN_KIND, otherwise=otherwise
             )

@@ -38,11 +38,15 @@ def elaborate_placement(node: s.Placement, findings: Findings) -> Placed | None:
     """Return the placement that is written."""
     geometry = elaborate_geometry(node.geometry, findings)
     try:
-        altitude = node.altitude and Band(node.altitude.lowest.metres, node.altitude.highest.metres)
+        altitude = None if node.altitude is None else _band(node.altitude)
     except PhysicalError as error:
         findings.add(Code.BAD_GEOMETRY, node.altitude or node, error.message, error.hint)
         return None
     return None if geometry is None else Placed(geometry, altitude)
+
+
+def _band(node: s.AltitudeBand) -> Band:
+    return Band(node.lowest.metres, node.highest.metres)
 
 
 def moved_to(shape: Placed | None, at: Geometry) -> Placed:

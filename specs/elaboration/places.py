@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from physical import Place, check_places
@@ -31,14 +32,20 @@ def elaborate_mobility(mission: s.Mission, names: Names, world: World) -> Mobili
     """Gather who moves from the world and the environment section."""
     clauses = [clause for section in mission.each(s.Environment) for clause in section.clauses]
     found = Mobility()
-    found.drifting = {each.entity.text for each in clauses if isinstance(each, s.DriftsAmong | s.DriftsWithin)}
+    found.drifting = {
+        each.entity.text for each in clauses if isinstance(each, s.DriftsAmong | s.DriftsWithin)
+    }
     found.coming = {each.entity.text for each in clauses if isinstance(each, s.Appears | s.Vanishes)}
     found.carried = {name for name, placement in world.placements.items() if isinstance(placement, Carried)}
     for each in clauses:
-        spots = each.placements if isinstance(each, s.Appears) else ()
-        if any(isinstance(spot, s.Name) and carries(names, spot.text, each.entity.text) for spot in spots):
-            found.carried.add(each.entity.text)
+        if isinstance(each, s.Appears):
+            aboard = (carries(names, spot.text, each.entity.text) for spot in _named(each.placements))
+            found.carried |= {each.entity.text} if any(aboard) else set()
     return found
+
+
+def _named(spots: Iterable[s.Placement | s.Name]) -> Iterator[s.Name]:
+    return (spot for spot in spots if isinstance(spot, s.Name))
 
 
 def carries(names: Names, carrier: str, name: str) -> bool:

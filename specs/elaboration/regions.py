@@ -37,7 +37,9 @@ def regions_of(regions: tuple[RegionTerm, ...]) -> Iterator[Region]:
     """Yield the regions of one side of a rule, flattened."""
     for index, region in enumerate(regions):
         items: list[tuple[WrittenNode | SiteTerm, WrittenNode | None]] = []
-        waiting: list[tuple[WrittenNode | SiteTerm, WrittenNode | None]] = [(term, None) for term in reversed(region)]
+        waiting: list[tuple[WrittenNode | SiteTerm, WrittenNode | None]] = [
+            (term, None) for term in reversed(region)
+        ]
         while waiting:
             term, above = waiting.pop()
             items.append((term, above))
@@ -130,7 +132,9 @@ def region_places(before: Side, after: Side) -> RegionPlaces:
     for index, place in same.items():
         if place is not None:
             into[place] |= new[index]
-    needed = {index for index, roots in enumerate(old) if len(roots | into[index]) > 1 or roots != into[index]}
+    needed = {
+        index for index, roots in enumerate(old) if len(roots | into[index]) > 1 or roots != into[index]
+    }
     redex = tuple(
         (before.term(root), _place(index))
         for index, roots in enumerate(before.roots)

@@ -37,7 +37,9 @@ class _Reading:
     def where(self, node: WrittenNode | SiteTerm) -> s.Span:
         """Return where a node stands in the mission."""
         start = self.body.raw_start + node.offset
-        return s.Span(start, start + max(1, len(word_of(node) if isinstance(node, WrittenNode) else str(node))))
+        return s.Span(
+            start, start + max(1, len(word_of(node) if isinstance(node, WrittenNode) else str(node)))
+        )
 
     def mistake(self, code: Code, node: WrittenNode | SiteTerm | None, message: str, hint: str = "") -> None:
         self.sound = False
@@ -101,14 +103,10 @@ def elaborate_rule(
     links = [tuple(_links(reading, side, body.term)) for side in (before, after)]
     if not reading.sound:
         return None
-    sides = [
-        Pattern(side.terms, tuple(pairs), linked, closed)
-        for side, pairs, linked, closed in zip(
-            (before, after), parents, links, (before.closed, ()), strict=True
-        )
-    ]
+    old = Pattern(before.terms, parents[0], links[0], before.closed)
+    new = Pattern(after.terms, parents[1], links[1])
     moves = tuple(_moves(reading, before, after, *parents))
-    return Schema(name, body.text, parameters, *sides, moves, reading.words, reading.kinds)
+    return Schema(name, body.text, parameters, old, new, moves, reading.words, reading.kinds)
 
 
 # --- what each word means -------------------------------------------------------------------------------------
@@ -125,17 +123,19 @@ def _name_nodes(reading: _Reading, region: Region) -> None:
         if word not in reading.terms:
             reading.terms[word] = _term(reading, node)
         term = reading.terms[word]
-        if node.control is not None and not (isinstance(term, str) and word in (term, HOST)):
+        if node.control is not None and term not in (word, f"{word}#"):
             _check_control(reading, node, term)
 
 
 def _term(reading: _Reading, node: WrittenNode) -> NodeTerm | None:
     """Return what a node's word stands for: the host, a parameter, an entity, else a variable."""
     for name, rest in ((word_of(node), ""), (node.name, f"_{node.control}" if node.control else "")):
+        if name is None:
+            continue
         if name == HOST or name in reading.given:
             term = name if name == HOST else f"{name}#"
             reading.words[word_of(node)] = (term, rest)
-            reading.kinds[term] = reading.given.get(name)
+            reading.kinds.setdefault(term, reading.given.get(name))
             return term
         if name in reading.names.kinds:
             reading.kinds[name] = reading.names.kinds[name]
@@ -156,7 +156,8 @@ def _term(reading: _Reading, node: WrittenNode) -> NodeTerm | None:
 def _unknown(reading: _Reading, node: WrittenNode) -> None:
     among = [*reading.names.kinds, *reading.given, HOST]
     hint = reading.names.findings.suggest(node.name or "", among)
-    otherwise = f"a variable is written with its kind, as in {node.name}_{min(reading.names.signature.kinds, default='UAV')}"
+    kind = min(reading.names.signature.kinds, default="UAV")
+    otherwise = f"a variable is written with its kind, as in {node.name}_{kind}"
     reading.mistake(Code.UNKNOWN_NAME, node, f"unknown name '{node.name}'", hint or otherwise)
 
 
@@ -178,7 +179,10 @@ def _check_control(reading: _Reading, node: WrittenNode, term: NodeTerm | None) 
 
 
 def _check_same_nodes(reading: _Reading, before: Side, after: Side) -> None:
-    for side, other, verb, where in ((after, before, "creates", "redex"), (before, after, "deletes", "reactum")):
+    for side, other, verb, where in (
+        (after, before, "creates", "redex"),
+        (before, after, "deletes", "reactum"),
+    ):
         missing = [node for node in side.nodes if reading.terms[word_of(node)] not in set(other.terms)]
         for node in missing:
             hint = f"controls move and link what is there: write '{word_of(node)}' in the {where} too"
@@ -189,7 +193,10 @@ def _check_same_nodes(reading: _Reading, before: Side, after: Side) -> None:
             term = reading.terms[word_of(node)]
             if term in seen:
                 reading.mistake(
-                    Code.DUPLICATE_NAME, node, f"'{word_of(node)}' is written twice on one side", "a node is once in a bigraph"
+                    Code.DUPLICATE_NAME,
+                    node,
+                    f"'{word_of(node)}' is written twice on one side",
+                    "a node is once in a bigraph",
                 )
             seen.add(term)
 
@@ -241,7 +248,10 @@ def _moves(
     written = {reading.terms[word_of(node)]: node for side in (before, after) for node in side.nodes}
     signature = reading.names.signature
     for node, place in (*old, *new):
-        kind, around = reading.kinds.get(node), reading.kinds.get(place) if isinstance(place, str | NodeVariable) else None
+        kind, around = (
+            reading.kinds.get(node),
+            reading.kinds.get(place) if isinstance(place, str | NodeVariable) else None,
+        )
         if kind is not None and around is not None and not signature[around].may_contain(kind):
             message = f"{a(around)} cannot contain {a(kind)}"
             hint = f"declare it: kind {around} contains {kind}"

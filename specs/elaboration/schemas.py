@@ -67,11 +67,14 @@ class Schema:
             if isinstance(term, NodeVariable):
                 if term.kind in (None, kind):
                     return True
-            elif term == HOST or arguments.get(term, term) == host:
-                return True
-            elif term.endswith("#") and term not in arguments and self.kinds.get(term) in (None, kind):
+            elif arguments.get(term, term) == host or self._may_be(term, kind, arguments):
                 return True
         return False
+
+    def _may_be(self, term: Name, kind: str, arguments: Mapping[str, Name]) -> bool:
+        """Tell whether a term is the host, or a parameter of unknown value that may be one of its kind."""
+        unknown = term.endswith("#") and term not in arguments
+        return term == HOST or (unknown and self.kinds.get(term) in (None, kind))
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +101,9 @@ class Maker:
         if not isinstance(value, str) or value not in self.kinds:
             raise Fault(f"a node was expected for {parameter.shown}, not {shown}")
         if parameter.kind is not None and self.kinds[value] != parameter.kind:
-            raise Fault(f"{parameter.shown} is of kind {parameter.kind}, and {shown} is of kind {self.kinds[value]}")
+            raise Fault(
+                f"{parameter.shown} is of kind {parameter.kind}, and {shown} is of kind {self.kinds[value]}"
+            )
         return value
 
     def _text(self, values: Mapping[str, Name]) -> str:

@@ -100,7 +100,7 @@ def _join(channels: tuple[s.Name, ...], names: Names) -> None:
 def _entity(entry: s.Entity, names: Names, world: World) -> Iterator[_Load]:
     name = entry.name.text
     names.kind(entry.kind)
-    placed = entry.placement and elaborate_placement(entry.placement, names.findings)
+    placed = None if entry.placement is None else elaborate_placement(entry.placement, names.findings)
     if not names.declare("entity", name, entry.name):
         return
     names.kinds[name] = entry.kind.text

@@ -55,13 +55,18 @@ def _subsets(items, largest):
 def _placed(redex, target, nodes, sharing):
     places = range(-target.regions, len(target.nodes))
     rest = [number for number in range(len(target.nodes)) if number not in nodes]
-    homes = [set(s) for s in _subsets([p for p in places if p not in nodes], len(places) if sharing else 1) if s]
+    homes = [
+        set(s) for s in _subsets([p for p in places if p not in nodes], len(places) if sharing else 1) if s
+    ]
     for regions in product(homes, repeat=redex.regions):
         if not _tops_agree(redex, target, nodes, regions):
             continue
         fillings = list(_subsets(range(len(redex.sites)), len(redex.sites) if sharing else 1))
         for filling in product(fillings, repeat=len(rest)):
-            sites = [[n for n, held in zip(rest, filling, strict=True) if s in held] for s in range(len(redex.sites))]
+            sites = [
+                [n for n, held in zip(rest, filling, strict=True) if s in held]
+                for s in range(len(redex.sites))
+            ]
             if _valid(redex, target, nodes, regions, sites):
                 yield tuple(tuple(sorted(r)) for r in regions), tuple(map(tuple, sites))
 
@@ -93,7 +98,9 @@ def _valid(redex, target, nodes, regions, sites):
         if number >= 0 and not set(target.nodes[number].parents) <= context:
             return False
     held = [_image(parents, nodes, regions) for parents in redex.sites]
-    return all(_held_well(set(target.nodes[number].parents), number, sites, held, matched) for number in inside)
+    return all(
+        _held_well(set(target.nodes[number].parents), number, sites, held, matched) for number in inside
+    )
 
 
 def _held_well(parents, number, sites, held, matched):

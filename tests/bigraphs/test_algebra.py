@@ -113,7 +113,11 @@ def test_merge_is_associative_commutative_and_has_one_as_unit():
     assert merge(2) @ symmetry(1, 1) == merge(2)
 
 
-@given(bigraphs(Interface(), Interface(1, X)), bigraphs(Interface(), Interface(1, X)), bigraphs(Interface(), Interface(1, X)))
+@given(
+    bigraphs(Interface(), Interface(1, X)),
+    bigraphs(Interface(), Interface(1, X)),
+    bigraphs(Interface(), Interface(1, X)),
+)
 def test_merge_product_is_a_commutative_monoid_on_prime_grounds(one, two, three):
     assert equal(one | two, two | one)
     assert equal((one | two) | three, one | (two | three))
@@ -173,7 +177,10 @@ def test_composing_through_a_shared_site_makes_a_shared_node():
         (lambda: names(["x"]) * names(["x"]), "both sides have the name x"),
         (lambda: close(merge(0), "x"), "there is no outer name 'x' to close"),
         (lambda: nest(substitution("x", ["x"]), merge(0)), "nesting needs an outside without inner names"),
-        (lambda: atom(SIGNATURE, "A", name="a") | atom(SIGNATURE, "A", name="a"), "node 'a' is there 2 times"),
+        (
+            lambda: atom(SIGNATURE, "A", name="a") | atom(SIGNATURE, "A", name="a"),
+            "node 'a' is there 2 times",
+        ),
     ],
 )
 def test_what_does_not_fit_is_refused(attempt, message):

@@ -39,9 +39,13 @@ def test_bigraphs_that_differ_in_one_port_are_told_apart_as_by_brute_force(one, 
     node = one.nodes[number]
     links = [*range(one.edges), *one.outer_names]
     ports = tuple(data.draw(st.sampled_from(links)) for _ in node.ports)
-    nodes = [replace(node, ports=ports) if place == number else other for place, other in enumerate(one.nodes)]
+    nodes = [
+        replace(node, ports=ports) if place == number else other for place, other in enumerate(one.nodes)
+    ]
     other = data.draw(
-        shuffled(assemble(SIGNATURE, nodes, edges=one.edges, outer_names=one.outer_names, regions=one.regions))
+        shuffled(
+            assemble(SIGNATURE, nodes, edges=one.edges, outer_names=one.outer_names, regions=one.regions)
+        )
     )
     assert equal(one, other) == isomorphic(one, other)
 

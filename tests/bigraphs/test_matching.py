@@ -38,7 +38,11 @@ def redex_and_target(draw, *, sharing=False, size=5, redex_size=3):
     width = filling.regions if parts else 0
     tops = [{draw(st.integers(0, max(0, len(redex.sites) - 1)))} for _ in range(width)]
     inner = (placing(tops, len(redex.sites)) // substitution("x", ["x"])) if parts else None
-    whole = redex if inner is None else (redex // substitution("x", ["x"])) @ inner @ (filling // substitution("x", []))
+    whole = (
+        redex
+        if inner is None
+        else (redex // substitution("x", ["x"])) @ inner @ (filling // substitution("x", []))
+    )
     found = whole | flat[0]
     closing = [name for name in found.outer_names if draw(st.booleans())]
     return redex, named(close(found, *closing)) if len(found.nodes) <= size else (named(flat[0]))
@@ -93,7 +97,9 @@ def test_a_node_without_a_site_has_no_further_child():
 
 def test_a_closed_link_matches_an_edge_all_of_whose_points_are_matched():
     pair = close(atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["x"]), "x")
-    three = close(atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["x"]), "x")
+    three = close(
+        atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["x"]), "x"
+    )
     assert count(pair, pair) == 2
     assert count(pair, three) == 0
     assert count(pair, atom(SIGNATURE, "B", ["x"]) | atom(SIGNATURE, "B", ["x"])) == 0
@@ -166,8 +172,10 @@ def test_a_named_node_matches_its_namesake_and_a_variable_any():
 def test_a_shared_node_matches_only_with_all_its_parents_or_a_region():
     both = node("A", name="p") * node("A", name="q")
     target = both @ placing([{0, 1}], 2) @ atom(SIGNATURE, "B", ["x"], name="s") if False else None
-    target = (both // substitution("x", ["x"])) @ (placing([{0, 1}], 2) // substitution("x", ["x"])) @ atom(
-        SIGNATURE, "B", ["x"], name="s"
+    target = (
+        (both // substitution("x", ["x"]))
+        @ (placing([{0, 1}], 2) // substitution("x", ["x"]))
+        @ atom(SIGNATURE, "B", ["x"], name="s")
     )
     assert count(node("A", inside=atom(SIGNATURE, "B", ["r"])), target) == 0
     assert count(atom(SIGNATURE, "B", ["r"]), target) == 1

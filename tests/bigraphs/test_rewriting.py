@@ -14,7 +14,9 @@ from bigraphs.rules import matches, rule
 from bigraphs.wellformed import check
 
 SLOT, ONE = merge(1), merge(0)
-MOVE = "l0_Location.(u0_UAV[network] | $0) || l1_Location.$1 -> l0_Location.$0 || l1_Location.(u0[network] | $1)"
+MOVE = (
+    "l0_Location.(u0_UAV[network] | $0) || l1_Location.$1 -> l0_Location.$0 || l1_Location.(u0[network] | $1)"
+)
 
 
 def node(control, inside=SLOT, name=None):
@@ -57,7 +59,9 @@ def test_the_rule_of_the_paper_moves_the_vehicle_and_keeps_its_link():
 def test_a_variable_keeps_the_name_of_the_node_that_it_matched():
     world = read_bigraph("a_Location.(x_UAV[n] | y_UAV[n]) | b_Location")
     variables = frozenset({"l0", "l1", "u0"})
-    found = {write_bigraph(result) for _, result in successors(read_rule(MOVE, node_variables=variables), world)}
+    found = {
+        write_bigraph(result) for _, result in successors(read_rule(MOVE, node_variables=variables), world)
+    }
     assert found == {
         "a_Location.y_UAV[n] | b_Location.x_UAV[n]",
         "a_Location.x_UAV[n] | b_Location.y_UAV[n]",

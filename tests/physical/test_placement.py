@@ -20,7 +20,8 @@ from physical import (
     translate_to,
 )
 from physical.frame import local_frame
-from physical.placement import outline, placed, swallows
+from physical.placement import outline, placed, room, swallows
+from physical.shape import planar
 
 HARBOUR = box((52.981, 5.451), (52.971, 5.431))
 QUAY = polygon([(52.979, 5.431), (52.979, 5.449), (52.9785, 5.449), (52.9785, 5.431)])
@@ -167,7 +168,18 @@ def test_a_border_too_detailed_for_a_mover_is_refused():
         ring = [(i / n * 2 * math.pi, size * (1 + 0.1 * (i % 2))) for i in range(n)]
         return polygon((lat + r * math.sin(a), r * math.cos(a)) for a, r in ring)
 
-    target, mover = ragged(0, 4000, 0.1), ragged(10, 100, 0.0001)
-    hole = circle(centroid(target).vertices[0], 1000)
+    space = local_frame((0, 0)).project(planar(ragged(0, 4000, 0.1)))
     with pytest.raises(GeometryError, match="is too detailed for a mover of 100 vertices"):
-        nearest_placement(mover, target, [hole])
+        room(space, ragged(10, 100, 0.0001))
+
+
+def test_a_far_border_does_not_slow_or_change_a_placement():
+    def coast(n):
+        ring = [(i / n * 2 * math.pi, 1 + 0.01 * (i % 2)) for i in range(n)]
+        return polygon((40 + r * math.sin(a), 5 + r * math.cos(a)) for a, r in ring)
+
+    hole, ship = circle((40, 5), 1000), circle((1, 1), 20)
+    found = nearest_placement(ship, coast(10_000), [hole])
+    assert contains(coast(10_000), found)
+    assert not contains(hole, found)
+    assert distance(centroid(found), point(40, 5)) == pytest.approx(980, abs=3)

@@ -1,0 +1,103 @@
+"""One mission checked: its report, or why there is none."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from bigactors.exits import Exit
+from bigactors.missions import digest_of, open_mission
+from bigactors.mistakes import Mistake, describe_bug
+from bigactors.progress import watching
+from bigactors.terminal import tell
+from checker import Limits, Report, check, report_json
+from specs.elaboration import ElaboratedMission
+
+FAILURE_SCHEMA = "bigactors.failure/1"
+REPORTS_SCHEMA = "bigactors.reports/1"
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A mission and its report.
+
+    Attributes:
+        name: The mission as the user gave it.
+        mission: What it says.
+        digest: Of what it says.
+        report: What was found.
+        interrupted: Whether the user ended it.
+    """
+
+    name: str
+    mission: ElaboratedMission
+    digest: str
+    report: Report
+    interrupted: bool
+
+    @property
+    def exit(self) -> Exit:
+        """0, 1 or 3."""
+        return Exit(self.report.exit_code)
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the report as plain data."""
+        return report_json(self.name, self.digest, self.report, self.mission.setting.control)
+
+
+@dataclass(frozen=True, slots=True)
+class Failed:
+    """A mission that could not be checked: a mistake in it (2), our bug (4), or never begun (3)."""
+
+    name: str
+    exit: Exit
+    message: str
+    details: tuple[dict[str, object], ...] = ()
+    interrupted: bool = False
+
+    def as_json(self) -> dict[str, Any]:
+        """Return why there is no report as plain data."""
+        return {
+            "schema": FAILURE_SCHEMA,
+            "mission": self.name,
+            "complete": False,
+            "exit_code": int(self.exit),
+            "message": self.message,
+            "diagnostics": list(self.details),
+        }
+
+
+def check_mission(name: str, limits: Limits) -> Checked | Failed:
+    """Check one mission; what goes wrong is told on the standard error and returned."""
+    try:
+        mission = open_mission(name)
+        with watching(mission.name) as watch:
+            report = check(mission.initial, mission.properties, limits, watch, notes=mission.notes)
+        return Checked(name, mission, digest_of(mission), report, watch.interrupted)
+    except Mistake as mistake:
+        tell(str(mistake))
+        return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
+    except KeyboardInterrupt:
+        return Failed(name, Exit.INCOMPLETE, "interrupted before it was explored", interrupted=True)
+    except Exception as error:  # noqa: BLE001 - whatever it is, it is our bug, and other missions are to be checked
+        tell(f"{name}:\n{describe_bug(error)}")
+        return Failed(name, Exit.BUG, f"internal error: {type(error).__name__}: {error}")
+
+
+def check_missions(names: list[str], limits: Limits) -> Iterator[Checked | Failed]:
+    """Check missions in turn; after an interruption the others are not begun."""
+    interrupted = False
+    for name in names:
+        if interrupted:
+            yield Failed(name, Exit.INCOMPLETE, "not begun")
+            continue
+        result = check_mission(name, limits)
+        interrupted = result.interrupted
+        yield result
+
+
+def results_json(results: list[Checked | Failed], code: Exit) -> dict[str, Any]:
+    """Return the results as plain data: of one mission its report, of several a list of them."""
+    if len(results) == 1:
+        return results[0].as_json()
+    reports = [result.as_json() for result in results]
+    return {"schema": REPORTS_SCHEMA, "exit_code": int(code), "reports": reports}

@@ -1,0 +1,37 @@
+"""The command `bigactors`: reads the line, runs the command, and ends with its exit code."""
+
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+
+from bigactors.arguments import parse_arguments
+from bigactors.exits import Exit
+from bigactors.mistakes import Mistake, describe_bug
+from bigactors.terminal import paint, safe_output, tell
+
+
+def main(line: Sequence[str] | None = None) -> int:
+    """Run one command line (default: this process's) and return its exit code."""
+    try:
+        with safe_output():
+            return run(sys.argv[1:] if line is None else line)
+    except Mistake:  # the output itself cannot be written
+        return Exit.MISTAKE
+
+
+def run(line: Sequence[str]) -> int:
+    """Run one command line, and report what goes wrong."""
+    try:
+        options = parse_arguments(line)
+        return int(import_module(f"bigactors.commands.{options.command}").run(options))
+    except SystemExit as end:  # after --help and --version
+        return int(end.code or 0)
+    except Mistake as mistake:
+        tell(str(mistake) if mistake.place else f"{paint('bigactors:', 'red', sys.stderr)} {mistake}")
+        return Exit.MISTAKE
+    except KeyboardInterrupt:
+        tell("bigactors: interrupted, nothing is decided")
+        return Exit.INCOMPLETE
+    except Exception as error:  # noqa: BLE001 - whatever it is, it is our bug
+        tell(describe_bug(error))
+        return Exit.BUG

@@ -1,0 +1,103 @@
+"""`bigactors check`: the verdicts on missions."""
+
+import re
+import sys
+from argparse import Namespace
+from collections.abc import Iterator
+from pathlib import Path
+
+from bigactors.checking import Checked, Failed, check_missions, results_json
+from bigactors.evidence import write_evidence
+from bigactors.exits import Exit, worst
+from bigactors.files import file_stem, json_text, make_folder, write_json
+from bigactors.terminal import paint, say, say_text, tell
+from checker import Limits, report_text
+from checker.report import MARKS
+from checker.verdicts import Outcome
+from semantics.successors import rules_of
+
+COLOURS = {Outcome.HOLDS: "green", Outcome.VIOLATED: "red", Outcome.INCOMPLETE: "yellow"}
+SIGNS = {MARKS[outcome]: colour for outcome, colour in COLOURS.items()}
+
+WORDS = {
+    Exit.HOLDS: (MARKS[Outcome.HOLDS], "holds"),
+    Exit.VIOLATED: (MARKS[Outcome.VIOLATED], "violated"),
+    Exit.MISTAKE: ("!", "mistake"),
+    Exit.INCOMPLETE: (MARKS[Outcome.INCOMPLETE], "incomplete"),
+    Exit.BUG: ("!", "internal error"),
+}
+
+
+def run(options: Namespace) -> Exit:
+    """Check missions; print the reports and write what was asked for."""
+    limits = Limits(configurations=options.max_configurations, seconds=options.max_time)
+    if options.trace:
+        make_folder(options.trace)
+    results: list[Checked | Failed] = []
+    folders: set[str] = set()
+    for result in check_missions(options.files, limits):
+        results.append(result)
+        if options.json != "-":
+            for line in report_lines(result, traces=not options.no_traces):
+                say(coloured(line))
+        if options.trace and isinstance(result, Checked):
+            keep_evidence(result, options.trace, folders)
+    code = worst(result.exit for result in results)
+    if options.json == "-":
+        say_text(json_text(results_json(results, code)))
+    elif len(results) > 1:
+        for line in summary(results):
+            say(coloured(line))
+    if options.json not in (None, "-"):
+        write_json(options.json, results_json(results, code))
+    return code
+
+
+def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
+    """Yield what is printed of one mission; of one that has a mistake nothing, since that was told."""
+    if isinstance(result, Failed):
+        return
+    report = result.report
+    yield from report_text(result.name, report, traces=traces)
+    silent = [rule.__name__ for rule in rules_of(result.mission.setting.control) if rule.__name__ not in report.rules]
+    if silent:
+        yield f"  rules never used: {', '.join(silent)}"
+
+
+def summary(results: list[Checked | Failed]) -> Iterator[str]:
+    """Yield a line for each of several missions."""
+    width = max(len(result.name) for result in results)
+    yield ""
+    for result in results:
+        sign, word = WORDS[result.exit]
+        if isinstance(result, Checked):
+            counts = f"{result.report.configurations:,} configurations, {result.report.transitions:,} transitions"
+        else:
+            counts = result.message.splitlines()[0][:100]
+        yield f"  {sign} {result.name:<{width}}  {word:<10}  {counts}"
+
+
+def coloured(line: str) -> str:
+    """Return a line with its mark coloured, where the output shows colours.
+
+    >>> coloured("  ✓ deadlock_freedom  holds")
+    '  ✓ deadlock_freedom  holds'
+    """
+    found = re.match(r"  ([✓✗?!]) ", line)
+    if not found:
+        return line
+    colour = SIGNS.get(found[1], "red")
+    return f"  {paint(found[1], colour, sys.stdout)} {line[4:]}"
+
+
+def keep_evidence(checked: Checked, folder: str, taken: set[str]) -> None:
+    """Write the traces of a mission into a folder of its own, and say so."""
+    stem = name = file_stem(Path(checked.name).stem)
+    number = 2
+    while name in taken:
+        name, number = f"{stem}-{number}", number + 1
+    taken.add(name)
+    target = str(Path(folder) / name)
+    written = write_evidence(checked, target)
+    if written:
+        tell(f"{len(written)} traces written to {target}, each as .txt, .json and .svg")

@@ -1,0 +1,33 @@
+"""`bigactors demo`: the missions of the README, checked and drawn."""
+
+from argparse import Namespace
+
+from bigactors.checking import Checked, check_mission
+from bigactors.commands.check import coloured, report_lines
+from bigactors.drawings import draw
+from bigactors.evidence import write_evidence
+from bigactors.exits import Exit, worst
+from bigactors.files import make_folder
+from bigactors.terminal import say
+from checker import Limits
+
+MISSIONS = ("oil_spill", "harbour_watch")
+
+
+def run(options: Namespace) -> Exit:
+    """Check both missions, and write a picture and the traces of each."""
+    return worst([_show(name, options.out) for name in MISSIONS])
+
+
+def _show(name: str, out: str) -> Exit:
+    result = check_mission(name, Limits(seconds=60))
+    for line in report_lines(result, traces=True):
+        say(coloured(line))
+    if isinstance(result, Checked):
+        picture = make_folder(out) / f"{name}.svg"
+        draw(result.mission.initial, str(picture), title=name)
+        written = [picture, *(f"{path}.svg" for path in write_evidence(result, str(picture.with_suffix(""))))]
+        for path in written:
+            say(f"  drawn: {path}")
+    say()
+    return result.exit

@@ -1,0 +1,49 @@
+"""`bigactors fmt`: mission files in the canonical layout, never at the cost of what they say."""
+
+from argparse import Namespace
+
+from bigactors.exits import Exit, worst
+from bigactors.files import read_bytes, write_text
+from bigactors.missions import as_mistake
+from bigactors.mistakes import Mistake
+from bigactors.terminal import say, say_text, tell
+from specs import MissionError, Source, decode, format_mission, parse
+from specs.text import MAX_BYTES
+
+
+def run(options: Namespace) -> Exit:
+    """Format each file; those that do not parse are left alone."""
+    return worst([_file(path, options) for path in options.files])
+
+
+def _file(path: str, options: Namespace) -> Exit:
+    try:
+        before, after = formatted(path)
+    except Mistake as mistake:
+        tell(str(mistake))
+        return Exit.MISTAKE
+    if options.stdout:
+        say_text(after)
+        return Exit.HOLDS
+    if before == after:
+        return Exit.HOLDS
+    if options.check:
+        say(f"{path} would be formatted")
+        return Exit.VIOLATED
+    write_text(path, after)
+    say(f"{path} formatted")
+    return Exit.HOLDS
+
+
+def formatted(path: str) -> tuple[str, str]:
+    """Return what a mission file holds and what it is to hold; raises Mistake where it does not parse."""
+    data = read_bytes(path, MAX_BYTES)
+    try:
+        source = decode(path, data)
+        mission = parse(source)
+        result = format_mission(source.text, path)
+        if parse(Source(path, result)) != mission:
+            raise AssertionError(f"formatting {path} would change what it says; it is left alone")
+    except MissionError as error:
+        raise as_mistake(error) from error
+    return data.decode("utf-8"), result

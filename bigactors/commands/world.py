@@ -1,0 +1,31 @@
+"""`bigactors world`: the bigraph of what files say is where."""
+
+from argparse import Namespace
+from pathlib import Path
+
+from bigactors.drawings import draw
+from bigactors.exits import Exit
+from bigactors.terminal import say, tell
+from bigactors.worlds import census, configuration_of, read_world
+from semantics.printing import print_place
+from semantics.signature import REGION
+
+
+def run(options: Namespace) -> Exit:
+    """Print the world, draw it if asked, and account for what could not be read."""
+    kinds = [kind.strip() for kind in (options.kinds or "").split(",") if kind.strip()]
+    world = read_world(options.files, options.at, options.within, kinds)
+    configuration = configuration_of(world)
+    say(REGION)
+    for line in print_place(configuration, REGION, 1):
+        say(line)
+    say(census(world))
+    for path, counts in world.accounts:
+        for row in counts.rows():
+            say(f"{path}: {row}")
+    for conflict in world.conflicts:
+        tell(f"warning: {conflict}; what is in both is put into the smaller one, and a mission would refuse them")
+    if options.output:
+        draw(configuration, options.output, title=", ".join(Path(path).name for path in options.files))
+        tell(f"picture written to {options.output}")
+    return Exit.HOLDS

@@ -1,0 +1,101 @@
+"""Reading and writing files: bounded in size, and never half written."""
+
+import json
+import os
+import re
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from bigactors.mistakes import Mistake, unreadable
+
+MOST_JSON = 64 * 2**20
+"""The most bytes of a trace that are read."""
+
+
+def read_bytes(path: str, most: int) -> bytes:
+    """Return a file's bytes, one more than `most` if there are more."""
+    try:
+        with open(path, "rb") as file:
+            return file.read(most + 1)
+    except (OSError, ValueError) as error:
+        raise _unreadable(path, error) from error
+
+
+def read_json(path: str) -> Any:
+    """Return the value in a JSON file."""
+    data = read_bytes(path, MOST_JSON)
+    if len(data) > MOST_JSON:
+        raise Mistake(f"the file is longer than {MOST_JSON:,} bytes", "is it a trace?", path)
+    try:
+        return json.loads(data)
+    except (ValueError, RecursionError) as error:
+        reason = "nested too deeply" if isinstance(error, RecursionError) else str(error)
+        raise Mistake(f"the file is not JSON: {reason:.200}", place=path) from error
+
+
+def write_json(path: str, value: Any) -> None:
+    """Write a value as JSON."""
+    write_text(path, json_text(value))
+
+
+def json_text(value: Any) -> str:
+    """Return a value as JSON is written here."""
+    return json.dumps(value, ensure_ascii=False, indent=1) + "\n"
+
+
+def write_text(path: str, text: str) -> None:
+    """Put a text in the place of a file at once: there is the old one or the new one, never a part."""
+    target = Path(os.path.realpath(path))
+    try:
+        if target.exists() and not target.is_file():
+            target.write_text(text, encoding="utf-8")  # a pipe or /dev/stdout: nothing to replace
+            return
+        with tempfile.NamedTemporaryFile(
+            "w", encoding="utf-8", newline="", dir=target.parent, prefix=f".{target.name}.", delete=False
+        ) as file:
+            _fill(file.name, file, text, target)
+    except (OSError, ValueError) as error:
+        raise _unreadable(path, error) from error
+
+
+def _fill(name: str, file: Any, text: str, target: Path) -> None:
+    try:
+        file.write(text)
+        file.close()
+        os.chmod(name, target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~_umask())
+        os.replace(name, target)
+    except BaseException:
+        file.close()
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def _umask() -> int:
+    mask = os.umask(0o022)
+    os.umask(mask)
+    return mask
+
+
+def make_folder(path: str) -> Path:
+    """Make a folder, and those above it."""
+    try:
+        Path(path).mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        raise _unreadable(path, error) from error
+    return Path(path)
+
+
+def file_stem(name: str) -> str:
+    """Return a name as a part of a file's name.
+
+    >>> file_stem("never in the basin"), file_stem("../x")
+    ('never_in_the_basin', 'x')
+    """
+    return re.sub(r"[^\w.-]+", "_", name).strip("._")[:80] or "unnamed"
+
+
+def _unreadable(path: str, error: Exception) -> Mistake:
+    if isinstance(error, OSError):
+        return unreadable(path, error)
+    return Mistake("this is no path of a file", place=repr(path))

@@ -1,0 +1,95 @@
+"""Missions by the path or the name that the user gives, with a digest of all that they say."""
+
+import hashlib
+from dataclasses import fields, is_dataclass
+from importlib.resources import files as resources
+from pathlib import Path
+from typing import Any
+
+from bigactors import __version__
+from bigactors.mistakes import Mistake, suggestion
+from specs import Diagnostic, MissionError, Source
+from specs.elaboration import ElaboratedMission, load_mission
+
+SUFFIX = ".mission"
+
+
+def shipped_missions() -> dict[str, Path]:
+    """Return the missions that ship with bigactors, by name."""
+    folder = Path(str(resources("specs"))) / "missions"
+    return {path.stem: path for path in sorted(folder.glob(f"*{SUFFIX}"))}
+
+
+def locate(word: str) -> Path:
+    """Return the path of a mission: a file, or one that ships, given by its name."""
+    shipped = shipped_missions()
+    try:
+        if word in shipped and not Path(word).is_file():
+            return shipped[word]
+        if Path(word).is_file():
+            return Path(word)
+        reason = "this is a folder, not a mission" if Path(word).is_dir() else "there is no such file"
+    except (OSError, ValueError):
+        reason = "this is no path of a file"
+    near = suggestion(word, shipped) if "/" not in word else ""
+    hint = near or "give the path of a mission, or the name of one that ships: " + ", ".join(shipped)
+    raise Mistake(reason, hint, word)
+
+
+def open_mission(word: str) -> ElaboratedMission:
+    """Return a mission, ready to be explored; raises Mistake with all its diagnostics."""
+    try:
+        return load_mission(locate(word))
+    except MissionError as error:
+        raise as_mistake(error) from error
+
+
+def as_mistake(error: MissionError) -> Mistake:
+    """Return the diagnostics of a mission as a mistake."""
+    details = tuple(diagnostic_json(each, error.source) for each in error.diagnostics)
+    return Mistake(error.diagnostics[0].message, place=error.source.name, rendered=str(error), details=details)
+
+
+def diagnostic_json(diagnostic: Diagnostic, source: Source) -> dict[str, object]:
+    """Return a diagnostic as plain data."""
+    start, end = (min(at, len(source.text)) for at in (diagnostic.span.start, diagnostic.span.end))
+    return {
+        "code": diagnostic.code.number,
+        "line": source.line(start),
+        "column": source.column(start),
+        "end_line": source.line(end),
+        "end_column": source.column(end),
+        "message": diagnostic.message,
+        "hint": diagnostic.hint,
+    }
+
+
+def digest_of(mission: ElaboratedMission) -> str:
+    """Return a digest of the mission's text, of the world that it begins in, and of the version of bigactors.
+
+    Two missions with one digest have the same configurations: what files say that a mission names is in its world.
+    """
+    initial = mission.initial
+    world = dict(initial.state.items())  # type: ignore[attr-defined]  # a stored configuration
+    said = "\0".join((__version__, mission.source.text, canonical(world)))
+    return "sha256:" + hashlib.sha256(said.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def canonical(value: Any) -> str:
+    """Write a value so that equal values, and only those, are written alike in every process.
+
+    >>> canonical({("b",): frozenset({2, 1}), ("a",): None})
+    "{('a',): None, ('b',): {1, 2}}"
+    """
+    match value:
+        case dict():
+            return f"{{{', '.join(sorted(f'{canonical(key)}: {canonical(item)}' for key, item in value.items()))}}}"
+        case frozenset():
+            return f"{{{', '.join(sorted(map(canonical, value)))}}}"
+        case tuple():
+            return f"({', '.join(map(canonical, value))}{',' if len(value) == 1 else ''})"
+        case _ if is_dataclass(value) and not isinstance(value, type):
+            parts = (f"{each.name}={canonical(getattr(value, each.name))}" for each in fields(value))
+            return f"{type(value).__name__}({', '.join(parts)})"
+        case _:
+            return repr(value)

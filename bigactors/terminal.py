@@ -1,0 +1,89 @@
+"""Printing: safe in any encoding, quiet when nobody reads any more, coloured on a terminal only."""
+
+import codecs
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TextIO
+
+from bigactors.mistakes import Mistake
+
+COLOURS = {"red": "31", "green": "32", "yellow": "33", "faint": "2"}
+
+_PLAIN = {
+    "✓": "+", "✗": "x", "⟨": "<", "⟩": ">", "↦": "|->", "⇒": "=>", "→": "->", "∅": "{}", "⊕": "(+)", "′": "'",
+    "α": "alpha", "β": "beta", "γ": "gamma", "η": "eta", "σ": "sigma", "∈": "in", "∪": "u", "·": ".", "…": "...",
+    "─": "-", "−": "-", "×": "x", "₀": "0",
+}  # fmt: skip
+"""How the paper's notation is written where the output cannot show it."""
+
+
+def _plain(error: UnicodeError) -> tuple[str | bytes, int]:
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return "".join(_PLAIN.get(sign, "?") for sign in error.object[error.start : error.end]), error.end
+
+
+@contextmanager
+def safe_output() -> Iterator[None]:
+    """Print what an encoding lacks in plain letters, and leave nothing unprinted at the end."""
+    codecs.register_error("bigactors.plain", _plain)
+    for stream in (sys.stdout, sys.stderr):
+        if getattr(stream, "errors", "") in ("strict", "backslashreplace"):
+            stream.reconfigure(errors="bigactors.plain")  # type: ignore[union-attr]  # only a TextIOWrapper has errors
+    try:
+        yield
+    finally:
+        _write(sys.stdout, "", flush=True)
+        _write(sys.stderr, "", flush=True)
+
+
+def say(line: str = "") -> None:
+    """Print a line of the answer."""
+    _write(sys.stdout, f"{line}\n")
+
+
+def say_text(text: str) -> None:
+    """Print a text as it is."""
+    _write(sys.stdout, text)
+
+
+def tell(line: str) -> None:
+    """Print a line that is not the answer: a mistake, a warning, where a file was written."""
+    sys.stdout.flush() if not sys.stdout.closed else None
+    _write(sys.stderr, f"{line}\n", flush=True)
+
+
+def paint(text: str, colour: str, stream: TextIO) -> str:
+    """Return a text in a colour, where the stream shows colours."""
+    return f"\033[{COLOURS[colour]}m{text}\033[0m" if shows_colours(stream) else text
+
+
+def shows_colours(stream: TextIO) -> bool:
+    """Tell whether a stream is a terminal whose user has not asked for no colours (no-color.org)."""
+    return is_terminal(stream) and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+
+
+def is_terminal(stream: TextIO) -> bool:
+    """Tell whether somebody looks on."""
+    return not stream.closed and stream.isatty()
+
+
+def _write(stream: TextIO, text: str, *, flush: bool = False) -> None:
+    try:
+        stream.write(text)
+        if flush:
+            stream.flush()
+    except BrokenPipeError:
+        _discard(stream)
+    except OSError as error:
+        _discard(stream)
+        raise Mistake(f"cannot write the output: {error.strerror or error}") from error
+
+
+def _discard(stream: TextIO) -> None:
+    """Let what is still printed vanish: the reader has gone, but the verdict is not changed by that."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, stream.fileno())
+    os.close(nowhere)

@@ -1,0 +1,152 @@
+"""Worlds without a mission: what files say is where, as a configuration without agents."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from bigactors.files import read_bytes
+from bigactors.mistakes import Mistake
+from physical import GeoJSONError, PhysicalError, PhysicalProperty, box, check_places, contains, read_geojson
+from physical.ais_recording import Counts, read_recording
+from physical.ais_world import world_at
+from physical.geojson import MAX_BYTES
+from semantics.configuration import Configuration
+from semantics.initial import initial
+from semantics.physical_model import Carried, Placed, Placement
+from semantics.program import Program
+from semantics.setting import Setting
+from semantics.signature import REGION, Kind, Signature
+
+GEOJSON = (".geojson", ".json")
+
+
+@dataclass(frozen=True, slots=True)
+class World:
+    """What files say is where.
+
+    Attributes:
+        properties: Of each entity, sorted by name.
+        accounts: For each recording, what it had and what of it could not be used.
+    """
+
+    properties: tuple[PhysicalProperty, ...]
+    accounts: tuple[tuple[str, Counts], ...] = ()
+
+    @property
+    def conflicts(self) -> tuple[str, ...]:
+        """Places that do not nest: A(P) then puts what is in both into the smaller one."""
+        areas = {each.entity: each.geometry for each in self.properties if not each.geometry.is_point}
+        return tuple(map(str, check_places(areas)))
+
+
+def read_world(
+    paths: Iterable[str],
+    time: float | None = None,
+    within: tuple[float, float, float, float] | None = None,
+    kinds: Iterable[str] = (),
+) -> World:
+    """Read GeoJSON files and AIS recordings; raises Mistake.
+
+    Args:
+        paths: The files.
+        time: As of when, in seconds since 1970; the end of a recording if None.
+        within: South, west, north and east of what is kept.
+        kinds: Which kinds are kept; all if there are none.
+    """
+    origins: dict[str, str] = {}
+    found: dict[str, PhysicalProperty] = {}
+    accounts: list[tuple[str, Counts]] = []
+    for path in paths:
+        for each in _read(path, time, accounts):
+            if each.entity in found:
+                raise Mistake(f"{each.entity} is in {origins[each.entity]} too", "names are unique", path)
+            found[each.entity], origins[each.entity] = each, path
+    if time is not None and not accounts:
+        raise Mistake("--at is a time of a recording", "GeoJSON files have no times: leave it out")
+    kept = tuple(_kept(found, within, frozenset(kinds)))
+    return World(tuple(sorted(kept, key=lambda each: each.entity)), tuple(accounts))
+
+
+def _read(path: str, time: float | None, accounts: list[tuple[str, Counts]]) -> tuple[PhysicalProperty, ...]:
+    try:
+        if Path(path).suffix.lower() in GEOJSON:
+            return read_geojson(read_bytes(path, MAX_BYTES))
+        recording = read_recording(path)
+        accounts.append((path, recording.counts))
+        return world_at(recording, time)
+    except GeoJSONError as error:
+        said = "\n".join(_said(problem) for problem in error.problems)
+        raise Mistake(error.message, place=path, rendered="\n".join(f"{path}: {line}" for line in said.split("\n"))) from error
+    except PhysicalError as error:
+        raise Mistake(error.message, error.hint, path) from error
+
+
+def _said(problem: PhysicalError) -> str:
+    where = f"{problem.where}: " if problem.where else ""
+    return f"{where}{problem.message}" + (f" (hint: {problem.hint})" if problem.hint else "")
+
+
+def _kept(
+    found: Mapping[str, PhysicalProperty],
+    within: tuple[float, float, float, float] | None,
+    kinds: frozenset[str],
+) -> Iterator[PhysicalProperty]:
+    known = sorted({each.kind for each in found.values()})
+    unknown = sorted(kinds.difference(known))
+    if unknown:
+        raise Mistake(f"nothing is of kind '{unknown[0]:.60}'", f"the kinds are {', '.join(known)}")
+    try:
+        area = box(within[:2], within[2:]) if within else None
+    except PhysicalError as error:
+        raise Mistake(f"--within: {error.message}", error.hint) from error
+    for each in found.values():
+        if (not kinds or each.kind in kinds) and (area is None or contains(area, each.geometry)):
+            yield each
+
+
+def configuration_of(world: World) -> Configuration:
+    """Return ⟨∅ | (A(P), P, β, γ) | ∅⟩ of a world; every kind of which something has an area may contain all."""
+    known = {each.entity: each for each in world.properties}
+    if REGION in known:
+        raise Mistake(f"an entity is called '{REGION}'", "that is the name of the outermost place: rename it")
+    kinds = {name: each.kind for name, each in known.items()}
+    placements = {name: _placement(each, known) for name, each in known.items()}
+    setting = Setting(_signature(world), kinds, Program((), {}, {}))
+    return initial(setting, placements, {name: each.channels for name, each in known.items()}, {})
+
+
+def _placement(entity: PhysicalProperty, known: Mapping[str, PhysicalProperty]) -> Placement:
+    placed = Placed(entity.geometry, entity.altitude)
+    if entity.carried_by is None:
+        return placed
+    seen, by = {entity.entity}, entity.carried_by
+    while by:
+        if by not in known:
+            raise Mistake(f"{entity.entity} is carried by '{by:.60}', which is not there", "add it, or leave both out")
+        if by in seen:
+            raise Mistake(f"{entity.entity} is carried by itself", "carrying goes one way")
+        seen.add(by)
+        by = known[by].carried_by or ""
+    return Carried(entity.carried_by, placed)
+
+
+def _signature(world: World) -> Signature:
+    known = {each.entity: each.kind for each in world.properties}
+    every = frozenset(known.values())
+    wide = {each.kind for each in world.properties if not each.geometry.is_point}
+    loads: dict[str, set[str]] = {}
+    for each in world.properties:
+        if each.carried_by in known:
+            loads.setdefault(known[each.carried_by], set()).add(each.kind)
+    return Signature.of(
+        Kind(kind, contains=every if kind in wide else frozenset(), carries=frozenset(loads.get(kind, ())))
+        for kind in every
+    )
+
+
+def census(world: World) -> str:
+    """Say how many entities there are of each kind."""
+    counts = Counter(each.kind for each in world.properties)
+    listed = ", ".join(f"{count} {kind}" for kind, count in sorted(counts.items()))
+    return f"{len(world.properties)} entities" + (f": {listed}" if listed else "")

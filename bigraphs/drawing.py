@@ -1,0 +1,217 @@
+"""Pictures of bigraphs: nested boxes and curves, by matplotlib, as SVG or PNG."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from bigraphs.bigraph import Bigraph, Link
+from bigraphs.errors import BigraphError
+from bigraphs.labels import link_label, node_labels
+from bigraphs.layout import FONT, HEADER, PAD, SMALL, Box, Item, Layout, label_lines, layout
+from bigraphs.routing import Route, route
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# Fill, border and text of a kind of node; kinds take them in alphabetical order.
+KINDS: Final = (
+    ("#e8f1fd", "#4f86c6", "#1d4470"),
+    ("#e9f7ee", "#4fa672", "#1d5635"),
+    ("#fdf1e3", "#d08a3c", "#74450f"),
+    ("#f3ebfb", "#8e6bbf", "#4a2d77"),
+    ("#fdeaea", "#cf6363", "#7a2323"),
+    ("#e6f6f6", "#3f9ea3", "#125257"),
+    ("#f7f3dc", "#a8973a", "#574c10"),
+    ("#f0f1f4", "#7b8494", "#363d49"),
+)
+LINKS: Final = ("#2f8f5b", "#c2567a", "#5b6ee1", "#c47f1a", "#2a93a8", "#9a57c2", "#8a6d3b", "#d14d3f")
+HIGHLIGHT: Final = "#e4572e"
+INK: Final = "#3b4252"
+MARGIN: Final = 10.0
+
+
+def draw_bigraph(
+    bigraph: Bigraph,
+    axes: Axes | None = None,
+    *,
+    highlight: frozenset[str] = frozenset(),
+    title: str | None = None,
+) -> Axes:
+    """Draw into matplotlib axes, new ones if none are given, and return them.
+
+    Everything scales with the axes, so labels always fit. `highlight` holds node and link names. A *ghost*,
+    dashed, stands for a node in its further places.
+    """
+    plan = layout(bigraph)
+    axes = axes if axes is not None else _new_axes(plan, title)
+    axes.set_xlim(-MARGIN, plan.width + MARGIN)
+    axes.set_ylim(plan.height + MARGIN, -MARGIN)
+    axes.set_aspect("equal")
+    axes.axis("off")
+    scale = _scale(axes, plan)
+    if title:
+        axes.set_title(title, fontsize=12 * min(1.0, scale), color=INK, fontweight="bold", loc="left")
+    _Pen(axes, bigraph, scale, highlight).draw(plan)
+    return axes
+
+
+def save_bigraph(
+    bigraph: Bigraph, path: str | Path, *, highlight: frozenset[str] = frozenset(), title: str | None = None
+) -> None:
+    """Write a picture as the name says, `.svg` or `.png`; the same bigraph gives the same bytes."""
+    kind = Path(path).suffix.lower().lstrip(".")
+    if kind not in ("svg", "png"):
+        raise BigraphError(
+            "picture", f"cannot write a picture as '{Path(path).name}'", "name it .svg or .png"
+        )
+    import matplotlib as mpl  # noqa: PLC0415 - a picture is worth the wait, an import is not
+    from matplotlib.figure import Figure  # noqa: PLC0415 - the same
+
+    with mpl.rc_context({"svg.hashsalt": "bigraphs", "svg.fonttype": "path"}):
+        axes = draw_bigraph(bigraph, highlight=highlight, title=title)
+        figure = axes.figure
+        assert isinstance(figure, Figure)  # noqa: S101 - new axes have a figure of their own
+        stamp: dict[str, Any] = {"Date": None} if kind == "svg" else {"Software": None}
+        figure.savefig(path, format=kind, dpi=160, metadata=stamp)
+
+
+def _new_axes(plan: Layout, title: str | None) -> Axes:
+    from matplotlib.figure import Figure  # noqa: PLC0415 - a picture is worth the wait, an import is not
+
+    width, height = plan.width + 2 * MARGIN, plan.height + 2 * MARGIN
+    room = 24.0 if title else 0.0
+    figure = Figure(figsize=(width * 1.25 / 72, (height + room) * 1.25 / 72), facecolor="white")
+    return figure.add_axes((0.0, 0.0, 1.0, height / (height + room)))
+
+
+def _scale(axes: Axes, plan: Layout) -> float:
+    """Return how many points of paper a point of the layout takes."""
+    figure = axes.get_figure(root=True)
+    width, height = figure.get_size_inches() if figure is not None else (1.0, 1.0)
+    frame = axes.get_position()
+    across = frame.width * width * 72 / (plan.width + 2 * MARGIN)
+    return float(min(across, frame.height * height * 72 / (plan.height + 2 * MARGIN)))
+
+
+class _Pen:
+    """What every stroke needs to know."""
+
+    def __init__(self, axes: Axes, bigraph: Bigraph, scale: float, highlight: frozenset[str]) -> None:
+        self.axes, self.bigraph, self.scale, self.highlight = axes, bigraph, scale, highlight
+        self.labels = node_labels(bigraph)
+        kinds = sorted({node.control for node in bigraph.nodes})
+        self.kinds = {kind: KINDS[number % len(KINDS)] for number, kind in enumerate(kinds)}
+
+    def draw(self, plan: Layout) -> None:
+        holding = {item for item, box in plan.boxes if item.kind == "node" and box.height > _LEAF}
+        for depth, (item, box) in enumerate(plan.boxes):
+            self.box(item, box, 1 + depth * 1e-4, item in holding)
+        routes = route(self.bigraph, plan)
+        colours: Mapping[Link, str] = {each.link: LINKS[n % len(LINKS)] for n, each in enumerate(routes)}
+        for each in routes:
+            self.link(each, colours[each.link])
+        inner = dict(self.bigraph.inner_links)
+        for name, box in plan.outer:
+            self.pill(name, box, colours.get(name, "#8a93a3"))
+        for name, box in plan.inner:
+            self.pill(name, box, colours.get(inner[name], "#8a93a3"))
+
+    def box(self, item: Item, box: Box, depth: float, holding: bool) -> None:  # noqa: FBT001 - one of two looks
+        if item.kind == "region":
+            self.rounded(
+                box, 10, depth, facecolor="#fbfcfe", edgecolor="#aab4c4", linestyle=(0, (4, 3)), linewidth=1.0
+            )
+            if self.bigraph.regions > 1:
+                self.text(
+                    box.x + PAD, box.y + HEADER / 2 + 1, f"region {item.number}", SMALL, "#8a93a3", "left"
+                )
+        elif item.kind == "site":
+            self.rounded(
+                box, 4, depth, facecolor="#eceff4", edgecolor="#9aa3b2", linestyle=(0, (2, 2)), linewidth=0.9
+            )
+            self.text(*box.centre, f"${item.number}", FONT, INK, "center")
+        elif item.kind == "ghost":
+            _, border, ink = self.kinds[self.bigraph.nodes[item.number].control]
+            self.rounded(
+                box, 6, depth, facecolor="none", edgecolor=border, linestyle=(0, (3, 2)), linewidth=1.0
+            )
+            self.text(*box.centre, self.labels[item.number], FONT, ink, "center", style="italic", alpha=0.75)
+        else:
+            self.node(item.number, box, depth, holding)
+
+    def node(self, number: int, box: Box, depth: float, holding: bool) -> None:  # noqa: FBT001 - one of two looks
+        fill, border, ink = self.kinds[self.bigraph.nodes[number].control]
+        lit = self.labels[number] in self.highlight
+        if lit:
+            glow = Box(box.x - 2.5, box.y - 2.5, box.width + 5, box.height + 5)
+            self.rounded(glow, 9, depth, facecolor=HIGHLIGHT, edgecolor="none", alpha=0.28, linewidth=0)
+        edge, width = (HIGHLIGHT, 2.0) if lit else (border, 1.3)
+        self.rounded(box, 7, depth, facecolor=fill, edgecolor=edge, linewidth=width)
+        name, kind = label_lines(self.bigraph, self.labels, number)
+        x, side = (box.x + PAD, "left") if holding else (box.centre[0], "center")
+        y = box.y + (HEADER / 2 + 3 if holding else box.height / 2 - (4.5 if kind else 0))
+        self.text(x, y, name, FONT, ink, side, weight="medium")
+        if kind:
+            self.text(x, y + 11, kind, SMALL, border, side)
+
+    def link(self, found: Route, colour: str) -> None:
+        from matplotlib.patches import Circle, PathPatch  # noqa: PLC0415 - see save_bigraph
+        from matplotlib.path import Path as Outline  # noqa: PLC0415 - see save_bigraph
+
+        lit = link_label(found.link) in self.highlight
+        codes = [Outline.MOVETO, Outline.CURVE4, Outline.CURVE4, Outline.CURVE4]
+        for curve in found.curves:
+            for width, ink, level in (
+                (3.6, "white", 3.0),
+                (2.4 if lit else 1.5, HIGHLIGHT if lit else colour, 3.1),
+            ):
+                outline = Outline(curve, codes)
+                style = {"linewidth": width * self.scale, "alpha": 0.75 if ink == "white" else 0.95}
+                self.axes.add_patch(
+                    PathPatch(
+                        outline, facecolor="none", edgecolor=ink, capstyle="round", zorder=level, **style
+                    )
+                )
+        for port in found.ports:
+            style = {"facecolor": colour, "edgecolor": "white", "linewidth": 0.7 * self.scale}
+            self.axes.add_patch(Circle(port, 2.3, zorder=4, **style))
+        if found.dot:
+            style = {"facecolor": "white", "edgecolor": colour, "linewidth": 1.5 * self.scale}
+            self.axes.add_patch(Circle(found.dot, 3.2, zorder=4, **style))
+
+    def pill(self, name: str, box: Box, colour: str) -> None:
+        lit = name in self.highlight
+        self.rounded(
+            box,
+            8,
+            4,
+            facecolor="white",
+            edgecolor=HIGHLIGHT if lit else colour,
+            linewidth=2.0 if lit else 1.2,
+        )
+        self.text(*box.centre, name, SMALL + 1, colour, "center")
+
+    def rounded(self, box: Box, radius: float, level: float, *, linewidth: float, **style: Any) -> None:  # noqa: ANN401
+        from matplotlib.patches import FancyBboxPatch  # noqa: PLC0415 - see save_bigraph
+
+        shape = f"round,pad=0,rounding_size={min(radius, box.height / 2)}"
+        corner, width = (box.x, box.y), linewidth * self.scale
+        self.axes.add_patch(
+            FancyBboxPatch(
+                corner, box.width, box.height, boxstyle=shape, zorder=level, linewidth=width, **style
+            )
+        )
+
+    def text(self, x: float, y: float, words: str, size: float, colour: str, side: str, **style: Any) -> None:  # noqa: ANN401
+        from matplotlib.patheffects import withStroke  # noqa: PLC0415 - see save_bigraph
+
+        halo = withStroke(linewidth=2.2 * self.scale, foreground="white", alpha=0.75)
+        written = self.axes.text(
+            x, y, words, fontsize=size * self.scale, color=colour, ha=side, va="center", zorder=5, **style
+        )
+        written.set_path_effects([halo])
+
+
+_LEAF = 33.0

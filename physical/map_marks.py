@@ -1,0 +1,224 @@
+"""Marks of a map, each one function on matplotlib axes whose units are points."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from physical.map_labels import Box, Spot
+from physical.map_style import FAINT, HALO, INK, MARK, PAPER, QUIET, Outline, text_width
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+RADIUS: Final = 5.5
+"""Of a marker, in points."""
+
+MARK_RADIUS: Final = RADIUS + 4.0
+"""Of the dashed circle around what is marked."""
+
+LEADING: Final = 1.35
+SPACING: Final = 6.0
+"""Points between spots along a line."""
+
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One line of a label; the icon, an outline with its colour, stands before the text and may glow or be marked."""
+
+    text: str
+    size: float = 8.0
+    bold: bool = False
+    ink: str = INK
+    indent: float = 0.0
+    icon: tuple[Outline, str] | None = None
+    lit: bool = False
+    marked: bool = False
+
+    @property
+    def start(self) -> float:
+        """Where the text begins, in points from the left."""
+        return self.indent + (9.0 if self.icon else 0.0)
+
+
+def block_size(lines: Sequence[Line]) -> Spot:
+    """Return the width and height of a label, in points."""
+    width = max(line.start + text_width(line.text, line.size, line.bold) for line in lines)
+    return (width, sum(line.size * LEADING for line in lines))
+
+
+def draw_block(axes: Axes, box: Box, lines: Sequence[Line], paper: str = PAPER) -> None:
+    """Write the lines of a label into its box, from the top."""
+    from matplotlib.patheffects import withStroke  # noqa: PLC0415 - only who draws needs matplotlib
+
+    top = box.top
+    for line in lines:
+        height = line.size * LEADING
+        baseline = top - height + line.size * 0.33
+        _draw_line_icon(axes, line, (box.left + line.indent + 3.5, baseline + line.size * 0.36))
+        axes.text(
+            box.left + line.start,
+            baseline,
+            line.text,
+            fontsize=line.size,
+            fontweight="bold" if line.bold else "normal",
+            color=line.ink,
+            parse_math=False,
+            zorder=9,
+            path_effects=[withStroke(linewidth=2.4, foreground=paper)],
+        )
+        top -= height
+
+
+def _draw_line_icon(axes: Axes, line: Line, at: Spot) -> None:
+    if line.icon:
+        draw_icon(axes, at, *line.icon, radius=2.8)
+    if line.lit:
+        draw_halo(axes, at, 5.0)
+    if line.marked:
+        draw_mark(axes, at, 4.6)
+
+
+def draw_icon(
+    axes: Axes, at: Spot, shape: Outline, colour: str, *, radius: float = RADIUS, hollow: bool = False
+) -> None:
+    """Draw a marker; a hollow one for what is on its way."""
+    from matplotlib.patches import Polygon  # noqa: PLC0415 - the same
+
+    axes.add_patch(
+        Polygon(
+            [(at[0] + radius * x, at[1] + radius * y) for x, y in shape],
+            facecolor="white" if hollow else colour,
+            edgecolor=colour if hollow else "white",
+            linewidth=1.4 if hollow else 0.8,
+            joinstyle="round",
+            zorder=7,
+        )
+    )
+
+
+def draw_polygon(
+    axes: Axes, outline: Sequence[Spot], colour: str, *, strength: float, width: float = 1.1
+) -> None:
+    """Draw a polygon: lightly filled, its border in the same colour."""
+    from matplotlib.patches import Polygon  # noqa: PLC0415 - the same
+
+    axes.add_patch(Polygon(outline, facecolor=colour, alpha=strength, linewidth=0, zorder=2))
+    axes.add_patch(
+        Polygon(outline, facecolor="none", edgecolor=colour, alpha=0.85, linewidth=width, zorder=3)
+    )
+
+
+def draw_polygon_halo(axes: Axes, outline: Sequence[Spot]) -> None:
+    """Draw a glow along a polygon's border: it is highlighted."""
+    from matplotlib.patches import Polygon  # noqa: PLC0415 - the same
+
+    axes.add_patch(
+        Polygon(outline, facecolor="none", edgecolor=HALO, alpha=0.35, linewidth=6.0, zorder=2.5)
+    )
+
+
+def draw_polygon_mark(axes: Axes, outline: Sequence[Spot]) -> None:
+    """Draw a dashed border over a polygon's own: it is marked."""
+    from matplotlib.patches import Polygon  # noqa: PLC0415 - the same
+
+    axes.add_patch(
+        Polygon(outline, facecolor="none", edgecolor=MARK, linewidth=1.4, linestyle=(0, (4, 2.5)), zorder=4)
+    )
+
+
+def draw_halo(axes: Axes, at: Spot, radius: float = RADIUS + 5.0) -> None:
+    """Draw a glow around a marker: it is highlighted."""
+    from matplotlib.patches import Circle  # noqa: PLC0415 - the same
+
+    axes.add_patch(Circle(at, radius, facecolor=HALO, alpha=0.32, linewidth=0, zorder=5))
+
+
+def draw_mark(axes: Axes, at: Spot, radius: float = MARK_RADIUS) -> None:
+    """Draw a dashed circle around a marker: it is marked."""
+    from matplotlib.patches import Circle  # noqa: PLC0415 - the same
+
+    ring = Circle(
+        at, radius, facecolor="none", edgecolor=MARK, linewidth=1.2, linestyle=(0, (3, 2)), zorder=6
+    )
+    axes.add_patch(ring)
+
+
+def arc(start: Spot, end: Spot, bulge: float = 0.12) -> tuple[Spot, Spot, Spot]:
+    """Return the quadratic Bezier curve between two spots, bulging to the left by a share of its length."""
+    (x1, y1), (x2, y2) = start, end
+    return (start, ((x1 + x2) / 2 - (y2 - y1) * 2 * bulge, (y1 + y2) / 2 + (x2 - x1) * 2 * bulge), end)
+
+
+def samples(curve: tuple[Spot, Spot, Spot]) -> list[Spot]:
+    """Return spots along a curve, its ends left out."""
+    (x1, y1), (x2, y2), (x3, y3) = curve
+    parts = min(max(2, round(math.dist(curve[0], curve[2]) / SPACING)), 200)
+    weights = [((1 - t) ** 2, 2 * t * (1 - t), t * t) for t in (part / parts for part in range(1, parts))]
+    return [(a * x1 + b * x2 + c * x3, a * y1 + b * y2 + c * y3) for a, b, c in weights]
+
+
+def draw_curve(axes: Axes, curve: tuple[Spot, Spot, Spot], colour: str) -> None:
+    """Draw a channel between two of its members."""
+    from matplotlib.patches import PathPatch  # noqa: PLC0415 - the same
+    from matplotlib.path import Path  # noqa: PLC0415 - the same
+
+    path = Path(curve, [Path.MOVETO, Path.CURVE3, Path.CURVE3])
+    axes.add_patch(
+        PathPatch(path, facecolor="none", edgecolor=colour, linewidth=1.1, alpha=0.75, zorder=4.5)
+    )
+
+
+def draw_flight(axes: Axes, curve: tuple[Spot, Spot, Spot], colour: str) -> None:
+    """Draw a dashed way with an arrow head at its end."""
+    from matplotlib.patches import PathPatch, Polygon  # noqa: PLC0415 - the same
+    from matplotlib.path import Path  # noqa: PLC0415 - the same
+
+    path = Path(curve, [Path.MOVETO, Path.CURVE3, Path.CURVE3])
+    axes.add_patch(
+        PathPatch(
+            path, facecolor="none", edgecolor=colour, linewidth=1.4, linestyle=(0, (5, 3)), zorder=4.6
+        )
+    )
+    axes.add_patch(Polygon(_head(curve[1], curve[2]), facecolor=colour, linewidth=0, zorder=4.7))
+
+
+def _head(before: Spot, tip: Spot, length: float = 8.0) -> list[Spot]:
+    direction = math.atan2(tip[1] - before[1], tip[0] - before[0])
+    wings = [direction + math.pi - 0.42, direction + math.pi + 0.42]
+    return [tip, *((tip[0] + length * math.cos(a), tip[1] + length * math.sin(a)) for a in wings)]
+
+
+def draw_pointer(axes: Axes, at: Spot, behind: Spot, colour: str) -> None:
+    """Draw an arrow head at the border of the view that points away from a spot behind it."""
+    from matplotlib.patches import Polygon  # noqa: PLC0415 - the same
+
+    axes.add_patch(Polygon(_head(behind, at, 10.0), facecolor=colour, linewidth=0, zorder=7))
+
+
+def draw_leader(axes: Axes, start: Spot, end: Spot) -> None:
+    """Draw a hair line from a label to what it names."""
+    axes.plot([start[0], end[0]], [start[1], end[1]], color=QUIET, linewidth=0.6, alpha=0.8, zorder=4.4)
+
+
+def draw_scale(axes: Axes, box: Box, length: float, text: str) -> None:
+    """Draw a scale bar at the bottom of a box, its length written above."""
+    (x, _), y = box.centre, box.bottom + 2.0
+    left, right = x - length / 2, x + length / 2
+    axes.plot([left, left, right, right], [y + 3, y, y, y + 3], color=INK, linewidth=1.2, zorder=8)
+    axes.text(x, y + 4.5, text, fontsize=7.5, color=INK, ha="center", va="bottom", zorder=8)
+
+
+def draw_grid(axes: Axes, xs: Sequence[tuple[float, str]], ys: Sequence[tuple[float, str]]) -> None:
+    """Draw meridians and parallels, each a place in points and what is written beside it."""
+    axes.set_facecolor(PAPER)
+    axes.set_xticks([x for x, _ in xs], [text for _, text in xs])
+    axes.set_yticks([y for y, _ in ys], [text for _, text in ys])
+    axes.tick_params(length=0, pad=4, labelsize=7.5, labelcolor=QUIET)
+    axes.grid(color=FAINT, linewidth=0.8, zorder=0)
+    axes.set_axisbelow(True)
+    for spine in axes.spines.values():
+        spine.set(color="#cfd6dd", linewidth=0.8)

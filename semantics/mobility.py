@@ -1,0 +1,25 @@
+"""From a reaction to mobility commands: the paper's BRR Driver (3.2.3)."""
+
+from physical import MobilityCommand, Waypoint, rechannel, waypoint
+from semantics.configuration import Configuration
+from semantics.control import Realisation
+from semantics.physical_model import Carried, Placed, channels_cell, placement_cell
+
+
+def mobility_commands(c: Configuration, found: Realisation) -> tuple[MobilityCommand, ...]:
+    """Return what the vehicles of a realisation are told: where to go, and which channels to change.
+
+    The waypoint is the centroid of the target's polygon, or the point nearest to it at which the reactum is true; for
+    what is to go aboard, where the carrier is.
+    """
+    physical = c.structure.physical
+    told: list[MobilityCommand] = []
+    for node, _ in found.flying:
+        placement = found.physical[placement_cell(node)]
+        target = physical.position(placement.by) if isinstance(placement, Carried) else placement
+        assert isinstance(target, Placed)
+        told.append(Waypoint(node, waypoint(target.geometry), target.altitude))
+    for cell, channels in sorted(found.physical.items()):
+        if cell == channels_cell(cell[-1]):
+            told.extend(rechannel(cell[-1], physical.channels(cell[-1]), channels))
+    return tuple(told)

@@ -1,0 +1,9 @@
+"""Elaboration: what a mission's syntax tree means, phase by phase, with all its mistakes at once.
+
+A phase a module, in this order: signature, world (with files and geometry), environment (with drifts), beliefs, rules,
+bodies (with statements, expressions and patterns), controls, checks. It knows nothing of exploration.
+"""
+
+from specs.elaboration.mission import ElaboratedMission, elaborate, load_mission
+
+__all__ = ["ElaboratedMission", "elaborate", "load_mission"]

@@ -1,0 +1,209 @@
+"""The behaviours phase: bodies of bigActors and behaviours, and how they call each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+from semantics.expressions import Expression, Literal
+from semantics.program import Behaviour, Program
+from semantics.reactions import COMMANDS
+from semantics.statements import Loop
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.commands import checked
+from specs.elaboration.names import Names
+from specs.elaboration.schemas import Maker, Schema
+from specs.elaboration.statements import Body, Numbering
+
+
+@dataclass(slots=True)
+class Bodies:
+    """All bodies of a mission.
+
+    Attributes:
+        agents: By name, those that are there at first.
+        behaviours: By name.
+        parameters: The unique names of each behaviour's parameters.
+        schemas: The rules that controls name, those written in place included.
+    """
+
+    agents: dict[str, Body] = field(default_factory=dict)
+    behaviours: dict[str, Body] = field(default_factory=dict)
+    parameters: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    schemas: dict[str, Schema] = field(default_factory=dict)
+
+    def all(self) -> Iterator[Body]:
+        """Yield every body."""
+        yield from self.agents.values()
+        yield from self.behaviours.values()
+
+    def reached(self, start: Body) -> tuple[Body, ...]:
+        """Return the bodies that one runs: itself and what it calls."""
+        found: dict[int, Body] = {}
+        waiting = [start]
+        while waiting:
+            body = waiting.pop()
+            if id(body) not in found:
+                found[id(body)] = body
+                called = (self.behaviours.get(call.behaviour) for call in body.calls)
+                waiting += [each for each in called if each is not None]
+        return tuple(found.values())
+
+    def running(self, agent: str) -> tuple[Body, ...]:
+        """Return the bodies that a bigActor may run, one that is spawned included."""
+        starts = [self.agents[agent]] if agent in self.agents else []
+        spawned = {spawn.behaviour for body in self.all() for spawn in body.spawns if spawn.name == agent}
+        starts += [self.behaviours[name] for name in sorted(spawned & self.behaviours.keys())]
+        return tuple({id(body): body for start in starts for body in self.reached(start)}.values())
+
+
+def declare_behaviours(mission: s.Mission, names: Names) -> None:
+    """Declare rules, behaviours and bigActors, so that they may name each other."""
+    for rule in mission.each(s.Rule):
+        if names.declare("rule", rule.name.text, rule.name):
+            names.rules[rule.name.text] = rule
+    for definition in mission.each(s.Definition):
+        if names.declare("behaviour", definition.name.text, definition.name):
+            names.behaviours[definition.name.text] = definition
+    for name, actor in named_agents(mission):
+        if names.declare("agent", name, actor.name or actor):
+            names.agents[name] = actor.host
+    _declare_spawned(mission, names)
+
+
+def named_agents(mission: s.Mission) -> Iterator[tuple[str, s.BigActor]]:
+    """Yield the bigActors with their names: those without one are bigActor0, bigActor1 and so on."""
+    actors = mission.each(s.BigActor)
+    taken = {actor.name.text for actor in actors if actor.name is not None}
+    free = (name for number in range(len(actors) + len(taken)) if (name := f"bigActor{number}") not in taken)
+    for actor in actors:
+        yield (actor.name.text if actor.name is not None else next(free)), actor
+
+
+def _declare_spawned(mission: s.Mission, names: Names) -> None:
+    there = set(names.agents)
+    for node in s.walk(mission):
+        if isinstance(node, s.Spawn) and node.name is not None:
+            name = node.name.text
+            if name in there:
+                hint = "give the spawned one another name"
+                names.findings.add(
+                    Code.DUPLICATE_NAME, node.name, f"a bigActor '{name}' is there already", hint
+                )
+            elif name not in names.agents and names.declare("agent", name, node.name):
+                names.agents[name] = None
+
+
+def elaborate_bodies(
+    mission: s.Mission, names: Names, schemas: Mapping[str, Schema]
+) -> tuple[Bodies, Program]:
+    """Return all bodies and the program that they are numbered in."""
+    bodies = Bodies(schemas=dict(schemas))
+    program = Numbering(names, bodies.schemas)
+    for name, actor in named_agents(mission):
+        body = Body(name, is_agent=True)
+        bodies.agents.setdefault(name, body)
+        program.body(body, actor.body, {})
+    for definition in mission.each(s.Definition):
+        body, name = Body(definition.name.text, is_agent=False), definition.name.text
+        parameters = _parameters(definition, names)
+        bodies.behaviours.setdefault(name, body)
+        bodies.parameters.setdefault(name, tuple(parameters.values()))
+        program.body(body, definition.body, parameters)
+    _check_recursion(bodies, names)
+    for number in _outermost(bodies):
+        loop = program.statements[number]
+        if isinstance(loop, Loop):
+            program.statements[number] = replace(loop, outermost=True)
+    behaviours = {
+        name: Behaviour(name, bodies.parameters[name], body.block) for name, body in bodies.behaviours.items()
+    }
+    reactions = {name: checked(name, command, names.kinds) for name, command in COMMANDS.items()}
+    reactions |= {name: Maker(schema, names.kinds) for name, schema in bodies.schemas.items()}
+    return bodies, Program(tuple(program.statements), behaviours, reactions, tuple(program.lines))
+
+
+def _parameters(definition: s.Definition, names: Names) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for parameter in definition.parameters:
+        if parameter.text in found:
+            message = f"behaviour '{definition.name.text}' has two parameters '{parameter.text}'"
+            names.findings.add(Code.DUPLICATE_NAME, parameter, message, "rename one of the two")
+            found[f"{parameter.text}#{len(found)}"] = f"{parameter.text}#{definition.name.text}#{len(found)}"
+        else:
+            found[parameter.text] = f"{parameter.text}#{definition.name.text}"
+    return found
+
+
+# --- calls ----------------------------------------------------------------------------------------------------
+
+
+def _check_recursion(bodies: Bodies, names: Names) -> None:
+    """Report calls that come back to their own behaviour with something left to do after them."""
+    if not bodies.behaviours:
+        return
+    group = _components(
+        {name: [call.behaviour for call in body.calls] for name, body in bodies.behaviours.items()}
+    )
+    for name, body in bodies.behaviours.items():
+        for call in body.calls:
+            if not call.tail and group.get(call.behaviour) == group[name]:
+                message = f"'{name}' calls '{call.behaviour}' again before it is done"
+                if call.behaviour == name:
+                    message = f"'{name}' calls itself before it is done"
+                hint = "call it as the last thing, outside of loops, or write a loop instead"
+                names.findings.add(Code.UNBOUNDED_RECURSION, call.where, message, hint)
+
+
+def _components(graph: Mapping[str, Iterable[str]]) -> dict[str, int]:
+    """Return the number of each node's strongly connected component."""
+    import networkx as nx  # noqa: PLC0415 - slow to import, and needed only where a behaviour is defined
+
+    calls = nx.DiGraph({name: list(called) for name, called in graph.items()})
+    return {
+        name: number for number, group in enumerate(nx.strongly_connected_components(calls)) for name in group
+    }
+
+
+def _outermost(bodies: Bodies) -> Iterator[int]:
+    """Yield the loops that stand at the top of a bigActor, or of a behaviour that is only ever its end."""
+    inner = {call.behaviour for body in bodies.all() for call in body.calls if not call.top}
+    while True:
+        nested = {
+            c.behaviour for name in inner & bodies.behaviours.keys() for c in bodies.behaviours[name].calls
+        }
+        if nested <= inner:
+            break
+        inner |= nested
+    for body in bodies.all():
+        if body.is_agent or body.name not in inner:
+            yield from body.loops
+
+
+# --- hosts ----------------------------------------------------------------------------------------------------
+
+
+def possible_hosts(bodies: Bodies, names: Names) -> dict[str, frozenset[str] | None]:
+    """Return for each body, by name (behaviours with `()`), where a bigActor may be that runs it: None for anywhere."""
+    found: dict[str, set[str] | None] = {}
+    for agent in names.agents:
+        hosts = _hosts_of(agent, bodies, names)
+        for body in bodies.running(agent):
+            known = found.setdefault(body_key(body), set())
+            found[body_key(body)] = None if known is None or hosts is None else known | hosts
+    return {key: None if hosts is None else frozenset(hosts) for key, hosts in found.items()}
+
+
+def body_key(body: Body) -> str:
+    """Return what a body is called among all."""
+    return body.name if body.is_agent else f"{body.name}()"
+
+
+def _hosts_of(agent: str, bodies: Bodies, names: Names) -> set[str] | None:
+    declared = names.agents[agent]
+    places: list[Expression] = [] if declared is None else [Literal(declared.text)]
+    places += [spawn.host for body in bodies.all() for spawn in body.spawns if spawn.name == agent]
+    places += [host for body in bodies.running(agent) for host in body.migrations]
+    named = [place.value for place in places if isinstance(place, Literal)]
+    return {str(name) for name in named} if len(named) == len(places) else None

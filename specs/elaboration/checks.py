@@ -1,0 +1,61 @@
+"""The check phase: scheduler, control, and the properties that are asked for."""
+
+from __future__ import annotations
+
+from typing import Final, TypeVar
+
+from semantics.propositions import Property
+from semantics.setting import Control, Scheduler
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.bodies import Bodies
+from specs.elaboration.formulas import Formulas
+from specs.elaboration.names import Names
+
+D = TypeVar("D", bound=s.Node)
+
+DEFAULT: Final = ("local_consistency", "race_freedom", "deadlock_freedom")
+"""What is checked where a mission asks for nothing."""
+
+ALWAYS: Final = Property("computation", "computation")
+"""What is always checked: bigActors' computations neither fail nor diverge."""
+
+
+def elaborate_scheduler(mission: s.Mission, names: Names) -> Scheduler:
+    """Return the scheduler, `program_order` where none is named."""
+    named = _only(mission.each(s.Scheduler), "scheduler", names)
+    return Scheduler(named.name) if named is not None else Scheduler.PROGRAM_ORDER
+
+
+def elaborate_control(mission: s.Mission, names: Names) -> Control:
+    """Return whether control takes time, `atomic` where it isn't said."""
+    named = _only(mission.each(s.ControlMode), "control", names)
+    return Control(named.name) if named is not None else Control.ATOMIC
+
+
+def _only(named: tuple[D, ...], word: str, names: Names) -> D | None:
+    for again in named[1:]:
+        names.findings.add(
+            Code.REPEATED_SETTING, again, f"'{word}' is said twice", "leave one of the two out"
+        )
+    return named[0] if named else None
+
+
+def elaborate_checks(mission: s.Mission, names: Names, bodies: Bodies) -> tuple[Property, ...]:
+    """Return the properties in the order written, or those that go without saying, and `computation`."""
+    written = [item for section in mission.each(s.Check) for item in section.properties]
+    formulas, seen, found = Formulas(names, bodies), set[str](), list[Property]()
+    for item in written:
+        line = names.findings.source.line(item.span.start)
+        if isinstance(item, s.StandardProperty):
+            prop = Property(item.name, item.name, line=line)
+        else:
+            kind = "invariant" if isinstance(item, s.Invariant) else "reachable"
+            prop = Property(kind, item.label.value, formulas.elaborate(item.formula), line)
+        if prop.name in seen:
+            names.findings.add(
+                Code.REPEATED_SETTING, item, f"a property '{prop.name}' is asked for twice", "rename one"
+            )
+        seen.add(prop.name)
+        found.append(prop)
+    return (*(found or (Property(name, name) for name in DEFAULT)), ALWAYS)

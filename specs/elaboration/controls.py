@@ -1,0 +1,212 @@
+"""The control phase: controls that can never be made true, as far as it can be known without a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from physical import Geometry, PhysicalError, area, band_contains, nearest_placement
+from semantics.expressions import Expression, Host, Literal
+from semantics.physical_model import Placed
+from semantics.reactions import NodeVariable
+from specs.codes import Code
+from specs.elaboration.bodies import Bodies, body_key, possible_hosts
+from specs.elaboration.findings import a
+from specs.elaboration.names import Names
+from specs.elaboration.places import Mobility
+from specs.elaboration.schemas import HOST, Schema
+from specs.elaboration.statements import ControlSite
+from specs.elaboration.world import World
+
+_MOVING: Final = {"MOVE_HOST_TO": (None, 0), "MOVE": (0, 1), "PUT": (0, 1)}
+"""For each command that moves: which argument is moved (None for the host), and which is where to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Someone:
+    """What is known of a node: its name or only its kind, or neither."""
+
+    kind: str | None
+    name: str | None = None
+
+    @property
+    def shown(self) -> str:
+        """The node in a message."""
+        return f"'{self.name}'" if self.name is not None else a(self.kind or "node")
+
+
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """What is known of the world before anything happens."""
+
+    names: Names
+    world: World
+    mobility: Mobility
+    fixed: frozenset[str]
+
+    def node(self, name: str) -> Someone:
+        """Return what is known of a node of that name."""
+        return Someone(self.names.kinds.get(name), name)
+
+    def obstacle(self, node: Someone, place: Someone) -> tuple[str, str] | None:
+        """Return why a node can never be brought into a place, and what to do; None where it may be possible."""
+        if node.name is not None and node.name == place.name:
+            return f"'{node.name}' cannot be put into itself", "choose another place"
+        if node.kind is None:
+            return None
+        if not self._mobile(node):
+            hint = f"declare it: kind {node.kind} driven"
+            return f"nothing can drive {node.shown}" + (f" ({a(node.kind)})" if node.name else ""), hint
+        if place.kind is None:
+            return None
+        if not self.names.signature[place.kind].may_contain(node.kind):
+            message = f"{a(place.kind)} cannot contain {a(node.kind)}"
+            return message, f"declare it: kind {place.kind} contains {node.kind}"
+        return self._room(node, place)
+
+    def _mobile(self, node: Someone) -> bool:
+        carried = (
+            {node.name} & self.mobility.carried
+            if node.name is not None
+            else {name for name in self.mobility.carried if self.names.kinds.get(name) == node.kind}
+        )
+        return self.names.signature[node.kind or ""].driven or bool(carried)
+
+    def _room(self, node: Someone, place: Someone) -> tuple[str, str] | None:
+        if node.kind is None or node.name is None or place.name is None or place.kind is None:
+            return None
+        shape, target = self.world.shape(node.name), self.world.placements.get(place.name)
+        unknown = place.name not in self.fixed or node.name in self.mobility.drifting | self.mobility.coming
+        if unknown or shape is None or node.kind in self.names.signature[place.kind].carries:
+            return None
+        if not isinstance(target, Placed) or target.geometry.is_point:
+            return (
+                f"'{place.name}' is a point, and has no room for '{node.name}'",
+                "give it a border: box, circle or polygon",
+            )
+        if not band_contains(target.altitude, shape.altitude):
+            message = f"the altitudes of '{node.name}' are not within those of '{place.name}'"
+            return message, "give the place a wider band, or none"
+        try:
+            fits = nearest_placement(shape.geometry, target.geometry, self._holes(node, place, target, shape))
+        except PhysicalError as error:
+            return error.message, error.hint
+        if fits is None:
+            return (
+                f"'{place.name}' has no room for '{node.name}'",
+                "make the place larger, or other places in it smaller",
+            )
+        return None
+
+    def _holes(self, node: Someone, place: Someone, target: Placed, shape: Placed) -> tuple[Geometry, ...]:
+        """Return the smaller places that never move and would swallow the node, as `drive` has them."""
+        size = area(target.geometry)
+        found = set()
+        for name in self.fixed - {node.name, place.name}:
+            hole = self.world.placements.get(name)
+            holding = node.kind in self.names.signature[self.names.kinds[name]].contains
+            if not holding or not isinstance(hole, Placed) or hole.geometry.is_point:
+                continue
+            if area(hole.geometry) <= size and band_contains(hole.altitude, shape.altitude):
+                found.add(hole.geometry)
+        return tuple(sorted(found))
+
+
+def check_controls(bodies: Bodies, ground: Ground) -> None:
+    """Report controls that can never be made true from any host that a bigActor may have there."""
+    for rule in bodies.schemas.values():
+        if rule.name:
+            _check_rule(rule, ground)
+    hosts = possible_hosts(bodies, ground.names)
+    for body in bodies.all():
+        if (known := hosts.get(body_key(body), frozenset())) is None:
+            known = frozenset(ground.names.kinds)
+        there = tuple(name for name in sorted(known) if name in ground.names.kinds)
+        for site in body.controls if there else ():
+            _check_site(site, there, bodies.schemas, ground)
+
+
+def _check_rule(rule: Schema, ground: Ground) -> None:
+    """Report moves that a named rule can make for no host and no arguments."""
+    for move in rule.moves:
+        node = _term(move.node, rule, {}, None, ground)
+        place = _term(move.place, rule, {}, None, ground)
+        if problem := ground.obstacle(node, place):
+            ground.names.findings.add(Code.UNREALISABLE, move.where, *problem)
+
+
+def _check_site(
+    site: ControlSite, hosts: tuple[str, ...], schemas: Mapping[str, Schema], ground: Ground
+) -> None:
+    name, arguments = site.statement.name, site.statement.arguments
+    if name in _MOVING:
+        moved, place = _MOVING[name]
+        problems = [
+            ground.obstacle(
+                _value(None if moved is None else arguments[moved], host, ground),
+                _value(arguments[place], host, ground),
+            )
+            for host in hosts
+        ]
+        _report(site, problems, ground)
+    elif name in schemas and len(arguments) == len(schemas[name].parameters):
+        _check_use(site, schemas[name], hosts, ground)
+
+
+def _check_use(site: ControlSite, rule: Schema, hosts: tuple[str, ...], ground: Ground) -> None:
+    given = {}
+    for parameter, value in zip(rule.parameters, site.statement.arguments, strict=True):
+        name = str(value.value) if isinstance(value, Literal) else None
+        if name is not None and name in ground.names.kinds:
+            given[parameter.name] = name
+            kind = ground.names.kinds[name]
+            if parameter.kind not in (None, kind):
+                wanted = f"'{parameter.shown}' of rule '{rule.name}' is {a(parameter.kind or '')}"
+                message = f"'{name}' is {a(kind)}, and {wanted}"
+                ground.names.findings.add(
+                    Code.KIND_MISMATCH, site.where, message, "give it a node of that kind"
+                )
+                return
+    able = [host for host in hosts if rule.involves(host, ground.names.kinds[host], given | {HOST: host})]
+    said = rule.kinds.get(HOST)
+    if not able:
+        who = f"'{hosts[0]}'" if len(hosts) == 1 else "any of the hosts that it can have here"
+        message = f"the redex does not involve the bigActor's host: {who}"
+        ground.names.findings.add(Code.RULE_WITHOUT_HOST, site.where, message, "name HOST in the redex")
+    elif said is not None and all(ground.names.kinds[host] != said for host in able):
+        message = f"the host '{able[0]}' is {a(ground.names.kinds[able[0]])}, and not {a(said)}"
+        ground.names.findings.add(Code.KIND_MISMATCH, site.where, message, "write HOST without a kind")
+    else:
+        for move in rule.moves:
+            problems = [
+                ground.obstacle(
+                    _term(move.node, rule, given, host, ground), _term(move.place, rule, given, host, ground)
+                )
+                for host in able
+            ]
+            _report(site, problems, ground)
+
+
+def _report(site: ControlSite, problems: Iterable[tuple[str, str] | None], ground: Ground) -> None:
+    """Report the first problem if there is one whoever the host is."""
+    found = list(problems)
+    if found and (first := found[0]) is not None and all(found):
+        ground.names.findings.add(Code.UNREALISABLE, site.where, *first)
+
+
+def _value(expression: Expression | None, host: str, ground: Ground) -> Someone:
+    if expression is None or isinstance(expression, Host):
+        return ground.node(host)
+    if isinstance(expression, Literal) and str(expression.value) in ground.names.kinds:
+        return ground.node(str(expression.value))
+    return Someone(None)
+
+
+def _term(term: object, rule: Schema, given: Mapping[str, str], host: str | None, ground: Ground) -> Someone:
+    if isinstance(term, NodeVariable):
+        return Someone(term.kind)
+    if not isinstance(term, str):
+        return Someone(None)
+    name = host if term == HOST else given.get(term, term)
+    return ground.node(name) if name in ground.names.kinds else Someone(rule.kinds.get(term))

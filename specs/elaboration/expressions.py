@@ -1,0 +1,200 @@
+"""Expressions and queries: names resolved to variables, nodes and bigActors."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from semantics.expressions import (
+    OPERATORS,
+    Apply,
+    Either,
+    Expression,
+    Host,
+    Literal,
+    QueryOf,
+    Self,
+    SetOf,
+    TupleOf,
+    Variable,
+)
+from semantics.values import Truth
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.findings import Findings
+from specs.elaboration.names import Names
+from specs.elaboration.scopes import Scope
+
+FUNCTIONS: Final = tuple(
+    sorted(name for name in OPERATORS if name.isidentifier() and name not in {"in", "of", "not"})
+)
+"""What can be called in an expression."""
+
+_ANY: Final = Literal("")
+"""Stands for an expression with a mistake; the mission is refused."""
+
+
+def elaborate_expression(node: s.Expression, scope: Scope, names: Names) -> Expression:
+    """Return an expression with its names resolved; reports those that mean nothing."""
+    match node:
+        case s.Name():
+            return _name(node, scope, names)
+        case s.TextLiteral(value) | s.IntegerLiteral(value):
+            return Literal(value)
+        case s.TruthLiteral(value):
+            return Literal(Truth.of(value))
+        case s.HostReference():
+            return Host()
+        case s.SelfReference():
+            return Self()
+        case s.TupleLiteral(items):
+            return TupleOf(_all(items, scope, names))
+        case s.SetLiteral(items):
+            return SetOf(_all(items, scope, names))
+        case s.UnaryOperation():
+            return _unary(node, scope, names)
+        case s.BinaryOperation():
+            return _binary(node, scope, names)
+        case s.OfKind(operand, kind):
+            names.kind(kind)
+            return Apply("of", (elaborate_expression(operand, scope, names), Literal(kind.text)))
+        case s.FunctionCall():
+            return _call(node, scope, names)
+
+
+def _all(items: tuple[s.Expression, ...], scope: Scope, names: Names) -> tuple[Expression, ...]:
+    found = []
+    for item in items:  # a loop, since a comprehension would cost a frame at each depth
+        found.append(elaborate_expression(item, scope, names))  # noqa: PERF401
+    return tuple(found)
+
+
+def _unary(node: s.UnaryOperation, scope: Scope, names: Names) -> Expression:
+    if node.operator == "-" and isinstance(node.operand, s.IntegerLiteral):
+        return Literal(-node.operand.value)
+    operand = elaborate_expression(node.operand, scope, names)
+    return Apply("-", (Literal(0), operand)) if node.operator == "-" else Apply("not", (operand,))
+
+
+def _binary(node: s.BinaryOperation, scope: Scope, names: Names) -> Expression:
+    left = elaborate_expression(node.left, scope, names)
+    right = elaborate_expression(node.right, scope, names)
+    if node.operator in ("and", "or"):
+        return Either(node.operator == "or", left, right)
+    if node.operator == "not in":
+        return Apply("not", (Apply("in", (left, right)),))
+    return Apply(node.operator, (left, right))
+
+
+def _call(node: s.FunctionCall, scope: Scope, names: Names) -> Expression:
+    arguments = _all(node.arguments, scope, names)
+    name = node.function.text
+    if name not in FUNCTIONS:
+        other = names.sort_of(name)
+        otherwise = (
+            f"it is a {other}, and no function" if other else f"the functions are {', '.join(FUNCTIONS)}"
+        )
+        names.findings.unknown(node.function, FUNCTIONS, sort="function", otherwise=otherwise)
+        return _ANY
+    check_arity(node.function, len(arguments), OPERATORS[name].arity, names.findings)
+    return Apply(name, arguments)
+
+
+def check_arity(name: s.Name, given: int, wanted: int, findings: Findings) -> bool:
+    """Tell whether as many arguments are given as there are parameters; reports it if not."""
+    if given == wanted:
+        return True
+    plural = "argument" if wanted == 1 else "arguments"
+    message = f"'{name.text}' takes {wanted or 'no'} {plural}, and is given {given or 'none'}"
+    findings.add(Code.WRONG_ARITY, name, message, "give it one for each parameter")
+    return False
+
+
+def _name(node: s.Name, scope: Scope, names: Names) -> Expression:
+    variable = scope.find(node.text)
+    if variable is not None:
+        return Variable(variable)
+    if node.text in names.kinds or node.text in names.agents:
+        return Literal(node.text)
+    sort = names.sort_of(node.text)
+    if sort is None:
+        names.findings.unknown(node, [*scope.names(), *names.kinds, *names.agents])
+    else:
+        hint = f'as a text it is written "{node.text}"'
+        names.findings.add(Code.WRONG_SORT, node, f"'{node.text}' is a {sort}, which is no value", hint)
+    return _ANY
+
+
+# --- what must be a node or a bigActor ------------------------------------------------------------------------
+
+
+def elaborate_node(node: s.Expression, scope: Scope, names: Names) -> Expression:
+    """Return an expression that is to be a node; reports what certainly is none."""
+    found = _certain(node, scope, names, names.kinds)
+    if isinstance(found, Literal) and isinstance(found.value, str) and isinstance(node, s.Name):
+        names.entity(node)
+    return found
+
+
+def elaborate_agent(node: s.Expression, scope: Scope, names: Names) -> Expression:
+    """Return an expression that is to be a bigActor; reports what certainly is none."""
+    found = _certain(node, scope, names, names.agents)
+    if isinstance(found, Literal) and isinstance(found.value, str) and isinstance(node, s.Name):
+        names.agent(node)
+    return found
+
+
+def _certain(node: s.Expression, scope: Scope, names: Names, known: object) -> Expression:
+    """Elaborate what is to be a name; a constant that is none is reported."""
+    if (
+        isinstance(node, s.Name)
+        and scope.find(node.text) is None
+        and names.sort_of(node.text) in (None, "agent", "entity")
+    ):
+        if names.sort_of(node.text) is None:
+            names.findings.unknown(node, [*scope.names(), *(known if isinstance(known, dict) else ())])
+            return _ANY
+        return Literal(node.text)
+    if isinstance(node, s.TextLiteral):
+        if isinstance(known, dict) and node.value not in known:
+            what = "bigActor" if known is names.agents else "node"
+            hint = names.findings.suggest(node.value, known) or f"name {'one' if known else 'a declared one'}"
+            names.findings.add(Code.WRONG_VALUE, node, f"a text stands where a {what} is expected", hint)
+        return Literal(node.value)
+    if isinstance(node, s.IntegerLiteral | s.TruthLiteral | s.TupleLiteral | s.SetLiteral):
+        what = "bigActor" if known is names.agents else "node"
+        names.findings.add(
+            Code.WRONG_VALUE,
+            node,
+            f"a {what} is expected here",
+            "write its name, or a variable that holds it",
+        )
+        return _ANY
+    if isinstance(node, s.SelfReference if known is names.kinds else s.HostReference):
+        what, other = (
+            ("node", "SELF is a bigActor") if known is names.kinds else ("bigActor", "HOST is a node")
+        )
+        names.findings.add(Code.WRONG_VALUE, node, f"a {what} is expected here, and {other}")
+    return elaborate_expression(node, scope, names)
+
+
+# --- queries --------------------------------------------------------------------------------------------------
+
+
+def elaborate_query(query: s.Query, scope: Scope, names: Names, *, inside: bool = False) -> QueryOf:
+    """Return a query; reports one that follows relations of bigActors, which have none."""
+    match query:
+        case s.AllNodes():
+            return QueryOf(None, None)
+        case s.HostReference():
+            return QueryOf(None, Host())
+        case s.Name():
+            return QueryOf(None, elaborate_node(query, scope, names))
+        case s.QueryApplication(relation, argument):
+            if inside and relation == "HOSTED_AT":
+                hint = "bigActors have no parents, children or links: write HOSTED_AT outermost"
+                names.findings.add(
+                    Code.WRONG_QUERY, query, "HOSTED_AT gives bigActors, and these are asked further", hint
+                )
+            found = elaborate_query(argument, scope, names, inside=True)
+            leaf = found.operator is None and found.argument is not None
+            return QueryOf(relation, found.argument if leaf else found)

@@ -1,0 +1,121 @@
+"""Elaboration: from a syntax tree to what is explored, or to all mistakes in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from semantics.configuration import Configuration
+from semantics.initial import initial
+from semantics.propositions import Property
+from semantics.setting import Setting
+from semantics.signature import Name
+from specs import syntax as s
+from specs.codes import Code
+from specs.diagnostics import Diagnostic, MissionError, Source
+from specs.elaboration.beliefs import check_forest, elaborate_beliefs, settled
+from specs.elaboration.bodies import declare_behaviours, elaborate_bodies, named_agents
+from specs.elaboration.checks import elaborate_checks, elaborate_control, elaborate_scheduler
+from specs.elaboration.controls import Ground, check_controls
+from specs.elaboration.environment import appearing_channels, elaborate_environment
+from specs.elaboration.findings import Findings
+from specs.elaboration.names import Names
+from specs.elaboration.places import check_nesting, elaborate_mobility, fixed_entities
+from specs.elaboration.rules import elaborate_rules
+from specs.elaboration.signature import elaborate_signature
+from specs.elaboration.world import elaborate_world
+from specs.parser import parse_bytes
+from specs.text import MAX_BYTES
+
+
+@dataclass(frozen=True, eq=False)
+class ElaboratedMission:
+    """All that there is to explore and to check.
+
+    Attributes:
+        name: The mission's name: its header's, else the file's stem.
+        source: Its text.
+        setting: What stays the same.
+        initial: The first configuration.
+        properties: What is checked, in the order written.
+        notes: What a verdict has to say beside its results.
+        fixed: Entities whose place neither agents nor the environment can ever change.
+        spans: Where each name is declared, by sort (entity, kind, channel, agent, rule, behaviour) and name.
+    """
+
+    name: str
+    source: Source
+    setting: Setting
+    initial: Configuration
+    properties: tuple[Property, ...]
+    notes: tuple[str, ...]
+    fixed: frozenset[Name]
+    spans: Mapping[tuple[str, str], s.Span]
+
+    def line(self, sort: str, name: str) -> int:
+        """Return the line in which a name is declared, from 1; 0 where none is."""
+        span = self.spans.get((sort, name))
+        return 0 if span is None else self.source.line(span.start)
+
+
+def elaborate(mission: s.Mission, source: Source, directory: Path) -> ElaboratedMission:
+    """Return what a mission means; raises MissionError with every mistake that was found, by position.
+
+    Files of the world are looked for in `directory`.
+    """
+    names = Names(Findings(source))
+    elaborate_signature(mission, names)
+    world = elaborate_world(mission, names, directory)
+    appearing_channels(mission, names)
+    declare_behaviours(mission, names)
+    mobility = elaborate_mobility(mission, names, world)
+    check_nesting(names, world, mobility)
+    clauses, arriving = elaborate_environment(mission, names, world, mobility)
+    beliefs = elaborate_beliefs(mission, names)
+    bodies, program = elaborate_bodies(mission, names, elaborate_rules(mission, names))
+    agents = {}
+    for name, actor in named_agents(mission):
+        names.entity(actor.host)
+        agents[name] = (actor.host.text, bodies.agents[name].block)
+    fixed = fixed_entities(names, mobility)
+    check_controls(bodies, Ground(names, world, mobility, fixed))
+    scheduler, control = elaborate_scheduler(mission, names), elaborate_control(mission, names)
+    properties = elaborate_checks(mission, names, bodies)
+    _stop(names.findings)
+    setting = Setting(names.signature, dict(names.kinds), program, clauses, scheduler, control, arriving)
+    there = {name: world.channels[name] for name in world.placements}
+    actual = initial(setting, world.placements, there, agents)
+    first = initial(setting, world.placements, there, agents, settled(beliefs, actual))
+    check_forest(mission, first, names)
+    _stop(names.findings)
+    called = mission.name.text if mission.name is not None else Path(source.name).stem
+    return ElaboratedMission(
+        called, source, setting, first, properties, tuple(world.notes), fixed, dict(names.spans)
+    )
+
+
+def _stop(findings: Findings) -> None:
+    if findings:
+        raise findings.error()
+
+
+def load_mission(path: str | Path) -> ElaboratedMission:
+    """Read, parse and elaborate a mission file; raises MissionError, for a file that can't be read too."""
+    path = Path(path)
+    name = str(path)
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        unread = Diagnostic(
+            Code.UNREADABLE_FILE, _START, f"the file cannot be read: {reason}", "check its path"
+        )
+        raise MissionError(Source(name, ""), [unread]) from error
+    source, mission = parse_bytes(name, data)
+    return elaborate(mission, source, path.parent)
+
+
+_START: Final = s.Span(0, 0)

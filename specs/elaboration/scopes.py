@@ -1,0 +1,58 @@
+"""Variables: each binding gets a name of its own in the whole program, of which the part before '#' is printed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+
+@dataclass(slots=True)
+class Variables:
+    """The names given so far in a mission."""
+
+    taken: dict[str, int] = field(default_factory=dict)
+    hidden: int = 0
+
+    def fresh(self, name: str) -> str:
+        """Return a name for one more binding of `name`.
+
+        >>> variables = Variables()
+        >>> variables.fresh("obs"), variables.fresh("obs")
+        ('obs', 'obs#2')
+        """
+        number = self.taken.get(name, 0) + 1
+        self.taken[name] = number
+        return name if number == 1 else f"{name}#{number}"
+
+    def rest(self) -> str:
+        """Return a name for what is left of a collection that a `for` goes through."""
+        self.hidden += 1
+        return f"rest#{self.hidden}"
+
+
+@dataclass(slots=True)
+class Scope:
+    """What is bound in a block, and in the blocks around it."""
+
+    around: Scope | None = None
+    bound: dict[str, str] = field(default_factory=dict)
+
+    def inner(self) -> Scope:
+        """Return the scope of a block inside."""
+        return Scope(self)
+
+    def find(self, name: str) -> str | None:
+        """Return the unique name of a variable."""
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.bound:
+                return scope.bound[name]
+            scope = scope.around
+        return None
+
+    def names(self) -> Iterator[str]:
+        """Yield what is bound, innermost first."""
+        scope: Scope | None = self
+        while scope is not None:
+            yield from scope.bound
+            scope = scope.around

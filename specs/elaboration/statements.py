@@ -1,0 +1,348 @@
+"""Statements, numbered in one program, and what the later checks need to know of each body."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any, Final
+
+from semantics import statements as k
+from semantics.expressions import Expression, Variable
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.expressions import (
+    check_arity,
+    elaborate_agent,
+    elaborate_expression,
+    elaborate_node,
+    elaborate_query,
+)
+from specs.elaboration.names import Names
+from specs.elaboration.patterns import check_distinct, elaborate_pattern
+from specs.elaboration.regions import regions_of
+from specs.elaboration.rules import elaborate_rule, word_of
+from specs.elaboration.schemas import HOST, Parameter, Schema
+from specs.elaboration.scopes import Scope, Variables
+
+_FILLED_LATER: Final = k.Tested()
+"""Keeps the place of a statement until its blocks are numbered."""
+
+
+@dataclass(frozen=True, slots=True)
+class CallSite:
+    """A call of a behaviour: `tail` where nothing is left to do after it, `top` where it isn't nested either."""
+
+    behaviour: str
+    where: s.Node
+    tail: bool
+    top: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SpawnSite:
+    """A `spawn`: of whom, running what, and where."""
+
+    name: str
+    behaviour: str
+    host: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class ControlSite:
+    """A `control`, as it was written and as it is."""
+
+    where: s.Node
+    statement: k.ControlBy
+
+
+@dataclass(slots=True)
+class Body:
+    """What a bigActor or a behaviour does: its block, and the places in it that later checks look at."""
+
+    name: str
+    is_agent: bool
+    block: k.Block = ()
+    calls: list[CallSite] = field(default_factory=list)
+    spawns: list[SpawnSite] = field(default_factory=list)
+    controls: list[ControlSite] = field(default_factory=list)
+    migrations: list[Expression] = field(default_factory=list)
+    loops: list[int] = field(default_factory=list)
+    variables: dict[str, list[str]] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class Numbering:
+    """The statements of a mission so far, each with its line."""
+
+    names: Names
+    schemas: dict[str, Schema]
+    statements: list[k.Statement] = field(default_factory=list)
+    lines: list[int] = field(default_factory=list)
+    variables: Variables = field(default_factory=Variables)
+    starts: list[int] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        text = self.names.findings.source.text
+        self.starts = [0, *(at + 1 for at, character in enumerate(text) if character == "\n")]
+
+    def reserve(self, node: s.Node) -> int:
+        """Return the number of one more statement."""
+        self.statements.append(_FILLED_LATER)
+        self.lines.append(bisect_right(self.starts, node.span.start))
+        return len(self.statements) - 1
+
+    def body(self, body: Body, written: tuple[s.Statement, ...], parameters: Mapping[str, str]) -> None:
+        """Number the statements of a body."""
+        for name, unique in parameters.items():
+            body.variables.setdefault(name, []).append(unique)
+        body.block = _Statements(self, body).block(
+            written, Scope(None, dict(parameters)), tail=True, top=True
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """Where a statement stands: in which scope, whether nothing follows it, whether it is nested in nothing."""
+
+    scope: Scope
+    tail: bool
+    top: bool
+
+
+class _Statements:
+    """Elaborates the statements of one body. At each depth of nesting it costs three frames of Python's stack."""
+
+    def __init__(self, program: Numbering, body: Body) -> None:
+        self.program = program
+        self.names = program.names
+        self.into = body
+
+    def block(
+        self, written: tuple[s.Statement, ...], scope: Scope, *, tail: bool, top: bool = False
+    ) -> k.Block:
+        """Number the statements that follow each other; `scope` grows with each `let`."""
+        numbers: list[int] = []
+        real = [statement for statement in written if not isinstance(statement, s.Skip)]
+        for statement in real:
+            last = statement is real[-1]
+            number = self.program.reserve(statement)
+            numbers.append(number)
+            place = _Place(scope, tail and last, top and (last or not isinstance(statement, s.Call)))
+            self.program.statements[number] = _STATEMENTS[type(statement)](self, statement, place, number)
+        for position, number in enumerate(numbers):
+            loop = self.program.statements[number]
+            if isinstance(loop, k.While):
+                self.program.statements[number] = replace(loop, after=tuple(numbers[position + 1 :]))
+        return tuple(numbers)
+
+    # --- names
+
+    def bind(self, scope: Scope, name: s.Name) -> str:
+        unique = self.program.variables.fresh(name.text)
+        scope.bound[name.text] = unique
+        self.into.variables.setdefault(name.text, []).append(unique)
+        return unique
+
+    def expression(self, node: s.Expression, place: _Place) -> Expression:
+        return elaborate_expression(node, place.scope, self.names)
+
+    # --- commands
+
+    def observe(self, node: s.Observe, place: _Place, _: int) -> k.Statement:
+        return k.Observe(elaborate_query(node.query, place.scope, self.names))
+
+    def control(self, node: s.Control, place: _Place, number: int) -> k.Statement:
+        name, arguments = self.action(node.action, place, number)
+        statement = k.ControlBy(name, arguments)
+        self.into.controls.append(ControlSite(node.action, statement))
+        return statement
+
+    def action(self, action: s.Action, place: _Place, number: int) -> tuple[str, tuple[Expression, ...]]:
+        if isinstance(action, s.RuleBody):
+            return self.inline(action, place, number)
+        if isinstance(action, s.ApplyRule):
+            rule = self.names.rules.get(action.rule.text)
+            if rule is None:
+                self.names.findings.unknown(action.rule, self.names.rules, sort="rule")
+            else:
+                check_arity(action.rule, len(action.arguments), len(rule.parameters), self.names.findings)
+            return action.rule.text, tuple(self.node(each, place) for each in action.arguments)
+        name, parts = _command(action)
+        return name, tuple(self.node(each, place) for each in parts)
+
+    def node(self, node: s.Expression, place: _Place) -> Expression:
+        return elaborate_node(node, place.scope, self.names)
+
+    def inline(self, body: s.RuleBody, place: _Place, number: int) -> tuple[str, tuple[Expression, ...]]:
+        """A rule written in place is open in the variables that are bound there."""
+        words = (
+            {}
+            if body.term is None
+            else dict.fromkeys(
+                word
+                for side in (body.term.redex, body.term.reactum)
+                for region in regions_of(side)
+                for node in region.nodes()
+                for word in (word_of(node), node.name or "")
+            )
+        )
+        bound = {
+            word: unique for word in words if (unique := place.scope.find(word)) is not None and word != HOST
+        }
+        parameters = tuple(Parameter(f"{word}#", None) for word in bound)
+        schema = elaborate_rule(body, "", parameters, dict.fromkeys(bound), self.names)
+        name = f"rule#{number}"
+        if schema is not None:
+            self.program.schemas[name] = schema
+        return name, tuple(map(Variable, bound.values()))
+
+    def react(self, node: s.React, place: _Place, _: int) -> k.Statement:
+        return k.React(self.cases(node.cases, place, react=True))
+
+    def send(self, node: s.Send, place: _Place, _: int) -> k.Statement:
+        message = self.expression(node.message, place)
+        return k.Send(message, elaborate_agent(node.recipient, place.scope, self.names))
+
+    def migrate(self, node: s.Migrate, place: _Place, _: int) -> k.Statement:
+        host = self.node(node.host, place)
+        self.into.migrations.append(host)
+        return k.Migrate(host)
+
+    def spawn(self, node: s.Spawn, place: _Place, _: int) -> k.Statement:
+        host, called = self.node(node.host, place), node.behaviour
+        arguments = tuple(self.expression(each, place) for each in called.arguments)
+        self.called(called)
+        if node.name is None:
+            hint = f"write: spawn {called.behaviour.text}0 hosted_at ... with_behavior {called.behaviour.text}(...)"
+            self.names.findings.add(Code.NAMELESS_SPAWN, node, "the spawned bigActor has no name", hint)
+        name = node.name.text if node.name is not None else ""
+        self.into.spawns.append(SpawnSite(name, called.behaviour.text, host))
+        return k.Spawn(name, host, called.behaviour.text, arguments)
+
+    # --- internal
+
+    def display(self, node: s.Display, place: _Place, _: int) -> k.Statement:
+        return k.Display(self.expression(node.value, place))
+
+    def let(self, node: s.Let, place: _Place, _: int) -> k.Statement:
+        value = self.expression(node.value, place)
+        return k.Assign(self.bind(place.scope, node.variable), value)
+
+    def assign(self, node: s.Assign, place: _Place, _: int) -> k.Statement:
+        value = self.expression(node.value, place)
+        variable = place.scope.find(node.variable.text)
+        if variable is None:
+            hint = self.names.findings.suggest(node.variable.text, place.scope.names())
+            message = f"'{node.variable.text}' is no variable here"
+            self.names.findings.add(
+                Code.UNBOUND_VARIABLE,
+                node.variable,
+                message,
+                hint or f"bind it: let {node.variable.text} = ...",
+            )
+        return k.Assign(variable or "", value)
+
+    def if_(self, node: s.If, place: _Place, _: int) -> k.Statement:
+        test = self.expression(node.condition, place)
+        then = self.block(node.then, place.scope.inner(), tail=place.tail)
+        return k.If(test, then, self.block(node.otherwise, place.scope.inner(), tail=place.tail))
+
+    def loop(self, node: s.Loop, place: _Place, number: int) -> k.Statement:
+        body = self.block(node.body, place.scope.inner(), tail=False)
+        if not body:
+            self.names.findings.add(
+                Code.EMPTY_LOOP, node, "a loop without a statement", "give it one, or leave it out"
+            )
+        if place.top:
+            self.into.loops.append(number)
+        return k.Loop(body)
+
+    def while_(self, node: s.While, place: _Place, _: int) -> k.Statement:
+        test = self.expression(node.condition, place)
+        return k.While(test, self.block(node.body, place.scope.inner(), tail=False))
+
+    def for_(self, node: s.For, place: _Place, _: int) -> k.Statement:
+        members, rest = self.expression(node.collection, place), self.program.variables.rest()
+        inner, each = place.scope.inner(), self.program.reserve(node)
+        variable = self.bind(inner, node.variable)
+        self.program.statements[each] = k.ForEach(variable, rest, self.block(node.body, inner, tail=False))
+        return k.For(members, rest, each)
+
+    def match(self, node: s.Match, place: _Place, _: int) -> k.Statement:
+        return k.Match(self.expression(node.subject, place), self.cases(node.cases, place, react=False))
+
+    def choose(self, node: s.Choose, place: _Place, _: int) -> k.Statement:
+        found: list[k.Block] = []
+        for each in node.alternatives:
+            found.append(self.block(each.body, place.scope.inner(), tail=place.tail))  # noqa: PERF401 - a frame less
+        return k.Choose(tuple(found))
+
+    def choose_from(self, node: s.ChooseFrom, place: _Place, _: int) -> k.Statement:
+        members, inner = self.expression(node.collection, place), place.scope.inner()
+        variable = self.bind(inner, node.variable)
+        return k.ChooseFrom(variable, members, self.block(node.body, inner, tail=place.tail))
+
+    def call(self, node: s.Call, place: _Place, _: int) -> k.Statement:
+        arguments = tuple(self.expression(each, place) for each in node.arguments)
+        self.called(node)
+        self.into.calls.append(CallSite(node.behaviour.text, node, place.tail, place.top))
+        return k.Call(node.behaviour.text, arguments)
+
+    def called(self, node: s.Call) -> None:
+        behaviour = self.names.behaviours.get(node.behaviour.text)
+        if behaviour is None:
+            self.names.findings.unknown(node.behaviour, self.names.behaviours, sort="behaviour")
+        else:
+            check_arity(node.behaviour, len(node.arguments), len(behaviour.parameters), self.names.findings)
+
+    def cases(self, written: tuple[s.Case, ...], place: _Place, *, react: bool) -> tuple[k.Case, ...]:
+        found: list[k.Case] = []
+        for case in written:
+            inner = place.scope.inner()
+            check_distinct(case.pattern, self.names)
+            pattern = elaborate_pattern(case.pattern, self.names, partial(self.bind, inner), react=react)
+            guard = None if case.guard is None else elaborate_expression(case.guard, inner, self.names)
+            tested = (self.program.reserve(case),) if react and guard is not None else ()
+            body = self.block(case.body, inner, tail=place.tail)
+            found.append(k.Case(pattern, guard, (*tested, *body)))
+        return tuple(found)
+
+
+def _command(action: s.Action) -> tuple[str, tuple[s.Expression, ...]]:
+    match action:
+        case s.MoveHost(place):
+            return "MOVE_HOST_TO", (place,)
+        case s.Move(entity, place):
+            return "MOVE", (entity, place)
+        case s.Connect(node):
+            return "CONNECT_HOST_TO", (node,)
+        case s.Disconnect(node):
+            return "DISCONNECT_HOST_FROM", (node,)
+        case s.HandOver(entity, station):
+            return "HAND", (entity, station)
+        case s.Put(entity, place):
+            return "PUT", (entity, place)
+    raise AssertionError(action)
+
+
+_STATEMENTS: Final[Mapping[type, Callable[[_Statements, Any, _Place, int], k.Statement]]] = {
+    s.Observe: _Statements.observe,
+    s.Control: _Statements.control,
+    s.React: _Statements.react,
+    s.Send: _Statements.send,
+    s.Migrate: _Statements.migrate,
+    s.Spawn: _Statements.spawn,
+    s.Display: _Statements.display,
+    s.Let: _Statements.let,
+    s.Assign: _Statements.assign,
+    s.If: _Statements.if_,
+    s.Loop: _Statements.loop,
+    s.While: _Statements.while_,
+    s.For: _Statements.for_,
+    s.Match: _Statements.match,
+    s.Choose: _Statements.choose,
+    s.ChooseFrom: _Statements.choose_from,
+    s.Call: _Statements.call,
+}

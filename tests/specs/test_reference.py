@@ -1,0 +1,82 @@
+"""The language reference is complete, and all that it shows parses."""
+
+import re
+
+import pytest
+
+from specs import syntax as s
+from specs.diagnostics import Source
+from specs.formatter import format_mission
+from specs.parser import parse
+from specs.reference import EXAMPLES, NODES, forms, grammar_parts, language_reference
+
+ABSTRACT = {s.Case, s.Alternative, s.Kind}
+FRAMES = {
+    "Geometry": "world {{ a: B = {} }}",
+    "Statements": "def f() = {{ {} }}",
+    "Patterns": "def f() = {{ react {{ case {} => skip }} }}",
+    "Queries": "def f() = {{ observe({}) }}",
+    "Control actions": "def f() = {{ control({}) }}",
+    "Expressions": "def f() = {{ let q = {} }}",
+    "Formulas": 'check {{ invariant "q": {} }}',
+    "World": "world {{ {} }}",
+    "Beliefs": "believes {{ {} }}",
+    "Signature": "signature {{ {} }}",
+    "Environment": "environment {{ {} }}",
+    "Checks": "check {{ {} }}",
+}
+SPECIAL = {
+    s.AltitudeBand: "world {{ a: B = point (1, 2) {} }}",
+    s.Length: "world {{ a: B = circle (1, 2) radius {} }}",
+    s.Coordinate: "world {{ a: B = point {} }}",
+    s.Keep: 'world {{ from "x" keep {} }}',
+    s.Parameter: "rule r({}) {{ a -> b }}",
+    s.RuleBody: "rule r {}",
+    s.Control: "def f() = {{ {}(uav0)) }}",
+    s.Case: "def f() = {{ react {{ {} }} }}",
+    s.Alternative: "def f() = {{ choose {{ {} }} }}",
+}
+SECTIONS = {s.Signature, s.World, s.Believes, s.Environment, s.Check, s.Mission}
+
+
+def concrete(form):
+    form = re.sub(r"\b[FG]\b", "known f", form.replace("{ ... }", "{}").replace("case ...", "case => skip"))
+    return (
+        form.replace("statements", "skip")
+        .replace("react { case => ", "react { case x => ")
+        .removesuffix("(r)")
+    )
+
+
+@pytest.mark.parametrize(
+    ("heading", "node"), [(heading, node) for heading, nodes in NODES.items() for node in nodes]
+)
+def test_the_form_that_is_shown_of_a_construct_reads_as_that_construct(heading, node):
+    form = concrete(forms(node)[0])
+    if node is s.Match:
+        form = form.replace("case => skip", "case x => skip")
+    frame = "{}" if node in SECTIONS else SPECIAL.get(node, FRAMES.get(heading, "{}"))
+    mission = parse(Source(form, frame.format(form)))
+    assert any(isinstance(part, node) for part in s.walk(mission))
+
+
+@pytest.mark.parametrize("heading", EXAMPLES)
+def test_an_example_parses_and_is_in_canonical_layout(heading):
+    assert format_mission(EXAMPLES[heading]) == EXAMPLES[heading]
+
+
+def test_every_heading_of_the_grammar_but_the_words_is_explained():
+    assert [heading for heading, _ in grammar_parts()] == [*NODES, "Words"]
+
+
+def test_every_construct_is_in_the_reference():
+    concrete_nodes = {
+        node for name in s.__all__ if isinstance(node := getattr(s, name), type) and issubclass(node, s.Node)
+    }
+    assert concrete_nodes - {s.Node} == {node for nodes in NODES.values() for node in nodes}
+
+
+def test_the_page_shows_no_inner_names_of_the_grammar():
+    page = language_reference()
+    for block in re.findall(r"```ebnf\n(.*?)```", page, re.DOTALL):
+        assert not re.search(r'(?<!["\w])[?_][a-z]|->(?!")|";"', block), block
