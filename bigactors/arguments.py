@@ -80,7 +80,7 @@ def _unknown(word: str, parser: Parser) -> Mistake:
     if not word.startswith("-"):
         return Mistake(f"'{word:.60}' is one argument too many", f"see {parser.prog} --help")
     known = parser.format_usage().replace("[", " ").replace("]", " ").split()
-    hint = suggestion(word.split("=")[0], (option for option in known if option.startswith("--")))
+    hint = suggestion(word.partition("=")[0], (option for option in known if option.startswith("--")))
     return Mistake(f"unknown option '{word:.60}'", hint or f"see {parser.prog} --help")
 
 
@@ -111,12 +111,15 @@ def _check(parser: Parser) -> None:
         help="visit no more than N configurations (default 2,000,000)",
     )
     parser.add_argument(
-        "--max-time", metavar="SECONDS", type=seconds, help="explore no longer than SECONDS (default: no limit)"
+        "--max-time",
+        metavar="SECONDS",
+        type=seconds,
+        help="explore no longer than SECONDS (default: no limit)",
     )
     parser.add_argument(
         "--trace",
         metavar="DIR",
-        help="write the trace of each violation and witness into DIR: as text, as JSON and as a picture",
+        help="write the trace of each violation and witness into DIR: as text, as JSON and as pictures",
     )
     parser.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
 
@@ -126,42 +129,71 @@ def _show(parser: Parser) -> None:
     parser.add_argument(
         "--output", metavar="FILE", help="the picture, .svg or .png (default: the mission's name .svg, here)"
     )
-    parser.add_argument("--trace", metavar="TRACE", help="a trace in JSON, as check --trace and simulate write it")
     parser.add_argument(
-        "--step", metavar="K", type=at_least_zero, help="show c_K of the trace (default: its last configuration)"
+        "--trace", metavar="TRACE", help="a trace in JSON, as check --trace and simulate write it"
+    )
+    parser.add_argument(
+        "--step",
+        metavar="K",
+        type=at_least_zero,
+        help="show c_K of the trace (default: its last configuration)",
     )
 
 
 def _simulate(parser: Parser) -> None:
     parser.add_argument("file", metavar="FILE", help=MISSION)
     parser.add_argument(
-        "--seed", metavar="N", type=at_least_zero, default=0, help="which run: the same seed, the same run (default 0)"
+        "--seed",
+        metavar="N",
+        type=at_least_zero,
+        default=0,
+        help="which run: the same seed, the same run (default 0)",
     )
     parser.add_argument(
-        "--steps", metavar="N", type=at_least_zero, default=100, help="take no more than N steps (default 100)"
+        "--steps",
+        metavar="N",
+        type=at_least_zero,
+        default=100,
+        help="take no more than N steps (default 100)",
     )
-    parser.add_argument("--json", metavar="FILE", help="write the run as a trace in JSON; - for standard output, alone")
+    parser.add_argument(
+        "--json", metavar="FILE", help="write the run as a trace in JSON; - for standard output, alone"
+    )
 
 
 def _replay(parser: Parser) -> None:
-    parser.add_argument("trace", metavar="TRACE", help="a trace in JSON, as check --trace and simulate write it")
-    parser.add_argument("--mission", metavar="FILE", help="replay it on this mission (default: the one that it names)")
+    parser.add_argument(
+        "trace", metavar="TRACE", help="a trace in JSON, as check --trace and simulate write it"
+    )
+    parser.add_argument(
+        "--mission", metavar="FILE", help="replay it on this mission (default: the one that it names)"
+    )
 
 
 def _world(parser: Parser) -> None:
-    parser.add_argument("files", nargs="+", metavar="FILE", help="GeoJSON (.geojson, .json), or an AIS recording (NMEA)")
     parser.add_argument(
-        "--at", metavar="TIME", type=time_of, help="as of a time of the recording, such as 2020-04-07T21:42:00Z"
+        "files", nargs="+", metavar="FILE", help="GeoJSON (.geojson, .json), or an AIS recording (NMEA)"
     )
     parser.add_argument(
-        "--within", metavar="SOUTH,WEST,NORTH,EAST", type=corners, help="only what is inside this box, in degrees"
+        "--at",
+        metavar="TIME",
+        type=time_of,
+        help="as of a time of the recording, such as 2020-04-07T21:42:00Z",
+    )
+    parser.add_argument(
+        "--within",
+        metavar="SOUTH,WEST,NORTH,EAST",
+        type=corners,
+        help="only what is inside this box, in degrees",
     )
     parser.add_argument("--kinds", metavar="KIND,...", help="only entities of these kinds")
     parser.add_argument("--output", metavar="FILE", help="draw it too: a picture, .svg or .png")
 
 
 def _explain(parser: Parser) -> None:
-    parser.add_argument("code", nargs="?", metavar="CODE", help="such as LS201; without it all codes are listed")
+    parser.add_argument(
+        "code", nargs="?", metavar="CODE", help="such as LS201; without it all codes are listed"
+    )
 
 
 def _fmt(parser: Parser) -> None:
@@ -172,8 +204,28 @@ def _fmt(parser: Parser) -> None:
 
 
 def _demo(parser: Parser) -> None:
-    parser.add_argument("--out", metavar="DIR", default="demo", help="where pictures and traces go (default demo)")
+    parser.add_argument(
+        "--out", metavar="DIR", default="demo", help="where pictures and traces go (default demo)"
+    )
 
+
+CHECK: Final = f"""\
+Explore every interleaving of a mission and decide its properties, with a shortest trace for each that
+fails and a witness for each that holds. Ctrl-C ends the exploration with what was found so far.
+
+{EXITS}"""
+
+REPLAY: Final = """\
+Run a trace again through the rules, step by step. A step that they do not allow ends it with exit code 1,
+and what was enabled instead is shown."""
+
+WORLD: Final = """\
+Read what is where from GeoJSON files and AIS recordings together, print the bigraph A(P) that it makes,
+and what of the recordings could not be used."""
+
+DEMO: Final = """\
+Check the oil spill of the paper and the watch over a harbour, print their verdicts, and write their
+pictures and traces."""
 
 Command = tuple[str, str, tuple[str, ...], Callable[[Parser], None]]
 
@@ -181,7 +233,8 @@ COMMANDS: Final[dict[str, Command]] = {
     "check": (
         "decide the properties of missions",
         "Explore every interleaving of a mission and decide its properties, with a shortest trace for each that\n"
-        "fails and a witness for each that holds. Ctrl-C ends the exploration with what was found so far.\n\n" + EXITS,
+        "fails and a witness for each that holds. Ctrl-C ends the exploration with what was found so far.\n\n"
+        + EXITS,
         (
             "bigactors check oil_spill.mission",
             "bigactors check --no-traces specs/missions/*.mission",
@@ -192,7 +245,7 @@ COMMANDS: Final[dict[str, Command]] = {
     ),
     "show": (
         "print and draw a configuration",
-        "Print the initial configuration of a mission, or any one of a trace, and draw its bigraph beside the map.",
+        "Print the initial configuration of a mission, or any one of a trace; draw its bigraph beside the map.",
         (
             "bigactors show oil_spill.mission --output oil_spill.png",
             "bigactors show oil_spill.mission --trace run.json --step 3",
@@ -202,23 +255,24 @@ COMMANDS: Final[dict[str, Command]] = {
     "simulate": (
         "run a mission once",
         "Take one run of a mission, chosen by a seed, and print it in the paper's notation.",
-        ("bigactors simulate oil_spill.mission --seed 7", "bigactors simulate oil_spill.mission --steps 20 --json run.json"),
+        (
+            "bigactors simulate oil_spill.mission --seed 7",
+            "bigactors simulate oil_spill.mission --steps 20 --json run.json",
+        ),
         _simulate,
     ),
     "replay": (
         "run a trace again",
-        "Run a trace again through the rules, step by step. A step that they do not allow ends it with exit code 1, and\n"
-        "what was enabled instead is shown.",
+        REPLAY,
         (
-            "bigactors replay traces/oil_spill/found-witness.json",
+            "bigactors replay traces/oil_spill/over_the_spill-witness/trace.json",
             "bigactors replay run.json --mission changed.mission",
         ),
         _replay,
     ),
     "world": (
         "print and draw the bigraph of a GeoJSON or AIS world",
-        "Read what is where from GeoJSON files and AIS recordings together, print the bigraph A(P) that it makes, and\n"
-        "what of the recordings could not be used.",
+        WORLD,
         (
             "bigactors world harbour.geojson --output harbour.svg",
             "bigactors world harbour.geojson vessels.nmea --at 2020-04-07T21:42:00Z --kinds Vessel,Harbour",
@@ -234,14 +288,13 @@ COMMANDS: Final[dict[str, Command]] = {
     ),
     "fmt": (
         "lay out mission files in the canonical way",
-        "Rewrite mission files in the canonical layout, their comments kept. A file that does not parse is left alone.",
+        "Rewrite mission files in the canonical layout, their comments kept. What does not parse is left alone.",
         ("bigactors fmt oil_spill.mission", "bigactors fmt --check specs/missions/*.mission"),
         _fmt,
     ),
     "demo": (
         "check two missions that ship, and draw them",
-        "Check the oil spill of the paper and the watch over a harbour, print their verdicts, and write their pictures\n"
-        "and traces.",
+        DEMO,
         ("bigactors demo --out demo",),
         _demo,
     ),

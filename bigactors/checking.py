@@ -78,7 +78,7 @@ def check_mission(name: str, limits: Limits) -> Checked | Failed:
         return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
     except KeyboardInterrupt:
         return Failed(name, Exit.INCOMPLETE, "interrupted before it was explored", interrupted=True)
-    except Exception as error:  # noqa: BLE001 - whatever it is, it is our bug, and other missions are to be checked
+    except Exception as error:  # whatever it is, it is our bug, and other missions are to be checked
         tell(f"{name}:\n{describe_bug(error)}")
         return Failed(name, Exit.BUG, f"internal error: {type(error).__name__}: {error}")
 

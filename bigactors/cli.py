@@ -32,6 +32,6 @@ def run(line: Sequence[str]) -> int:
     except KeyboardInterrupt:
         tell("bigactors: interrupted, nothing is decided")
         return Exit.INCOMPLETE
-    except Exception as error:  # noqa: BLE001 - whatever it is, it is our bug
+    except Exception as error:  # whatever it is, it is our bug
         tell(describe_bug(error))
         return Exit.BUG

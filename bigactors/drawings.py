@@ -1,33 +1,39 @@
 """Pictures as files: what may be asked of them, and what is said where they cannot be written."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from bigactors.mistakes import Mistake, unreadable
-from bigactors.pictures import draw_configuration, draw_trace
+from bigactors.pictures import PictureError, draw_configuration, draw_overview, draw_trace
 from checker import Trace
 from semantics.configuration import Configuration
 
-FORMATS = (".svg", ".png")
+MOST_PICTURES = 100
+"""The longest trace of which every configuration is drawn; of longer ones there is the overview."""
 
 
-def draw(configuration: Configuration, path: str, title: str) -> None:
-    """Draw a configuration into a file."""
-    _check_format(path)
+def draw(configuration: Configuration, path: str, title: str, before: Configuration | None = None) -> None:
+    """Draw a configuration into a file, with what has changed since the one before."""
+    with _mistakes(path):
+        draw_configuration(configuration, path, title=title, changed=before)
+
+
+def draw_run(trace: Trace, folder: Path, title: str, *, each_step: bool) -> None:
+    """Draw a trace into a folder: the overview `trace.svg`, and if asked each configuration (0.2 s each)."""
+    labels = [step.label for step in trace.steps]
+    with _mistakes(str(folder)):
+        if each_step and len(trace) <= MOST_PICTURES:
+            draw_trace(trace.configurations, labels, folder, title=title)
+        else:
+            draw_overview(trace.configurations, labels, folder / "trace.svg", title=title)
+
+
+@contextmanager
+def _mistakes(path: str) -> Iterator[None]:
     try:
-        draw_configuration(configuration, Path(path), title=title)
+        yield
+    except PictureError as error:
+        raise Mistake(str(error), place=path) from error
     except OSError as error:
         raise unreadable(path, error) from error
-
-
-def draw_run(trace: Trace, path: str, title: str) -> None:
-    """Draw a trace into a file."""
-    _check_format(path)
-    try:
-        draw_trace(trace, Path(path), title=title)
-    except OSError as error:
-        raise unreadable(path, error) from error
-
-
-def _check_format(path: str) -> None:
-    if Path(path).suffix.lower() not in FORMATS:
-        raise Mistake("a picture is an .svg or a .png file", "give such a name with --output", path)

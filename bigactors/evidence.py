@@ -13,11 +13,19 @@ from semantics.printing import print_configuration
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """A trace and what it is evidence of: the words of the violation, or `a witness`."""
+    """A trace.
+
+    Attributes:
+        stem: What its folder is called.
+        about: What it is evidence of.
+        trace: Its steps.
+        telling: Whether each of its configurations is worth a picture: it ends in a violation, or in what was looked for.
+    """
 
     stem: str
     about: str
     trace: Trace
+    telling: bool
 
 
 def evidence_of(checked: Checked) -> Iterator[Evidence]:
@@ -25,24 +33,27 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
     for verdict in checked.report.verdicts:
         name = verdict.property.name
         for violation in verdict.violations:
-            stem = file_stem(f"{name}-{violation.kind}")
-            yield Evidence(stem, f"{name} violated: {violation.kind}: {violation.message}", violation.trace)
+            about = f"{name} violated: {violation.kind}: {violation.message}"
+            yield Evidence(file_stem(f"{name}-{violation.kind}"), about, violation.trace, telling=True)
         if verdict.witness is not None:
-            yield Evidence(file_stem(f"{name}-witness"), f"{name} holds: a witness", verdict.witness)
+            found = verdict.property.kind == "reachable"
+            yield Evidence(file_stem(f"{name}-witness"), f"{name}: a witness", verdict.witness, telling=found)
 
 
-def write_evidence(checked: Checked, folder: str) -> list[Path]:
-    """Write all traces of a report into a folder; return the paths without their endings."""
-    found = list(evidence_of(checked))
-    directory = make_folder(folder) if found else Path(folder)
+def write_evidence(checked: Checked, folder: Path) -> tuple[Path, ...]:
+    """Write every trace of a report into a folder of its own: `trace.txt`, `trace.json`, `trace.svg`.
+
+    Of those that end in a violation, or in what was to be reachable, each configuration is drawn too. Returns the
+    folders.
+    """
     written: list[Path] = []
-    for each in found:
-        path = _free(directory / each.stem, written)
-        write_text(f"{path}.txt", "\n".join(_lines(checked, each)) + "\n")
-        write_json(f"{path}.json", to_json(each.trace, checked.name, checked.digest))
-        draw_run(each.trace, f"{path}.svg", title=f"{checked.mission.name}: {each.about}")
-        written.append(path)
-    return written
+    for each in evidence_of(checked):
+        target = make_folder(str(_free(folder / each.stem, written)))
+        write_text(str(target / "trace.txt"), "\n".join(_lines(checked, each)) + "\n")
+        write_json(str(target / "trace.json"), to_json(each.trace, checked.name, checked.digest))
+        draw_run(each.trace, target, f"{checked.mission.name}, {each.stem}:", each_step=each.telling)
+        written.append(target)
+    return tuple(written)
 
 
 def _free(path: Path, taken: list[Path]) -> Path:

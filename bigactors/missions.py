@@ -47,7 +47,9 @@ def open_mission(word: str) -> ElaboratedMission:
 def as_mistake(error: MissionError) -> Mistake:
     """Return the diagnostics of a mission as a mistake."""
     details = tuple(diagnostic_json(each, error.source) for each in error.diagnostics)
-    return Mistake(error.diagnostics[0].message, place=error.source.name, rendered=str(error), details=details)
+    return Mistake(
+        error.diagnostics[0].message, place=error.source.name, rendered=str(error), details=details
+    )
 
 
 def diagnostic_json(diagnostic: Diagnostic, source: Source) -> dict[str, object]:

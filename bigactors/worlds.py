@@ -77,7 +77,9 @@ def _read(path: str, time: float | None, accounts: list[tuple[str, Counts]]) -> 
         return world_at(recording, time)
     except GeoJSONError as error:
         said = "\n".join(_said(problem) for problem in error.problems)
-        raise Mistake(error.message, place=path, rendered="\n".join(f"{path}: {line}" for line in said.split("\n"))) from error
+        raise Mistake(
+            error.message, place=path, rendered="\n".join(f"{path}: {line}" for line in said.split("\n"))
+        ) from error
     except PhysicalError as error:
         raise Mistake(error.message, error.hint, path) from error
 
@@ -123,7 +125,9 @@ def _placement(entity: PhysicalProperty, known: Mapping[str, PhysicalProperty]) 
     seen, by = {entity.entity}, entity.carried_by
     while by:
         if by not in known:
-            raise Mistake(f"{entity.entity} is carried by '{by:.60}', which is not there", "add it, or leave both out")
+            raise Mistake(
+                f"{entity.entity} is carried by '{by:.60}', which is not there", "add it, or leave both out"
+            )
         if by in seen:
             raise Mistake(f"{entity.entity} is carried by itself", "carrying goes one way")
         seen.add(by)

@@ -137,7 +137,7 @@ def moved(node: Node, places: Callable[[Place], Iterable[Place]], links: Callabl
     return replace(node, parents=parents, ports=tuple(map(links, node.ports)))
 
 
-def assemble(
+def assemble(  # noqa: PLR0913 - the parts of a bigraph, by keyword
     signature: Signature,
     nodes: Sequence[Node],
     *,

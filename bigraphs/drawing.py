@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from bigraphs.bigraph import Bigraph, Link
+from bigraphs.detours import Point
 from bigraphs.errors import BigraphError
 from bigraphs.labels import link_label, node_labels
 from bigraphs.layout import FONT, HEADER, PAD, SMALL, Box, Item, Layout, label_lines, layout
@@ -30,6 +31,7 @@ LINKS: Final = ("#2f8f5b", "#c2567a", "#5b6ee1", "#c47f1a", "#2a93a8", "#9a57c2"
 HIGHLIGHT: Final = "#e4572e"
 INK: Final = "#3b4252"
 MARGIN: Final = 10.0
+ENLARGED: Final = 1.25
 
 
 def draw_bigraph(
@@ -41,19 +43,19 @@ def draw_bigraph(
 ) -> Axes:
     """Draw into matplotlib axes, new ones if none are given, and return them.
 
-    Everything scales with the axes, so labels always fit. `highlight` holds node and link names. A *ghost*,
+    Everything scales with the axes as they are placed now, so labels always fit. `highlight` holds node and link names. A *ghost*,
     dashed, stands for a node in its further places.
     """
     plan = layout(bigraph)
     axes = axes if axes is not None else _new_axes(plan, title)
     axes.set_xlim(-MARGIN, plan.width + MARGIN)
-    axes.set_ylim(plan.height + MARGIN, -MARGIN)
+    axes.set_ylim(plan.height + MARGIN, -MARGIN - _head(title))
     axes.set_aspect("equal")
     axes.axis("off")
-    scale = _scale(axes, plan)
+    pen = _Pen(axes, bigraph, _scale(axes, plan, title), highlight)
+    pen.draw(plan)
     if title:
-        axes.set_title(title, fontsize=12 * min(1.0, scale), color=INK, fontweight="bold", loc="left")
-    _Pen(axes, bigraph, scale, highlight).draw(plan)
+        pen.text((0.0, -MARGIN - _head(title) / 2), title, FONT + 2, INK, "left", weight="bold")
     return axes
 
 
@@ -72,7 +74,7 @@ def save_bigraph(
     with mpl.rc_context({"svg.hashsalt": "bigraphs", "svg.fonttype": "path"}):
         axes = draw_bigraph(bigraph, highlight=highlight, title=title)
         figure = axes.figure
-        assert isinstance(figure, Figure)  # noqa: S101 - new axes have a figure of their own
+        assert isinstance(figure, Figure)  # new axes have a figure of their own
         stamp: dict[str, Any] = {"Date": None} if kind == "svg" else {"Software": None}
         figure.savefig(path, format=kind, dpi=160, metadata=stamp)
 
@@ -80,19 +82,22 @@ def save_bigraph(
 def _new_axes(plan: Layout, title: str | None) -> Axes:
     from matplotlib.figure import Figure  # noqa: PLC0415 - a picture is worth the wait, an import is not
 
-    width, height = plan.width + 2 * MARGIN, plan.height + 2 * MARGIN
-    room = 24.0 if title else 0.0
-    figure = Figure(figsize=(width * 1.25 / 72, (height + room) * 1.25 / 72), facecolor="white")
-    return figure.add_axes((0.0, 0.0, 1.0, height / (height + room)))
+    width, height = plan.width + 2 * MARGIN, plan.height + 2 * MARGIN + _head(title)
+    figure = Figure(figsize=(width * ENLARGED / 72, height * ENLARGED / 72), facecolor="white")
+    return figure.add_axes((0.0, 0.0, 1.0, 1.0))
 
 
-def _scale(axes: Axes, plan: Layout) -> float:
+def _head(title: str | None) -> float:
+    return 20.0 if title else 0.0
+
+
+def _scale(axes: Axes, plan: Layout, title: str | None) -> float:
     """Return how many points of paper a point of the layout takes."""
     figure = axes.get_figure(root=True)
     width, height = figure.get_size_inches() if figure is not None else (1.0, 1.0)
     frame = axes.get_position()
     across = frame.width * width * 72 / (plan.width + 2 * MARGIN)
-    return float(min(across, frame.height * height * 72 / (plan.height + 2 * MARGIN)))
+    return float(min(across, frame.height * height * 72 / (plan.height + 2 * MARGIN + _head(title))))
 
 
 class _Pen:
@@ -118,30 +123,30 @@ class _Pen:
         for name, box in plan.inner:
             self.pill(name, box, colours.get(inner[name], "#8a93a3"))
 
-    def box(self, item: Item, box: Box, depth: float, holding: bool) -> None:  # noqa: FBT001 - one of two looks
+    def box(self, item: Item, box: Box, depth: float, holding: bool) -> None:
         if item.kind == "region":
             self.rounded(
                 box, 10, depth, facecolor="#fbfcfe", edgecolor="#aab4c4", linestyle=(0, (4, 3)), linewidth=1.0
             )
             if self.bigraph.regions > 1:
                 self.text(
-                    box.x + PAD, box.y + HEADER / 2 + 1, f"region {item.number}", SMALL, "#8a93a3", "left"
+                    (box.x + PAD, box.y + HEADER / 2 + 1), f"region {item.number}", SMALL, "#8a93a3", "left"
                 )
         elif item.kind == "site":
             self.rounded(
                 box, 4, depth, facecolor="#eceff4", edgecolor="#9aa3b2", linestyle=(0, (2, 2)), linewidth=0.9
             )
-            self.text(*box.centre, f"${item.number}", FONT, INK, "center")
+            self.text(box.centre, f"${item.number}", FONT, INK, "center")
         elif item.kind == "ghost":
             _, border, ink = self.kinds[self.bigraph.nodes[item.number].control]
             self.rounded(
                 box, 6, depth, facecolor="none", edgecolor=border, linestyle=(0, (3, 2)), linewidth=1.0
             )
-            self.text(*box.centre, self.labels[item.number], FONT, ink, "center", style="italic", alpha=0.75)
+            self.text(box.centre, self.labels[item.number], FONT, ink, "center", style="italic", alpha=0.75)
         else:
             self.node(item.number, box, depth, holding)
 
-    def node(self, number: int, box: Box, depth: float, holding: bool) -> None:  # noqa: FBT001 - one of two looks
+    def node(self, number: int, box: Box, depth: float, holding: bool) -> None:
         fill, border, ink = self.kinds[self.bigraph.nodes[number].control]
         lit = self.labels[number] in self.highlight
         if lit:
@@ -152,23 +157,25 @@ class _Pen:
         name, kind = label_lines(self.bigraph, self.labels, number)
         x, side = (box.x + PAD, "left") if holding else (box.centre[0], "center")
         y = box.y + (HEADER / 2 + 3 if holding else box.height / 2 - (4.5 if kind else 0))
-        self.text(x, y, name, FONT, ink, side, weight="medium")
+        self.text((x, y), name, FONT, ink, side, weight="normal")
         if kind:
-            self.text(x, y + 11, kind, SMALL, border, side)
+            self.text((x, y + 11), kind, SMALL, border, side)
 
     def link(self, found: Route, colour: str) -> None:
         from matplotlib.patches import Circle, PathPatch  # noqa: PLC0415 - see save_bigraph
         from matplotlib.path import Path as Outline  # noqa: PLC0415 - see save_bigraph
 
         lit = link_label(found.link) in self.highlight
-        codes = [Outline.MOVETO, Outline.CURVE4, Outline.CURVE4, Outline.CURVE4]
         for curve in found.curves:
             for width, ink, level in (
                 (3.6, "white", 3.0),
                 (2.4 if lit else 1.5, HIGHLIGHT if lit else colour, 3.1),
             ):
-                outline = Outline(curve, codes)
-                style = {"linewidth": width * self.scale, "alpha": 0.75 if ink == "white" else 0.95}
+                outline = Outline(curve, [Outline.MOVETO, *[Outline.CURVE4] * (len(curve) - 1)])
+                style: dict[str, Any] = {
+                    "linewidth": width * self.scale,
+                    "alpha": 0.75 if ink == "white" else 0.95,
+                }
                 self.axes.add_patch(
                     PathPatch(
                         outline, facecolor="none", edgecolor=ink, capstyle="round", zorder=level, **style
@@ -191,9 +198,9 @@ class _Pen:
             edgecolor=HIGHLIGHT if lit else colour,
             linewidth=2.0 if lit else 1.2,
         )
-        self.text(*box.centre, name, SMALL + 1, colour, "center")
+        self.text(box.centre, name, SMALL + 1, colour, "center")
 
-    def rounded(self, box: Box, radius: float, level: float, *, linewidth: float, **style: Any) -> None:  # noqa: ANN401
+    def rounded(self, box: Box, radius: float, level: float, *, linewidth: float, **style: Any) -> None:
         from matplotlib.patches import FancyBboxPatch  # noqa: PLC0415 - see save_bigraph
 
         shape = f"round,pad=0,rounding_size={min(radius, box.height / 2)}"
@@ -204,13 +211,18 @@ class _Pen:
             )
         )
 
-    def text(self, x: float, y: float, words: str, size: float, colour: str, side: str, **style: Any) -> None:  # noqa: ANN401
+    def text(self, at: Point, words: str, size: float, colour: str, side: str, **style: Any) -> None:
         from matplotlib.patheffects import withStroke  # noqa: PLC0415 - see save_bigraph
 
         halo = withStroke(linewidth=2.2 * self.scale, foreground="white", alpha=0.75)
-        written = self.axes.text(
-            x, y, words, fontsize=size * self.scale, color=colour, ha=side, va="center", zorder=5, **style
-        )
+        look: dict[str, Any] = {
+            "fontsize": size * self.scale,
+            "color": colour,
+            "ha": side,
+            "va": "center",
+            "zorder": 5,
+        }
+        written = self.axes.text(at[0], at[1], words, **look, **style)
         written.set_path_effects([halo])
 
 

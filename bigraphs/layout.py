@@ -38,6 +38,7 @@ class Box:
 
     @property
     def centre(self) -> tuple[float, float]:
+        """Return the point in its middle."""
         return self.x + self.width / 2, self.y + self.height / 2
 
     def contains(self, other: Box, slack: float = 1e-6) -> bool:
@@ -93,9 +94,12 @@ def layout(bigraph: Bigraph) -> Layout:
     labels = node_labels(bigraph)
     sizes: dict[Item, Size] = {}
     rows: dict[Item, Rows] = {}
+    headers: dict[Item, float] = {}
     for item in _bottom_up(tree, bigraph.regions):
         rows[item], (width, height) = _packed([(child, sizes[child]) for child in tree[item]])
-        sizes[item] = _with_frame(item, (width, height), label_size(bigraph, labels, item))
+        label = label_size(bigraph, labels, item)
+        headers[item] = _header(item, label)
+        sizes[item] = _with_frame(item, (width, height), label)
     tops = [(Item("region", region), sizes[Item("region", region)]) for region in range(bigraph.regions)]
     tiers, (width, height) = _packed(tops)
     outer_rows = _pill_rows(bigraph.outer_names, max(width, 120.0))
@@ -105,7 +109,7 @@ def layout(bigraph: Bigraph) -> Layout:
     boxes: dict[Item, Box] = {}
     _stretch(tiers, Box(0.0, above, width, height), sizes, boxes)
     for item in _top_down(tree, bigraph.regions):
-        _stretch(rows[item], _inside(item, boxes[item]), sizes, boxes)
+        _stretch(rows[item], _inside(boxes[item], headers[item]), sizes, boxes)
     centres = _link_centres(
         bigraph, {item.number: box for item, box in boxes.items() if item.kind == "node"}, width
     )
@@ -233,7 +237,7 @@ def _with_frame(item: Item, content: Size, label: Size) -> Size:
         least = (90.0, 60.0) if item.kind == "region" else (0.0, 0.0)
         return max(label[0] + 2 * PAD, least[0]), max(label[1], least[1])
     header = _header(item, label)
-    return max(content[0], label[0] + _control_room(item)) + 2 * PAD, content[1] + header + PAD
+    return max(content[0], label[0]) + 2 * PAD, content[1] + header + PAD
 
 
 def _header(item: Item, label: Size) -> float:
@@ -242,29 +246,25 @@ def _header(item: Item, label: Size) -> float:
     return HEADER + PAD + (label[1] > LEAF_HEIGHT - 8) * 7.0
 
 
-def _control_room(item: Item) -> float:
-    return 4.0 if item.kind == "node" else 0.0
-
-
-def _inside(item: Item, box: Box) -> Box:
-    return Box(box.x + PAD, box.y, box.width - 2 * PAD, box.height - PAD)
+def _inside(box: Box, header: float) -> Box:
+    return Box(box.x + PAD, box.y + header, box.width - 2 * PAD, box.height - PAD - header)
 
 
 def _stretch(rows: Rows, room: Box, sizes: Mapping[Item, Size], boxes: dict[Item, Box]) -> None:
-    """Place rows at the bottom of a room, and share out what is to spare among the boxes that hold something."""
+    """Place rows in a room and share out what is to spare: boxes that hold something grow, others are centred."""
     if not rows:
         return
     heights = [max(sizes[item][1] for item in row) for row in rows]
-    natural = sum(heights) + GAP * (len(rows) - 1)
-    y = room.y + room.height - natural
+    more = (room.height - sum(heights) - GAP * (len(rows) - 1)) / len(rows)
+    y = room.y
     for row, height in zip(rows, heights, strict=True):
         spare = room.width - sum(sizes[item][0] for item in row) - GAP * (len(row) - 1)
         x = room.x
         for item in row:
-            slot = Box(x, y, sizes[item][0] + spare / len(row), height)
+            slot = Box(x, y, sizes[item][0] + spare / len(row), height + more)
             boxes[item] = _fitted(item, slot, sizes[item])
             x += slot.width + GAP
-        y += height + GAP
+        y += height + more + GAP
 
 
 def _fitted(item: Item, slot: Box, size: Size) -> Box:
@@ -313,7 +313,7 @@ def _pill_rows(names: Sequence[str], width: float) -> _Pills:
     if not names:
         return _Pills((), 0)
     widths = [pill_width(name) + 8 for name in names]
-    return _Pills(tuple(names), max(1, min(len(names), ceil(1.2 * sum(widths) / max(width, max(widths))))))
+    return _Pills(tuple(names), max(1, min(len(names), ceil(1.2 * sum(widths) / max(width, *widths)))))
 
 
 def _spread(widths: Sequence[float], wanted: Sequence[float], room: float) -> list[float]:

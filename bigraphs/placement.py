@@ -1,4 +1,4 @@
-"""The second half of matching: where the regions of a redex lie, and what its sites hold, once its nodes have images."""
+"""The second half of matching: where the regions of a redex lie, and what its sites hold, once its nodes are placed."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def _free(
 
 
 def _covers(parents: Iterable[Place], places: Sequence[Places], matched: Places) -> list[tuple[int, ...]]:
-    """Return each set of sites that a node can be in: within its parents, all matched ones covered, none superfluous."""
+    """Return each set of sites that a node can be in: within its parents, all matched ones covered, none to spare."""
     around = frozenset(parents)
     usable = [site for site, found in enumerate(places) if found <= around]
     return [

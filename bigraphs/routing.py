@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
-from typing import Final, TypeAlias
+from typing import Final
 
 from bigraphs.bigraph import Bigraph, Link, points
+from bigraphs.detours import Curve, Obstacles, Point
 from bigraphs.layout import Box, Layout
-
-Point: TypeAlias = tuple[float, float]
-Curve: TypeAlias = tuple[Point, Point, Point, Point]
 
 NORMALS: Final[Mapping[str, Point]] = {"top": (0, -1), "bottom": (0, 1), "left": (-1, 0), "right": (1, 0)}
 
 
 @dataclass(frozen=True, slots=True)
 class Route:
-    """One link: its curves (cubic Béziers), the ports they start from, and its dot if it has one."""
+    """One link: its curves (cubic Béziers in a row), the ports they start from, and its dot if it has one."""
 
     link: Link
     curves: tuple[Curve, ...]
@@ -42,12 +40,16 @@ def route(bigraph: Bigraph, layout: Layout) -> tuple[Route, ...]:
     goals = _goals(bigraph, layout, boxes)
     ends = _ends(bigraph, boxes, goals)
     places = _spaced(ends, boxes)
+    obstacles = Obstacles(layout)
     found = []
-    for link, on in points(bigraph).items():
+    for lane, (link, on) in enumerate(points(bigraph).items()):
         mine = [(end, place) for end, place in zip(ends, places, strict=True) if end.link == link]
         names = [box for name, box in layout.inner if dict(bigraph.inner_links)[name] == link]
         if on or names:
-            found.append(_route(link, mine, goals[link], [_above(box) for box in names]))
+            straight = _route(link, mine, goals[link], [_above(box) for box in names])
+            found.append(
+                replace(straight, curves=tuple(obstacles.avoid(curve, lane) for curve in straight.curves))
+            )
     return tuple(found)
 
 

@@ -17,8 +17,8 @@ class ReactionRule:
 
     Site `i` of the reactum is filled with what site `instantiation[i]` of the redex held. A named redex node
     matches its namesake only, unless its name is among `node_variables`: then it matches any node, and the
-    same name in the reactum is that node. An outer name of the redex stands for any link, unless it is among
-    `link_constants`.
+    same name in the reactum is that node. An anonymous one matches any node, and what it matched is replaced,
+    name and all. An outer name of the redex stands for any link, unless it is among `link_constants`.
     """
 
     redex: Bigraph
@@ -49,7 +49,7 @@ class ReactionRule:
                 raise BigraphError("rule", f"the redex has no site {site}")
 
 
-def rule(
+def rule(  # noqa: PLR0913 - what is optional is by keyword
     redex: Bigraph,
     reactum: Bigraph,
     instantiation: tuple[int, ...] | None = None,
@@ -61,7 +61,10 @@ def rule(
     """Return a rule; names that the reactum lacks are idle in it, and sites stay in order unless told otherwise."""
     for missing in sorted(set(redex.outer_names) - set(reactum.outer_names)):
         reactum = parallel(reactum, substitution(missing, ()))
-    order = tuple(range(len(reactum.sites))) if instantiation is None else instantiation
+    if instantiation is None and len(redex.sites) != len(reactum.sites):
+        message = f"the redex has {len(redex.sites)} sites, the reactum {len(reactum.sites)}"
+        raise BigraphError("rule", message, "say what the reactum's sites hold with an instantiation map")
+    order = tuple(range(len(redex.sites))) if instantiation is None else instantiation
     return ReactionRule(redex, reactum, order, name, node_variables, link_constants)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from typing import Literal, TypeAlias
 
 from bigraphs.errors import BigraphError
@@ -42,7 +43,7 @@ class Signature:
 
     def __post_init__(self) -> None:
         ordered = tuple(sorted(self.controls, key=lambda control: control.name))
-        for one, other in zip(ordered, ordered[1:], strict=False):
+        for one, other in pairwise(ordered):
             if one.name == other.name:
                 raise BigraphError("control", f"control '{one.name}' is declared twice")
         object.__setattr__(self, "controls", ordered)

@@ -41,6 +41,8 @@ def _check_distinct(what: str, names: Iterable[str]) -> None:
     for name, times in sorted(Counter(names).items()):
         if not name:
             raise BigraphError("name", f"an empty {what}", "leave the name out, or give it letters")
+        if not name.isprintable():
+            raise BigraphError("name", f"{what} {name!r} has a character that cannot be shown")
         if times > 1:
             raise BigraphError(
                 "name", f"{what} '{name}' is there {times} times", "a name identifies one of them"

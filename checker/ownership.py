@@ -4,11 +4,24 @@ No agent may write a slot that another's redex, missing site or tested observati
 """
 
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 
 from semantics.configuration import Configuration
-from semantics.expressions import Apply, Either, Expression, Host, Literal, QueryOf, SetOf, TupleOf, Variable
+from semantics.expressions import (
+    Apply,
+    Either,
+    Expression,
+    Fault,
+    Host,
+    Literal,
+    QueryOf,
+    SetOf,
+    TupleOf,
+    Variable,
+)
 from semantics.reactions import Pattern, Reaction, Term
 from semantics.setting import Scheduler
 from semantics.signature import Name
@@ -133,10 +146,17 @@ class _Text:
 
     @cached_property
     def reactions(self) -> tuple[Reaction, ...]:
-        """The reactions that the agent may request."""
+        """The reactions that the agent may request, for every name that an argument may come to."""
         controls = [statement for statement in self.statements if isinstance(statement, ControlBy)]
-        make = self.program.reactions
-        return tuple(make[each.name](self.host, *map(self.name, each.arguments)) for each in controls)
+        return tuple(reaction for each in controls for reaction in self._instances(each))
+
+    def _instances(self, statement: ControlBy) -> Iterator[Reaction]:
+        make = self.program.reactions[statement.name]
+        everyone = sorted(self.c.setting.kinds)
+        names = [self.host, *map(self.name, statement.arguments)]
+        for chosen in product(*(everyone if name == ANY else [name] for name in names)):
+            with suppress(Fault):  # not every name is one that the command takes
+                yield make(*chosen)
 
     def writes(self, reaction: Reaction) -> frozenset[Slot]:
         """Return the slots that a reaction may change; what may contain something takes everything along."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -18,6 +18,14 @@ RINGS: Final = (3.0, 8.0, 15.0, 24.0, 36.0, 50.0, 68.0, 90.0, 120.0, 160.0)
 
 DIRECTIONS: Final = (0, 180, 90, 270, 45, 315, 135, 225, 22, 338, 158, 202, 68, 292, 112, 248)
 """Degrees counter-clockwise from the right, those that read best first."""
+
+BESIDE: Final = 9.0
+"""Points from the clearance to a label that needs no line to what it names."""
+
+CELL: Final = 24.0
+"""Points that a cell is wide, in which spots along lines are looked up."""
+
+_Cells = dict[tuple[int, int], list[Spot]]
 
 FORBIDDEN: Final = 1e3
 ON_A_LINE: Final = 1.5
@@ -103,18 +111,52 @@ def place_labels(
     Labels are placed in the order given, each where it costs least. `lines` are spots that are better not
     written over. Where there is no room, labels overlap as little as can be.
     """
-    taken = list(obstacles)
+    taken, cells = list(obstacles), _cells(lines)
     for label in wanted:
-        taken.append(_cheapest(label, taken, lines, view))
+        taken.append(_cheapest(label, taken, cells, view))
+        _add(cells, leader(taken[-1], label))
     return tuple(taken[len(obstacles) :])
 
 
-def _cheapest(label: Wanted, taken: Sequence[Box], lines: Sequence[Spot], view: Box) -> Box:
+def leader(box: Box, label: Wanted) -> tuple[Spot, ...]:
+    """Return spots along the way from a label to what it names, none where it stands beside it or in it."""
+    if any(math.dist(box.centre, spot) < 0.01 for spot in label.inside):
+        return ()
+    (x1, y1), (x2, y2) = box.nearest(label.at), label.at
+    length = math.dist((x1, y1), label.at)
+    if length <= label.clearance + BESIDE:
+        return ()
+    parts = round(length / 4.0)
+    return tuple((x1 + (x2 - x1) * n / parts, y1 + (y2 - y1) * n / parts) for n in range(1, parts))
+
+
+def _add(cells: _Cells, spots: Iterable[Spot]) -> None:
+    for spot in spots:
+        cells.setdefault((int(spot[0] // CELL), int(spot[1] // CELL)), []).append(spot)
+
+
+def _cells(spots: Iterable[Spot]) -> _Cells:
+    """Return spots by the cell that they lie in, so that a box finds those inside it."""
+    cells: _Cells = {}
+    _add(cells, spots)
+    return cells
+
+
+def _within(box: Box, cells: _Cells) -> int:
+    """Count the spots inside a box."""
+    xs = range(int(box.left // CELL), int(box.right // CELL) + 1)
+    ys = range(int(box.bottom // CELL), int(box.top // CELL) + 1)
+    return sum(box.holds(spot) for x in xs for y in ys for spot in cells.get((x, y), ()))
+
+
+def _cheapest(label: Wanted, taken: Sequence[Box], cells: _Cells, view: Box) -> Box:
     best, least = around(label.at, label.size), math.inf
     for price, box in _candidates(label):
         if price >= least:
             break  # candidates come cheapest first
-        cost = price + _cost(box, taken, lines, view)
+        way = leader(box, label)
+        crossed = sum(other.holds(spot) for spot in way for other in taken)
+        cost = price + _cost(box, taken, cells, view) + ON_A_LINE * crossed
         if cost < least:
             best, least = box, cost
     return best
@@ -145,9 +187,8 @@ def _sign(value: float) -> int:
     return 0 if abs(value) < 1e-9 else (1 if value > 0 else -1)
 
 
-def _cost(box: Box, taken: Sequence[Box], lines: Sequence[Spot], view: Box) -> float:
+def _cost(box: Box, taken: Sequence[Box], cells: _Cells, view: Box) -> float:
     wide = box.grown(GAP)
     over = sum(wide.shared(other) for other in taken)
     outside = wide.width * wide.height - wide.shared(view)
-    crossed = sum(box.holds(spot) for spot in lines)
-    return FORBIDDEN * (over + outside) + ON_A_LINE * crossed
+    return FORBIDDEN * (over + outside) + ON_A_LINE * _within(box, cells)

@@ -24,7 +24,6 @@ SPACING: Final = 6.0
 """Points between spots along a line."""
 
 
-
 @dataclass(frozen=True, slots=True)
 class Line:
     """One line of a label; the icon, an outline with its colour, stands before the text and may glow or be marked."""
@@ -82,7 +81,7 @@ def _draw_line_icon(axes: Axes, line: Line, at: Spot) -> None:
         draw_mark(axes, at, 4.6)
 
 
-def draw_icon(
+def draw_icon(  # noqa: PLR0913 - the optional ones are how it looks
     axes: Axes, at: Spot, shape: Outline, colour: str, *, radius: float = RADIUS, hollow: bool = False
 ) -> None:
     """Draw a marker; a hollow one for what is on its way."""
@@ -116,9 +115,7 @@ def draw_polygon_halo(axes: Axes, outline: Sequence[Spot]) -> None:
     """Draw a glow along a polygon's border: it is highlighted."""
     from matplotlib.patches import Polygon  # noqa: PLC0415 - the same
 
-    axes.add_patch(
-        Polygon(outline, facecolor="none", edgecolor=HALO, alpha=0.35, linewidth=6.0, zorder=2.5)
-    )
+    axes.add_patch(Polygon(outline, facecolor="none", edgecolor=HALO, alpha=0.35, linewidth=6.0, zorder=2.5))
 
 
 def draw_polygon_mark(axes: Axes, outline: Sequence[Spot]) -> None:
@@ -167,9 +164,7 @@ def draw_curve(axes: Axes, curve: tuple[Spot, Spot, Spot], colour: str) -> None:
     from matplotlib.path import Path  # noqa: PLC0415 - the same
 
     path = Path(curve, [Path.MOVETO, Path.CURVE3, Path.CURVE3])
-    axes.add_patch(
-        PathPatch(path, facecolor="none", edgecolor=colour, linewidth=1.1, alpha=0.75, zorder=4.5)
-    )
+    axes.add_patch(PathPatch(path, facecolor="none", edgecolor=colour, linewidth=1.0, alpha=0.7, zorder=4.5))
 
 
 def draw_flight(axes: Axes, curve: tuple[Spot, Spot, Spot], colour: str) -> None:
@@ -179,9 +174,7 @@ def draw_flight(axes: Axes, curve: tuple[Spot, Spot, Spot], colour: str) -> None
 
     path = Path(curve, [Path.MOVETO, Path.CURVE3, Path.CURVE3])
     axes.add_patch(
-        PathPatch(
-            path, facecolor="none", edgecolor=colour, linewidth=1.4, linestyle=(0, (5, 3)), zorder=4.6
-        )
+        PathPatch(path, facecolor="none", edgecolor=colour, linewidth=1.4, linestyle=(0, (5, 3)), zorder=4.6)
     )
     axes.add_patch(Polygon(_head(curve[1], curve[2]), facecolor=colour, linewidth=0, zorder=4.7))
 

@@ -14,13 +14,24 @@ from semantics.structure import Structure
 
 
 class Configuration:
-    """⟨α | S | η⟩ as views over cells, within a setting."""
+    """⟨α | S | η⟩ as views over cells, within a setting.
 
-    __slots__ = ("setting", "state")
+    Attributes:
+        alpha: The agents.
+        structure: The structure S = (L, P, β, γ).
+        eta: The pending requests.
+        setting: What stays the same in the mission.
+        state: The cells.
+    """
+
+    __slots__ = ("alpha", "eta", "setting", "state", "structure")
 
     def __init__(self, setting: Setting, state: State) -> None:
         self.setting = setting
         self.state = state
+        self.alpha = Agents(state)
+        self.structure = Structure(state, setting)
+        self.eta = Eta(state, setting)
 
     @staticmethod
     def of(setting: Setting, contents: Mapping[Cell, Any]) -> "Configuration":
@@ -34,21 +45,6 @@ class Configuration:
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
         """Ask one question of a cell."""
         return self.state.test(cell, question, *constants)
-
-    @property
-    def alpha(self) -> Agents:
-        """The agents."""
-        return Agents(self.state)
-
-    @property
-    def structure(self) -> Structure:
-        """The structure S = (L, P, β, γ)."""
-        return Structure(self.state, self.setting)
-
-    @property
-    def eta(self) -> Eta:
-        """The pending requests."""
-        return Eta(self.state, self.setting)
 
     def with_(self, *changes: Changes) -> "Configuration":
         """Return the configuration with these cells written; later changes win."""

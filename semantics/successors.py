@@ -2,19 +2,24 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 
 from semantics.configuration import Configuration, Transition
 from semantics.expressions import Fault
-from semantics.extension import EXTENSION, say
+from semantics.extension import EXTENSION, migrate, say, snd
 from semantics.monitor import marked
-from semantics.rules import RULES, TIMED_RULES, Rule, env
+from semantics.rules import RULES, TIMED_RULES, Rule, actuate, command, commit, env, rcv_obs, sense
 from semantics.setting import Control, Scheduler
 from semantics.signature import Name
+
+SERVING: frozenset[Rule] = frozenset({sense, rcv_obs, actuate, command, commit, snd, migrate})
+"""The rules that have a pending request of the agent among their premises."""
 
 TURNLESS = frozenset({"commit"})
 """What is served under `fcfs` without waiting for a turn."""
 
 
+@cache
 def rules_of(control: Control) -> tuple[Rule, ...]:
     """Return the rules of an agent under a kind of control."""
     return RULES + (TIMED_RULES if control is Control.TIMED else ()) + EXTENSION
@@ -26,9 +31,11 @@ def steps(c: Configuration, a: Name) -> Iterator[Transition]:
     Raises:
         Fault: The agent's computation fails or diverges.
     """
+    idle = not c.eta.of(a)
     try:
         for rule in rules_of(c.setting.control):
-            yield from rule(c, a)
+            if not (idle and rule in SERVING):
+                yield from rule(c, a)
     except Fault as fault:
         fault.agent = a
         raise

@@ -14,7 +14,7 @@ from typing import Any, Final, TypeAlias, TypeVar
 from lark import Token
 
 from bigraphs.errors import NotationError
-from bigraphs.notation.paper import RuleTerm, parse_rule
+from bigraphs.notation.paper import parse_rule
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
 from specs.syntax import Name, Node, RuleBody, Span, TextLiteral
@@ -143,18 +143,14 @@ def once(clauses: Children, owner: Token) -> dict[str, Part]:
 
 
 def rule_body(token: Token) -> RuleBody:
-    """Return a rule's body; its `term` is None where it has a mistake, which `rule_mistake` tells."""
+    """Return a rule's body, what it says not yet looked at; raises Mistake for one over ten kilobytes."""
     span = span_of(token)
     raw = str(token)[1:-1]
     if len(token) > MAX_WORD:
         raise Mistake(
             Diagnostic(Code.WORD_TOO_LONG, span, f"a rule of {len(token):,} characters", "split it")
         )
-    try:
-        term: RuleTerm | None = parse_rule(raw)
-    except NotationError:
-        term = None
-    return RuleBody(" ".join(raw.split()), term, raw, span.start + 1, span=span)
+    return RuleBody(" ".join(raw.split()), raw, span.start + 1, span=span)
 
 
 def rule_mistake(body: RuleBody) -> Diagnostic | None:

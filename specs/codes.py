@@ -415,8 +415,8 @@ class Code(Enum):
     FORMULA_TOO_LARGE = (
         "LS607",
         "formula too large",
-        """Quantifiers are written out over all entities of their kind, and `<->` doubles its sides: a property
-        may come to fifty thousand atoms.""",
+        """Quantifiers are written out over all entities of their kind, and `<->` doubles its sides: the properties
+        of a mission may come to fifty thousand atoms.""",
     )
     NOT_QUANTIFIED = (
         "LS608",

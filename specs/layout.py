@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Final
@@ -70,7 +71,7 @@ class Layout:
 
     def commented(self, span: s.Span) -> bool:
         """Whether there is a comment within a span."""
-        return any(span.start <= offset < span.end for offset in self.comments)
+        return bisect_left(self.comments, span.start) < bisect_left(self.comments, span.end)
 
     def closing(self, after: int) -> int:
         """Return the offset of the brace that closes the block whose last statement ends at `after`."""

@@ -63,9 +63,9 @@ def decode(name: str, data: bytes) -> Source:
     if len(data) > MAX_BYTES:
         raise MissionError(Source(name, ""), [_too_large(len(data))])
     try:
-        text = data.decode("utf-8-sig")
+        text = data.decode("utf-8").removeprefix("\ufeff")
     except UnicodeDecodeError as error:
-        before = _line_ends(data[: error.start].decode("utf-8-sig", "replace"))
+        before = _line_ends(data[: error.start].decode("utf-8").removeprefix("\ufeff"))
         source = Source(name, before + "\N{REPLACEMENT CHARACTER}")
         message = f"byte {error.start} of the file is not UTF-8 (0x{data[error.start]:02x})"
         span = Span(len(before), len(before) + 1)
@@ -193,7 +193,7 @@ def _without_line_numbers(text: str) -> str:
     That is, where a line begins with a number and `BigActor`, its number and those of the following lines as far
     as they count on and the block is open.
     """
-    return _blank(text, list(_line_numbers(text))) if _NUMBERED_ACTOR.search(text) else text
+    return _blank(text, list(_line_numbers(text))) if "BigActor" in text else text
 
 
 def _line_numbers(text: str) -> Iterator[Span]:

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from bigactors.checking import Checked, Failed, check_missions, results_json
-from bigactors.evidence import write_evidence
 from bigactors.exits import Exit, worst
 from bigactors.files import file_stem, json_text, make_folder, write_json
 from bigactors.terminal import paint, say, say_text, tell
@@ -59,7 +58,11 @@ def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
         return
     report = result.report
     yield from report_text(result.name, report, traces=traces)
-    silent = [rule.__name__ for rule in rules_of(result.mission.setting.control) if rule.__name__ not in report.rules]
+    silent = [
+        rule.__name__
+        for rule in rules_of(result.mission.setting.control)
+        if rule.__name__ not in report.rules
+    ]
     if silent:
         yield f"  rules never used: {', '.join(silent)}"
 
@@ -71,7 +74,9 @@ def summary(results: list[Checked | Failed]) -> Iterator[str]:
     for result in results:
         sign, word = WORDS[result.exit]
         if isinstance(result, Checked):
-            counts = f"{result.report.configurations:,} configurations, {result.report.transitions:,} transitions"
+            counts = (
+                f"{result.report.configurations:,} configurations, {result.report.transitions:,} transitions"
+            )
         else:
             counts = result.message.splitlines()[0][:100]
         yield f"  {sign} {result.name:<{width}}  {word:<10}  {counts}"
@@ -92,12 +97,12 @@ def coloured(line: str) -> str:
 
 def keep_evidence(checked: Checked, folder: str, taken: set[str]) -> None:
     """Write the traces of a mission into a folder of its own, and say so."""
+    from bigactors.evidence import write_evidence  # noqa: PLC0415 - only who keeps traces waits for pictures
+
     stem = name = file_stem(Path(checked.name).stem)
     number = 2
     while name in taken:
         name, number = f"{stem}-{number}", number + 1
     taken.add(name)
-    target = str(Path(folder) / name)
-    written = write_evidence(checked, target)
-    if written:
-        tell(f"{len(written)} traces written to {target}, each as .txt, .json and .svg")
+    for written in write_evidence(checked, Path(folder) / name):
+        tell(f"  trace: {written}/trace.txt, .json and .svg")

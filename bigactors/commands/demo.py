@@ -24,10 +24,11 @@ def _show(name: str, out: str) -> Exit:
     for line in report_lines(result, traces=True):
         say(coloured(line))
     if isinstance(result, Checked):
-        picture = make_folder(out) / f"{name}.svg"
-        draw(result.mission.initial, str(picture), title=name)
-        written = [picture, *(f"{path}.svg" for path in write_evidence(result, str(picture.with_suffix(""))))]
-        for path in written:
-            say(f"  drawn: {path}")
+        folder = make_folder(out) / name
+        picture = f"{folder}.svg"
+        draw(result.mission.initial, picture, title=name)
+        say(f"  picture: {picture}")
+        for written in write_evidence(result, folder):
+            say(f"  trace: {written}/trace.txt, .json and .svg")
     say()
     return result.exit

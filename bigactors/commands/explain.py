@@ -17,7 +17,11 @@ def run(options: Namespace) -> Exit:
         return Exit.HOLDS
     found = find_code(options.code)
     if found is None:
-        near = suggestion(options.code, [code.number.lower() for code in Code]).upper().replace("DID YOU MEAN", "did you mean")
+        near = (
+            suggestion(options.code, [code.number.lower() for code in Code])
+            .upper()
+            .replace("DID YOU MEAN", "did you mean")
+        )
         raise Mistake(f"there is no code '{options.code:.40}'", near or "bigactors explain lists them all")
     say_text(explain(found))
     return Exit.HOLDS

@@ -25,7 +25,8 @@ def run(options: Namespace) -> Exit:
         say(f"c{step - 1} --{trace.steps[step - 1].label}--> c{step}")
     say(f"c{step} = {print_configuration(configuration)}")
     output = options.output or f"{file_stem(name)}{f'-c{step}' if step else ''}.svg"
-    draw(configuration, output, title=f"{name}, c{step}")
+    before = trace.configurations[step - 1] if step else None
+    draw(configuration, output, f"{name}, c{step}", before)
     tell(f"picture written to {output}")
     return Exit.HOLDS
 
@@ -43,6 +44,8 @@ def _chosen(options: Namespace) -> tuple[str, Trace, int]:
     step = len(trace) if options.step is None else options.step
     if step > len(trace):
         raise Mistake(
-            f"there is no c{step}: the trace ends with c{len(trace)}", f"give --step 0 to {len(trace)}", options.trace
+            f"there is no c{step}: the trace ends with c{len(trace)}",
+            f"give --step 0 to {len(trace)}",
+            options.trace,
         )
     return mission.name, trace, step

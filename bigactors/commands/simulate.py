@@ -47,7 +47,7 @@ class Simulation:
 
 def simulate(initial: Configuration, seed: int, steps: int) -> Simulation:
     """Take one run of at most so many steps, each transition as likely as any other."""
-    chance = random.Random(seed)  # noqa: S311 - a simulation, no secret
+    chance = random.Random(seed)  # a simulation, no secret
     taken: list[Step] = []
     shown: list[tuple[str, ...]] = []
     at = initial

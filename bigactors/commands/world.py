@@ -7,8 +7,7 @@ from bigactors.drawings import draw
 from bigactors.exits import Exit
 from bigactors.terminal import say, tell
 from bigactors.worlds import census, configuration_of, read_world
-from semantics.printing import print_place
-from semantics.signature import REGION
+from bigraphs.text import draw_text
 
 
 def run(options: Namespace) -> Exit:
@@ -16,15 +15,15 @@ def run(options: Namespace) -> Exit:
     kinds = [kind.strip() for kind in (options.kinds or "").split(",") if kind.strip()]
     world = read_world(options.files, options.at, options.within, kinds)
     configuration = configuration_of(world)
-    say(REGION)
-    for line in print_place(configuration, REGION, 1):
-        say(line)
+    say(draw_text(configuration.structure.logical.bigraph()))
     say(census(world))
     for path, counts in world.accounts:
         for row in counts.rows():
             say(f"{path}: {row}")
     for conflict in world.conflicts:
-        tell(f"warning: {conflict}; what is in both is put into the smaller one, and a mission would refuse them")
+        tell(
+            f"warning: {conflict}; what is in both is put into the smaller one, and a mission would refuse them"
+        )
     if options.output:
         draw(configuration, options.output, title=", ".join(Path(path).name for path in options.files))
         tell(f"picture written to {options.output}")

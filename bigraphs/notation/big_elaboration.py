@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from bigraphs import algebra
@@ -34,7 +34,7 @@ from bigraphs.notation.big_syntax import (
 from bigraphs.rules import ReactionRule, rule
 from bigraphs.signature import Control, Signature, Status
 
-MAX_SIZE: Final = 50_000
+MAX_SIZE: Final = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ def read_theory(text: str) -> Theory:
     for declaration in model.declarations:
         if isinstance(declaration, BigDeclaration):
             reader.refuse_again(declaration.name, declaration.offset)
-            reader.known[declaration.name] = reader.value(declaration.body)
+            reader.known[declaration.name] = reader.whole(declaration.body)
     reacts = [declaration for declaration in model.declarations if isinstance(declaration, ReactDeclaration)]
     rules = tuple(reader.rule(declaration) for declaration in reacts)
     theory = Theory(signature, tuple(reader.known.items()), rules, model.system)
@@ -65,7 +65,7 @@ def read_theory(text: str) -> Theory:
 
 def read_big(text: str, signature: Signature, known: Mapping[str, Bigraph] | None = None) -> Bigraph:
     """Read one expression over a signature; `known` gives the bigraphs that it may name."""
-    return _Elaboration(signature, text, dict(known or {})).value(parse_expression(text))
+    return _Elaboration(signature, text, dict(known or {})).whole(parse_expression(text))
 
 
 def _signature(model: Model, text: str) -> Signature:
@@ -96,10 +96,14 @@ def _check_named(
     name: str, offset: int, known: Mapping[str, object] | set[str], what: str, text: str
 ) -> None:
     if name not in known:
-        raise _error("name", f"unknown {what} '{name}'", text, offset, name, "declare it above the system")
+        raise _error(
+            "name", f"unknown {what} '{name}'", text, offset, name, hint="declare it above the system"
+        )
 
 
-def _error(code: str, message: str, text: str, offset: int, word: str = "", hint: str = "") -> NotationError:
+def _error(  # noqa: PLR0913 - an error is all of this
+    code: str, message: str, text: str, offset: int, word: str = "", *, hint: str = ""
+) -> NotationError:
     return NotationError(code, message, text, offset, length=len(word), hint=hint)
 
 
@@ -116,11 +120,15 @@ class _Elaboration:
             raise _error("name", f"bigraph '{name}' is declared twice", self.text, offset, name)
 
     def rule(self, declaration: ReactDeclaration) -> ReactionRule:
-        redex, reactum = self.value(declaration.redex), self.value(declaration.reactum)
+        redex, reactum = self.whole(declaration.redex), self.whole(declaration.reactum)
         try:
             return rule(redex, reactum, declaration.instantiation, name=declaration.name)
         except BigraphError as error:
             raise self.at(error, declaration.offset) from None
+
+    def whole(self, expression: Expression) -> Bigraph:
+        """Return the bigraph of an expression, over all controls and not only those that it uses."""
+        return replace(self.value(expression), signature=self.signature)
 
     def value(self, expression: Expression) -> Bigraph:
         """Return the bigraph of an expression."""
@@ -159,7 +167,7 @@ class _Elaboration:
     def referred(self, ref: Ref) -> Bigraph:
         if ref.name not in self.known:
             hint = "declare it above, with 'big'"
-            raise _error("name", f"unknown bigraph '{ref.name}'", self.text, ref.offset, ref.name, hint)
+            raise _error("name", f"unknown bigraph '{ref.name}'", self.text, ref.offset, ref.name, hint=hint)
         return self.known[ref.name]
 
     def chain(self, chain: Chain) -> Bigraph:

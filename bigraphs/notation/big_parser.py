@@ -47,15 +47,32 @@ classes: class ("," class)*
 class: "{" names "}" -> ordinary | "(" names ")" -> instantaneous
 predicates: "preds" "=" "{" names "}" ";"
 
-?expression: sums (PRODUCT sums)* -> chain ?sums: compositions (PLUS compositions)* -> chain ?compositions:
-operand (TIMES operand)* -> chain ?operand: simple | wire+ wired_body -> wired | share !share: "share" simple
-"by" simple "in" simple ?wired_body: "(" expression ")" | ion | nest | ref ?simple: "(" expression ")" | ion |
-nest | ref | wire | identity | merge | split | placing | new_names | INT -> number ion: CONTROL ["{" names
-"}"] nest: ion "." simple ref: NAME ?wire: close | close_joined | NAME "/" "{" names "}" -> substitute !close:
-"/" NAME !close_joined: "/" "{" names "}" !new_names: "{" names "}" !merge: "merge" ["(" INT ")"] !split:
-"split" ["(" INT ")"] !placing: "(" "[" [sets] "]" "," INT ")" sets: set ("," set)* !identity: "id" ["(" INT
-")"] | "id" inner_names -> identity_of_names | "id" "(" INT "," inner_names ")" -> identity_of_both
-inner_names: "{" names "}" set: "{" numbers "}" names: NAME ("," NAME)* numbers: [INT ("," INT)*]
+?expression: sums (PRODUCT sums)* -> chain
+?sums: compositions (PLUS compositions)* -> chain
+?compositions: operand (TIMES operand)* -> chain
+?operand: simple | wire+ wired_body -> wired | share
+!share: "share" simple "by" simple "in" simple
+?wired_body: "(" expression ")" | ion | nest | ref
+?simple: "(" expression ")" | ion | nest | ref | wire | identity | merge | split | placing | new_names
+    | INT -> number
+ion: CONTROL ["{" names "}"]
+nest: ion "." simple
+ref: NAME
+?wire: close | close_joined | NAME "/" "{" names "}" -> substitute
+!close: "/" NAME
+!close_joined: "/" "{" names "}"
+!new_names: "{" names "}"
+!merge: "merge" ["(" INT ")"]
+!split: "split" ["(" INT ")"]
+!placing: "(" "[" [sets] "]" "," INT ")"
+sets: set ("," set)*
+!identity: "id" ["(" INT ")"]
+    | "id" inner_names -> identity_of_names
+    | "id" "(" INT "," inner_names ")" -> identity_of_both
+inner_names: "{" names "}"
+set: "{" numbers "}"
+names: NAME ("," NAME)*
+numbers: [INT ("," INT)*]
 
 ATOMIC: "atomic"
 PRODUCT.2: "||" | "|"
@@ -85,13 +102,31 @@ _WORDS: Final = {
     "RBRACE": "'}'",
     "COMMA": "','",
     "DOT": "'.'",
+    "SLASH": "'/'",
     "AT": "'@'",
     "__ANON_0": "'-->'",
     "__ANON_1": "'->'",
     "$END": "the end",
 } | {
     word.upper(): f"'{word}'"
-    for word in "atomic ctrl big react begin brs init rules preds end share by in merge split id".split()
+    for word in (
+        "atomic",
+        "ctrl",
+        "big",
+        "react",
+        "begin",
+        "brs",
+        "init",
+        "rules",
+        "preds",
+        "end",
+        "share",
+        "by",
+        "in",
+        "merge",
+        "split",
+        "id",
+    )
 }
 
 
@@ -172,7 +207,7 @@ class _Build(Transformer[Token, Any]):
         width = _count(parts, 2)
         return Placed((tuple(range(width)),), width, _at(word))
 
-    def placing(self, opening: Token, *parts: Any) -> Placed:  # noqa: ANN401 - brackets, sets and a number
+    def placing(self, opening: Token, *parts: Any) -> Placed:
         sets = next((part for part in parts if isinstance(part, tuple)), ())
         regions = next(int(part) for part in parts if isinstance(part, Token) and part.type == "INT")
         return Placed(sets, regions, _at(opening))
@@ -183,14 +218,14 @@ class _Build(Transformer[Token, Any]):
     def identity_of_names(self, word: Token, names: tuple[str, ...]) -> Identity:
         return Identity(0, names, _at(word))
 
-    def identity_of_both(self, word: Token, *parts: Any) -> Identity:  # noqa: ANN401 - brackets, names and a number
+    def identity_of_both(self, word: Token, *parts: Any) -> Identity:
         names = next(part for part in parts if isinstance(part, tuple) and not isinstance(part, Token))
         return Identity(_count(parts, 1), names, _at(word))
 
-    def wired(self, *parts: Any) -> Wired:  # noqa: ANN401 - wires, then an expression
+    def wired(self, *parts: Any) -> Wired:
         return Wired(parts[:-1], parts[-1])
 
-    def chain(self, first: Expression, *rest: Any) -> Expression:  # noqa: ANN401 - operators and operands in turn
+    def chain(self, first: Expression, *rest: Any) -> Expression:
         pairs = zip(rest[::2], rest[1::2], strict=True)
         return Chain(first, tuple((str(operator), operand) for operator, operand in pairs)) if rest else first
 

@@ -40,6 +40,7 @@ class Nest:
 
     @property
     def offset(self) -> int:
+        """Return where its first part was."""
         return self.ion.offset
 
 
@@ -98,6 +99,7 @@ class Wired:
 
     @property
     def offset(self) -> int:
+        """Return where its first part was."""
         return self.wires[0].offset
 
 
@@ -110,6 +112,7 @@ class Chain:
 
     @property
     def offset(self) -> int:
+        """Return where its first part was."""
         return self.first.offset
 
 

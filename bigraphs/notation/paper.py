@@ -29,8 +29,8 @@ links: "[" [LINK ("," LINK)*] "]"
 ?below: node | site | "1" -> empty | "(" region ")" -> group
 site: SITE
 
-WORD: /[^\W\d]\w*/
-LINK: /[^\W\d]\w*([.:\-]+\w+)*/
+WORD: /[^\W\d]\w*|\d\w+/
+LINK: /\w+([.:\-]+\w+)*/
 SITE: /\$[0-9]{1,4}/
 %ignore /[ \t\r\n\f]+/
 """
@@ -49,8 +49,9 @@ _WORDS: Final = {
     "DOT": "'.'",
     "$END": "the end",
 }
-_NAME: Final = re.compile(r"[^\W\d]\w*")
-_LINK: Final = re.compile(r"[^\W\d]\w*([.:\-]+\w+)*")
+_NAME: Final = re.compile(r"[^\W\d]\w*|\d\w+")
+_NAMED: Final = re.compile(r"\w+")  # before a control
+_LINK: Final = re.compile(r"\w+([.:\-]+\w+)*")
 _CONTROL: Final = re.compile(r"[A-Z][^\W_]*")
 _SPLIT: Final = re.compile(r"(?P<name>.*)_(?P<control>[A-Z][^\W_]*)", re.DOTALL)
 
@@ -98,8 +99,8 @@ class RuleTerm:
 def parse_rule(text: str) -> RuleTerm:
     """Parse `redex -> reactum`; raises NotationError, whose offset counts characters of `text`.
 
-    >>> print(parse_rule("l0_Location.(u0_UAV[net]|$0) || l1_Location.$1 -> l0_Location.$0 || l1_Location.(u0_UAV[net]|$1)"))
-    l0_Location.(u0_UAV[net] | $0) || l1_Location.$1 -> l0_Location.$0 || l1_Location.(u0_UAV[net] | $1)
+    >>> print(parse_rule("l0_Location.(u0_UAV[net]|$0) || l1_Location.$1 -> l0_Location.$0 || l1_Location.(u0|$1)"))
+    l0_Location.(u0_UAV[net] | $0) || l1_Location.$1 -> l0_Location.$0 || l1_Location.(u0 | $1)
     """
     rule: RuleTerm = read(_parser(), text, _WORDS, "rule")
     _check_side(rule.redex, text)
@@ -162,7 +163,7 @@ def _format_region(region: RegionTerm) -> str:
 
 def _word(term: NodeTerm) -> str:
     if term.control is not None:
-        name = _writable(term.name, _NAME) if term.name is not None else ""
+        name = _writable(term.name, _NAMED) if term.name is not None else ""
         return f"{name}_{_writable(term.control, _CONTROL)}"
     if term.name is None or _SPLIT.fullmatch(term.name):
         raise BigraphError("name", f"the node name {term.name!r} needs a control to be written")
@@ -171,7 +172,7 @@ def _word(term: NodeTerm) -> str:
 
 def _writable(word: str, pattern: re.Pattern[str]) -> str:
     if not pattern.fullmatch(word):
-        hint = "use letters, digits and '_', a letter first; in links also ':', '-' and '.'; a capital first in controls"
+        hint = "use letters, digits and '_', a capital first in controls, in links also ':', '-' and '.'"
         raise BigraphError("name", f"{word!r} cannot be written in this notation", hint)
     return word
 

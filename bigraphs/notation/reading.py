@@ -19,7 +19,7 @@ _STEPS: Final = re.compile(r"[()]|\.|\|\|?|-->|->|[;,=]|[^\W\d]\w*|/")
 _RESETS: Final = frozenset({"|", "||", "->", "-->", ";", ",", "="})
 
 
-def read(parser: Lark, text: str, words: Mapping[str, str], start: str) -> Any:  # noqa: ANN401 - lark's tree
+def read(parser: Lark, text: str, words: Mapping[str, str], start: str) -> Any:
     """Parse `text` from `start`; raises NotationError, in `words`, at the first thing that does not fit.
 
     The parser must build its values while it parses, so that depth costs no recursion.

@@ -19,6 +19,9 @@ from specs.elaboration.schemas import HOST, Schema
 from specs.elaboration.statements import ControlSite
 from specs.elaboration.world import World
 
+MOST_HOSTS: Final = 50
+"""Where a bigActor may be in more places than these, controls are left to the run."""
+
 _MOVING: Final = {"MOVE_HOST_TO": (None, 0), "MOVE": (0, 1), "PUT": (0, 1)}
 """For each command that moves: which argument is moved (None for the host), and which is where to."""
 
@@ -120,9 +123,14 @@ def check_controls(bodies: Bodies, ground: Ground) -> None:
             _check_rule(rule, ground)
     hosts = possible_hosts(bodies, ground.names)
     for body in bodies.all():
-        if (known := hosts.get(body_key(body), frozenset())) is None:
-            known = frozenset(ground.names.kinds)
-        there = tuple(name for name in sorted(known) if name in ground.names.kinds)
+        known = hosts.get(body_key(body), frozenset())
+        there = tuple(
+            name
+            for name in sorted(ground.names.kinds if known is None else known)
+            if name in ground.names.kinds
+        )
+        if len(there) > MOST_HOSTS:
+            continue
         for site in body.controls if there else ():
             _check_site(site, there, bodies.schemas, ground)
 

@@ -73,8 +73,7 @@ class Spots:
 
 def drifts_among(clause: s.DriftsAmong, spots: Spots) -> Drifts | None:
     """Return the drift among listed placements, from each to each other."""
-    if spots.names.entity(clause.entity) is None:
-        return None
+    spots.names.entity(clause.entity)
     placements = [spots.placed(spot, clause.entity.text) for spot in clause.placements]
     spots.check_different(clause.placements, placements)
     found = tuple(placement for placement in placements if placement is not None)
@@ -89,7 +88,7 @@ def drifts_within(
 ) -> Drifts | None:
     """Return the drift within a place by its faces; reports one that would not be exact."""
     names, world = spots.names, spots.world
-    if names.entity(clause.entity) is None or names.entity(clause.place) is None:
+    if None in (names.entity(clause.entity), names.entity(clause.place)):
         return None
     reason = _inexact(clause, spots, mobility, clauses)
     if reason:

@@ -106,11 +106,10 @@ def _leaves(phase: _Clauses, clause: s.Leaves) -> Clause | None:
 
 
 def _appears(phase: _Clauses, clause: s.Appears) -> Clause | None:
-    if phase.names.entity(clause.entity) is None:
-        return None
+    known = phase.names.entity(clause.entity) is not None
     entity, world = clause.entity.text, phase.world
     vanishes = any(isinstance(other, s.Vanishes) and other.entity.text == entity for other in phase.all)
-    if entity not in world.absent and not vanishes:
+    if known and entity not in world.absent and not vanishes:
         message = f"'{entity}' is there already and never vanishes"
         hint = "declare it absent, or let it vanish"
         phase.names.findings.add(Code.POINTLESS_CLAUSE, clause, message, hint)
@@ -144,7 +143,11 @@ def _says(phase: _Clauses, clause: s.Says) -> Clause | None:
             several = f"there are {len(agents)} bigActors" if agents else "there is no bigActor"
             hint = f"write 'to' and one of {', '.join(sorted(agents)[:5])}" if agents else "declare one"
             phase.names.findings.add(Code.NO_RECIPIENT, clause, f"nothing says to whom: {several}", hint)
-    return Says(message, agent, clause.times, phase.all.index(clause)) if known else None
+    return Says(message, agent, clause.times, _position(phase, clause)) if known else None
+
+
+def _position(phase: _Clauses, clause: s.Says) -> int:
+    return next(number for number, other in enumerate(phase.all) if other is clause)
 
 
 def _arrives(phase: _Clauses, clause: s.Arrives) -> Clause | None:

@@ -129,51 +129,33 @@ def _name(node: s.Name, scope: Scope, names: Names) -> Expression:
 
 def elaborate_node(node: s.Expression, scope: Scope, names: Names) -> Expression:
     """Return an expression that is to be a node; reports what certainly is none."""
-    found = _certain(node, scope, names, names.kinds)
-    if isinstance(found, Literal) and isinstance(found.value, str) and isinstance(node, s.Name):
-        names.entity(node)
-    return found
+    return _named(node, scope, names, "node")
 
 
 def elaborate_agent(node: s.Expression, scope: Scope, names: Names) -> Expression:
     """Return an expression that is to be a bigActor; reports what certainly is none."""
-    found = _certain(node, scope, names, names.agents)
-    if isinstance(found, Literal) and isinstance(found.value, str) and isinstance(node, s.Name):
-        names.agent(node)
-    return found
+    return _named(node, scope, names, "bigActor")
 
 
-def _certain(node: s.Expression, scope: Scope, names: Names, known: object) -> Expression:
-    """Elaborate what is to be a name; a constant that is none is reported."""
-    if (
-        isinstance(node, s.Name)
-        and scope.find(node.text) is None
-        and names.sort_of(node.text) in (None, "agent", "entity")
-    ):
-        if names.sort_of(node.text) is None:
-            names.findings.unknown(node, [*scope.names(), *(known if isinstance(known, dict) else ())])
-            return _ANY
+def _named(node: s.Expression, scope: Scope, names: Names, wanted: str) -> Expression:
+    """Elaborate what is to name a node or a bigActor; a constant that doesn't is reported."""
+    known = names.kinds if wanted == "node" else names.agents
+    other = s.SelfReference if wanted == "node" else s.HostReference
+    if isinstance(node, s.Name) and scope.find(node.text) is None:
+        sort = names.sort_of(node.text)
+        if sort is None:
+            names.findings.unknown(node, [*scope.names(), *known])
+        elif wanted == "node":
+            names.entity(node)
+        else:
+            names.agent(node)
         return Literal(node.text)
-    if isinstance(node, s.TextLiteral):
-        if isinstance(known, dict) and node.value not in known:
-            what = "bigActor" if known is names.agents else "node"
-            hint = names.findings.suggest(node.value, known) or f"name {'one' if known else 'a declared one'}"
-            names.findings.add(Code.WRONG_VALUE, node, f"a text stands where a {what} is expected", hint)
-        return Literal(node.value)
-    if isinstance(node, s.IntegerLiteral | s.TruthLiteral | s.TupleLiteral | s.SetLiteral):
-        what = "bigActor" if known is names.agents else "node"
-        names.findings.add(
-            Code.WRONG_VALUE,
-            node,
-            f"a {what} is expected here",
-            "write its name, or a variable that holds it",
-        )
-        return _ANY
-    if isinstance(node, s.SelfReference if known is names.kinds else s.HostReference):
-        what, other = (
-            ("node", "SELF is a bigActor") if known is names.kinds else ("bigActor", "HOST is a node")
-        )
-        names.findings.add(Code.WRONG_VALUE, node, f"a {what} is expected here, and {other}")
+    if isinstance(node, s.TextLiteral) and node.value not in known:
+        message = f"a {wanted} is expected here, and a text that names none is given"
+        names.findings.add(Code.WRONG_VALUE, node, message, names.findings.suggest(node.value, known))
+    elif isinstance(node, s.IntegerLiteral | s.TruthLiteral | s.TupleLiteral | s.SetLiteral | other):
+        hint = "write its name, or a variable that holds it"
+        names.findings.add(Code.WRONG_VALUE, node, f"a {wanted} is expected here", hint)
     return elaborate_expression(node, scope, names)
 
 

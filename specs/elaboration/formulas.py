@@ -39,7 +39,7 @@ class _TooLarge(Exception):
 
 
 class Formulas:
-    """Elaborates the formulas of a mission."""
+    """Elaborates the formulas of a mission; `atoms` counts those of all of them."""
 
     def __init__(self, names: Names, bodies: Bodies) -> None:
         self.names = names
@@ -47,12 +47,13 @@ class Formulas:
         self.atoms = 0
 
     def elaborate(self, formula: s.Formula) -> Proposition:
-        """Return a formula as a proposition; reports what is wrong with it, a size over the bound included."""
-        self.atoms = 0
+        """Return a formula as a proposition; reports what is wrong with it, and where the bound is passed."""
+        if self.atoms > MOST_ATOMS:
+            return Always(True)
         try:
             return self._formula(formula, {})
         except _TooLarge:
-            message = f"written out, the formula has more than {MOST_ATOMS:,} atoms"
+            message = f"written out, the properties have more than {MOST_ATOMS:,} atoms"
             self.names.findings.add(
                 Code.FORMULA_TOO_LARGE, formula, message, "quantify over fewer names, or split it"
             )
@@ -155,10 +156,8 @@ class Formulas:
         renamed = tuple(sorted({unique for name, unique in known if name == shown}))
         if not renamed and agent in self.names.agents:
             among = {name for name, _ in known}
-            otherwise = f"it has {', '.join(sorted(among)[:8])}" if among else "it has none"
-            self.names.findings.unknown(
-                node.variable, among, sort=f"variable of '{agent}'", otherwise=otherwise
-            )
+            otherwise = f"'{agent}' has {', '.join(sorted(among)[:8]) or 'none'}"
+            self.names.findings.unknown(node.variable, among, sort="variable", otherwise=otherwise)
         return VariableIs(agent, renamed, value, shown)
 
     def _variables(self, agent: str) -> Iterator[tuple[str, str]]:

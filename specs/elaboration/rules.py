@@ -97,7 +97,7 @@ def elaborate_rule(
     places = region_places(before, after)
     _check_sites(reading, before, after, places.same)
     parents = (before.nested + places.redex, after.nested + places.reactum)
-    for node, _ in places.unplaced:
+    for node in {index: node for node, index in reversed(places.unplaced)}.values():
         hint = "write it into a node, or beside one that stays where it is: b.(u | $0) -> b.$0 | u"
         reading.mistake(Code.UNPLACED_NODE, node, f"nothing says where '{word_of(node)}' goes", hint)
     links = [tuple(_links(reading, side, body.term)) for side in (before, after)]

@@ -153,8 +153,8 @@ def _load(loads: list[_Load], names: Names, world: World) -> None:
     by = {load.name: load.by for load in sound}
     for load in sound:
         if _is_cyclic(load.name, by):
-            message = f"'{load.name}' is carried by '{load.by}', which is carried by it"
-            hint = "break the circle: one of them is carried by nothing"
+            message = f"cyclic nesting: '{load.name}' is carried by itself, by way of '{load.by}'"
+            hint = "one of the circle is carried by nothing"
             names.findings.add(Code.CYCLIC_NESTING, load.where, message, hint)
         else:
             world.placements[load.name] = Carried(load.by, load.shape or Placed(_NOWHERE))

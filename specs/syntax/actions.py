@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import TypeAlias
 
-from bigraphs.notation.paper import RuleTerm
+from bigraphs.errors import NotationError
+from bigraphs.notation.paper import RuleTerm, parse_rule
 from specs.syntax.expressions import Expression
 from specs.syntax.nodes import Name, Node
 
@@ -68,14 +70,25 @@ class RuleBody(Node):
     """`{ u[c] || b.$0 -> b.(u[c] | $0) }`: a reaction rule in the notation of the paper's runtime.
 
     `text` has its white space collapsed; `raw` is what stands between the braces, comments blanked
-    out, so that an offset into it is an offset from `raw_start` in the mission. `term` is what it says, never
-    None in a parsed mission.
+    out, so that an offset into it is an offset from `raw_start` in the mission.
     """
 
     text: str
-    term: RuleTerm | None = field(default=None, compare=False, repr=False)
     raw: str = field(default="", compare=False, repr=False)
     raw_start: int = field(default=0, compare=False, repr=False)
+
+    @property
+    def term(self) -> RuleTerm | None:
+        """What it says, or None where it has a mistake; never None in a parsed mission."""
+        return _read(self.raw or self.text)
+
+
+@lru_cache(maxsize=1024)
+def _read(text: str) -> RuleTerm | None:
+    try:
+        return parse_rule(text)
+    except NotationError:
+        return None
 
 
 Action: TypeAlias = MoveHost | Move | Connect | Disconnect | HandOver | Put | ApplyRule | RuleBody

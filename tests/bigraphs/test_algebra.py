@@ -16,6 +16,7 @@ from bigraphs.algebra import (
     names,
     nest,
     parallel,
+    placing,
     rename,
     substitution,
     symmetry,
@@ -161,8 +162,6 @@ def test_operators_are_the_products():
 
 
 def test_composing_through_a_shared_site_makes_a_shared_node():
-    from bigraphs.algebra import placing
-
     places = atom(SIGNATURE, "A", name="p") * atom(SIGNATURE, "A", name="q")
     open_places = ion(SIGNATURE, "A", name="p") * ion(SIGNATURE, "A", name="q")
     shared = open_places @ placing([{0, 1}], 2) @ atom(SIGNATURE, "A", name="s")

@@ -1,8 +1,9 @@
+from dataclasses import replace
 from itertools import islice
 
 import pytest
 from bigraph_strategies import PLAIN, SIGNATURE, grounds, redexes, shuffled
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from naive_matching import naive_matches
 
@@ -49,14 +50,11 @@ def redex_and_target(draw, *, sharing=False, size=5, redex_size=3):
 
 
 def named(bigraph):
-    from dataclasses import replace
-
     return replace(
         bigraph, nodes=tuple(replace(node, name=f"n{number}") for number, node in enumerate(bigraph.nodes))
     )
 
 
-@settings(max_examples=150, deadline=None)
 @given(redex_and_target())
 def test_matches_are_those_of_the_naive_enumerator(pair):
     redex, target = pair
@@ -65,7 +63,6 @@ def test_matches_are_those_of_the_naive_enumerator(pair):
     assert set(found) == naive_matches(redex, target)
 
 
-@settings(deadline=None)
 @given(redex_and_target(sharing=True, size=4, redex_size=2))
 def test_matches_in_shared_places_are_those_of_the_naive_enumerator(pair):
     redex, target = pair
@@ -74,7 +71,6 @@ def test_matches_in_shared_places_are_those_of_the_naive_enumerator(pair):
     assert set(found) == naive_matches(redex, target, sharing=True)
 
 
-@settings(max_examples=150, deadline=None)
 @given(redex_and_target(size=6, sharing=True))
 def test_context_redex_and_parameter_make_the_target_again(pair):
     redex, target = pair
@@ -82,7 +78,6 @@ def test_context_redex_and_parameter_make_the_target_again(pair):
         assert recompose(take_apart(match)) == target
 
 
-@settings(deadline=None)
 @given(redex_and_target(size=6).flatmap(lambda pair: st.tuples(st.just(pair), shuffled(pair[0]))))
 def test_the_number_of_matches_does_not_depend_on_the_order_of_nodes(given_):
     (redex, target), other = given_
@@ -171,7 +166,6 @@ def test_a_named_node_matches_its_namesake_and_a_variable_any():
 
 def test_a_shared_node_matches_only_with_all_its_parents_or_a_region():
     both = node("A", name="p") * node("A", name="q")
-    target = both @ placing([{0, 1}], 2) @ atom(SIGNATURE, "B", ["x"], name="s") if False else None
     target = (
         (both // substitution("x", ["x"]))
         @ (placing([{0, 1}], 2) // substitution("x", ["x"]))

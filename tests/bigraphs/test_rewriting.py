@@ -1,9 +1,9 @@
 import pytest
-from bigraph_strategies import PLAIN, SIGNATURE, grounds, rules
-from hypothesis import given, settings
+from bigraph_strategies import PLAIN, SIGNATURE, grounds, rules, shuffled
+from hypothesis import given
 from hypothesis import strategies as st
 
-from bigraphs.algebra import atom, close, ion, merge, nest, placing
+from bigraphs.algebra import atom, close, ion, lean, merge, nest, placing, substitution
 from bigraphs.canonical import canonical, equal
 from bigraphs.decomposition import take_apart
 from bigraphs.errors import BigraphError
@@ -23,7 +23,6 @@ def node(control, inside=SLOT, name=None):
     return nest(ion(SIGNATURE, control, (), name), inside)
 
 
-@settings(max_examples=150, deadline=None)
 @given(rules(), grounds(max_nodes=7, controls=PLAIN))
 def test_rewriting_keeps_bigraphs_well_formed_and_their_outer_face(given_rule, target):
     for _, found in successors(given_rule, target):
@@ -34,8 +33,6 @@ def test_rewriting_keeps_bigraphs_well_formed_and_their_outer_face(given_rule, t
 
 @given(rules(), grounds(max_nodes=5, controls=PLAIN))
 def test_the_identity_rule_changes_nothing_but_idle_edges(given_rule, target):
-    from bigraphs.algebra import lean
-
     same = rule(given_rule.redex, given_rule.redex)
     for match in matches(same, target):
         assert equal(rewrite(same, match), lean(target))
@@ -43,8 +40,6 @@ def test_the_identity_rule_changes_nothing_but_idle_edges(given_rule, target):
 
 @given(rules(), grounds(max_nodes=5, controls=PLAIN), st.data())
 def test_the_set_of_successors_does_not_depend_on_the_order_of_nodes(given_rule, target, data):
-    from bigraph_strategies import shuffled
-
     other = data.draw(shuffled(target))
     found = {canonical(result) for _, result in successors(given_rule, target)}
     assert found == {canonical(result) for _, result in successors(given_rule, other)}
@@ -80,8 +75,6 @@ def test_sites_are_dropped_moved_and_copied_as_the_instantiation_says():
 
 
 def close_nothing(name):
-    from bigraphs.algebra import substitution
-
     return substitution(name, ())
 
 

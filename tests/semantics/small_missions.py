@@ -69,6 +69,10 @@ SHAPES: dict[str, Placed] = {
 }
 
 
+GUARD = Tested()
+"""Begins the body of a guarded case. (pytest would take `Tested` for a test.)"""
+
+
 def aboard(carrier: str, name: str) -> Carried:
     """Put an entity on a carrier."""
     return Carried(carrier, SHAPES[name])
@@ -124,7 +128,7 @@ def figure_2(guarded: bool = False, **setting: object) -> Configuration:
         move_to("area"),
         Observe(around()),
         received("obs", 3, 4, guard=test) if guarded else received("obs", 3),
-        Tested() if guarded else If(test, (4,)),
+        GUARD if guarded else If(test, (4,)),
         move_to("spill"),
     )
     return mission(["area", "base", "spill", "u0"], statements, {"a": ("u0", (0, 1, 2))}, **setting)

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_missions import explore, figure_2, mission, move_to
 
@@ -142,11 +142,11 @@ def projected(c: Configuration) -> tuple[object, ...]:
 
 
 def transitions_of(c: Configuration, scheduler: Scheduler) -> set[tuple[object, object]]:
-    start = strategies_restart(c, scheduler)
+    start = under(c, scheduler)
     return {(projected(before), projected(t.target)) for before, t in explore(start, 1500).transitions}
 
 
-def strategies_restart(c: Configuration, scheduler: Scheduler) -> Configuration:
+def under(c: Configuration, scheduler: Scheduler) -> Configuration:
     """Return a first configuration under another scheduler: its lines are empty."""
     cells = {cell: value for cell, value in c.state.items() if cell[0] not in ("line", "sends", "queue")}
     for agent in c.alpha.names() if scheduler is not Scheduler.FCFS else ():
@@ -172,6 +172,7 @@ def short_missions(draw):
     return mission(["area", "base", "u0", "u1"], statements, agents, channels=channels)
 
 
+@settings(max_examples=25)
 @given(short_missions(), st.sampled_from(Control))
 def test_each_scheduler_refines_the_one_before(c, control):
     timed = Configuration(c.setting.with_(control=control), c.state)
@@ -241,7 +242,6 @@ from small_missions import explore, figure_2, talkative
 for start in (figure_2(monitored=True), talkative()):
     found = explore(start)
     print(*found.labels(), *map(repr, found.configurations), sep="\\n")
-    print([list(c.state.items()) for c in found.configurations])
 """
 
 

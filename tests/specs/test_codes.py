@@ -14,7 +14,7 @@ def test_numbers_are_unique_and_in_a_known_range():
 def test_every_code_is_explained_in_sentences():
     for code in Code:
         assert code.title
-        assert code.explanation.endswith("."), code
+        assert code.explanation.endswith((".", "?")), code
         assert "  " not in code.explanation
 
 

@@ -27,7 +27,7 @@ def test_a_mistake_is_shown_with_its_line_a_caret_and_the_hint():
 def test_carets_stand_under_their_words_behind_tabs_and_wide_characters():
     block = shown("\tx 日本 e\N{COMBINING ACUTE ACCENT} bad", "bad").splitlines()
     assert block[1] == "  1 |     x 日本 e\N{COMBINING ACUTE ACCENT} bad"
-    assert block[2] == "    |             " + "  ^^^"
+    assert block[2] == "    | " + " " * 13 + "^^^"
 
 
 def test_a_wide_word_is_underlined_in_full():

@@ -197,13 +197,14 @@ def test_the_true_end_is_reported_and_not_the_last_word():
         'check { invariant "x": ' + "known a -> " * 25_000 + "true }",
         "rule a { a -> }\n" * 8_000,
         "".join(f"{number} BigActor\n" for number in range(50_000)),
-        "#" * 999_999 + "{",
+        "#" * 900_000 + "\n{ " + " " * 90_000,
+        "0" + " " * 900_000 + "BigActor",
     ],
     ids=lambda text: text[:24],
 )
 def test_hostile_texts_are_refused_in_bounded_time(text):
     started = time.perf_counter()
-    with pytest.raises(MissionError) if "#" not in text else pytest.MonkeyPatch.context():
+    with pytest.raises(MissionError):
         read(text)
     assert time.perf_counter() - started < 20  # about 3 s at most on an idle machine
 

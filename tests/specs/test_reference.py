@@ -10,7 +10,6 @@ from specs.formatter import format_mission
 from specs.parser import parse
 from specs.reference import EXAMPLES, NODES, forms, grammar_parts, language_reference
 
-ABSTRACT = {s.Case, s.Alternative, s.Kind}
 FRAMES = {
     "Geometry": "world {{ a: B = {} }}",
     "Statements": "def f() = {{ {} }}",
@@ -32,7 +31,6 @@ SPECIAL = {
     s.Keep: 'world {{ from "x" keep {} }}',
     s.Parameter: "rule r({}) {{ a -> b }}",
     s.RuleBody: "rule r {}",
-    s.Control: "def f() = {{ {}(uav0)) }}",
     s.Case: "def f() = {{ react {{ {} }} }}",
     s.Alternative: "def f() = {{ choose {{ {} }} }}",
 }
@@ -40,11 +38,16 @@ SECTIONS = {s.Signature, s.World, s.Believes, s.Environment, s.Check, s.Mission}
 
 
 def concrete(form):
-    form = re.sub(r"\b[FG]\b", "known f", form.replace("{ ... }", "{}").replace("case ...", "case => skip"))
+    form = re.sub(
+        r"\b[FG]\b",
+        "known f",
+        re.sub(r"\{ (kind )?\.\.\. \}", "{}", form).replace("case ...", "case => skip"),
+    )
     return (
         form.replace("statements", "skip")
+        .replace("=> ...", "=> skip")
         .replace("react { case => ", "react { case x => ")
-        .removesuffix("(r)")
+        .replace("(r)", "(MOVE_HOST_TO r)")
     )
 
 

@@ -1,0 +1,8 @@
+"""`python -m bigactors`: the command, where it isn't on the path."""
+
+import sys
+
+from bigactors.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,234 @@
+"""Draw a configuration ⟨α | S | η⟩: L as a bigraph beside P as a map, and under them the agents and their requests."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from bigactors.pictures.page import Page, plain_style
+from bigactors.pictures.scene import (
+    Palette,
+    changed_names,
+    channels_of,
+    differing,
+    is_place,
+    map_entities,
+    palette_of,
+    shown_names,
+)
+from bigraphs.drawing import MARGIN as BIGRAPH_MARGIN
+from bigraphs.drawing import draw_bigraph
+from bigraphs.layout import Layout, layout
+from physical.drawing import draw_map
+from physical.map_marks import draw_halo, draw_icon, draw_mark
+from physical.map_style import INK, MARK, QUIET, SQUARE, kind_shapes, shortened, text_width
+from semantics.configuration import Configuration
+from semantics.printing import print_agent
+from semantics.signature import Name
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+WIDTH: Final = 960.0
+MARGIN: Final = 26.0
+GUTTER: Final = 22.0
+PANEL: Final = (WIDTH - 2 * MARGIN - GUTTER) / 2
+"""How wide the bigraph is, and the map with its latitudes."""
+
+PANEL_HEIGHT: Final = 372.0
+LATITUDES: Final = 46.0
+LONGITUDES: Final = 16.0
+LARGEST: Final = 1.2
+"""How much a small bigraph is magnified at most."""
+
+ROW: Final = 15.0
+MOST_ROWS: Final = 12
+LEGEND_ROW: Final = 17.0
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One entry of the legend: what it looks like, and what that means."""
+
+    look: str
+    name: str
+    colour: str = INK
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """How a configuration looks: its colours, what glows since it changed, what is marked since L and P differ."""
+
+    palette: Palette
+    glowing: frozenset[Name]
+    marked: frozenset[Name]
+
+
+def _look_of(c: Configuration, before: Configuration | None) -> Look:
+    glowing = frozenset() if before is None else changed_names(before, c)
+    return Look(palette_of(c), glowing, differing(c))
+
+
+def draw_configuration(
+    configuration: Configuration,
+    path: str | Path,
+    *,
+    title: str | None = None,
+    changed: Configuration | None = None,
+) -> None:
+    """Write the picture of a configuration as the name of the file says, `.svg` or `.png`.
+
+    What L and A(P) say different things of has a dashed outline in both. Where the configuration before is given as
+    `changed`, what changed since glows.
+
+    Raises:
+        PictureError: The name of the file ends otherwise.
+        OSError: The file cannot be written.
+    """
+    with plain_style():
+        _page(configuration, title, changed).save(Path(path), title or "configuration")
+
+
+def _page(c: Configuration, title: str | None, changed: Configuration | None) -> Page:
+    look = _look_of(c, changed)
+    legend = _legend_rows(_entries(c, look))
+    rows = max(1, _shown(len(c.alpha.names())), _shown(len(c.eta.all())))
+    top = MARGIN + (26.0 if title else 0.0)
+    strip = top + 18.0 + PANEL_HEIGHT + 30.0
+    foot = strip + 16.0 + rows * ROW + 12.0
+    page = Page(WIDTH, foot + len(legend) * LEGEND_ROW + 18.0)
+    if title:
+        page.write(MARGIN, MARGIN + 10, title, 14.0, bold=True, width=WIDTH - 2 * MARGIN)
+    _draw_logical(page, c, top, look)
+    _draw_physical(page, c, top, look)
+    page.rule(MARGIN, WIDTH - MARGIN, strip - 16.0)
+    _write_list(page, MARGIN, strip, ("α", "agents"), [print_agent(c, a) for a in c.alpha.names()])
+    requests = [str(each.request) for each in c.eta.all()]
+    _write_list(page, MARGIN + PANEL + GUTTER, strip, ("η", "pending requests"), requests or ["∅"])
+    page.rule(MARGIN, WIDTH - MARGIN, foot)
+    for rank, row in enumerate(legend):
+        _draw_legend_row(page, c, row, foot + 16.0 + rank * LEGEND_ROW)
+    return page
+
+
+def _shown(count: int) -> int:
+    return min(count, MOST_ROWS)
+
+
+def _write_list(page: Page, x: float, y: float, heading: tuple[str, str], lines: list[str]) -> None:
+    page.heading(x, y, *heading)
+    shown = (
+        lines
+        if len(lines) <= MOST_ROWS
+        else [*lines[: MOST_ROWS - 1], f"and {len(lines) - MOST_ROWS + 1} more"]
+    )
+    for rank, line in enumerate(shown):
+        _write_line(page, x, y + 16.0 + rank * ROW, line)
+
+
+def _write_line(page: Page, x: float, y: float, line: str) -> None:
+    """Write an agent or a request, its first word bold."""
+    word = re.match(r"[^ (]*", line)
+    head = shortened(word[0] if word else "", PANEL, 8.0, bold=True)
+    wide = text_width(head, 8.0, bold=True)
+    page.write(x, y, head, 8.0, bold=True)
+    rest = line[len(head) :]
+    gap = 3.0 if rest.startswith(" ") else 0.5
+    page.write(x + wide + gap, y, rest.lstrip(), 8.0, width=max(PANEL - wide - gap, 0.0))
+
+
+# --- the two models -------------------------------------------------------------------------------
+
+
+def _draw_logical(page: Page, c: Configuration, top: float, look: Look) -> None:
+    page.heading(MARGIN, top + 8, "L", "the logical model: what is believed")
+    bigraph = c.structure.logical.bigraph()
+    plan = layout(bigraph)
+    width, height = plan.width + 2 * BIGRAPH_MARGIN, plan.height + 2 * BIGRAPH_MARGIN
+    scale = min(PANEL / width, PANEL_HEIGHT / height, LARGEST)
+    left = MARGIN + (PANEL - width * scale) / 2
+    above = top + 18.0 + (PANEL_HEIGHT - height * scale) / 2
+    axes = page.panel(left, above, width * scale, height * scale)
+    draw_bigraph(bigraph, axes, highlight=look.glowing)
+    numbers = [number for number, node in enumerate(bigraph.nodes) if node.name in look.marked]
+    for number in numbers:
+        _outline_node(axes, plan, number, scale)
+
+
+def _outline_node(axes: "Axes", plan: Layout, number: int, scale: float) -> None:
+    from matplotlib.patches import FancyBboxPatch  # noqa: PLC0415 - only who draws needs matplotlib
+
+    box = plan.box("node", number)
+    axes.add_patch(
+        FancyBboxPatch(
+            (box.x - 3, box.y - 3),
+            box.width + 6,
+            box.height + 6,
+            boxstyle="round,pad=0,rounding_size=9",
+            facecolor="none",
+            edgecolor=MARK,
+            linewidth=1.2 * scale,
+            linestyle=(0, (3, 2)),
+            zorder=2.5,
+        )
+    )
+
+
+def _draw_physical(page: Page, c: Configuration, top: float, look: Look) -> None:
+    left = MARGIN + PANEL + GUTTER
+    page.heading(left, top + 8, "P", "the physical model: what is")
+    axes = page.panel(left + LATITUDES, top + 18.0, PANEL - LATITUDES, PANEL_HEIGHT - LONGITUDES)
+    draw_map(
+        map_entities(c),
+        axes,
+        highlight=look.glowing,
+        marked=look.marked,
+        colours=look.palette.kinds,
+        channel_colours=look.palette.channels,
+    )
+
+
+# --- the legend -----------------------------------------------------------------------------------
+
+
+def _entries(c: Configuration, look: Look) -> list[Entry]:
+    kinds = sorted({c.setting.kind(name) for name in shown_names(c)})
+    entries = [Entry("kind", kind, look.palette.kinds[kind]) for kind in kinds]
+    down = c.structure.physical.is_down
+    entries += [
+        Entry("channel", f"{channel} (down)" if down(channel) else channel, look.palette.channels[channel])
+        for channel in channels_of(c)
+    ]
+    entries += [Entry("changed", "changed in this step")] if look.glowing else []
+    return entries + ([Entry("marked", "L and P differ")] if look.marked else [])
+
+
+def _legend_rows(entries: list[Entry]) -> list[list[tuple[float, Entry]]]:
+    """Return the entries in rows, each with where it begins."""
+    rows: list[list[tuple[float, Entry]]] = [[]]
+    x = MARGIN
+    for entry in entries:
+        width = 20.0 + text_width(entry.name, 8.0)
+        if rows[-1] and x + width > WIDTH - MARGIN:
+            rows.append([])
+            x = MARGIN
+        rows[-1].append((x, entry))
+        x += width + 18.0
+    return rows
+
+
+def _draw_legend_row(page: Page, c: Configuration, row: list[tuple[float, Entry]], y: float) -> None:
+    places = {c.setting.kind(name) for name in shown_names(c) if is_place(c, name)}
+    shapes = kind_shapes(c.setting.kind(name) for name in shown_names(c))
+    for x, entry in row:
+        at = (x + 7.0, y - 3.0)
+        if entry.look == "kind":
+            shape = SQUARE if entry.name in places else tuple((a, -b) for a, b in shapes[entry.name])
+            draw_icon(page.axes, at, shape, entry.colour, radius=4.6)
+        elif entry.look == "channel":
+            page.axes.plot([x, x + 14], [at[1], at[1]], color=entry.colour, linewidth=1.6)
+        elif entry.look == "changed":
+            draw_halo(page.axes, at, 6.0)
+        else:
+            draw_mark(page.axes, at, 5.5)
+        page.write(x + 19.0, y, entry.name, 8.0, ink=QUIET)

@@ -1,0 +1,99 @@
+"""What a picture of a configuration shows: pure functions of it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from bigraphs.bigraph import points
+from bigraphs.drawing import KINDS, LINKS
+from physical.drawing import MapEntity
+from physical.map_style import PALETTE
+from semantics.configuration import Configuration
+from semantics.environment import Appears, Drifts
+from semantics.physical_model import Carried, InTransit
+from semantics.signature import REGION, Name
+
+
+@dataclass(frozen=True, slots=True)
+class Palette:
+    """Colours of kinds and of channels, those of the bigraph's picture."""
+
+    kinds: Mapping[str, str]
+    channels: Mapping[str, str]
+
+
+def palette_of(c: Configuration) -> Palette:
+    """Return the colours in which the bigraph is drawn; what is only in P takes those that are left."""
+    bigraph = c.structure.logical.bigraph()
+    believed = sorted({node.control for node in bigraph.nodes})
+    others = sorted({c.setting.kind(name) for name in c.structure.physical.entities()} - set(believed))
+    kinds = {
+        kind: KINDS[rank % len(KINDS)][1] if rank < len(KINDS) else PALETTE[rank % len(PALETTE)]
+        for rank, kind in enumerate([*believed, *others])
+    }
+    drawn = [str(link) for link, on in points(bigraph).items() if on]
+    links = [*drawn, *(channel for channel in channels_of(c) if channel not in drawn)]
+    return Palette(kinds, {link: LINKS[rank % len(LINKS)] for rank, link in enumerate(links)})
+
+
+def channels_of(c: Configuration) -> tuple[Name, ...]:
+    """Return the channels that L or P has, sorted."""
+    logical, physical = c.structure.logical, c.structure.physical
+    believed = {link for node in logical.nodes() for link in logical.links(node)}
+    actual = {channel for name in physical.entities() for channel in physical.channels(name)}
+    return tuple(sorted(believed | actual))
+
+
+def differing(c: Configuration) -> frozenset[Name]:
+    """Return the names of which L and A(P) say different things: whether they are there, where, on which links."""
+    logical, physical = c.structure.logical, c.structure.physical
+    actual = {name: (physical.abstract_parent(name), physical.links(name)) for name in physical.entities()}
+    believed = {name: (logical.parent(name), logical.links(name)) for name in logical.nodes()}
+    return frozenset(
+        name for name in actual.keys() | believed.keys() if actual.get(name) != believed.get(name)
+    )
+
+
+def changed_names(before: Configuration, after: Configuration) -> frozenset[Name]:
+    """Return the names whose place or links changed in L, or whose whereabouts or channels did in P."""
+    return frozenset(
+        name
+        for name in after.setting.kinds
+        if any(
+            before.read((what, name)) != after.read((what, name))
+            for what in ("parent", "links", "placement", "channels")
+        )
+    )
+
+
+def shown_names(c: Configuration) -> tuple[Name, ...]:
+    """Return all that is in P or believed to be, sorted."""
+    return tuple(sorted({*c.structure.physical.entities(), *c.structure.logical.nodes()}))
+
+
+def map_entities(c: Configuration) -> tuple[MapEntity, ...]:
+    """Return what the map of P shows: all that is in P, and what L still believes in."""
+    return tuple(_map_entity(c, name) for name in shown_names(c))
+
+
+def _map_entity(c: Configuration, name: Name) -> MapEntity:
+    physical, kind = c.structure.physical, c.setting.kind(name)
+    placement, links = physical.placement(name), physical.links(name)
+    if placement is None:
+        return MapEntity(name, kind, None)
+    if isinstance(placement, Carried):
+        return MapEntity(name, kind, None, channels=links, carried_by=placement.by)
+    if isinstance(placement, InTransit):
+        target = None if placement.to == REGION else physical.position(placement.to)
+        destination = None if target is None else target.geometry
+        start = placement.origin.geometry
+        return MapEntity(name, kind, start, False, links, None, placement.to, destination)
+    return MapEntity(name, kind, placement.geometry, is_place(c, name), links)
+
+
+def is_place(c: Configuration, name: Name) -> bool:
+    """Tell whether something holds others and stays where it is: nothing drives it, it does not drift or appear."""
+    kind = c.setting.signature[c.setting.kind(name)]
+    moves = any(
+        isinstance(clause, Drifts | Appears) and clause.entity == name for clause in c.setting.environment
+    )
+    return bool(kind.contains) and not kind.driven and not moves

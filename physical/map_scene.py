@@ -1,0 +1,172 @@
+"""The scene of a map: what is drawn, and where it lies on the sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from physical.frame import Position
+from physical.map_labels import Box, Spot
+from physical.map_style import Outline, kind_colours, kind_shapes
+from physical.map_view import Plane, bounds, focus, plane_of, view_of
+from physical.shape import Geometry
+
+SMALLEST_POLYGON: Final = 7.0
+"""Points under which a polygon is drawn as a marker."""
+
+
+@dataclass(frozen=True, slots=True)
+class MapEntity:
+    """One entity to be drawn.
+
+    Attributes:
+        name: Its name.
+        kind: Its kind: gives the colour, and the shape of the marker.
+        geometry: Where it is, or took off; None for what is carried, and for what is absent.
+        place: Whether it is a place that stays where it is, rather than something that moves.
+        channels: The channels that it is on.
+        carried_by: The name of what carries it.
+        towards: The name of what it is in transit to.
+        destination: Where that is, if that can be told.
+    """
+
+    name: str
+    kind: str
+    geometry: Geometry | None
+    place: bool = False
+    channels: tuple[str, ...] = ()
+    carried_by: str | None = None
+    towards: str | None = None
+    destination: Geometry | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """A map's paper: where positions lie on axes whose units are points."""
+
+    plane: Plane
+    view: Box
+    width: float
+    height: float
+
+    @property
+    def box(self) -> Box:
+        """The whole sheet."""
+        return Box(0.0, 0.0, self.width, self.height)
+
+    def spot(self, metres: Spot) -> Spot:
+        """Return where a spot of the plane lies."""
+        scale = self.width / self.view.width
+        return ((metres[0] - self.view.left) * scale, (metres[1] - self.view.bottom) * scale)
+
+    def at(self, position: Position) -> Spot:
+        """Return where a position lies."""
+        return self.spot(self.plane.metres(position))
+
+    def outline(self, geometry: Geometry) -> tuple[Spot, ...]:
+        """Return where a geometry's vertices lie."""
+        return tuple(map(self.spot, self.plane.outline(geometry)))
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """What is drawn where: everything that is present, by name, with its outline on the sheet."""
+
+    sheet: Sheet
+    entities: Mapping[str, MapEntity]
+    outlines: Mapping[str, tuple[Spot, ...]]
+    far: frozenset[str]
+    colours: Mapping[str, str]
+    shapes: Mapping[str, Outline]
+    absent: tuple[str, ...]
+    highlight: Collection[str]
+    marked: Collection[str]
+
+    def colour(self, name: str) -> str:
+        """Return the colour of an entity's kind."""
+        return self.colours[self.entities[name].kind]
+
+    def shape(self, name: str) -> Outline:
+        """Return the outline of an entity's marker."""
+        return self.shapes[self.entities[name].kind]
+
+    def is_polygon(self, name: str) -> bool:
+        """Tell whether an entity is drawn as an area: it has one, and it can be seen."""
+        around = bounds(self.outlines[name])
+        return len(self.outlines[name]) > 1 and max(around.width, around.height) >= SMALLEST_POLYGON
+
+    def near(self) -> list[str]:
+        """Return the names of what the sheet shows."""
+        return [name for name in self.outlines if name not in self.far]
+
+    def middle(self, name: str) -> Spot:
+        """Return the middle of the outermost carrier's outline."""
+        return bounds(self.outlines[self.outermost(name)]).centre
+
+    def outermost(self, name: str) -> str:
+        """Return the carrier that an entity is in the end carried by, or itself."""
+        while name not in self.outlines:
+            name = str(self.entities[name].carried_by)
+        return name
+
+    def cargo(self, carrier: str, depth: int = 0) -> list[tuple[int, str]]:
+        """Return what an entity carries, at any depth, each with its depth."""
+        held = [name for name, entity in self.entities.items() if self.carrier(entity) == carrier]
+        return [each for name in held for each in [(depth, name), *self.cargo(name, depth + 1)]]
+
+    def carrier(self, entity: MapEntity) -> str | None:
+        """Return what carries an entity, None where it has its own place on the sheet."""
+        return None if entity.name in self.outlines else entity.carried_by
+
+
+def scene_of(
+    entities: Sequence[MapEntity],
+    size: Spot,
+    colours: Mapping[str, str],
+    highlight: Collection[str],
+    marked: Collection[str],
+) -> Scene:
+    """Return the scene of entities, each name once, on a sheet of a width and height in points."""
+    known = {entity.name: entity for entity in entities}
+    placed = {
+        entity.name: entity.geometry
+        for entity in entities
+        if entity.geometry and entity.carried_by not in known
+    }
+    goals = [entity.destination for entity in entities if entity.destination and entity.name in placed]
+    plane = plane_of([*placed.values(), *goals])
+    boxes = [bounds(plane.outline(geometry)) for geometry in [*placed.values(), *goals]]
+    seen = focus(boxes)
+    view = view_of([boxes[each] for each in seen] or [Box(0, 0, 0, 0)], size[0] / size[1])
+    sheet = Sheet(plane, view, *size)
+    outlines = {name: sheet.outline(geometry) for name, geometry in placed.items()}
+    far = {name for rank, name in enumerate(placed) if rank not in seen}
+    kinds = [entity.kind for entity in entities]
+    return Scene(
+        sheet,
+        {name: entity for name, entity in known.items() if name in placed or _rides(entity, known, placed)},
+        outlines,
+        frozenset(name for name in far if sheet.box.shared(bounds(outlines[name]).grown(0.1)) == 0.0),
+        kind_colours(kinds) | dict(colours),
+        kind_shapes(kinds),
+        tuple(name for name in known if name not in placed and not _rides(known[name], known, placed)),
+        highlight,
+        marked,
+    )
+
+
+def _rides(entity: MapEntity, known: Mapping[str, MapEntity], placed: Mapping[str, Geometry]) -> bool:
+    """Tell whether something that is placed carries an entity, at any depth."""
+    passed = {entity.name}
+    while (carrier := entity.carried_by) is not None and carrier in known and carrier not in passed:
+        if carrier in placed:
+            return True
+        passed.add(carrier)
+        entity = known[carrier]
+    return False
+
+
+def area_of(outline: Sequence[Spot]) -> float:
+    """Return the area of the box around an outline."""
+    return bounds(outline).width * bounds(outline).height

@@ -1,0 +1,208 @@
+"""What is written on a map: names, the scale bar and notes, so that nothing stands on anything else."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+import shapely
+
+from physical.frame import Position
+from physical.map_labels import BESIDE, Box, Spot, Wanted, around, place_labels
+from physical.map_marks import (
+    MARK_RADIUS,
+    RADIUS,
+    SPACING,
+    Line,
+    block_size,
+    draw_block,
+    draw_leader,
+    draw_pointer,
+    draw_scale,
+)
+from physical.map_scene import Scene, Sheet, area_of
+from physical.map_style import INK, QUIET, darker, text_width
+from physical.map_view import bounds, metres_text, scale_length, turned
+from physical.measure import distance
+from physical.shape import point
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MOST_CARRIED: Final = 8
+"""Of what an entity carries, so many are named."""
+
+
+@dataclass(frozen=True, slots=True)
+class Writing:
+    """What is written where: the lines of each label with its box, the scale bar, and the note of what is absent."""
+
+    blocks: Mapping[str, Sequence[Line]]
+    wanted: Mapping[str, Wanted]
+    boxes: Mapping[str, Box]
+    pointers: Mapping[str, tuple[Spot, Spot]]
+    markers: tuple[Box, ...]
+    scale: Box
+    note: tuple[Box, Sequence[Line]] | None
+
+
+def writing_of(scene: Scene, lines: Sequence[Spot]) -> Writing:
+    """Return where everything is written; better not over `lines`, spots along what is drawn."""
+    pointers = {name: _pointer(scene, name) for name in sorted(scene.far)}
+    markers = (
+        *(around(scene.middle(n), (2 * RADIUS + 3,) * 2) for n in scene.near() if not scene.is_polygon(n)),
+        *(around(at, (18.0, 18.0)) for at, _ in pointers.values()),
+    )
+    length, text = _scale(scene.sheet)
+    scale = _corner(scene.sheet, (max(length, text_width(text, 7.5)), 16.0), markers)
+    note = _note(scene, [*markers, scale])
+    taken = [*markers, scale, *([note[0]] if note else [])]
+    polygons = [scene.outlines[name] for name in scene.near() if scene.is_polygon(name)]
+    borders = [spot for outline in polygons for spot in _along(outline)]
+    names = sorted(scene.outlines, key=lambda name: (_freedom(scene, name), name))
+    blocks = {name: _block(scene, name) for name in names}
+    wanted = {name: _wanted(scene, name, block_size(blocks[name]), pointers) for name in names}
+    found = place_labels(list(wanted.values()), taken, [*lines, *borders], scene.sheet.box.grown(-3.0))
+    return Writing(blocks, wanted, dict(zip(names, found, strict=True)), pointers, markers, scale, note)
+
+
+def write_labels(axes: Axes, scene: Scene, lines: Sequence[Spot]) -> None:
+    """Write all names, the scale bar and what is absent, so that nothing is written over anything else."""
+    writing = writing_of(scene, lines)
+    draw_scale(axes, writing.scale, *_scale(scene.sheet))
+    if writing.note:
+        draw_block(axes, *writing.note)
+    for name, box in writing.boxes.items():
+        draw_block(axes, box, writing.blocks[name])
+        _lead(axes, scene, name, box, writing.wanted[name])
+    for name, (at, behind) in writing.pointers.items():
+        draw_pointer(axes, at, behind, scene.colour(name))
+
+
+def _scale(sheet: Sheet) -> tuple[float, str]:
+    """Return how long the scale bar is, in points, and what it says."""
+    metres = scale_length(sheet.view.width)
+    return (metres * sheet.width / sheet.view.width, metres_text(metres))
+
+
+def _note(scene: Scene, taken: Sequence[Box]) -> tuple[Box, Sequence[Line]] | None:
+    if not scene.absent:
+        return None
+    words = ["not in P:", *(f"{name}," for name in scene.absent[:-1]), scene.absent[-1]]
+    lines = [Line(line, 7.0, ink=QUIET) for line in _wrapped(words, scene.sheet.width / 2)]
+    return (_corner(scene.sheet, block_size(lines), taken), lines)
+
+
+def _wrapped(words: Sequence[str], width: float) -> list[str]:
+    lines = [words[0]]
+    for word in words[1:]:
+        longer = f"{lines[-1]} {word}"
+        if text_width(longer, 7.0) <= width:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines
+
+
+def _lead(axes: Axes, scene: Scene, name: str, box: Box, want: Wanted) -> None:
+    """Draw a hair line to what a label names, where it does not stand in it or beside it."""
+    named = shapely.Point(want.at)
+    if scene.is_polygon(name) and name not in scene.far:
+        named = shapely.Polygon(scene.outlines[name])
+    gap = shapely.shortest_line(shapely.box(*box), named)
+    if gap.length > want.clearance + BESIDE or (scene.is_polygon(name) and gap.length > BESIDE):
+        draw_leader(axes, *gap.coords)
+
+
+def _freedom(scene: Scene, name: str) -> float:
+    """Order labels: markers first, then polygons, small before large, since large ones have the most room."""
+    return area_of(scene.outlines[name]) if name not in scene.far and scene.is_polygon(name) else -1.0
+
+
+def _block(scene: Scene, name: str) -> list[Line]:
+    """Return the lines of a label: the name, where it is bound for, how far it is, what it carries."""
+    entity = scene.entities[name]
+    lines = [Line(name, ink=darker(scene.colour(name)) if entity.place else INK)]
+    if entity.towards is not None:
+        lines.append(Line(f"→ {entity.towards}", 7.0, ink=QUIET))
+    if name in scene.far and entity.geometry is not None:
+        centre = point(*_middle_of(scene.sheet))
+        lines.append(Line(f"{metres_text(distance(centre, entity.geometry))} away", 7.0, ink=QUIET))
+    cargo = scene.cargo(name)
+    for depth, each in cargo[:MOST_CARRIED]:
+        icon = (scene.shape(each), scene.colour(each))
+        looks = {"lit": each in scene.highlight, "marked": each in scene.marked}
+        lines.append(Line(each, 7.0, ink=QUIET, indent=8.0 * depth, icon=icon, **looks))
+    if len(cargo) > MOST_CARRIED:
+        lines.append(Line(f"and {len(cargo) - MOST_CARRIED} more", 7.0, ink=QUIET, indent=9.0))
+    return lines
+
+
+def _middle_of(sheet: Sheet) -> Position:
+    latitude, longitude = sheet.plane.degrees(sheet.view.centre)
+    return (min(max(latitude, -90.0), 90.0), turned(longitude))
+
+
+def _wanted(scene: Scene, name: str, size: Spot, pointers: Mapping[str, tuple[Spot, Spot]]) -> Wanted:
+    if name in pointers:
+        return Wanted(pointers[name][0], size, 9.0)
+    if not scene.is_polygon(name):
+        ringed = name in scene.highlight or name in scene.marked
+        return Wanted(scene.middle(name), size, MARK_RADIUS if ringed else RADIUS + 1.5)
+    outline = scene.outlines[name]
+    box = bounds(outline)
+    return Wanted(
+        box.centre, size, min(box.width, box.height) / 2, _inside(outline, size, scene.sheet.box.grown(-3.0))
+    )
+
+
+def _inside(outline: Sequence[Spot], size: Spot, view: Box) -> tuple[Spot, ...]:
+    """Return middles of a label that lies inside a polygon and the view: near its corners first."""
+    polygon = shapely.Polygon(outline).buffer(-3.0).intersection(shapely.box(*view))
+    if polygon.is_empty:
+        return ()
+    shapely.prepare(polygon)
+    left, bottom, right, top = polygon.bounds
+    free = (right - left - size[0] - 2, top - bottom - size[1] - 2)
+    spots = [
+        (left + 1 + size[0] / 2 + free[0] * across, top - 1 - size[1] / 2 - free[1] * down)
+        for down in (0.0, 1.0, 0.05, 0.12, 0.2, 0.3, 0.5, 0.7, 0.85)
+        for across in (0.0, 1.0, 0.1, 0.2, 0.5, 0.8)
+    ]
+    inner = polygon.representative_point()
+    return tuple(
+        spot for spot in [*spots, (inner.x, inner.y)] if polygon.contains(shapely.box(*around(spot, size)))
+    )
+
+
+def _along(outline: Sequence[Spot]) -> list[Spot]:
+    """Return spots along a border, some points apart."""
+    spots: list[Spot] = []
+    for (x1, y1), (x2, y2) in pairwise([*outline, outline[0]]):
+        parts = min(max(1, round(math.dist((x1, y1), (x2, y2)) / SPACING)), 200)
+        spots += [(x1 + (x2 - x1) * part / parts, y1 + (y2 - y1) * part / parts) for part in range(parts)]
+    return spots
+
+
+def _pointer(scene: Scene, name: str) -> tuple[Spot, Spot]:
+    """Return the spot at the border of the sheet towards something far, and a spot on the way back."""
+    frame, (x, y) = scene.sheet.box.grown(-14.0), scene.sheet.box.centre
+    far_x, far_y = scene.middle(name)
+    across = abs(far_x - x) / (frame.width / 2)
+    along = abs(far_y - y) / (frame.height / 2)
+    share = 1.0 / max(across, along, 1.0)
+    return ((x + (far_x - x) * share, y + (far_y - y) * share), (x, y))
+
+
+def _corner(sheet: Sheet, size: Spot, taken: Sequence[Box]) -> Box:
+    """Return where the scale bar or a note goes: the corner where it is least in the way."""
+    box, (wide, high) = sheet.box.grown(-12.0), size
+    corners = [
+        Box(left, bottom, left + wide, bottom + high)
+        for bottom in (box.bottom, box.top - high)
+        for left in (box.right - wide, box.left)
+    ]
+    return min(corners, key=lambda corner: sum(corner.grown(4.0).shared(each) for each in taken))

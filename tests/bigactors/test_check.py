@@ -1,0 +1,192 @@
+import json
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from bigactors import evidence
+from bigactors.commands import check as command
+
+
+def test_a_mission_that_holds_is_a_success_with_its_counts(missions, bigactors):
+    code, out, err = bigactors("check", "holds.mission")
+    assert (code, err) == (0, "")
+    assert out.startswith("holds.mission: 10 configurations, 10 transitions, depth 8, complete, ")
+    assert "\n  ✓ found              holds; examined 1, a witness of 8 steps\n" in out
+    assert "\n  rules: actuate 3, fun 1, rcv_obs 1, req_ctr 2, req_obs 2, sense 1\n" in out
+    assert "\n  rules never used: req_snd, snd, rcv_msg, req_mgr, migrate, spawn\n" in out
+
+
+def test_a_violation_is_shown_with_its_trace(missions, bigactors):
+    code, out, err = bigactors("check", "race.mission")
+    assert (code, err) == (1, "")
+    assert "  ✗ race_freedom   violated" in out
+    assert "c0 --⟨req_ctr : a, control(MOVE_HOST_TO searchArea0)⟩--> c1" in out
+    assert "L  parent(uav0) : base0 ↦ searchArea0" in out
+
+
+def test_without_traces_the_report_is_short(missions, bigactors):
+    code, out, _ = bigactors("check", "race.mission", "--no-traces")
+    assert code == 1
+    assert "--⟨" not in out
+    assert "a shortest trace, 2 steps" in out
+
+
+def test_a_mistake_is_rendered_and_nothing_is_checked(missions, bigactors):
+    code, out, err = bigactors("check", "mistaken.mission")
+    assert (code, out) == (2, "")
+    assert err == (
+        "mistaken.mission:17:24: LS201: unknown name 'serchArea0'\n"
+        "  17 |   control(MOVE_HOST_TO serchArea0)\n"
+        "     |                        ^^^^^^^^^^\n"
+        "  hint: did you mean 'searchArea0'?\n"
+    )
+
+
+@pytest.mark.parametrize("bound", [("--max-configurations", "20"), ("--max-time", "0.3")])
+def test_what_was_cut_off_is_no_success(missions, bigactors, bound):
+    code, out, _ = bigactors("check", "endless.mission", *bound)
+    assert code == 3
+    assert "INCOMPLETE" in out
+    assert "\n  stopped at the " in out
+    assert "\n  ? deadlock_freedom  incomplete" in out
+    assert "✓ deadlock_freedom" not in out
+
+
+def test_several_missions_get_a_line_each_and_the_gravest_code(missions, bigactors):
+    names = ("holds.mission", "race.mission", "endless.mission", "mistaken.mission", "nowhere.mission")
+    code, out, err = bigactors("check", *names, "--max-configurations", "20", "--no-traces")
+    assert code == 2
+    summary = out.split("\n\n")[-1].splitlines()
+    assert [line.split()[:3] for line in summary] == [
+        ["✓", "holds.mission", "holds"],
+        ["✗", "race.mission", "violated"],
+        ["?", "endless.mission", "incomplete"],
+        ["!", "mistaken.mission", "mistake"],
+        ["!", "nowhere.mission", "mistake"],
+    ]
+    assert "nowhere.mission: there is no such file" in err
+    assert (
+        bigactors("check", "holds.mission", "race.mission", "endless.mission", "--max-configurations", "20")[
+            0
+        ]
+        == 1
+    )
+    assert bigactors("check", "holds.mission", "endless.mission", "--max-configurations", "20")[0] == 3
+
+
+def test_a_bug_at_one_mission_does_not_keep_the_others_from_being_checked(missions, bigactors, monkeypatch):
+    import bigactors.checking as checking
+
+    honest = checking.check
+
+    def failing(initial, *rest, **more):
+        if len(initial.alpha.names()) == 2:
+            raise RuntimeError("our bug")
+        return honest(initial, *rest, **more)
+
+    monkeypatch.setattr(checking, "check", failing)
+    code, out, err = bigactors("check", "race.mission", "holds.mission", "mistaken.mission")
+    assert code == 4
+    assert "RuntimeError: our bug" in err
+    assert "please report" in err
+    assert "holds.mission: 10 configurations" in out
+    assert "! race.mission      internal error" in out
+
+
+def test_a_mission_that_ships_is_found_by_its_name(missions, bigactors):
+    code, out, _ = bigactors("check", "oil_spill", "--no-traces")
+    assert code == 0
+    assert out.startswith("oil_spill: ")
+
+
+def test_a_misspelt_shipped_mission_is_suggested(missions, bigactors):
+    assert bigactors("check", "oil_spil") == (
+        2,
+        "",
+        "oil_spil: there is no such file\n  hint: did you mean 'oil_spill'?\n",
+    )
+
+
+def test_a_folder_is_no_mission(missions, bigactors):
+    code, _, err = bigactors("check", ".")
+    assert code == 2
+    assert ".: this is a folder, not a mission" in err
+
+
+def test_json_on_the_standard_output_is_alone(missions, bigactors):
+    code, out, err = bigactors("check", "race.mission", "--json", "-")
+    report = json.loads(out)
+    assert (code, err) == (1, "")
+    assert report["schema"] == "bigactors.report/1"
+    assert (report["complete"], report["configurations"], report["exit_code"]) == (True, 10, 1)
+    assert [each["verdict"] for each in report["properties"][:2]] == ["violated", "violated"]
+
+
+def test_json_goes_into_a_file_beside_the_text(missions, bigactors):
+    code, out, _ = bigactors("check", "holds.mission", "--json", "report.json")
+    assert code == 0
+    assert "✓ found" in out
+    assert json.loads((missions / "report.json").read_text(encoding="utf-8"))["transitions"] == 10
+    assert sorted(path.name for path in missions.glob(".*")) == []
+
+
+def test_a_file_that_cannot_be_written_is_told(missions, bigactors):
+    code, _, err = bigactors("check", "holds.mission", "--json", "no/such/folder.json")
+    assert code == 2
+    assert "no/such/folder.json: No such file or directory" in err
+
+
+def test_traces_are_kept_as_text_as_json_and_as_pictures(missions, bigactors):
+    code, _, err = bigactors("check", "race.mission", "--no-traces", "--trace", "traces")
+    assert code == 1
+    folder = missions / "traces" / "race" / "race_freedom-control_race"
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "c00.svg", "c01.svg", "c02.svg", "trace.json", "trace.svg", "trace.txt",
+    ]  # fmt: skip
+    text = (folder / "trace.txt").read_text(encoding="utf-8")
+    assert text.startswith("race.mission (sha256:")
+    assert "race_freedom violated: control race: " in text
+    assert "c0 --⟨" in text
+    assert (folder / "trace.svg").read_text(encoding="utf-8").startswith("<?xml")
+    assert "traces/race/race_freedom-control_race/trace.txt" in err
+
+
+def test_missions_of_one_name_keep_their_traces_apart(missions, bigactors, monkeypatch):
+    monkeypatch.setattr(evidence, "draw_run", lambda *_, **__: None)
+    (missions / "sub").mkdir()
+    (missions / "sub" / "holds.mission").write_text((missions / "holds.mission").read_text())
+    assert (
+        bigactors("check", "holds.mission", "sub/holds.mission", "--trace", "traces", "--no-traces")[0] == 0
+    )
+    assert sorted(path.name for path in (missions / "traces").iterdir()) == ["holds", "holds-2"]
+
+
+def test_the_summary_marks_are_those_of_the_report():
+    assert {sign for sign, _ in command.WORDS.values()} == {"✓", "✗", "?", "!"}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals and terminals are POSIX's")
+def test_an_interrupted_exploration_is_incomplete_and_reports_what_it_found(missions):
+    ours, theirs = os.openpty()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "bigactors", "check", "endless.mission", "holds.mission", "--no-traces"],
+        stdout=subprocess.PIPE,
+        stderr=theirs,
+    )
+    os.close(theirs)
+    shown = b""
+    while b"frontier" not in shown:  # the exploration is under way
+        shown += os.read(ours, 1000)
+    process.send_signal(signal.SIGINT)
+    out = process.communicate(timeout=60)[0].decode()
+    os.close(ours)
+    assert process.returncode == 3
+    assert "stopped at an interruption" in out
+    assert "? endless.mission  incomplete" in out
+    assert "? holds.mission    incomplete  not begun" in out
+    assert b"endless: " in shown
+    assert b" configurations, depth " in shown
+    assert b"Traceback" not in shown

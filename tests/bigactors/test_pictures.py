@@ -1,0 +1,286 @@
+import hashlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from bigactors.pictures import PictureError, draw_configuration, draw_overview, draw_trace
+from bigactors.pictures.page import wrapped
+from bigactors.pictures.scene import changed_names, differing, is_place, map_entities, palette_of
+from bigactors.pictures.trace import lanes_of, rows_of
+from bigraphs.drawing import LINKS
+from bigraphs.layout import layout
+from bigraphs.routing import route
+from physical import box, circle, point
+from physical.map_style import text_width
+from semantics.configuration import Label
+from semantics.environment import Appears
+from semantics.expressions import Host, Literal, QueryOf
+from semantics.initial import Beliefs, initial
+from semantics.patterns import Anything
+from semantics.physical_model import Carried, Placed, channels_cell, placement_cell
+from semantics.program import Program
+from semantics.reactions import COMMANDS
+from semantics.setting import Control, Setting
+from semantics.signature import Kind, Signature
+from semantics.statements import Case, ControlBy, Observe, React
+from semantics.successors import successors
+
+MOVERS = frozenset({"OilSpill", "UAV", "Vessel", "Station", "Drifter"})
+SIGNATURE = Signature.of(
+    [
+        Kind("Location", MOVERS),
+        Kind("OilSpill", frozenset({"UAV"})),
+        Kind("UAV", driven=True),
+        Kind("Vessel", carries=frozenset({"Drifter"}), driven=True),
+    ]
+)
+KINDS = {
+    "searchArea0": "Location",
+    "oilSpill0": "OilSpill",
+    "uav0": "UAV",
+    "gcs0": "Station",
+    "vessel0": "Vessel",
+    "drifter0": "Drifter",
+}
+PLACEMENTS = {
+    "searchArea0": Placed(box((37.04, -8.59), (36.94, -8.79))),
+    "oilSpill0": Placed(circle((37.00, -8.70), 400)),
+    "uav0": Placed(point(37.06, -8.55)),
+    "gcs0": Placed(point(37.07, -8.60)),
+    "vessel0": Placed(point(36.98, -8.66)),
+    "drifter0": Carried("vessel0", Placed(point(36.98, -8.66))),
+}
+CHANNELS = {"uav0": ("control:gcs0",), "gcs0": ("control:gcs0", "network"), "vessel0": ("network",)}
+STATEMENTS = (
+    ControlBy("MOVE_HOST_TO", (Literal("searchArea0"),)),
+    Observe(QueryOf("CHILDREN", QueryOf("PARENT", Host()))),
+    React((Case(Anything("seen", "observation"), None, ()),)),
+)
+
+
+def oil_spill(**changes):
+    placements = changes.pop("placements", PLACEMENTS)
+    beliefs = changes.pop("beliefs", None)
+    program = Program(STATEMENTS, {}, COMMANDS, (12, 13, 14))
+    setting = Setting(SIGNATURE, KINDS, program, control=Control.TIMED, **changes)
+    return initial(setting, placements, CHANNELS, {"searcher": ("uav0", (0, 1, 2))}, beliefs)
+
+
+def run(configuration):
+    configurations, labels = [configuration], []
+    while following := list(successors(configurations[-1])):
+        labels.append(following[0].label)
+        configurations.append(following[0].target)
+    return configurations, labels
+
+
+def written(monkeypatch, draw, *arguments, **options):
+    """Return the lines of text that a picture shows, in the order in which they were written."""
+    from matplotlib.text import Text
+
+    shown = []
+    original = Text.draw
+
+    def draw_text(self, *rest):
+        shown.append(self.get_text())
+        return original(self, *rest)
+
+    monkeypatch.setattr(Text, "draw", draw_text)
+    draw(*arguments, **options)
+    return shown
+
+
+# --- what a picture shows -------------------------------------------------------------------------
+
+
+def test_nothing_differs_where_what_is_believed_is_so():
+    assert differing(oil_spill()) == frozenset()
+
+
+def test_a_believed_place_that_is_not_so_differs():
+    assert differing(oil_spill(beliefs=Beliefs({"uav0": "searchArea0"}))) == {"uav0"}
+
+
+def test_a_believed_link_that_is_not_so_differs():
+    assert differing(oil_spill(beliefs=Beliefs(links={"uav0": ()}))) == {"uav0"}
+
+
+def test_what_is_unknown_or_vanished_differs():
+    c = oil_spill(beliefs=Beliefs({"oilSpill0": None}))
+    gone = c.with_({placement_cell("gcs0"): None})
+    assert differing(gone) == {"oilSpill0", "gcs0"}
+
+
+def test_what_changed_is_told_in_both_models():
+    c = oil_spill()
+    after = c.with_({placement_cell("uav0"): Placed(point(37.0, -8.6)), channels_cell("gcs0"): ()})
+    assert changed_names(c, after) == {"uav0", "gcs0"}
+    assert changed_names(c, c) == frozenset()
+
+
+def test_the_map_shows_what_is_there_and_what_is_only_believed():
+    c = oil_spill().with_({placement_cell("gcs0"): None})
+    shown = {entity.name: entity for entity in map_entities(c)}
+    assert set(shown) == set(KINDS)
+    assert shown["gcs0"].geometry is None
+    assert shown["drifter0"].carried_by == "vessel0"
+    assert shown["searchArea0"].place
+
+
+def test_what_is_in_transit_shows_both_ends():
+    configurations, labels = run(oil_spill())
+    flying = configurations[[label.rule for label in labels].index("command") + 1]
+    (uav,) = (entity for entity in map_entities(flying) if entity.name == "uav0")
+    assert uav.geometry is point(37.06, -8.55)
+    assert uav.towards == "searchArea0"
+    assert uav.destination is PLACEMENTS["searchArea0"].geometry
+
+
+def test_a_place_that_may_appear_elsewhere_is_no_fixed_place():
+    still = oil_spill()
+    moving = oil_spill(environment=(Appears("oilSpill0", (Placed(circle((37.01, -8.7), 400)),)),))
+    assert is_place(still, "oilSpill0")
+    assert not is_place(moving, "oilSpill0")
+    assert not is_place(still, "uav0")
+
+
+def test_channels_have_the_colours_that_the_bigraph_gives_them():
+    c = oil_spill()
+    bigraph = c.structure.logical.bigraph()
+    drawn = {str(each.link): LINKS[rank] for rank, each in enumerate(route(bigraph, layout(bigraph)))}
+    assert palette_of(c).channels == drawn
+
+
+def test_each_kind_has_a_colour_believed_or_not():
+    c = oil_spill(beliefs=Beliefs({"oilSpill0": None}))
+    assert set(palette_of(c).kinds) == set(KINDS.values())
+
+
+# --- configurations -------------------------------------------------------------------------------
+
+
+def test_every_entity_agent_and_request_appears(tmp_path, monkeypatch):
+    c = run(oil_spill())[0][2]
+    texts = written(monkeypatch, draw_configuration, c, tmp_path / "c.svg", title="Oil spill")
+    assert {"Oil spill", "searcher@uav0", *KINDS} <= set(texts)
+    assert all(texts.count(name) >= 2 for name in KINDS)  # in L and in P
+    assert any(text.startswith("(searcher, MOVE_HOST_TO searchArea0)") for text in texts)
+
+
+def test_the_legend_says_what_dashes_and_glow_mean(tmp_path, monkeypatch):
+    c = oil_spill(beliefs=Beliefs({"uav0": "searchArea0"}))
+    after = c.with_({placement_cell("vessel0"): Placed(point(37.0, -8.6))})
+    texts = written(monkeypatch, draw_configuration, after, tmp_path / "c.svg", changed=c)
+    assert {"L and P differ", "changed in this step"} <= set(texts)
+    monkeypatch.undo()
+    plain = written(monkeypatch, draw_configuration, oil_spill(), tmp_path / "d.svg")
+    assert not {"L and P differ", "changed in this step"} & set(plain)
+
+
+@pytest.mark.parametrize("suffix", ["svg", "png"])
+def test_a_picture_is_the_same_twice(tmp_path, suffix):
+    c = oil_spill(beliefs=Beliefs({"uav0": "searchArea0"}))
+    for name in ("a", "b"):
+        draw_configuration(c, tmp_path / f"{name}.{suffix}", title="twice", changed=c)
+    one, other = ((tmp_path / f"{name}.{suffix}").read_bytes() for name in ("a", "b"))
+    assert one == other
+    assert len(one) > 10_000
+
+
+def test_a_users_own_style_leaves_no_trace(tmp_path):
+    import matplotlib as mpl
+
+    draw_configuration(oil_spill(), tmp_path / "a.svg")
+    with mpl.rc_context({"lines.linewidth": 9.0, "font.size": 30.0, "axes.facecolor": "black"}):
+        draw_configuration(oil_spill(), tmp_path / "b.svg")
+        assert mpl.rcParams["font.size"] == 30.0
+    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+
+
+def test_another_suffix_is_refused(tmp_path):
+    with pytest.raises(PictureError, match=r"cannot write a picture as 'c.pdf': name it .svg or .png"):
+        draw_configuration(oil_spill(), tmp_path / "c.pdf")
+
+
+def test_an_empty_world_has_a_picture(tmp_path):
+    c = initial(Setting(SIGNATURE, {}, Program()), {}, {}, {})
+    draw_configuration(c, tmp_path / "empty.svg")
+    assert (tmp_path / "empty.svg").stat().st_size > 1000
+
+
+def test_pictures_are_the_same_under_two_hash_seeds(tmp_path):
+    program = (
+        "import sys; sys.path.insert(0, sys.argv[1]); import test_pictures as t; from pathlib import Path\n"
+        "configurations, labels = t.run(t.oil_spill())\n"
+        "t.draw_configuration(configurations[3], sys.argv[2] + '.svg', changed=configurations[2])\n"
+        "t.draw_overview(configurations, labels, sys.argv[2] + 't.svg')"
+    )
+    digests = set()
+    for seed in ("1", "2"):
+        stem = str(tmp_path / seed)
+        command = [sys.executable, "-c", program, str(Path(__file__).parent), stem]
+        subprocess.run(command, env={**os.environ, "PYTHONHASHSEED": seed}, check=True)
+        digests.add(
+            tuple(hashlib.sha256(Path(stem + end).read_bytes()).hexdigest() for end in (".svg", "t.svg"))
+        )
+    assert len(digests) == 1
+
+
+# --- traces ---------------------------------------------------------------------------------------
+
+
+def test_a_trace_is_a_picture_a_step_and_an_overview(tmp_path):
+    configurations, labels = run(oil_spill())
+    paths = draw_trace(configurations[:3], labels[:2], tmp_path, title="Oil spill")
+    assert [path.name for path in paths] == ["c00.svg", "c01.svg", "c02.svg", "trace.svg"]
+    assert all(path.stat().st_size > 1000 for path in paths)
+    assert 'href="c01.svg"' in paths[-1].read_text()
+
+
+def test_steps_stand_in_the_lanes_of_who_takes_them():
+    configurations, labels = run(oil_spill())
+    rows = rows_of(configurations, labels)
+    lanes = {row.rule: row.lane for row in rows}
+    assert lanes["req_ctr"] == lanes["req_obs"] == lanes["rcv_obs"] == "searcher"
+    assert lanes["command"] == lanes["commit"] == lanes["sense"] == "served"
+    assert list(lanes_of(configurations, rows)) == ["searcher", "served"]
+
+
+def test_the_environment_has_a_lane_of_its_own():
+    c = oil_spill()
+    after = c.with_({placement_cell("gcs0"): None})
+    rows = rows_of([c, after], [Label("env", None, "gcs0 vanishes")])
+    assert rows[0].lane == "environment"
+    assert list(lanes_of([c, after], rows)) == ["searcher", "served", "environment"]
+
+
+def test_a_row_tells_only_what_changed():
+    configurations, labels = run(oil_spill())
+    rows = rows_of(configurations, labels)
+    (commit,) = (row for row in rows if row.rule == "commit")
+    assert any("parent(uav0) : region ↦ searchArea0" in line for line in commit.changes)
+    assert not any("searcher@" in line or "vessel0" in line for row in rows for line in row.changes[:1])
+
+
+def test_every_step_appears_in_the_overview(tmp_path, monkeypatch):
+    configurations, labels = run(oil_spill())
+    texts = written(monkeypatch, draw_overview, configurations, labels, tmp_path / "t.png", title="Oil spill")
+    assert {f"c{step}" for step in range(1, len(configurations))} <= set(texts)
+    assert {label.rule for label in labels} <= set(texts)
+
+
+def test_a_trace_of_no_step_has_an_overview(tmp_path):
+    draw_overview([oil_spill()], [], tmp_path / "t.svg")
+    assert (tmp_path / "t.svg").stat().st_size > 1000
+
+
+def test_wrapped_lines_fit_and_lose_nothing_while_there_is_room():
+    text = "READY(searcher, CHILDREN(PARENT(uav0)), {oilSpill0, searchArea0, uav0})"
+    lines = wrapped(text, 110.0, 7.0, 6)
+    assert all(text_width(line, 7.0) <= 110.0 for line in lines)
+    assert "".join(lines).replace(" ", "") == text.replace(" ", "")
+    assert wrapped(text, 110.0, 7.0, 2)[-1].endswith("…")
+    assert wrapped("", 110.0, 7.0, 2) == ()

@@ -1,0 +1,182 @@
+"""simulate, replay and show: runs written, run again, and looked at."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+
+@pytest.fixture
+def run(missions, bigactors):
+    """A run of holds.mission in run.json, and how to change it."""
+    assert bigactors("simulate", "holds.mission", "--seed", "3", "--json", "run.json")[0] == 0
+    path = missions / "run.json"
+
+    def change(**members):
+        data = json.loads(path.read_text(encoding="utf-8"))
+        path.write_text(json.dumps(data | members), encoding="utf-8")
+        return data
+
+    return change
+
+
+# --- simulate -------------------------------------------------------------------------------------------------
+
+
+def test_a_simulation_is_printed_in_the_notation_of_the_paper(missions, bigactors):
+    code, out, err = bigactors("simulate", "holds.mission", "--seed", "3")
+    lines = out.splitlines()
+    assert (code, err) == (0, "")
+    assert lines[0] == "c0 = ⟨ α"
+    assert "c0 --⟨req_ctr : a, control(MOVE_HOST_TO searchArea0)⟩--> c1" in lines
+    assert "      L  parent(uav0) : base0 ↦ searchArea0" in lines
+    assert lines[-1] == "nothing more is enabled"
+
+
+def test_one_seed_gives_one_run_whatever_the_hash_seed(missions):
+    def run(seed, hashes):
+        words = [sys.executable, "-m", "bigactors", "simulate", "race.mission", "--seed", seed]
+        environment = {**os.environ, "PYTHONHASHSEED": hashes}
+        return subprocess.run(words, capture_output=True, env=environment, check=True).stdout
+
+    assert run("1", "0") == run("1", "1")
+    assert run("1", "0") != run("3", "0")
+
+
+def test_a_simulation_stops_after_its_steps(missions, bigactors):
+    code, out, _ = bigactors("simulate", "endless.mission", "--steps", "7")
+    assert code == 0
+    assert out.endswith("stopped after 7 steps\n")
+    assert out.count("--⟨") == 7
+    assert bigactors("simulate", "holds.mission", "--steps", "0")[1].endswith("⟩\nstopped after 0 steps\n")
+
+
+def test_what_is_displayed_is_shown(missions, bigactors):
+    text = (missions / "holds.mission").read_text()
+    shown = text.replace(
+        "  control(MOVE_HOST_TO searchArea0)\n", '  display("ready")\n  control(MOVE_HOST_TO searchArea0)\n'
+    )
+    (missions / "shown.mission").write_text(shown)
+    assert "displayed: " in bigactors("simulate", "shown.mission")[1]
+
+
+# --- replay ---------------------------------------------------------------------------------------------------
+
+
+def test_a_simulation_replays(run, bigactors):
+    code, out, err = bigactors("replay", "run.json")
+    assert (code, err) == (0, "")
+    assert "c7 --⟨actuate : CTR(a, MOVE_HOST_TO oilSpill0)⟩--> c8" in out
+    assert out.endswith("run.json: 8 steps replayed on figure_2\n")
+
+
+def test_the_traces_of_a_check_replay_those_of_the_monitor_too(missions, bigactors):
+    report = json.loads(bigactors("check", "look_before_entry_racy", "--json", "-")[1])
+    traces = [each[key] for each in report["properties"] for key in ("trace", "witness") if each[key]]
+    assert {trace["monitored"] for trace in traces} == {True, False}
+    for trace in traces:
+        (missions / "trace.json").write_text(json.dumps(trace))
+        code, _, err = bigactors("replay", "trace.json")
+        assert (code, err) == (0, "")
+
+
+def test_a_step_that_is_not_allowed_is_told_with_what_was_enabled(run, bigactors, missions):
+    steps = run()["steps"]
+    run(steps=[*steps[:2], *steps[3:]])
+    code, _, err = bigactors("replay", "run.json")
+    assert code == 1
+    assert "run.json: step 3: " in err
+    assert "is not enabled" in err
+    assert "enabled instead:\n  ⟨" in err
+    assert "Traceback" not in err
+
+
+def test_a_choice_that_there_is_not_is_told(run, bigactors):
+    steps = run()["steps"]
+    run(steps=[steps[0] | {"choice": 5}, *steps[1:]])
+    code, _, err = bigactors("replay", "run.json")
+    assert code == 1
+    assert "step 1: " in err
+
+
+def test_a_trace_of_another_mission_is_replayed_with_a_warning_naming_both(run, bigactors, missions):
+    text = (missions / "holds.mission").read_text()
+    (missions / "other.mission").write_text(text.replace("radius 400 m", "radius 401 m"))
+    code, _, err = bigactors("replay", "run.json", "--mission", "other.mission")
+    assert code == 0
+    assert "warning: it was written of another mission" in err
+    assert "written of: holds.mission, digest sha256:" in err
+    assert "replayed on: other.mission, digest sha256:" in err
+
+
+def test_the_mission_of_a_trace_is_found_beside_it(run, bigactors, missions, monkeypatch, tmp_path_factory):
+    monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
+    code, _, err = bigactors("replay", str(missions / "run.json"))
+    assert (code, err) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "the file is not JSON"),
+        ("[" * 100_000, "the file is not JSON: nested too deeply"),
+        ("[]", "the file says no mission"),
+        ('{"mission": 3}', "the file says no mission"),
+        ('{"mission": "holds.mission"}', "this is no trace"),
+        ('{"mission": "nowhere.mission"}', "nowhere.mission: there is no such file"),
+        ('{"mission": "holds.mission", "schema": "bigactors.trace/1", "steps": 3}', "this is no trace"),
+        ('{"mission": "holds.mission", "schema": "bigactors.trace/1", "steps": [{}]}', "step 1 should have"),
+        ('{"mission": "\\u0000", "schema": "bigactors.trace/1", "steps": []}', "no path of a file"),
+    ],
+)
+def test_what_is_no_trace_is_told(missions, bigactors, text, said):
+    (missions / "trace.json").write_text(text)
+    code, _, err = bigactors("replay", "trace.json")
+    assert code == 2
+    assert said in err
+    assert "Traceback" not in err
+
+
+def test_a_trace_that_is_not_there_is_told(missions, bigactors):
+    code, _, err = bigactors("replay", "trace.json")
+    assert (code, err) == (2, "trace.json: No such file or directory\n")
+
+
+# --- show -----------------------------------------------------------------------------------------------------
+
+
+def test_a_mission_is_printed_and_drawn(missions, bigactors):
+    code, out, err = bigactors("show", "holds.mission", "--output", "picture.png")
+    assert code == 0
+    assert out.startswith("c0 = ⟨ α\n  a@uav0 at control")
+    assert "picture written to picture.png" in err
+    assert (missions / "picture.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_any_configuration_of_a_trace_is_shown(run, bigactors, missions):
+    code, out, _ = bigactors("show", "--trace", "run.json", "--step", "2")
+    assert code == 0
+    assert out.startswith("c1 --⟨actuate : CTR(a, MOVE_HOST_TO searchArea0)⟩--> c2\nc2 = ⟨ α")
+    assert (missions / "figure_2-c2.svg").is_file()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--trace", "run.json", "--step", "9"), "there is no c9: the trace ends with c8"),
+        (("holds.mission", "--step", "2"), "--step is a step of a trace"),
+        ((), "there is nothing to show"),
+        (("holds.mission", "--output", "picture.gif"), "picture.gif"),
+        (
+            ("holds.mission", "--output", "no/such/folder.svg"),
+            "no/such/folder.svg: No such file or directory",
+        ),
+    ],
+)
+def test_what_cannot_be_shown_is_told(run, bigactors, words, said):
+    code, _, err = bigactors("show", *words)
+    assert code == 2
+    assert said in err
+    assert "Traceback" not in err

@@ -1,0 +1,285 @@
+import os
+import random
+import subprocess
+import sys
+from itertools import combinations
+
+import pytest
+import shapely
+from matplotlib.figure import Figure
+
+from physical import box, circle, point, polygon
+from physical.drawing import MapEntity, draw_map
+from physical.map_labels import GAP, Box, Wanted, place_labels
+from physical.map_scene import scene_of
+from physical.map_style import darker, kind_colours, kind_shapes, shortened, text_width
+from physical.map_view import (
+    FAR,
+    bounds,
+    degrees_text,
+    focus,
+    plane_of,
+    scale_length,
+    tick_step,
+    ticks,
+    view_of,
+)
+from physical.map_writing import writing_of
+
+SHEET = (420.0, 340.0)
+SEARCH_AREA = box((37.04, -8.59), (36.94, -8.79))
+
+OIL_SPILL = (
+    MapEntity("searchArea0", "Location", SEARCH_AREA, place=True),
+    MapEntity("oilSpill0", "OilSpill", circle((37.00, -8.70), 400)),
+    MapEntity("uav0", "UAV", point(37.06, -8.55), channels=("control:gcs0",)),
+    MapEntity("gcs0", "Station", point(37.07, -8.60), channels=("control:gcs0",)),
+    MapEntity("gcs1", "Station", point(36.96, -8.84), channels=("control:gcs1", "network")),
+    MapEntity("vessel0", "Vessel", point(36.98, -8.66), channels=("control:gcs1", "network")),
+    MapEntity("drifter0", "Drifter", None, carried_by="vessel0"),
+    MapEntity("drifter1", "Drifter", None, carried_by="vessel0"),
+)
+
+MARINA = (
+    MapEntity(
+        "marina",
+        "Location",
+        polygon([(52.969, 5.44), (52.9692, 5.446), (52.966, 5.447), (52.9655, 5.441)]),
+        place=True,
+    ),
+    MapEntity("restricted", "Location", circle((52.9675, 5.4445), 60), place=True),
+    MapEntity("uav0", "UAV", point(52.9699, 5.4465)),
+    *(
+        MapEntity(
+            f"mmsi24466{number:04d}", "Vessel", point(52.9665 + number % 5 * 4e-4, 5.4415 + number * 4e-4)
+        )
+        for number in range(9)
+    ),
+)
+
+
+def crowd(count):
+    """Return six places 18 km wide, and movers on channels of two stations, scattered over them."""
+    chance = random.Random(3)
+    spots = [point(54 + chance.random() * 0.6, 8 + chance.random() * 0.6) for _ in range(count)]
+    corners = [(54 + 0.2 * (n % 3), 8 + 0.3 * (n // 3)) for n in range(6)]
+    places = [
+        MapEntity(f"area{n}", "Location", box((s, w), (s + 0.18, w + 0.27)), place=True)
+        for n, (s, w) in enumerate(corners)
+    ]
+    stations = [MapEntity(f"gcs{n}", "Station", spots[n], channels=(f"control:gcs{n}",)) for n in range(2)]
+    movers = [
+        MapEntity(f"uav{n}", "UAV", spot, channels=(f"control:gcs{n % 2}",))
+        for n, spot in enumerate(spots[2:])
+    ]
+    return (*places, *stations, *movers)
+
+
+SCENES = {"oil spill": OIL_SPILL, "marina": MARINA, "30 entities": crowd(24), "one entity": OIL_SPILL[2:3]}
+
+
+def scene(entities, size=SHEET):
+    return scene_of(sorted(entities, key=lambda entity: entity.name), size, {}, (), ())
+
+
+def drawn(entities, **options):
+    figure = Figure(figsize=(7, 5))
+    axes = figure.add_axes((0.1, 0.1, 0.85, 0.85))
+    sheet = draw_map(entities, axes, **options)
+    return axes, sheet, {text.get_text() for text in axes.texts}
+
+
+@pytest.mark.parametrize("entities", SCENES.values(), ids=SCENES)
+def test_nothing_is_written_over_anything_else(entities):
+    writing = writing_of(scene(entities), [])
+    written = [*writing.boxes.values(), writing.scale]
+    assert all(one.shared(other) == 0 for one, other in combinations(written, 2))
+    assert all(label.shared(marker) == 0 for label in written for marker in writing.markers)
+    assert all(Box(0, 0, *SHEET).holds((label.left, label.bottom)) for label in written)
+    assert all(Box(0, 0, *SHEET).holds((label.right, label.top)) for label in written)
+
+
+@pytest.mark.parametrize("entities", SCENES.values(), ids=SCENES)
+def test_every_entity_is_named(entities):
+    assert {entity.name for entity in entities} <= drawn(entities)[2]
+
+
+def test_labels_of_places_stand_in_them_where_there_is_room():
+    here = scene(MARINA)
+    label = writing_of(here, []).boxes["marina"]
+    area = shapely.Polygon(here.outlines["marina"])
+    assert area.contains(shapely.box(*label))
+
+
+def test_the_order_of_entities_leaves_no_trace():
+    forwards, backwards = (writing_of(scene(each), []) for each in (OIL_SPILL, OIL_SPILL[::-1]))
+    assert forwards == backwards
+
+
+def test_what_is_absent_is_named_in_a_note():
+    _, _, texts = drawn([*OIL_SPILL, MapEntity("uav7", "UAV", None), MapEntity("uav8", "UAV", None)])
+    assert "not in P: uav7, uav8" in texts
+
+
+def test_what_an_absent_carrier_would_carry_is_absent():
+    _, _, texts = drawn([MapEntity("a", "Vessel", None, carried_by="b"), MapEntity("b", "Vessel", None)])
+    assert "not in P: a, b" in texts
+
+
+def test_carriers_in_a_circle_are_absent():
+    _, _, texts = drawn(
+        [MapEntity("a", "Vessel", None, carried_by="b"), MapEntity("b", "Vessel", None, carried_by="a")]
+    )
+    assert "not in P: a, b" in texts
+
+
+def test_cargo_is_named_with_its_carrier_at_any_depth():
+    inner = MapEntity("egg", "Drifter", None, carried_by="drifter0")
+    assert scene([*OIL_SPILL, inner]).cargo("vessel0") == [(0, "drifter0"), (1, "egg"), (0, "drifter1")]
+
+
+def test_an_entity_in_transit_says_where_it_is_bound_for():
+    flying = MapEntity("uav0", "UAV", point(37.06, -8.55), towards="searchArea0", destination=SEARCH_AREA)
+    _, _, texts = drawn([OIL_SPILL[0], flying])
+    assert {"uav0", "→ searchArea0"} <= texts
+
+
+def test_an_empty_world_is_an_empty_map():
+    assert drawn([])[2] == {"100 m"}
+
+
+def test_a_name_is_never_read_as_a_formula():
+    assert "$x_0$" in drawn([MapEntity("$x_0$", "UAV", point(1, 1))])[2]
+
+
+def test_a_far_entity_is_pointed_at_and_does_not_shrink_the_rest():
+    far = MapEntity("farVessel", "Vessel", point(53.4, 6.2))
+    near, both = scene(MARINA), scene([*MARINA, far])
+    assert both.far == {"farVessel"}
+    assert both.sheet.view.width == pytest.approx(near.sheet.view.width, rel=0.01)
+    assert {"farVessel", "70 km away"} <= drawn([*MARINA, far])[2]
+
+
+def test_metres_are_as_long_to_the_north_as_to_the_east():
+    _, sheet, _ = drawn([MapEntity("a", "Sea", box((70.1, 20.3), (70.0, 20.0)), place=True)])
+    area = bounds(sheet.outline(box((70.1, 20.3), (70.0, 20.0))))
+    metres_per_degree = 111_583.0, 38_290.0  # of latitude and longitude at 70.05 north
+    expected = metres_per_degree[1] * 0.3 / (metres_per_degree[0] * 0.1)
+    assert area.width / area.height == pytest.approx(expected, rel=0.01)
+
+
+def test_a_world_across_the_antimeridian_is_in_one_piece():
+    lagoon = MapEntity("lagoon", "Location", box((-17, 179.5), (-18, -179.2)), place=True)
+    axes, sheet, texts = drawn([lagoon, MapEntity("v", "Vessel", point(-17.2, -179.9))])
+    assert sheet.view.width < 400_000
+    assert {label.get_text() for label in axes.get_xticklabels()} >= {"179.5°E", "180.0°", "179.5°W"}
+    assert {"lagoon", "v"} <= texts
+
+
+def test_a_world_shifted_around_the_earth_looks_the_same():
+    def shifted(by):
+        return [MapEntity(f"v{n}", "Vessel", point(10 + n, (n + by + 180) % 360 - 180)) for n in range(5)]
+
+    assert scene(shifted(0)).middle("v3") == pytest.approx(scene(shifted(178)).middle("v3"))
+
+
+def test_a_pole_has_a_map():
+    assert (
+        "uav0"
+        in drawn([MapEntity("uav0", "UAV", point(90, 0)), MapEntity("uav1", "UAV", point(89.9, 90))])[2]
+    )
+
+
+@pytest.mark.parametrize("metres", [500, 50_000])
+def test_scale_and_ticks_suit_the_size(metres):
+    degrees = metres / 111_000
+    axes, sheet, texts = drawn([MapEntity("a", "Sea", box((50, 8), (50 + degrees, 8 + degrees)), place=True)])
+    assert 2 <= len(axes.get_xticks()) <= 6
+    assert 2 <= len(axes.get_yticks()) <= 6
+    assert scale_length(sheet.view.width) * 2.5 <= sheet.view.width * 1.0001
+    assert ({"200 m"} if metres == 500 else {"20 km"}) <= texts
+
+
+def test_ticks_are_round_and_few():
+    assert ticks(36.91, 37.13, 4) == pytest.approx((37.0, 37.1))
+    assert tick_step(0.22, 4) == 0.1
+    assert degrees_text(36.94, 0.02, "NS") == "36.94°N"
+    assert degrees_text(-8.79, 0.01, "EW") == "8.79°W"
+
+
+def test_focus_keeps_everything_that_lies_together():
+    near = [Box(x, 0, x + 1, 1) for x in range(8)]
+    assert focus(near) == tuple(range(8))
+    assert focus([*near, Box(9 * FAR * 100, 0, 9 * FAR * 100, 0)]) == tuple(range(8))
+    assert focus([Box(0, 0, 0, 0), Box(1e6, 0, 1e6, 0)]) == (0, 1)
+
+
+def test_a_view_has_the_aspect_of_its_sheet_and_holds_everything():
+    view = view_of([Box(0, 0, 1000, 10_000)], 1.5)
+    assert view.width / view.height == pytest.approx(1.5)
+    assert view.top > 10_000
+    assert view.bottom < 0
+
+
+def test_a_plane_is_cut_where_the_earth_is_emptiest():
+    assert plane_of([point(0, 170), point(0, -170)]).longitude == -180
+
+
+def test_labels_make_room_for_each_other():
+    crowded = [Wanted((100, 100), (40, 10), 5) for _ in range(12)]
+    boxes = place_labels(crowded, [], [], Box(0, 0, 200, 200))
+    assert all(one.grown(GAP - 1e-6).shared(other) == 0 for one, other in combinations(boxes, 2))
+
+
+def test_labels_without_room_are_placed_all_the_same():
+    assert len(place_labels([Wanted((5, 5), (40, 10))] * 3, [], [], Box(0, 0, 10, 10))) == 3
+
+
+def test_labels_avoid_lines():
+    (label,) = place_labels(
+        [Wanted((100, 100), (40, 10), 5)], [], [(120 + x, 100) for x in range(20)], Box(0, 0, 200, 200)
+    )
+    assert label.right < 100
+
+
+def test_kinds_have_a_colour_and_a_shape_each():
+    kinds = ["UAV", "Vessel", "Station", "Location", "OilSpill", "Net"]
+    assert len(set(kind_colours(kinds).values())) == len(set(kind_shapes(kinds).values())) == len(kinds)
+    assert len(kind_colours(f"k{n}" for n in range(40))) == 40
+    assert darker("#ffffff") == "#999999"
+
+
+def test_shortened_text_fits():
+    text = "READY(searcher, CHILDREN(PARENT(uav0)), {oilSpill0, searchArea0})"
+    assert text_width(shortened(text, 120, 8), 8) <= 120
+    assert shortened(text, 1000, 8) == text
+
+
+def test_highlight_and_marks_add_strokes():
+    plain = len(drawn(OIL_SPILL)[0].patches)
+    both = len(drawn(OIL_SPILL, highlight={"uav0", "oilSpill0"}, marked={"uav0", "drifter0"})[0].patches)
+    assert both == plain + 4
+
+
+def test_pictures_are_the_same_under_two_hash_seeds():
+    program = (
+        "import hashlib, io; from matplotlib import rc_context; from matplotlib.figure import Figure\n"
+        "from physical import box, point; from physical.drawing import MapEntity, draw_map\n"
+        "figure = Figure(figsize=(4, 3)); out = io.BytesIO()\n"
+        "draw_map([MapEntity('a', 'Sea', box((1, 1), (2, 2)), place=True),\n"
+        "  *(MapEntity(f'v{n}', f'K{n}', point(1 + n / 9, 1.5), channels=('x', 'y')) for n in range(6))],\n"
+        "  figure.add_axes((0.1, 0.1, 0.8, 0.8)), highlight={'v1', 'v2'}, marked={'v3', 'a'})\n"
+        "with rc_context({'svg.hashsalt': 'x'}): figure.savefig(out, format='svg', metadata={'Date': None})\n"
+        "print(hashlib.sha256(out.getvalue()).hexdigest())"
+    )
+    digests = {
+        subprocess.run(
+            [sys.executable, "-c", program],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout
+        for seed in ("1", "2")
+    }
+    assert len(digests) == 1

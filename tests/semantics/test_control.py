@@ -1,0 +1,420 @@
+"""Realisations and obstacles of controls, `drive`, and control that takes time."""
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from small_missions import SHAPES, aboard, around, enabled, explore, mission, move_to, run
+
+from physical import circle, point
+from semantics import strategies
+from semantics.control import Obstacle, applicable, is_consistent, obstacle, realisations
+from semantics.drive import drive
+from semantics.environment import Drifts, Vanishes
+from semantics.expressions import Literal
+from semantics.initial import Beliefs
+from semantics.physical_model import Carried, InTransit, Placed
+from semantics.reactions import COMMANDS, Pattern, PlaceVariable, Reaction, moved, relinked
+from semantics.requests import CTR, FLY
+from semantics.rules import actuate, command, commit
+from semantics.setting import Control, Setting
+from semantics.signature import REGION, Kind, Signature
+from semantics.statements import Case, ControlBy, Observe, React, Send
+from semantics.structure import Linked
+from semantics.successors import successors
+
+TIMED = {"control": Control.TIMED}
+
+
+def commanding(*statements, entities=("base", "area", "u0"), host="u0", **more):
+    c = mission(entities, statements, {"a": (host, tuple(range(len(statements))))}, **(TIMED | more))
+    return run(c, "req_ctr")
+
+
+def by(name, *arguments):
+    return ControlBy(name, tuple(map(Literal, arguments)))
+
+
+# --- drive ------------------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=150)
+@given(st.data())
+def test_drive_makes_the_reactum_true_and_disturbs_nothing_else(data):
+    world = data.draw(strategies.worlds())
+    beliefs = data.draw(strategies.beliefs(world)) if data.draw(st.integers(0, 3)) == 3 else None
+    c = world.initial(agents={"a": ("uav0", ())}, beliefs=beliefs)
+    reaction = data.draw(strategies.reactions(sorted(world.kinds), "uav0"))
+    for match in applicable(c, "a", reaction):
+        driven = drive(c, c.setting, reaction, match) if is_consistent(c, reaction, match) else None
+        if driven is None:
+            continue
+        after = c.with_(driven.changes).structure
+        assert after.consistent(match.relations(reaction.reactum), match.nodes(reaction.reactum))
+        movers = dict(moved(reaction, match))
+        linkers = {node for node, _, _ in relinked(reaction, match, c.structure.logical)}
+        assert {cell[1] for cell in driven.changes if cell[0] == "placement"} <= set(movers)
+        assert {cell[1] for cell in driven.changes if cell[0] == "channels"} <= linkers
+        if len(movers) == 1:
+            assert all(after.physical.abstract_parent(node) == place for node, place in movers.items())
+        for node in movers:
+            assert c.structure.physical.cargo(node) <= after.physical.cargo(node)
+
+
+def test_a_mover_is_placed_at_the_centroid_unless_a_smaller_place_would_swallow_it():
+    c = commanding(move_to("area"), entities=("sea", "area", "base", "spill", "u0"), control=Control.ATOMIC)
+    after = run(c, "actuate").structure
+    assert after.physical.abstract_parent("u0") == "area"  # and not the spill at its centre
+    assert not after.physical.contains("spill", "u0")
+
+
+def test_what_is_carried_leaves_no_hole_where_its_carrier_is():
+    kinds = [
+        Kind("Place", frozenset({"Uav", "Vessel"})),
+        Kind("Vessel", frozenset({"Uav"}), frozenset({"Vessel"}), driven=True),
+        Kind("Uav", driven=True),
+    ]
+    c = commanding(
+        move_to("ship"),
+        entities=("sea", "base", "ship", "boat", "u0"),
+        placed={"boat": aboard("ship", "boat")},
+        signature=Signature.of(kinds),
+        control=Control.ATOMIC,
+    )
+    assert run(c, "actuate").structure.physical.abstract_parent("u0") == "ship"
+
+
+def test_what_a_carrier_holds_goes_along():
+    c = commanding(
+        move_to("area"),
+        entities=("sea", "area", "ship", "crate"),
+        host="ship",
+        placed={"crate": aboard("ship", "crate")},
+        control=Control.ATOMIC,
+    )
+    physical = run(c, "actuate").structure.physical
+    assert physical.contains("area", "crate")
+    assert physical.abstract_parent("crate") == "ship"
+
+
+def test_what_a_carrier_holds_may_be_put_where_the_carrier_is_at_once():
+    c = commanding(
+        by("PUT", "crate", "sea"),
+        entities=("sea", "area", "ship", "crate"),
+        host="ship",
+        placed={"crate": aboard("ship", "crate")},
+    )
+    assert enabled(c) == ["actuate"]
+    assert run(c, "actuate").structure.physical.abstract_parent("crate") == "sea"
+
+
+def test_what_a_carrier_holds_cannot_be_put_where_the_carrier_is_not():
+    c = commanding(
+        by("PUT", "crate", "area"),
+        entities=("sea", "area", "ship", "crate"),
+        host="ship",
+        placed={"crate": aboard("ship", "crate")},
+    )
+    assert enabled(c) == []
+    assert obstacle(c, c.eta.all()[0].request) is Obstacle.UNREALISABLE
+
+
+def test_nothing_boards_what_rides_on_it():
+    c = commanding(
+        move_to("boat"),
+        entities=("sea", "ship", "boat"),
+        host="ship",
+        placed={"boat": aboard("ship", "boat")},
+        beliefs=Beliefs({"boat": "sea"}),
+        control=Control.ATOMIC,
+    )
+    assert enabled(c) == []
+    assert obstacle(c, c.eta.all()[0].request) is Obstacle.UNREALISABLE
+
+
+def test_a_hand_over_that_is_believed_done_is_still_made_true():
+    c = commanding(
+        by("HAND", "u0", "gcs1"),
+        entities=("base", "u0", "gcs0", "gcs1"),
+        host="gcs0",
+        channels={"gcs0": ["control:0"], "gcs1": ["control:1"], "u0": ["control:0"]},
+        beliefs=Beliefs({}, {"u0": ["control:0", "control:1"]}),
+        control=Control.ATOMIC,
+    )
+    after = run(c, "actuate").structure
+    assert after.locally_consistent((Linked("control:1", "u0"),))
+    assert after.logical.links("u0") == ("control:0", "control:1")
+
+
+def test_creating_and_deleting_nothing_a_closed_node_must_be_empty_in_fact_too():
+    closing = Reaction(
+        "swap",
+        Pattern(("base", "u0"), (("u0", "base"),), closed=("base",)),
+        Pattern(("base", "u0"), (("u0", "base"),)),
+    )
+    c = mission(["base", "u0", "u1"], agents={"a": ("u0", ())}, beliefs=Beliefs({"u1": REGION}))
+    (match,) = applicable(c, "a", closing)
+    assert not is_consistent(c, closing, match)
+    assert obstacle(c, CTR("a", closing)) is Obstacle.INCONSISTENT
+
+
+# --- obstacles --------------------------------------------------------------------------------------------------
+
+
+def test_the_three_obstacles_are_told_apart():
+    def meets(**more):
+        c = commanding(move_to("area"), **more)
+        return obstacle(c, c.eta.all()[0].request)
+
+    assert meets() is None
+    assert meets(beliefs=Beliefs({"area": None})) is Obstacle.UNMATCHED
+    assert meets(beliefs=Beliefs({"area": REGION}), placed={"area": None}) is Obstacle.INCONSISTENT
+    assert meets(beliefs=Beliefs({"u0": "area"}), entities=("base", "area", "u0")) is Obstacle.INCONSISTENT
+    still = Signature.of([Kind("Place", frozenset({"Uav"})), Kind("Uav")])
+    assert meets(signature=still) is Obstacle.UNREALISABLE
+
+
+@given(strategies.configurations())
+def test_a_control_in_line_is_served_or_has_an_obstacle_or_waits(c):
+    for agent in c.alpha.names():
+        for pending in c.eta.in_line(agent):
+            request = pending.request
+            if not isinstance(request, CTR | FLY):
+                continue
+            rules = (actuate, command) if isinstance(request, CTR) else (commit,)
+            served = any(t.served == pending for rule in rules for t in rule(c, agent))
+            assert not (served and obstacle(c, request))
+            if not served and obstacle(c, request) is None:
+                physical = c.structure.physical
+                assert any(physical.transit(name) is not None for name in physical.entities())
+
+
+# --- control that takes time ------------------------------------------------------------------------------------
+
+
+def test_command_changes_neither_belief_nor_where_the_entity_was():
+    c = commanding(move_to("area"))
+    after = run(c, "command")
+    assert after.structure.logical.parent("u0") == "base"
+    assert after.structure.physical.placement("u0") == InTransit(SHAPES["u0"], "area")
+    assert isinstance(after.eta.all()[0].request, FLY)
+
+
+def test_command_requires_timed_control():
+    assert enabled(commanding(move_to("area"), control=Control.ATOMIC)) == ["actuate"]
+    assert enabled(commanding(move_to("area"))) == ["command"]
+
+
+def test_command_requires_what_actuate_requires():
+    assert enabled(commanding(move_to("area"), beliefs=Beliefs({"area": None}))) == []
+    assert enabled(commanding(move_to("area"), beliefs=Beliefs({"u0": "area"}))) == []
+
+
+def two_commands(beliefs=None):
+    """Return a mission in which both agents of u0 command it, the first already on its way."""
+    statements = (move_to("area"), move_to("sea"))
+    c = mission(
+        ["base", "sea", "area", "u0"],
+        statements,
+        {"a": ("u0", (0,)), "b": ("u0", (1,))},
+        beliefs=beliefs,
+        **TIMED,
+    )
+    for rule, agent in (("req_ctr", "a"), ("req_ctr", "b"), ("command", "a")):
+        c = next(t.target for t in successors(c) if (t.label.rule, t.label.agent) == (rule, agent))
+    return c
+
+
+def test_a_command_for_an_entity_in_transit_waits_and_is_not_inconsistent():
+    c = two_commands()
+    assert enabled(c) == ["commit"]
+    assert obstacle(c, c.eta.of("b")[0].request) is None
+    assert enabled(run(c, "commit")) == ["command"]
+
+
+def test_a_command_waits_for_the_carrier_too_even_to_put_something_down():
+    put, go = by("PUT", "crate", "sea"), move_to("area")
+    c = mission(
+        ["sea", "area", "ship", "crate"],
+        (go, put),
+        {"a": ("ship", (0,)), "b": ("ship", (1,))},
+        placed={"crate": aboard("ship", "crate")},
+        **TIMED,
+    )
+    for rule, agent in (("req_ctr", "a"), ("req_ctr", "b"), ("command", "a")):
+        c = next(t.target for t in successors(c) if (t.label.rule, t.label.agent) == (rule, agent))
+    assert enabled(c) == ["commit"]
+    assert obstacle(c, c.eta.of("b")[0].request) is None
+
+
+def test_commit_makes_the_reactum_true():
+    after = run(commanding(move_to("area")), "command", "commit")
+    assert after.structure.logical.parent("u0") == "area"
+    assert after.structure.physical.abstract_parent("u0") == "area"
+    assert after.eta.all() == ()
+
+
+def test_commit_requires_a_flight_in_line():
+    c = run(commanding(move_to("area")), "command")
+    fly = c.eta.all()[0].request
+    behind = c.with_({("line", "a"): (CTR("a", fly.reaction), fly)})
+    assert list(commit(behind, "a")) == []
+
+
+def test_commit_requires_the_entity_still_to_be_in_transit():
+    c = run(commanding(move_to("area")), "command").with_({("placement", "u0"): SHAPES["u1"]})
+    assert enabled(c) == []
+    assert obstacle(c, c.eta.all()[0].request) is Obstacle.INCONSISTENT
+
+
+def test_commit_requires_the_target_to_be_known_and_there():
+    flying = run(commanding(move_to("area")), "command")
+    lost = flying.with_({("placement", "area"): None})
+    forgotten = flying.with_({("parent", "area"): None})
+    assert (enabled(lost), enabled(forgotten)) == ([], [])
+    assert obstacle(lost, flying.eta.all()[0].request) is Obstacle.INCONSISTENT
+    assert obstacle(forgotten, flying.eta.all()[0].request) is Obstacle.UNMATCHED
+
+
+def test_commit_requires_its_unmoved_part_to_hold_in_belief_and_in_fact():
+    x = PlaceVariable("x")
+    meet = Reaction(
+        "meet",
+        Pattern(("u0", "u1", "area", "base"), (("u0", x), ("u1", "base"))),
+        Pattern(("u0", "u1", "area", "base"), (("u0", "area"), ("u1", "base"))),
+    )
+    c = mission(["base", "sea", "area", "u0", "u1"], agents={"a": ("u0", ())}, **TIMED)
+    c = run(c.with_({("line", "a"): (CTR("a", meet),)}), "command")
+    fly = c.eta.all()[0].request
+    assert enabled(c) == ["commit"]
+    assert obstacle(c.with_({("parent", "u1"): "sea"}), fly) is Obstacle.UNMATCHED
+    assert obstacle(c.with_({("placement", "u1"): SHAPES["spill"]}), fly) is Obstacle.INCONSISTENT
+    assert (
+        obstacle(c.with_({("parent", "u0"): REGION}), fly) is None
+    )  # the moved node's own parent may change
+
+
+def test_commit_requires_every_node_to_be_outside_of_what_is_passive():
+    c = run(commanding(move_to("area"), entities=("base", "area", "bunker", "u0")), "command")
+    inside = c.with_({("parent", "area"): "bunker"})
+    assert enabled(inside) == []
+    assert obstacle(inside, c.eta.all()[0].request) is Obstacle.UNMATCHED
+
+
+def test_commit_goes_to_where_the_place_is_now():
+    north = Placed(circle((36.78, -8.62), 400))
+    c = run(
+        commanding(
+            move_to("spill"),
+            entities=("sea", "base", "area", "spill", "u0"),
+            environment=(Drifts("spill", (north,), ("north",), ((),), (0,)),),
+        ),
+        "command",
+        "env",
+        "commit",
+    )
+    assert c.structure.physical.abstract_parent("u0") == "spill"
+    assert c.structure.physical.contains("spill", "u0")
+
+
+def test_a_lost_target_is_inconsistent():
+    c = run(
+        commanding(
+            move_to("spill"), entities=("sea", "base", "spill", "u0"), environment=(Vanishes("spill"),)
+        ),
+        "command",
+        "env",
+    )
+    assert obstacle(c, c.eta.all()[0].request) is Obstacle.INCONSISTENT
+
+
+def test_nobody_sees_it_arrived_before_it_has():
+    look = Observe(strategies.QueryOf("CHILDREN", strategies.QueryOf(None, Literal("area"))))
+    c = mission(
+        ["base", "sea", "area", "u0", "u1"],
+        (move_to("area"), look),
+        {"a": ("u0", (0,)), "b": ("u1", (1,))},
+        **TIMED,
+    )
+    for t in explore(c).transitions:
+        before, transition = t
+        flying = isinstance(before.structure.physical.placement("u0"), InTransit)
+        if transition.label.rule == "sense" and flying:
+            assert "u0" not in transition.target.eta.of("b")[0].request.observation
+
+
+def test_a_flight_blocks_its_agents_line_but_messages_arrive():
+    statements = (
+        move_to("area"),
+        Observe(around()),
+        Send(Literal("go"), Literal("b")),
+        React((Case(strategies.Anything("m", "message"), None, ()),)),
+    )
+    c = mission(["base", "area", "u0"], statements, {"a": ("u0", (0, 1, 2)), "b": ("u0", (3,))}, **TIMED)
+    c = run(c, "req_ctr", "command", "req_obs", "req_snd")
+    assert enabled(c) == ["commit", "snd"]
+    assert enabled(run(c, "snd")) == ["commit", "rcv_msg"]
+    assert enabled(run(c, "commit")) == ["sense", "snd"]
+
+
+def test_link_changes_commit_at_once():
+    c = commanding(by("CONNECT_HOST_TO", "u1"), entities=("base", "u0", "u1"), channels={"u1": ["w"]})
+    assert enabled(c) == ["actuate"]
+    assert run(c, "actuate").structure.physical.links("u0") == ("w",)
+
+
+def test_a_command_from_a_carrier_keeps_the_shape_of_what_is_carried():
+    more = {"entities": ("sea", "area", "ship", "u0"), "placed": {"u0": aboard("ship", "u0")}}
+    flying = run(commanding(move_to("area"), **more), "command")
+    assert flying.structure.physical.placement("u0").origin.geometry.is_point
+    assert flying.structure.physical.carrier("u0") is None
+    arrived = run(flying, "commit").structure.physical.placement("u0")
+    at_once = run(commanding(move_to("area"), control=Control.ATOMIC, **more), "actuate")
+    assert arrived == at_once.structure.physical.placement("u0")
+
+
+@settings(max_examples=150)
+@given(st.data())
+def test_atomic_control_is_command_then_commit_with_nothing_between(data):
+    world = data.draw(strategies.worlds())
+    reaction = data.draw(strategies.reactions(sorted(world.kinds), "uav0"))
+    c = world.initial(agents={"a": ("uav0", ())}).with_({("line", "a"): (CTR("a", reaction),)})
+    timed = under(c, c.setting.with_(**TIMED))
+    at_once = {t.target for t in actuate(c, "a")}
+    direct = {t.target for t in actuate(timed, "a")}
+    flown = {after.target for t in command(timed, "a") for after in commit(t.target, "a")}
+    assert at_once == direct | flown
+    assert len(list(realisations(c, CTR("a", reaction)))) == len(list(actuate(timed, "a"))) + len(
+        list(command(timed, "a"))
+    )
+
+
+def under(c, setting: Setting):
+    return type(c)(setting, c.state)
+
+
+@given(strategies.configurations(strategies.initial_configurations(controls=[Control.TIMED])))
+def test_whatever_is_in_transit_was_commanded_and_will_be_committed(c):
+    flights = [each.request for each in c.eta.all() if isinstance(each.request, FLY)]
+    travelling = {node for fly in flights for node, _ in moved(fly.reaction, fly.match)}
+    for name in c.structure.physical.entities():
+        if isinstance(c.structure.physical.placement(name), InTransit):
+            assert name in travelling
+
+
+def test_every_command_of_the_language_is_realisable_somewhere():
+    c = mission(
+        ["sea", "base", "area", "ship", "crate", "u0", "gcs0", "gcs1"],
+        placed={"crate": aboard("ship", "crate"), "u0": Placed(point(36.6001, -8.5))},
+        channels={"gcs0": ["control:0", "w"], "u0": ["control:0"], "ship": ["w"], "gcs1": ["control:1", "v"]},
+        agents={"a": ("gcs0", ()), "s": ("ship", ())},
+    )
+    for agent, name, arguments in (
+        ("s", "MOVE_HOST_TO", ("area",)),
+        ("a", "MOVE", ("u0", "area")),
+        ("s", "PUT", ("crate", "sea")),
+        ("a", "HAND", ("u0", "gcs1")),
+        ("a", "CONNECT_HOST_TO", ("gcs1",)),
+        ("a", "DISCONNECT_HOST_FROM", ("ship",)),
+    ):
+        reaction = COMMANDS[name](c.alpha.host(agent), *arguments)
+        assert obstacle(c, CTR(agent, reaction)) is None, name
+    assert isinstance(c.structure.physical.placement("crate"), Carried)

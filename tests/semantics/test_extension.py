@@ -1,0 +1,262 @@
+"""Messages, migration, spawning and `say`: each rule's conclusion, and what happens without each premise."""
+
+import pytest
+from small_missions import GUARD, around, enabled, mission, move_to, run
+
+from semantics.environment import Drops, Says
+from semantics.expressions import Apply, Fault, Literal, Self, Variable
+from semantics.extension import migrate, rcv_msg, req_mgr, req_snd, say, snd, spawn
+from semantics.initial import Beliefs
+from semantics.patterns import Anything, Elements, Exactly
+from semantics.program import Behaviour, Program
+from semantics.queries import Observation
+from semantics.reactions import COMMANDS
+from semantics.setting import Scheduler
+from semantics.statements import Case, Display, Migrate, Observe, React, Send, Spawn
+from semantics.structure import Parent
+from semantics.successors import successors
+
+GO = Send(Literal("go"), Literal("b"))
+ON_W = {"u0": ["w"], "u1": ["w"]}
+
+
+def hears(*cases):
+    return React(cases or (Case(Anything("m", "message"), None, ()),))
+
+
+def pair(*statements, a=(0,), b=(), **more):
+    """Return a mission with a on u0 and b on u1."""
+    return mission(["base", "u0", "u1"], statements, {"a": ("u0", a), "b": ("u1", b)}, **more)
+
+
+# --- messages ---------------------------------------------------------------------------------------------------
+
+
+def test_req_snd_adds_the_request_and_the_agent_continues():
+    c = run(pair(GO), "req_snd")
+    assert [str(each.request) for each in c.eta.all()] == ['SND(a, b, "go")']
+    assert c.alpha.code("a") == ()
+
+
+def test_req_snd_requires_the_agent_to_be_at_send():
+    assert list(req_snd(pair(move_to("base")), "a")) == []
+
+
+@pytest.mark.parametrize("value", [1, frozenset(), frozenset({"a", "b"})])
+def test_sending_to_what_is_not_one_name_is_a_fault(value):
+    with pytest.raises(Fault, match="name was expected"):
+        successors(pair(Send(Literal("go"), Literal(value))))
+
+
+def test_snd_puts_the_message_into_the_mailbox():
+    c = run(pair(GO, channels=ON_W), "req_snd", "snd")
+    assert c.alpha.mailbox("b") == ("go",)
+    assert c.eta.all() == ()
+
+
+def test_snd_requires_a_pending_message():
+    assert list(snd(pair(GO, channels=ON_W), "a")) == []
+
+
+def test_snd_requires_the_agent_that_it_is_for():
+    c = run(pair(Send(Literal("go"), Literal("nobody")), channels=ON_W), "req_snd")
+    assert list(snd(c, "a")) == []
+
+
+def test_snd_requires_a_link_in_belief_and_in_fact():
+    for believed, actual, delivered in (
+        (ON_W, ON_W, 1),
+        ({"u0": [], "u1": []}, ON_W, 0),
+        (ON_W, {}, 0),
+        ({"u0": ["v"], "u1": ["v"]}, ON_W, 0),
+    ):
+        c = run(pair(GO, channels=actual, beliefs=Beliefs({}, believed)), "req_snd")
+        assert len(list(snd(c, "a"))) == delivered
+
+
+def test_snd_requires_a_channel_that_is_up():
+    c = run(pair(GO, channels=ON_W, environment=(Drops("w", returns=True),)), "req_snd", "env")
+    assert list(snd(c, "a")) == []
+    assert len(list(snd(run(c, "env"), "a"))) == 1
+
+
+def test_agents_on_one_node_need_no_link():
+    c = mission(["u0"], (GO,), {"a": ("u0", (0,)), "b": ("u0", ())})
+    assert run(c, "req_snd", "snd").alpha.mailbox("b") == ("go",)
+
+
+def test_a_mailbox_has_no_order_of_arrival():
+    both = (Send(Literal("x"), Literal("b")), Send(Literal("y"), Literal("b")))
+    c = run(pair(*both, a=(0, 1), channels=ON_W), "req_snd", "req_snd")
+    ends = {after.target for first in snd(c, "a") for after in snd(first.target, "a")}
+    assert [end.alpha.mailbox("b") for end in ends] == [("x", "y")]
+
+
+def test_messages_that_show_alike_are_kept_apart_in_one_order():
+    one, other = Observation(("u0",)), Observation(("u0",), relations=(Parent("u0", "base"),))
+    c = pair(a=())
+    for first, second in ((one, other), (other, one)):
+        after = c.with_(c.alpha.posting("b", first))
+        after = after.with_(after.alpha.posting("b", second))
+        assert after.alpha.mailbox("b") == tuple(sorted((one, other), key=repr))
+
+
+def received(message, *cases, **more):
+    return run(
+        pair(
+            Send(message, Literal("b")),
+            hears(*cases),
+            Display(Literal(1)),
+            a=(0,),
+            b=(1,),
+            channels=ON_W,
+            **more,
+        ),
+        "req_snd",
+        "snd",
+    )
+
+
+def test_rcv_msg_binds_the_message_and_takes_it_from_the_mailbox():
+    c = run(
+        received(Literal(("found", "u0")), Case(Elements((Exactly("found"), Anything("x"))), None, (2,))),
+        "rcv_msg",
+    )
+    assert c.alpha.mailbox("b") == ()
+    assert c.alpha.code("b") == (2,)
+
+
+def test_rcv_msg_requires_the_agent_to_be_at_a_react():
+    c = run(pair(GO, channels=ON_W), "req_snd", "snd")
+    assert list(rcv_msg(c, "b")) == []
+
+
+def test_rcv_msg_requires_a_message():
+    assert list(rcv_msg(pair(hears(), a=(), b=(0,)), "b")) == []
+
+
+def test_rcv_msg_requires_a_case_for_it():
+    assert list(rcv_msg(received(Literal("go"), Case(Exactly("stop"), None, ())), "b")) == []
+    assert list(rcv_msg(received(Literal("go"), Case(Anything("o", "observation"), None, ())), "b")) == []
+
+
+def test_a_message_goes_into_the_first_case_that_fits():
+    same = Apply("==", (Variable("x"), Literal("stop")))
+    cases = (
+        Case(Anything("x", "message"), same, (2,)),
+        Case(Exactly("go"), None, ()),
+        Case(Anything("y"), None, (2,)),
+    )
+    (t,) = rcv_msg(received(Literal("go"), *cases), "b")
+    assert t.target.alpha.code("b") == ()
+
+
+def test_a_react_takes_an_observation_or_a_message_whichever_fits():
+    cases = (Case(Anything("o", "observation"), None, (4,)), Case(Anything("m", "message"), None, (5,)))
+    statements = (GO, Observe(around()), hears(*cases), GUARD, Display(Literal(1)), Display(Literal(2)))
+    c = pair(*statements, a=(0,), b=(1, 2), channels=ON_W)
+    c = run(c, "req_snd", "snd", "req_obs", "sense")
+    assert enabled(c) == ["rcv_msg", "rcv_obs"]
+    assert run(c, "rcv_msg").alpha.code("b") == (5,)
+    assert run(c, "rcv_obs").alpha.code("b") == (4,)
+
+
+def test_several_messages_that_fit_give_several_successors():
+    both = (Send(Literal("x"), Literal("b")), Send(Literal("y"), Literal("b")), hears())
+    c = run(pair(*both, a=(0, 1), b=(2,), channels=ON_W), "req_snd", "req_snd", "snd", "snd")
+    assert sorted(str(t.label) for t in successors(c)) == [
+        '⟨rcv_msg : b, react("x")⟩',
+        '⟨rcv_msg : b, react("y")⟩',
+    ]
+
+
+# --- migration --------------------------------------------------------------------------------------------------
+
+
+def test_migrate_changes_the_host():
+    c = run(pair(Migrate(Literal("u1")), channels=ON_W), "req_mgr", "migrate")
+    assert c.alpha.host("a") == "u1"
+    assert c.eta.all() == ()
+
+
+def test_req_mgr_requires_the_agent_to_be_at_migrate_and_a_node():
+    assert list(req_mgr(pair(GO), "a")) == []
+    for value in ("nowhere", "region", 1, frozenset({"u0", "u1"})):
+        with pytest.raises(Fault):
+            list(req_mgr(pair(Migrate(Literal(value))), "a"))
+
+
+def test_migrate_requires_a_link_in_belief_and_in_fact():
+    for believed, actual in (({"u0": [], "u1": []}, ON_W), (ON_W, {})):
+        c = run(pair(Migrate(Literal("u1")), channels=actual, beliefs=Beliefs({}, believed)), "req_mgr")
+        assert list(migrate(c, "a")) == []
+
+
+def test_migrate_requires_the_request_to_be_in_line():
+    statements = (move_to("base"), Migrate(Literal("u1")))
+    c = run(pair(*statements, a=(0, 1), channels=ON_W), "req_ctr", "req_mgr")
+    assert list(migrate(c, "a")) == []
+    assert len(list(migrate(run(c, "actuate"), "a"))) == 1
+
+
+# --- spawning ---------------------------------------------------------------------------------------------------
+
+
+def spawning(*statements, behaviour=(1,), parameters=("x",), name="c", a=(0,)):
+    code = (Spawn(name, Literal("u1"), "child", (Literal("go"),)), Display(Variable("x")), *statements)
+    program = Program(code, {"child": Behaviour("child", parameters, behaviour)}, COMMANDS)
+    return mission(["base", "u0", "u1"], agents={"a": ("u0", a)}, program=program)
+
+
+@pytest.mark.parametrize("scheduler", Scheduler)
+def test_spawn_adds_an_agent_with_its_arguments(scheduler):
+    c = spawning()
+    setting = c.setting.with_(scheduler=scheduler)
+    c = run(type(c)(setting, c.state), "spawn")
+    assert c.alpha.names() == ("a", "c")
+    assert (c.alpha.host("c"), c.alpha.code("c"), c.alpha.store("c")) == ("u1", (1,), (("x", "go"),))
+    assert c.alpha.code("a") == ()
+
+
+def test_spawn_requires_the_agent_to_be_at_spawn():
+    assert list(spawn(spawning(a=(1,)), "a")) == []
+
+
+def test_spawning_an_agent_that_is_there_is_a_fault():
+    with pytest.raises(Fault, match="there already"):
+        list(spawn(spawning(name="a"), "a"))
+
+
+def test_spawning_ones_own_behaviour_leaves_ones_own_parameters():
+    more = Apply("+", (Variable("n"), Literal(1)))
+    code = (Spawn("c", Literal("u0"), "child", (more,)), Send(Variable("n"), Self()))
+    program = Program(code, {"child": Behaviour("child", ("n",), (0, 1))}, COMMANDS)
+    c = mission(["u0"], agents={"a": ("u0", (0, 1))}, program=program)
+    c = run(c.with_({("store", "a"): (("n", 1),)}), "spawn")
+    assert (c.alpha.store("a"), c.alpha.store("c")) == ((("n", 1),), (("n", 2),))
+
+
+# --- say --------------------------------------------------------------------------------------------------------
+
+
+def said(times=1, agent="a"):
+    clause = Says("go", agent, times, 0)
+    return mission(["u0"], agents={"a": ("u0", ())}, environment=(clause, Drops("w", returns=False))), clause
+
+
+def test_say_puts_a_message_into_one_mailbox_and_counts():
+    c, clause = said(times=2)
+    (t,) = say(c, clause)
+    assert (t.target.alpha.mailbox("a"), t.target.read(clause.counter)) == (("go",), 1)
+
+
+def test_say_requires_that_it_was_not_said_too_often():
+    c, clause = said()
+    (t,) = say(c, clause)
+    assert list(say(t.target, clause)) == []
+
+
+def test_say_requires_the_agent_and_a_clause_of_its_own():
+    c, clause = said(agent="nobody")
+    assert list(say(c, clause)) == []
+    assert list(say(c, c.setting.environment[1])) == []

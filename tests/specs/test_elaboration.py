@@ -1,0 +1,469 @@
+"""Elaboration: what missions come to, phase by phase, and what runs of them count."""
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from physical import box, centroid, circle, point, translate_to
+from semantics import statements as k
+from semantics.environment import Appears, Drifts, Leaves, Says
+from semantics.expressions import Fault, Host, Literal, QueryOf, Variable
+from semantics.physical_model import Carried, Placed
+from semantics.propositions import And, Inside, Not, Or, VariableIs, holds
+from semantics.setting import Control, Scheduler
+from semantics.statements import (
+    Choose,
+    For,
+    ForEach,
+    Loop,
+    Match,
+    React,
+    Spawn,
+    While,
+)
+from semantics.successors import successors
+from specs.diagnostics import MissionError, Source
+from specs.elaboration import elaborate, load_mission
+from specs.parser import parse
+
+MISSIONS = Path(__file__).parents[2] / "specs" / "missions"
+SIGNATURE = """
+signature {
+  kind Location contains Location, OilSpill, UAV, Vessel, Station, Drifter
+  kind OilSpill contains UAV
+  kind UAV driven
+  kind Vessel driven carries Drifter
+  kind Drifter
+  kind Station
+}
+"""
+WORLD = (
+    SIGNATURE
+    + """
+world {
+  searchArea0: Location = box (37.04, -8.59) (36.94, -8.79)
+  base0: Location = box (37.2, -8.59) (37.1, -8.79)
+  oilSpill0: OilSpill = circle (37.00, -8.70) radius 400 m
+  uav0: UAV = point (37.15, -8.7) linked wifi
+  vessel0: Vessel = point (37.15, -8.6) linked wifi
+  drifter0: Drifter carried by vessel0
+}
+"""
+)
+FIGURE_2 = """
+BigActor a hosted_at uav0 with_behavior {{
+  control(MOVE_HOST_TO searchArea0)
+  observe(CHILDREN(PARENT(HOST)))
+  react {{ {case} }}
+}}
+scheduler {scheduler}
+control {control}
+"""
+STILL = (
+    SIGNATURE
+    + """
+world {
+  searchArea0: Location = box (37.04, -8.59) (36.94, -8.79)
+  base0: Location = box (37.2, -8.59) (37.1, -8.79)
+  oilSpill0: OilSpill = circle (37.00, -8.70) radius 400 m
+  uav0: UAV = point (37.15, -8.7)
+}
+"""
+)
+TESTED_INSIDE = "case obs => if oilSpill0 in obs { control(MOVE_HOST_TO oilSpill0) }"
+GUARDED = "case obs if oilSpill0 in obs => control(MOVE_HOST_TO oilSpill0)"
+
+
+def elaborated(text, directory=Path()):
+    source = Source("test.mission", text)
+    return elaborate(parse(source), source, directory)
+
+
+def actor(body, name="a", host="uav0"):
+    return f"BigActor {name} hosted_at {host} with_behavior {{\n{body}\n}}\n"
+
+
+def mistakes(text, directory=Path()):
+    with pytest.raises(MissionError) as caught:
+        elaborated(text, directory)
+    return [(item.code.number, item.message, item.hint) for item in caught.value.diagnostics]
+
+
+def explore(mission):
+    seen, front, transitions = {mission.initial}, [mission.initial], 0
+    while front:
+        for step in successors(front.pop()):
+            transitions += 1
+            if step.target not in seen:
+                seen.add(step.target)
+                front.append(step.target)
+    return len(seen), transitions
+
+
+# --- Figure 2 -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("case", "scheduler", "control", "count"),
+    [
+        (TESTED_INSIDE, "program_order", "atomic", (10, 10)),
+        (TESTED_INSIDE, "program_order", "timed", (13, 14)),
+        (TESTED_INSIDE, "unordered", "atomic", (16, 18)),
+        (GUARDED, "unordered", "atomic", (12, 12)),
+        (GUARDED, "program_order", "atomic", (10, 10)),
+    ],
+)
+def test_figure_2_on_a_still_world_has_the_paper_s_counts(case, scheduler, control, count):
+    mission = elaborated(STILL + FIGURE_2.format(case=case, scheduler=scheduler, control=control))
+    assert explore(mission) == count
+
+
+def test_what_is_not_said_has_its_default():
+    mission = elaborated(STILL + actor("skip"))
+    assert mission.setting.scheduler is Scheduler.PROGRAM_ORDER
+    assert mission.setting.control is Control.ATOMIC
+    assert not mission.setting.monitored
+    kinds = [prop.kind for prop in mission.properties]
+    assert kinds == ["local_consistency", "race_freedom", "deadlock_freedom", "computation"]
+    assert mission.name == "test"
+    assert mission.line("agent", "a") == STILL.count("\n") + 1
+    assert mission.line("agent", "nobody") == 0
+
+
+def test_elaboration_is_deterministic():
+    text = WORLD + actor("let x = 1 let x = 2 for x in {1} { display(x) }")
+    first, second = elaborated(text), elaborated(text)
+    assert first.setting.program.statements == second.setting.program.statements
+    assert repr(first.initial) == repr(second.initial)
+
+
+# --- world and beliefs ----------------------------------------------------------------------------------------
+
+
+def test_a_carried_entity_has_its_own_shape_or_a_point_where_its_carrier_is():
+    physical = elaborated(WORLD).initial.structure.physical
+    assert physical.placement("drifter0") == Carried("vessel0", Placed(point(37.15, -8.6)))
+    assert physical.abstract_parent("drifter0") == "vessel0"
+
+
+def test_the_first_logical_model_is_that_of_the_world_unless_it_is_believed_otherwise():
+    believed = "believes { uav0 in searchArea0 oilSpill0 unknown vessel0 unlinked drifter0 in region }"
+    plain, other = elaborated(WORLD), elaborated(WORLD + believed)
+    assert plain.initial.structure.logical.parent("uav0") == "base0"
+    logical = other.initial.structure.logical
+    assert [logical.parent(name) for name in ("uav0", "oilSpill0", "drifter0")] == [
+        "searchArea0",
+        None,
+        "region",
+    ]
+    assert (logical.links("vessel0"), logical.links("uav0")) == ((), ("wifi",))
+
+
+def test_what_is_in_an_unknown_place_is_believed_in_the_place_around_that():
+    world = WORLD.replace("uav0: UAV = point (37.15, -8.7)", "uav0: UAV = point (37.0, -8.7)")
+    logical = elaborated(world + "believes { oilSpill0 unknown }").initial.structure.logical
+    assert logical.parent("uav0") == "searchArea0"
+
+
+def test_what_nobody_can_move_is_fixed():
+    moving = "environment { oilSpill0 drifts among base0 searchArea0 vanishes }"
+    assert elaborated(WORLD).fixed == {"searchArea0", "base0", "oilSpill0"}
+    assert elaborated(WORLD + moving).fixed == {"base0"}
+
+
+def test_a_mover_may_straddle_a_border():
+    world = WORLD.replace("circle (37.00, -8.70)", "circle (37.04, -8.70)")
+    assert elaborated(world + "environment { oilSpill0 drifts among searchArea0 }")
+    assert [code for code, *_ in mistakes(world)] == ["LS305"]
+
+
+def test_a_geojson_file_is_read_beside_the_mission(tmp_path):
+    features = [
+        feature("harbour0", "Basin", {"type": "Point", "coordinates": [-8.7, 37.0]}, radius_m=500),
+        feature("tug0", "Vessel", {"type": "Point", "coordinates": [-8.7, 37.0]}, channels=["ais"]),
+    ]
+    (tmp_path / "harbour.geojson").write_text(collection(features))
+    text = (
+        SIGNATURE
+        + 'world { from "harbour.geojson" keep Basin as Location, Vessel }'
+        + actor("skip", host="tug0")
+    )
+    mission = elaborated(text, tmp_path)
+    assert mission.setting.kinds == {"harbour0": "Location", "tug0": "Vessel"}
+    assert mission.initial.structure.logical.parent("tug0") == "harbour0"
+    assert mission.initial.structure.logical.links("tug0") == ("ais",)
+    one = elaborated(text.replace("Vessel }", "Vessel limit 1 }").replace("tug0", "harbour0"), tmp_path)
+    assert one.notes == ("of the 2 entities in harbour.geojson the first 1 are in the world",)
+
+
+def feature(name, kind, geometry, **properties):
+    return {"type": "Feature", "properties": {"name": name, "kind": kind, **properties}, "geometry": geometry}
+
+
+def collection(features):
+    return json.dumps({"type": "FeatureCollection", "features": features})
+
+
+def test_a_recording_is_read_as_of_a_time():
+    pytest.importorskip("pyais")
+    text = SIGNATURE + 'world { from "harbour_watch.nmea" keep Vessel limit 2 }'
+    mission = elaborated(text, MISSIONS)
+    assert len(mission.setting.kinds) == 2
+    assert set(mission.setting.kinds.values()) == {"Vessel"}
+    wrong = text.replace("keep Vessel", "keep Vesel as Vessel")
+    assert mistakes(wrong, MISSIONS)[0][0] == "LS306"
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("none.geojson", "there is no file"),
+        ("/etc/passwd", "is an absolute path"),
+        ("~/x.geojson", "is an absolute path"),
+        ("C:/x.geojson", "is an absolute path"),
+        (".", "there is no file"),
+        ("x" * 5000, "is no path of a file"),
+    ],
+)
+def test_a_file_that_cannot_be_read_is_a_mistake_of_the_mission(name, words, tmp_path):
+    (code, message, _), *_ = mistakes(f'world {{ from "{name}" }}', tmp_path)
+    assert code == "LS007"
+    assert words in message
+
+
+def test_a_mission_file_that_cannot_be_read_is_a_mistake(tmp_path):
+    with pytest.raises(MissionError, match="LS007: the file cannot be read"):
+        load_mission(tmp_path / "none.mission")
+    with pytest.raises(MissionError, match="LS007"):
+        load_mission(tmp_path)
+
+
+# --- behaviours -----------------------------------------------------------------------------------------------
+
+
+def statements(body, more=""):
+    return elaborated(WORLD + actor(body) + more).setting.program.statements
+
+
+def test_each_binding_of_a_variable_has_a_name_of_its_own():
+    mission = elaborated(
+        WORLD
+        + "def show(x) = { display(x) let y = x display(y) }\n"
+        + actor("let x = 1 if true { let x = 2 display(x) } x = 3 show(x)")
+    )
+    program = mission.setting.program
+    variables = [each.variable for each in program.statements if type(each).__name__ == "Assign"]
+    assert variables == ["x", "x#2", "x", "y"]
+    assert program.behaviours["show"].parameters == ("x#show",)
+
+
+def test_a_guard_in_a_react_is_tested_at_the_head_of_its_body():
+    found = statements("react { case obs if uav0 in obs => skip case obs => skip }")
+    react = found[0]
+    assert isinstance(react, React)
+    assert react.cases[0].body == (1,)
+    assert found[1] == k.Tested()
+    assert react.cases[1].body == ()
+
+
+def test_a_guard_in_a_match_is_not():
+    found = statements("match 1 { case x if x == 1 => skip case _ => display(0) }")
+    assert isinstance(found[0], Match)
+    assert k.Tested() not in found
+
+
+def test_while_knows_what_follows_it():
+    found = statements("let i = 0 while i < 2 { i = i + 1 } display(i) display(0)")
+    loop = next(each for each in found if isinstance(each, While))
+    assert loop.after == (3, 4)
+    assert loop.body == (2,)
+
+
+def test_for_goes_through_what_is_left_under_a_hidden_name():
+    found = statements("for x in {1, 2} { display(x) }")
+    assert found[0] == For(found[0].members, "rest#1", 1)
+    assert found[1] == ForEach("x", "rest#1", (2,))
+
+
+def test_a_loop_at_the_top_is_outermost_and_others_are_not():
+    serve = 'def serve() = { loop { react { case "x" => skip } } }\n'
+    inner = 'def inner() = { loop { react { case "x" => skip } } }\n'
+    program = elaborated(
+        WORLD
+        + serve
+        + inner
+        + actor('loop { react { case "x" => inner() } }')
+        + actor("serve()", "b")
+        + actor("if true { loop { observe(HOST) } }", "c")
+    ).setting.program
+    loops = [each.outermost for each in program.statements if isinstance(each, Loop)]
+    assert loops == [True, False, True, False]
+
+
+def test_queries_have_expressions_at_their_leaves():
+    found = statements(
+        "let x = uav0 observe(CHILDREN(PARENT(x))) observe(HOST) observe(ALL) observe(LINKED_TO_HOST)"
+    )
+    queries = [each.query for each in found[1:]]
+    assert queries == [
+        QueryOf("CHILDREN", QueryOf("PARENT", Variable("x"))),
+        QueryOf(None, Host()),
+        QueryOf(None, None),
+        QueryOf("LINKED_TO", Host()),
+    ]
+
+
+def test_skip_leaves_nothing_and_choices_keep_their_blocks():
+    found = statements(
+        "skip choose { skip } or { display(1) } spawn b hosted_at uav0 with_behavior n()", "def n() = {}"
+    )
+    assert found[0] == Choose(((), (1,)))
+    assert found[2] == Spawn("b", Literal("uav0"), "n", ())
+
+
+def test_anonymous_bigactors_are_numbered_in_order():
+    text = WORLD + "".join(f"BigActor hosted_at uav0 with_behavior {{ display({n}) }}\n" for n in range(2))
+    assert elaborated(text + actor("skip", "bigActor0")).initial.alpha.names() == (
+        "bigActor0",
+        "bigActor1",
+        "bigActor2",
+    )
+
+
+def test_the_lines_are_those_of_the_statements():
+    mission = elaborated(WORLD + actor("display(1)\ndisplay(2)"))
+    start = mission.line("agent", "a")
+    assert mission.setting.program.lines == (start + 1, start + 2)
+
+
+def test_a_control_of_what_is_no_node_is_a_fault():
+    mission = elaborated(WORLD + actor('let place = "nowhere" control(MOVE_HOST_TO place)'))
+    step = successors(mission.initial)[0].target
+    with pytest.raises(Fault, match='MOVE_HOST_TO needs a node, not "nowhere"'):
+        successors(step)
+
+
+def test_tail_recursion_is_a_loop():
+    mission = elaborated(
+        WORLD
+        + "def again(n) = { if n > 0 { observe(HOST) react { case obs => again(n - 1) } } }"
+        + actor("again(2)")
+    )
+    assert explore(mission)[0] == 10
+
+
+# --- environment ----------------------------------------------------------------------------------------------
+
+
+def clauses(text):
+    return elaborated(WORLD + actor("skip") + f"environment {{ {text} }}").setting.environment
+
+
+def test_a_drift_among_goes_from_each_placement_to_each_other():
+    (drift,) = clauses("oilSpill0 drifts among circle (37.0, -8.71) radius 400 m, base0, point (37.02, -8.7)")
+    spill = circle((37.0, -8.7), 400)
+    assert drift == Drifts(
+        "oilSpill0",
+        (
+            Placed(circle((37.0, -8.71), 400)),
+            Placed(translate_to(spill, centroid(box((37.2, -8.59), (37.1, -8.79))))),
+            Placed(translate_to(spill, point(37.02, -8.7))),
+        ),
+        ("circle (37.0, -8.71) radius 400 m", "base0", "point (37.02, -8.7)"),
+        ((1, 2), (0, 2), (0, 1)),
+        (0, 1, 2),
+    )
+
+
+def test_a_drift_within_a_place_is_its_finite_quotient():
+    text = (
+        SIGNATURE.replace("Station, Drifter", "Station, Drifter, Buoy").replace(
+            "kind Station", "kind Station kind Buoy"
+        )
+        + """
+    world {
+      sea0: Location = box (37.04, -8.59) (36.94, -8.79)
+      bay0: Location = box (37.00, -8.60) (36.98, -8.62)
+      buoy0: Buoy = point (37.0, -8.7)
+    }
+    environment { buoy0 drifts within sea0 }
+    """
+    )
+    mission = elaborated(text)
+    assert mission.notes == ("borders are left out of the drift of buoy0",)
+    (drift,) = mission.setting.environment
+    assert sorted(drift.names) == ["somewhere in sea0", "somewhere in sea0 and bay0"]
+    assert explore(mission)[0] == 3  # where it was at first is a placement of its own
+
+
+def test_who_appears_has_its_channels_and_may_be_carried():
+    text = WORLD.replace("drifter0: Drifter", "drifter1: Drifter absent drifter0: Drifter") + actor("skip")
+    mission = elaborated(text + "environment { drifter1 appears at vessel0, base0 linked ais }")
+    (clause,) = mission.setting.environment
+    assert isinstance(clause, Appears)
+    assert [type(placement) for placement in clause.placements] == [Carried, Placed]
+    assert clause.channels == ("ais",)
+
+
+def test_what_is_said_goes_to_the_only_bigactor_and_is_counted_by_clause():
+    assert clauses('says "go" at most 2 times says "go" to a uav0 leaves wifi') == (
+        Says("go", "a", 2, 0),
+        Says("go", "a", 1, 1),
+        Leaves("uav0", "wifi", False),
+    )
+
+
+# --- checks ---------------------------------------------------------------------------------------------------
+
+
+def properties(text, body="let x = 1 observe(HOST) react { case obs => display(x) }"):
+    mission = elaborated(WORLD + actor(body) + f"check {{ {text} }}")
+    return mission, mission.properties
+
+
+def test_quantifiers_are_written_out():
+    mission, (first, *_) = properties('invariant "i": forall x: Location . exists y: UAV . y in x -> x == y')
+    both = first.formula
+    assert isinstance(both, And)
+    assert both.formulas[0] == Or(
+        (Or((Not(Inside("uav0", "base0")), both.formulas[0].formulas[0].formulas[1])),)
+    )
+    assert (first.kind, first.name) == ("invariant", "i")
+    assert not holds(first.formula, mission.initial)
+
+
+def test_a_variable_of_a_bigactor_is_any_of_that_name_in_what_it_may_run():
+    _, (first, *_) = properties(
+        'reachable "r": a.x == 1',
+        "let x = 1 if true { let x = 2 display(x) } b(3)\n} def b(x) = { display(x)",
+    )
+    assert first.formula == VariableIs("a", ("x", "x#2", "x#b"), 1, "x")
+
+
+def test_computation_is_always_checked():
+    _, found = properties("arrival")
+    assert [prop.kind for prop in found] == ["arrival", "computation"]
+    assert found[0].line > 0
+
+
+# --- mistakes -------------------------------------------------------------------------------------------------
+
+
+def test_all_mistakes_are_reported_at_once_and_by_position():
+    text = WORLD + actor("display(nothing)", host="uav9") + "environment { wify drops }"
+    assert [message for _, message, _ in mistakes(text)] == [
+        "unknown entity 'uav9'",
+        "unknown name 'nothing'",
+        "unknown channel 'wify'",
+    ]
+
+
+def test_a_missing_extra_names_it(monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "pyais", None)
+    (tmp_path / "x.nmea").write_bytes((MISSIONS / "harbour_watch.nmea").read_bytes())
+    (code, message, hint), *_ = mistakes('world { from "x.nmea" }', tmp_path)
+    assert code == "LS308"
+    assert "pyais" in message
+    assert "ais" in hint
