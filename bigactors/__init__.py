@@ -37,18 +37,21 @@ if TYPE_CHECKING:
     from physical import write_geojson as write_geojson
     from physical.ais_recording import read_recording as read_recording
     from physical.ais_world import world_at as world_at
-    from semantics.configuration import Configuration as Configuration
-    from semantics.configuration import Label as Label
-    from semantics.configuration import Transition as Transition
-    from semantics.initial import initial as initial
+    from semantics import Configuration as Configuration
+    from semantics import Label as Label
+    from semantics import Transition as Transition
+    from semantics import Fault as Fault
+    from semantics import holds as holds
+    from semantics import initial as initial
+    from semantics import monitored as monitored
     from semantics.printing import print_changes as print_changes
     from semantics.printing import print_configuration as print_configuration
-    from semantics.propositions import Property as Property
-    from semantics.setting import Control as Control
-    from semantics.setting import Scheduler as Scheduler
-    from semantics.setting import Setting as Setting
-    from semantics.successors import expand as expand
-    from semantics.successors import successors as successors
+    from semantics import Property as Property
+    from semantics import Control as Control
+    from semantics import Scheduler as Scheduler
+    from semantics import Setting as Setting
+    from semantics import expand as expand
+    from semantics import successors as successors
     from specs import Diagnostic as Diagnostic
     from specs import MissionError as MissionError
     from specs import format_mission as format_mission
@@ -66,12 +69,11 @@ HOMES: Final = {
     "physical": ("PhysicalProperty", "read_geojson", "write_geojson"),
     "physical.ais_recording": ("read_recording",),
     "physical.ais_world": ("world_at",),
-    "semantics.configuration": ("Configuration", "Label", "Transition"),
-    "semantics.initial": ("initial",),
+    "semantics": (
+        "Configuration", "Control", "Fault", "Label", "Property", "Scheduler", "Setting", "Transition", "expand",
+        "holds", "initial", "monitored", "successors",
+    ),
     "semantics.printing": ("print_changes", "print_configuration"),
-    "semantics.propositions": ("Property",),
-    "semantics.setting": ("Control", "Scheduler", "Setting"),
-    "semantics.successors": ("expand", "successors"),
     "specs": ("Diagnostic", "MissionError", "format_mission"),
     "specs.elaboration": ("ElaboratedMission", "load_mission"),
 }  # fmt: skip

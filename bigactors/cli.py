@@ -7,7 +7,7 @@ from importlib import import_module
 from bigactors.arguments import parse_arguments
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake, describe_bug
-from bigactors.terminal import paint, safe_output, tell
+from bigactors.terminal import safe_output, tell
 
 
 def main(line: Sequence[str] | None = None) -> int:
@@ -27,7 +27,7 @@ def run(line: Sequence[str]) -> int:
     except SystemExit as end:  # after --help and --version
         return int(end.code or 0)
     except Mistake as mistake:
-        tell(str(mistake) if mistake.place else f"{paint('bigactors:', 'red', sys.stderr)} {mistake}")
+        tell(str(mistake), "" if mistake.place else "bigactors:")
         return Exit.MISTAKE
     except KeyboardInterrupt:
         tell("bigactors: interrupted, nothing is decided")

@@ -14,7 +14,8 @@ COLOURS = {"red": "31", "green": "32", "yellow": "33", "faint": "2"}
 _PLAIN = {
     "✓": "+", "✗": "x", "⟨": "<", "⟩": ">", "↦": "|->", "⇒": "=>", "→": "->", "∅": "{}", "⊕": "(+)", "′": "'",
     "α": "alpha", "β": "beta", "γ": "gamma", "η": "eta", "σ": "sigma", "∈": "in", "∪": "u", "·": ".", "…": "...",
-    "─": "-", "−": "-", "×": "x", "₀": "0",
+    "─": "-", "−": "-", "×": "x", "₀": "0", "�": "?",
+    "├": "|", "│": "|", "└": "`",
 }  # fmt: skip
 """How the paper's notation is written where the output cannot show it."""
 
@@ -49,10 +50,16 @@ def say_text(text: str) -> None:
     _write(sys.stdout, text)
 
 
-def tell(line: str) -> None:
-    """Print a line that is not the answer: a mistake, a warning, where a file was written."""
-    sys.stdout.flush() if not sys.stdout.closed else None
-    _write(sys.stderr, f"{line}\n", flush=True)
+def tell(text: str, mark: str = "") -> None:
+    """Print what is not the answer: a mistake, a warning, where a file was written; `mark` stands before it in red.
+
+    What files say may be quoted in it: signs that would steer a terminal are not passed on.
+    """
+    _write(sys.stdout, "", flush=True)
+    shown = "".join(
+        sign if sign.isprintable() or sign in "\n\t" else "\N{REPLACEMENT CHARACTER}" for sign in text
+    )
+    _write(sys.stderr, f"{paint(mark, 'red', sys.stderr)} {shown}\n" if mark else f"{shown}\n", flush=True)
 
 
 def paint(text: str, colour: str, stream: TextIO) -> str:

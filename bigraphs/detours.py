@@ -33,6 +33,8 @@ class Obstacles:
 
     def avoid(self, curve: Curve, lane: int) -> Curve:
         """Return the curve, or a way around what it crosses; lanes keep links side by side."""
+        if not self.corners:
+            return curve
         crossed = sum(self.cost(one, other) - _length(one, other) for one, other in pairwise(_sampled(curve)))
         if crossed < 20.0:
             return curve

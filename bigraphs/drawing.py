@@ -32,6 +32,7 @@ HIGHLIGHT: Final = "#e4572e"
 INK: Final = "#3b4252"
 MARGIN: Final = 10.0
 ENLARGED: Final = 1.25
+LARGEST: Final = 20.0  # inches
 
 
 def draw_bigraph(
@@ -43,8 +44,8 @@ def draw_bigraph(
 ) -> Axes:
     """Draw into matplotlib axes, new ones if none are given, and return them.
 
-    Everything scales with the axes as they are placed now, so labels always fit. `highlight` holds node and link names. A *ghost*,
-    dashed, stands for a node in its further places.
+    Everything scales with the axes as they are placed now, so labels always fit. `highlight` holds node and link
+    names. A *ghost*, dashed, stands for a node in its further places.
     """
     plan = layout(bigraph)
     axes = axes if axes is not None else _new_axes(plan, title)
@@ -83,7 +84,8 @@ def _new_axes(plan: Layout, title: str | None) -> Axes:
     from matplotlib.figure import Figure  # noqa: PLC0415 - a picture is worth the wait, an import is not
 
     width, height = plan.width + 2 * MARGIN, plan.height + 2 * MARGIN + _head(title)
-    figure = Figure(figsize=(width * ENLARGED / 72, height * ENLARGED / 72), facecolor="white")
+    inches = min(ENLARGED / 72, LARGEST / max(width, height))
+    figure = Figure(figsize=(width * inches, height * inches), facecolor="white")
     return figure.add_axes((0.0, 0.0, 1.0, 1.0))
 
 

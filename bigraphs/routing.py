@@ -71,7 +71,8 @@ def _goals(bigraph: Bigraph, layout: Layout, boxes: Mapping[int, Box]) -> dict[L
 def _middle(spots: Sequence[Point], boxes: Sequence[Box], layout: Layout) -> Point:
     """Return the point nearest to the middle of the spots that is in no innermost box."""
     x, y = (sum(spot[axis] for spot in spots) / len(spots) for axis in (0, 1))
-    inner = [box for box in boxes if not any(box is not other and box.contains(other) for other in boxes)]
+    close = [box for box in boxes if _near((x, y), box, 6.0 * 14 + 5.0)]
+    inner = [box for box in close if not any(box is not other and box.contains(other) for other in close)]
     around = [(x + 6 * dx, y + 6 * dy) for dx in range(-14, 15) for dy in range(-14, 15)]
     free = [p for p in around if 0 < p[0] < layout.width and not any(_near(p, box, 5.0) for box in inner)]
     return min(free, key=lambda p: (hypot(p[0] - x, p[1] - y), p), default=(x, y))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from physical.map_labels import Spot
 from physical.map_marks import (
@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 __all__ = ["MapEntity", "Sheet", "draw_map"]
+
+BULGES: Final = (0.12, -0.12, 0.05, -0.05, 0.19, -0.19)
+"""How far the lines of channels leave the straight way, a share of its length."""
 
 
 def draw_map(  # noqa: PLR0913 - the optional ones are how it looks
@@ -111,9 +114,10 @@ def _draw_channels(axes: Axes, scene: Scene, colours: Mapping[str, str]) -> list
     channels = sorted({channel for entity in scene.entities.values() for channel in entity.channels})
     own = kind_colours(channels) | dict(colours)
     lines: list[Spot] = []
-    for channel in channels:
+    for rank, channel in enumerate(channels):
         for start, end in _lines_of(scene, channel):
-            curve = arc(start, end)
+            # Channels between the same two would hide each other.
+            curve = arc(min(start, end), max(start, end), BULGES[rank % len(BULGES)])
             draw_curve(axes, curve, own[channel])
             lines += samples(curve)
     return lines

@@ -93,13 +93,13 @@ class Wanted:
     Attributes:
         at: The spot that it names.
         size: Its width and height.
-        clearance: How far around the spot nothing may be written.
+        clearance: How far to the side of the spot, and above and below it, nothing may be written.
         inside: Middles of the label that are tried first, best first.
     """
 
     at: Spot
     size: Spot
-    clearance: float = 0.0
+    clearance: Spot = (0.0, 0.0)
     inside: tuple[Spot, ...] = ()
 
 
@@ -124,7 +124,7 @@ def leader(box: Box, label: Wanted) -> tuple[Spot, ...]:
         return ()
     (x1, y1), (x2, y2) = box.nearest(label.at), label.at
     length = math.dist((x1, y1), label.at)
-    if length <= label.clearance + BESIDE:
+    if length <= max(label.clearance) + BESIDE:
         return ()
     parts = round(length / 4.0)
     return tuple((x1 + (x2 - x1) * n / parts, y1 + (y2 - y1) * n / parts) for n in range(1, parts))
@@ -169,17 +169,17 @@ def _candidates(label: Wanted) -> Iterator[tuple[float, Box]]:
     for ring in RINGS:
         for rank, direction in enumerate(DIRECTIONS):
             price = start + ring + rank * 0.1
-            yield price, _beside(label, math.radians(direction), label.clearance + ring)
+            yield price, _beside(label, math.radians(direction), ring)
         start += 2.0  # hence no later candidate is cheaper
 
 
 def _beside(label: Wanted, direction: float, distance: float) -> Box:
-    """Return the label's box when it touches a circle about what it names, seen in a direction."""
+    """Return the label's box at a distance from what it names, seen in a direction."""
     east, north = math.cos(direction), math.sin(direction)
     wide, high = label.size
     # The box's support in that direction; a label to the side stays level with what it names.
-    x = label.at[0] + east * distance + _sign(east) * wide / 2
-    y = label.at[1] + north * distance + _sign(north) * high / 2
+    x = label.at[0] + east * (label.clearance[0] + distance) + _sign(east) * wide / 2
+    y = label.at[1] + north * (label.clearance[1] + distance) + _sign(north) * high / 2
     return around((x, y), label.size)
 
 

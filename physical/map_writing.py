@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 MOST_CARRIED: Final = 8
 """Of what an entity carries, so many are named."""
 
+FARTHEST: Final = 60.0
+"""Points from the middle of a polygon beyond which its label is not moved to get out of it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Writing:
@@ -113,7 +116,7 @@ def _lead(axes: Axes, scene: Scene, name: str, box: Box, want: Wanted) -> None:
     if scene.is_polygon(name) and name not in scene.far:
         named = shapely.Polygon(scene.outlines[name])
     gap = shapely.shortest_line(shapely.box(*box), named)
-    if gap.length > want.clearance + BESIDE or (scene.is_polygon(name) and gap.length > BESIDE):
+    if gap.length > max(want.clearance) + BESIDE or (scene.is_polygon(name) and gap.length > BESIDE):
         draw_leader(axes, *gap.coords)
 
 
@@ -148,15 +151,14 @@ def _middle_of(sheet: Sheet) -> Position:
 
 def _wanted(scene: Scene, name: str, size: Spot, pointers: Mapping[str, tuple[Spot, Spot]]) -> Wanted:
     if name in pointers:
-        return Wanted(pointers[name][0], size, 9.0)
+        return Wanted(pointers[name][0], size, (9.0, 9.0))
     if not scene.is_polygon(name):
-        ringed = name in scene.highlight or name in scene.marked
-        return Wanted(scene.middle(name), size, MARK_RADIUS if ringed else RADIUS + 1.5)
+        reach = MARK_RADIUS if name in scene.highlight or name in scene.marked else RADIUS + 1.5
+        return Wanted(scene.middle(name), size, (reach, reach))
     outline = scene.outlines[name]
     box = bounds(outline)
-    return Wanted(
-        box.centre, size, min(box.width, box.height) / 2, _inside(outline, size, scene.sheet.box.grown(-3.0))
-    )
+    beside = (min(box.width / 2, FARTHEST), min(box.height / 2, FARTHEST))
+    return Wanted(box.centre, size, beside, _inside(outline, size, scene.sheet.box.grown(-3.0)))
 
 
 def _inside(outline: Sequence[Spot], size: Spot, view: Box) -> tuple[Spot, ...]:

@@ -283,8 +283,9 @@ class Code(Enum):
     TOO_MANY_ENTITIES = (
         "LS307",
         "too many entities",
-        """A mission has two thousand entities at the most. Of a file, `within` keeps an area, `keep` the kinds
-        that matter, `limit` the first so many.""",
+        """A mission has two thousand entities at the most, and so many places that not more than a hundred thousand
+        times it is to be asked which place contains whom. Of a file, `within` keeps an area, `keep` the kinds that
+        matter, `limit` the first so many.""",
     )
     MISSING_EXTRA = (
         "LS308",

@@ -3,7 +3,7 @@
 from argparse import Namespace
 
 from bigactors.exits import Exit
-from bigactors.mistakes import Mistake, suggestion
+from bigactors.mistakes import Mistake
 from bigactors.terminal import say, say_text
 from specs import Code, explain, find_code
 
@@ -17,11 +17,6 @@ def run(options: Namespace) -> Exit:
         return Exit.HOLDS
     found = find_code(options.code)
     if found is None:
-        near = (
-            suggestion(options.code, [code.number.lower() for code in Code])
-            .upper()
-            .replace("DID YOU MEAN", "did you mean")
-        )
-        raise Mistake(f"there is no code '{options.code:.40}'", near or "bigactors explain lists them all")
+        raise Mistake(f"there is no code '{options.code:.40}'", "bigactors explain lists them all")
     say_text(explain(found))
     return Exit.HOLDS

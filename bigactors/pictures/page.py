@@ -103,8 +103,8 @@ def wrapped(text: str, width: float, size: float, most: int) -> tuple[str, ...]:
     ('observe(CHILDREN(', 'PARENT(uav0)))')
     """
     lines: list[str] = []
-    words = re.split(r"(?<=[ (])", text)
-    while words and len(lines) < most - 1:
+    words = re.split(r"(?<=[ (])", text.strip())
+    while any(words) and len(lines) < most - 1:
         fitting = 1
         while fitting < len(words) and text_width("".join(words[: fitting + 1]).rstrip(), size) <= width:
             fitting += 1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from semantics.expressions import Expression, Literal
 from semantics.program import Behaviour, Program
@@ -14,10 +15,10 @@ from specs.codes import Code
 from specs.elaboration.commands import checked
 from specs.elaboration.names import Names
 from specs.elaboration.schemas import Maker, Schema
-from specs.elaboration.statements import Body, Numbering
+from specs.elaboration.statements import Body, Numbering, SpawnSite
 
 
-@dataclass(slots=True)
+@dataclass
 class Bodies:
     """All bodies of a mission.
 
@@ -38,6 +39,15 @@ class Bodies:
         yield from self.agents.values()
         yield from self.behaviours.values()
 
+    @cached_property
+    def spawned(self) -> dict[str, list[SpawnSite]]:
+        """Return where each bigActor is spawned that is."""
+        found: dict[str, list[SpawnSite]] = {}
+        for body in self.all():
+            for site in body.spawns:
+                found.setdefault(site.name, []).append(site)
+        return found
+
     def reached(self, start: Body) -> tuple[Body, ...]:
         """Return the bodies that one runs: itself and what it calls."""
         found: dict[int, Body] = {}
@@ -53,7 +63,7 @@ class Bodies:
     def running(self, agent: str) -> tuple[Body, ...]:
         """Return the bodies that a bigActor may run, one that is spawned included."""
         starts = [self.agents[agent]] if agent in self.agents else []
-        spawned = {spawn.behaviour for body in self.all() for spawn in body.spawns if spawn.name == agent}
+        spawned = {site.behaviour for site in self.spawned.get(agent, ())}
         starts += [self.behaviours[name] for name in sorted(spawned & self.behaviours.keys())]
         return tuple({id(body): body for start in starts for body in self.reached(start)}.values())
 
@@ -203,7 +213,7 @@ def body_key(body: Body) -> str:
 def _hosts_of(agent: str, bodies: Bodies, names: Names) -> set[str] | None:
     declared = names.agents[agent]
     places: list[Expression] = [] if declared is None else [Literal(declared.text)]
-    places += [spawn.host for body in bodies.all() for spawn in body.spawns if spawn.name == agent]
+    places += [site.host for site in bodies.spawned.get(agent, ())]
     places += [host for body in bodies.running(agent) for host in body.migrations]
     named = [place.value for place in places if isinstance(place, Literal)]
     return {str(name) for name in named} if len(named) == len(places) else None

@@ -22,6 +22,9 @@ from specs.elaboration.world import World
 MOST_HOSTS: Final = 50
 """Where a bigActor may be in more places than these, controls are left to the run."""
 
+MOST_HOLES: Final = 50
+"""Places that may swallow a node: of more than these, where it fits is left to the run."""
+
 _MOVING: Final = {"MOVE_HOST_TO": (None, 0), "MOVE": (0, 1), "PUT": (0, 1)}
 """For each command that moves: which argument is moved (None for the host), and which is where to."""
 
@@ -104,16 +107,22 @@ class Ground:
 
     def _holes(self, node: Someone, place: Someone, target: Placed, shape: Placed) -> tuple[Geometry, ...]:
         """Return the smaller places that never move and would swallow the node, as `drive` has them."""
-        size = area(target.geometry)
+        size, south, north = area(target.geometry), *_latitudes(target.geometry)
         found = set()
         for name in self.fixed - {node.name, place.name}:
             hole = self.world.placements.get(name)
             holding = node.kind in self.names.signature[self.names.kinds[name]].contains
             if not holding or not isinstance(hole, Placed) or hole.geometry.is_point:
                 continue
-            if area(hole.geometry) <= size and band_contains(hole.altitude, shape.altitude):
+            low, high = _latitudes(hole.geometry)
+            within = south <= high and low <= north and area(hole.geometry) <= size
+            if within and band_contains(hole.altitude, shape.altitude):
                 found.add(hole.geometry)
-        return tuple(sorted(found))
+        return tuple(sorted(found)) if len(found) <= MOST_HOLES else ()
+
+
+def _latitudes(geometry: Geometry) -> tuple[float, float]:
+    return min(geometry.ring)[0], max(geometry.ring)[0]
 
 
 def check_controls(bodies: Bodies, ground: Ground) -> None:

@@ -19,7 +19,14 @@ from specs.elaboration.world import World
 
 @dataclass(slots=True)
 class _Clauses:
-    """What the phase knows and gathers."""
+    """What the phase knows and gathers.
+
+    Attributes:
+        arriving: Entities whose flights always end.
+        appearing: Entities that appear, with the channels that they are on then.
+        vanishing: Entities that vanish.
+        positions: The position of each clause, by its identity: equal ones stand in several.
+    """
 
     names: Names
     world: World
@@ -27,6 +34,17 @@ class _Clauses:
     spots: Spots
     all: tuple[s.EnvironmentClause, ...]
     arriving: set[str] = field(default_factory=set)
+    appearing: set[tuple[str, str]] = field(default_factory=set)
+    vanishing: set[str] = field(default_factory=set)
+    positions: dict[int, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for position, clause in enumerate(self.all):
+            self.positions[id(clause)] = position
+            if isinstance(clause, s.Appears):
+                self.appearing |= {(clause.entity.text, channel.text) for channel in clause.channels}
+            elif isinstance(clause, s.Vanishes):
+                self.vanishing.add(clause.entity.text)
 
 
 def elaborate_environment(
@@ -91,13 +109,8 @@ def _leaves(phase: _Clauses, clause: s.Leaves) -> Clause | None:
     if kind is None or not known:
         return None
     entity, channel = clause.entity.text, clause.channel.text
-    appearing = {
-        each.text
-        for other in phase.all
-        if isinstance(other, s.Appears) and other.entity.text == entity
-        for each in other.channels
-    }
-    if clause.returns and channel not in {*phase.world.channels.get(entity, ()), *appearing}:
+    ever = channel in phase.world.channels.get(entity, ()) or (entity, channel) in phase.appearing
+    if clause.returns and not ever:
         message = f"'{entity}' is not on '{channel}' and cannot return to it"
         phase.names.findings.add(
             Code.POINTLESS_CLAUSE, clause, message, f"write 'linked {channel}' where '{entity}' is declared"
@@ -108,8 +121,7 @@ def _leaves(phase: _Clauses, clause: s.Leaves) -> Clause | None:
 def _appears(phase: _Clauses, clause: s.Appears) -> Clause | None:
     known = phase.names.entity(clause.entity) is not None
     entity, world = clause.entity.text, phase.world
-    vanishes = any(isinstance(other, s.Vanishes) and other.entity.text == entity for other in phase.all)
-    if known and entity not in world.absent and not vanishes:
+    if known and entity not in world.absent and entity not in phase.vanishing:
         message = f"'{entity}' is there already and never vanishes"
         hint = "declare it absent, or let it vanish"
         phase.names.findings.add(Code.POINTLESS_CLAUSE, clause, message, hint)
@@ -143,11 +155,7 @@ def _says(phase: _Clauses, clause: s.Says) -> Clause | None:
             several = f"there are {len(agents)} bigActors" if agents else "there is no bigActor"
             hint = f"write 'to' and one of {', '.join(sorted(agents)[:5])}" if agents else "declare one"
             phase.names.findings.add(Code.NO_RECIPIENT, clause, f"nothing says to whom: {several}", hint)
-    return Says(message, agent, clause.times, _position(phase, clause)) if known else None
-
-
-def _position(phase: _Clauses, clause: s.Says) -> int:
-    return next(number for number, other in enumerate(phase.all) if other is clause)
+    return Says(message, agent, clause.times, phase.positions[id(clause)]) if known else None
 
 
 def _arrives(phase: _Clauses, clause: s.Arrives) -> Clause | None:

@@ -86,9 +86,10 @@ def elaborate(mission: s.Mission, source: Source, directory: Path) -> Elaborated
     _stop(names.findings)
     setting = Setting(names.signature, dict(names.kinds), program, clauses, scheduler, control, arriving)
     there = {name: world.channels[name] for name in world.placements}
-    actual = initial(setting, world.placements, there, agents)
-    first = initial(setting, world.placements, there, agents, settled(beliefs, actual))
-    check_forest(mission, first, names)
+    first = initial(setting, world.placements, there, agents)
+    if beliefs.parents or beliefs.links:
+        first = initial(setting, world.placements, there, agents, settled(beliefs, first))
+        check_forest(mission, first, names)
     _stop(names.findings)
     called = mission.name.text if mission.name is not None else Path(source.name).stem
     return ElaboratedMission(

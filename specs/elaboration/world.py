@@ -17,6 +17,9 @@ from specs.elaboration.geometry import elaborate_placement
 from specs.elaboration.names import Names
 
 MOST_ENTITIES: Final = 2_000
+MOST_PAIRS: Final = 100_000
+"""How often it may be asked whether a place contains an entity."""
+
 _NOWHERE: Final = point(0, 0)
 
 
@@ -82,12 +85,23 @@ def elaborate_world(mission: s.Mission, names: Names, directory: Path) -> World:
             names.declare("channel", entry.name.text, entry.name)
         elif isinstance(entry, s.Entity):
             _join(entry.channels, names)
-    if len(names.kinds) > MOST_ENTITIES:
-        first = entries[0] if entries else mission
-        message = f"the mission has {len(names.kinds):,} entities, more than {MOST_ENTITIES:,}"
-        names.findings.add(Code.TOO_MANY_ENTITIES, first, message, "keep what matters: within, keep, limit")
+    _check_size(entries, names)
     _load(loads, names, world)
     return world
+
+
+def _check_size(entries: list[s.WorldEntry], names: Names) -> None:
+    places = sum(bool(names.signature[kind].contains) for kind in names.kinds.values())
+    pairs = places * len(names.kinds)
+    if len(names.kinds) > MOST_ENTITIES or pairs > MOST_PAIRS:
+        message = f"the mission has {len(names.kinds):,} entities, more than {MOST_ENTITIES:,}"
+        if len(names.kinds) <= MOST_ENTITIES:
+            message = (
+                f"{len(names.kinds):,} entities and {places:,} places are more than {MOST_PAIRS:,} pairs"
+            )
+        names.findings.add(
+            Code.TOO_MANY_ENTITIES, entries[0], message, "keep what matters: within, keep, limit"
+        )
 
 
 def _join(channels: tuple[s.Name, ...], names: Names) -> None:

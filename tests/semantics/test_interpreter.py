@@ -199,8 +199,8 @@ def statement_of(written):
 
 def forest(parents):
     """Tell whether what is believed is a forest of known nodes."""
-    for name, place in parents.items():
-        path = [name]
+    for name in parents:
+        path, place = [name], parents[name]
         while place not in (None, REGION):
             if place in path or parents[place] is None:
                 return False

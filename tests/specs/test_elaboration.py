@@ -1,12 +1,12 @@
 """Elaboration: what missions come to, phase by phase, and what runs of them count."""
 
 import json
-import sys
 from pathlib import Path
 
 import pytest
 
 from physical import box, centroid, circle, point, translate_to
+from physical.ais_reports import AisError
 from semantics import statements as k
 from semantics.environment import Appears, Drifts, Leaves, Says
 from semantics.expressions import Fault, Host, Literal, QueryOf, Variable
@@ -25,7 +25,7 @@ from semantics.statements import (
 )
 from semantics.successors import successors
 from specs.diagnostics import MissionError, Source
-from specs.elaboration import elaborate, load_mission
+from specs.elaboration import elaborate, files, load_mission
 from specs.parser import parse
 
 MISSIONS = Path(__file__).parents[2] / "specs" / "missions"
@@ -460,8 +460,14 @@ def test_all_mistakes_are_reported_at_once_and_by_position():
     ]
 
 
+def missing(_):
+    raise AisError(
+        "ais-extra", "reading AIS needs pyais, which is not installed", "pip install bigactors[ais]"
+    )
+
+
 def test_a_missing_extra_names_it(monkeypatch, tmp_path):
-    monkeypatch.setitem(sys.modules, "pyais", None)
+    monkeypatch.setattr(files, "read_recording", missing)
     (tmp_path / "x.nmea").write_bytes((MISSIONS / "harbour_watch.nmea").read_bytes())
     (code, message, hint), *_ = mistakes('world { from "x.nmea" }', tmp_path)
     assert code == "LS308"

@@ -1,0 +1,14 @@
+from bigactors import evidence
+
+
+def test_the_demo_ends_well_with_verdicts_pictures_and_traces(missions, bigactors, monkeypatch):
+    monkeypatch.setattr(evidence, "draw_run", lambda *_, **__: None)  # half a minute of pictures
+    code, out, err = bigactors("demo", "--out", "shown")
+    assert (code, err) == (0, "")
+    for mission in ("oil_spill", "harbour_watch"):
+        assert f"\n{mission}: " in f"\n{out}"
+        assert f"picture: shown/{mission}.svg" in out
+        assert (missions / "shown" / f"{mission}.svg").stat().st_size > 1000
+        assert list((missions / "shown" / mission).glob("*/trace.json"))
+    assert "violated" not in out
+    assert "INCOMPLETE" not in out

@@ -1,0 +1,33 @@
+from bigactors import docs
+from bigactors.arguments import COMMANDS
+from semantics.extension import EXTENSION
+from semantics.rules import RULES, TIMED_RULES
+
+
+def test_the_generated_pages_are_as_they_would_be_written():
+    assert docs.stale(docs.FOLDER) == [], "run python -m bigactors.docs"
+
+
+def test_a_stale_page_is_told(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(docs, "FOLDER", tmp_path)
+    assert docs.main([]) == 0
+    assert docs.main(["--check"]) == 0
+    (tmp_path / "rules.md").write_text("older", encoding="utf-8")
+    assert docs.main(["--check"]) == 1
+    assert capsys.readouterr().out == "docs/rules.md is stale: run python -m bigactors.docs\n"
+
+
+def test_every_rule_is_printed_with_its_bar():
+    page = docs.pages()["rules.md"]
+    for rule in (*RULES, *TIMED_RULES, *EXTENSION):
+        section = page.split(f"\n### {rule.__name__}\n")[1].split("\n### ")[0]
+        assert "───" in section
+        assert "→" in section
+
+
+def test_every_command_is_on_the_page_whatever_the_terminal(monkeypatch):
+    wide = docs.pages()["cli.md"]
+    monkeypatch.setenv("COLUMNS", "40")
+    assert docs.pages()["cli.md"] == wide
+    for command in COMMANDS:
+        assert f"\n## bigactors {command}\n" in wide

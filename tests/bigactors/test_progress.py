@@ -1,0 +1,110 @@
+import io
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+
+import pytest
+
+from bigactors.progress import Watch, describe, watching
+from checker import Progress
+
+PROGRESS = Progress(configurations=12_000, transitions=30_000, depth=7, frontier=450, rate=5_300.2)
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def test_a_line_is_rewritten_on_a_terminal(monkeypatch):
+    monkeypatch.setenv("NO_COLOR", "1")
+    stream = Terminal()
+    watch = Watch("long", stream)
+    watch(PROGRESS)
+    watch.name = "m"
+    watch(PROGRESS)
+    watch.clear()
+    first, second, blank, end = stream.getvalue().split("\r")[1:]
+    assert first == f"{describe('long', PROGRESS)}"
+    assert second == f"{describe('m', PROGRESS)}   "
+    assert (blank.strip(), end) == ("", "")
+
+
+def test_a_line_is_no_wider_than_the_terminal(monkeypatch):
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "20")
+    stream = Terminal()
+    Watch("mission", stream)(PROGRESS)
+    assert stream.getvalue() == "\rmission: 12,000 con"
+
+
+def test_nothing_is_shown_in_a_pipe():
+    stream = io.StringIO()
+    watch = Watch("m", stream)
+    watch(PROGRESS)
+    watch.clear()
+    assert stream.getvalue() == ""
+
+
+def test_ctrl_c_ends_the_exploration_between_two_configurations():
+    with watching("m") as watch:
+        signal.raise_signal(signal.SIGINT)  # does not raise here
+        with pytest.raises(KeyboardInterrupt):
+            watch(PROGRESS)
+    assert watch.interrupted
+
+
+def test_a_second_ctrl_c_ends_it_at_once():
+    def twice():
+        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
+
+    with watching("m"), pytest.raises(KeyboardInterrupt):
+        twice()
+
+
+def test_the_handler_of_before_is_put_back():
+    before = signal.getsignal(signal.SIGINT)
+    with watching("m"):
+        assert signal.getsignal(signal.SIGINT) != before
+    assert signal.getsignal(signal.SIGINT) == before
+
+
+def test_a_check_in_another_thread_is_watched_without_signals():
+    watched = []
+
+    def check():
+        with watching("m") as watch:
+            watched.append(watch)
+
+    thread = threading.Thread(target=check)
+    thread.start()
+    thread.join()
+    assert not watched[0].interrupted
+
+
+@pytest.mark.skipif(os.name == "nt", reason="terminals are POSIX's")
+@pytest.mark.parametrize("no_color", ["", "1"])
+def test_marks_are_coloured_on_a_terminal_unless_its_user_wants_none(missions, no_color):
+    ours, theirs = os.openpty()
+    environment = {**os.environ, "TERM": "xterm", "NO_COLOR": no_color}
+    words = [sys.executable, "-m", "bigactors", "check", "race.mission", "--no-traces"]
+    process = subprocess.Popen(words, stdout=theirs, stderr=subprocess.PIPE, env=environment)
+    os.close(theirs)
+    shown = b""
+    while True:
+        try:
+            read = os.read(ours, 10_000)
+        except OSError:  # the other end is closed
+            break
+        if not read:
+            break
+        shown += read
+    _, err = process.communicate(timeout=60)
+    os.close(ours)
+    assert (process.returncode, err) == (1, b"")
+    assert bool(re.search(b"  \033\\[31m\xe2\x9c\x97\033\\[0m race_freedom", shown)) == (not no_color)
+    assert (b"\033" in shown) == (not no_color)

@@ -1,0 +1,134 @@
+import json
+from pathlib import Path
+
+import pytest
+
+NMEA = Path(__file__).parents[2] / "specs" / "missions" / "harbour_watch.nmea"
+
+
+def feature(name, kind, coordinates, **properties):
+    kind_of_geometry = "Point" if isinstance(coordinates[0], int | float) else "Polygon"
+    geometry = {"type": kind_of_geometry, "coordinates": coordinates}
+    return {"type": "Feature", "geometry": geometry, "properties": {"name": name, "kind": kind, **properties}}
+
+
+def square(west, south, east, north):
+    return [[[west, south], [east, south], [east, north], [west, north], [west, south]]]
+
+
+def write(path, *features):
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": features}), encoding="utf-8")
+
+
+@pytest.fixture
+def harbour(missions):
+    write(
+        missions / "harbour.geojson",
+        feature("harbour0", "Harbour", square(0, 0, 10, 10)),
+        feature("berth0", "Berth", square(1, 1, 2, 2)),
+        feature("tug0", "Vessel", [1.5, 1.5], channels=["vhf"]),
+        feature("crate0", "Crate", [1.5, 1.5], carried_by="tug0"),
+        feature("buoy0", "Buoy", [20, 20]),
+    )
+    return missions
+
+
+def test_the_bigraph_of_a_world_is_printed(harbour, bigactors):
+    code, out, err = bigactors("world", "harbour.geojson")
+    assert (code, err) == (0, "")
+    assert [line.lstrip("│├└─ ").split(":")[0] for line in out.splitlines()[:6]] == [
+        "region 0",
+        "buoy0",
+        "harbour0",
+        "berth0",
+        "tug0",
+        "crate0",
+    ]
+    assert out.splitlines()[6:] == ["vhf ─ tug0", "5 entities: 1 Berth, 1 Buoy, 1 Crate, 1 Harbour, 1 Vessel"]
+
+
+def test_it_is_drawn_if_asked(harbour, bigactors):
+    code, _, err = bigactors("world", "harbour.geojson", "--output", "world.svg")
+    assert (code, err) == (0, "picture written to world.svg\n")
+    assert (harbour / "world.svg").read_text(encoding="utf-8").startswith("<?xml")
+
+
+def test_only_a_box_and_some_kinds_are_kept(harbour, bigactors):
+    assert bigactors("world", "harbour.geojson", "--within", "15,15,25,25")[1].endswith(
+        "1 entities: 1 Buoy\n"
+    )
+    assert bigactors("world", "harbour.geojson", "--within", "-15,15,25,25")[0] == 0
+    kept = bigactors("world", "harbour.geojson", "--kinds", "Berth, Harbour")[1]
+    assert kept.endswith("2 entities: 1 Berth, 1 Harbour\n")
+
+
+def test_a_recording_is_accounted_for(missions, bigactors):
+    pytest.importorskip("pyais")
+    code, out, err = bigactors("world", str(NMEA))
+    assert (code, err) == (0, "")
+    assert f"{NMEA}: 224 lines, 97 AIS sentences, 92 messages" in out
+    assert f"{NMEA}: 1 x checksum wrong" in out
+
+
+def test_a_recording_and_a_map_make_one_world(harbour, bigactors):
+    pytest.importorskip("pyais")
+    code, out, _ = bigactors("world", "harbour.geojson", str(NMEA), "--kinds", "Harbour,Vessel")
+    assert code == 0
+    assert "1 Harbour, 9 Vessel" in out
+
+
+def test_a_time_before_the_recording_shows_nobody(missions, bigactors):
+    pytest.importorskip("pyais")
+    code, out, _ = bigactors("world", str(NMEA), "--at", "1999-01-01T00:00:00Z")
+    assert code == 0
+    assert "\n0 entities\n" in out
+
+
+def test_places_that_do_not_nest_are_warned_of(missions, bigactors):
+    write(
+        missions / "overlap.geojson",
+        feature("a", "Place", square(0, 0, 2, 2)),
+        feature("b", "Place", square(1, 1, 3, 3)),
+    )
+    code, _, err = bigactors("world", "overlap.geojson")
+    assert code == 0
+    assert "warning: a and b partly overlap" in err
+
+
+@pytest.mark.parametrize(
+    ("features", "said"),
+    [
+        ([feature("a", "Place", [0, 95]), feature("b", "Place", [0, 96])], "feature 1 (b)"),
+        ([feature("a", "Crate", [0, 0], carried_by="b")], "a is carried by 'b', which is not there"),
+        (
+            [feature("a", "Crate", [0, 0], carried_by="b"), feature("b", "Crate", [0, 0], carried_by="a")],
+            "a is carried by itself",
+        ),
+        ([feature("region", "Place", [0, 0])], "an entity is called 'region'"),
+    ],
+)
+def test_a_world_that_makes_no_sense_is_told(missions, bigactors, features, said):
+    write(missions / "world.geojson", *features)
+    code, _, err = bigactors("world", "world.geojson")
+    assert code == 2
+    assert said in err
+    assert "Traceback" not in err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("harbour.geojson", "harbour.geojson"), "harbour0 is in harbour.geojson too"),
+        (("harbour.geojson", "--kinds", "Ship"), "nothing is of kind 'Ship'"),
+        (("harbour.geojson", "--at", "2020-01-01"), "--at is a time of a recording"),
+        (("harbour.geojson", "--within", "99,0,98,1"), "--within: "),
+        (("nowhere.geojson",), "nowhere.geojson: No such file"),
+        (("nowhere.nmea",), "nowhere.nmea: "),
+        (("harbour.geojson", "--output", "world.gif"), "world.gif: "),
+    ],
+)
+def test_what_cannot_be_shown_is_told(harbour, bigactors, words, said):
+    code, _, err = bigactors("world", *words)
+    assert code == 2
+    assert said in err
+    assert "Traceback" not in err

@@ -1,0 +1,139 @@
+"""The arrows between the rooms, and which library each room may use: the table of the design, walked."""
+
+import ast
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+MAY_IMPORT = {
+    "bigraphs": set(),
+    "physical": set(),
+    "semantics": {"bigraphs", "physical"},
+    "specs": {"semantics", "bigraphs", "physical"},
+    "checker": {"semantics", "bigraphs", "physical"},
+    "adapters": {"semantics", "bigraphs", "physical"},
+    "bigactors": {"adapters", "checker", "specs", "semantics", "bigraphs", "physical"},
+}
+
+# Where a library may be imported: a room, a folder or a file.
+LIBRARIES = {
+    "shapely": ("physical/",),
+    "pyproj": ("physical/",),
+    "lark": ("specs/", "bigraphs/notation/"),
+    "networkx": ("bigraphs/", "checker/", "specs/elaboration/bodies.py"),  # where a graph is a graph
+    "numpy": ("checker/",),
+    "numba": ("checker/",),
+    "pyais": ("physical/ais_decode.py",),
+    "pymavlink": ("adapters/mavlink.py",),
+    "zenoh": ("adapters/",),
+    "mcap": ("adapters/",),
+    "nicegui": ("adapters/",),
+    "hypothesis": ("semantics/strategies.py",),
+    "matplotlib": ("bigraphs/drawing.py", "physical/drawing.py", "physical/map_", "bigactors/pictures/"),
+}
+
+# Libraries that take long to load or are extras: imported in the functions that need them, never with the module.
+LAZY = {"matplotlib", "pyais", "pymavlink", "zenoh", "mcap", "nicegui"}
+
+
+class Import(NamedTuple):
+    """An import statement: where it stands, what is imported, and whether the module's import runs it."""
+
+    file: str
+    line: int
+    module: str
+    at_import: bool
+
+    @property
+    def top(self) -> str:
+        """The room or library that it imports from."""
+        return self.module.split(".")[0]
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line} imports {self.module}"
+
+
+def walk(node: ast.AST, *, at_import: bool = True) -> Iterator[tuple[ast.AST, bool]]:
+    """Yield nodes with whether they run when the module is imported; what only type checkers read is passed over."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
+            yield from ((below, False) for below, _ in walk(child))
+            continue
+        inside = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
+        yield child, at_import
+        yield from walk(child, at_import=at_import and not inside)
+
+
+def imports_of(path: Path) -> Iterator[Import]:
+    """Yield every import of a file, those in functions too."""
+    file = path.relative_to(ROOT).as_posix()
+    for node, at_import in walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (Import(file, node.lineno, alias.name, at_import) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            package = file.rsplit("/", node.level)[0].replace("/", ".") if node.level else ""
+            yield Import(file, node.lineno, ".".join(filter(None, [package, node.module])), at_import)
+
+
+IMPORTS = [
+    found for room in MAY_IMPORT for path in sorted((ROOT / room).rglob("*.py")) for found in imports_of(path)
+]
+
+
+def room_of(found: Import) -> str:
+    return found.file.split("/")[0]
+
+
+def test_the_walk_sees_the_rooms():
+    assert {room_of(found) for found in IMPORTS} >= set(MAY_IMPORT) - {"adapters"}
+    assert len(IMPORTS) > 300
+
+
+@pytest.mark.parametrize("room", MAY_IMPORT)
+def test_a_room_imports_the_rooms_below_it_only(room):
+    others = set(MAY_IMPORT) - MAY_IMPORT[room] - {room}
+    assert [str(found) for found in IMPORTS if room_of(found) == room and found.top in others] == []
+
+
+def test_each_library_stays_in_the_room_that_needs_it():
+    known = sys.stdlib_module_names | set(MAY_IMPORT)
+    strays = [
+        str(found)
+        for found in IMPORTS
+        if found.top not in known and not found.file.startswith(LIBRARIES.get(found.top, ("nowhere",)))
+    ]
+    assert strays == []
+
+
+def test_what_takes_long_to_load_is_imported_where_it_is_needed():
+    assert [str(found) for found in IMPORTS if found.top in LAZY and found.at_import] == []
+
+
+def test_nobody_imports_the_strategies_but_tests():
+    assert [str(found) for found in IMPORTS if found.module == "semantics.strategies"] == []
+
+
+def test_the_rooms_are_the_packages_that_are_built():
+    folders = {path.parent.name for path in ROOT.glob("*/__init__.py")}
+    assert folders == set(MAY_IMPORT)
+
+
+def test_the_arrows_have_no_cycle():
+    for room, below in MAY_IMPORT.items():
+        assert all(room not in MAY_IMPORT[other] for other in below)
+
+
+def test_the_walk_tells_what_runs_at_import():
+    text = "import a\ndef f():\n    import b\nclass C:\n    import c\nif TYPE_CHECKING:\n    import d\nelse:\n    pass\n"
+    found = {
+        alias.name: at_import
+        for node, at_import in walk(ast.parse(text))
+        if isinstance(node, ast.Import)
+        for alias in node.names
+    }
+    assert found == {"a": True, "b": False, "c": True, "d": False}
