@@ -38,20 +38,20 @@ if TYPE_CHECKING:
     from physical.ais_recording import read_recording as read_recording
     from physical.ais_world import world_at as world_at
     from semantics import Configuration as Configuration
-    from semantics import Label as Label
-    from semantics import Transition as Transition
+    from semantics import Control as Control
     from semantics import Fault as Fault
+    from semantics import Label as Label
+    from semantics import Property as Property
+    from semantics import Scheduler as Scheduler
+    from semantics import Setting as Setting
+    from semantics import Transition as Transition
+    from semantics import expand as expand
     from semantics import holds as holds
     from semantics import initial as initial
     from semantics import monitored as monitored
+    from semantics import successors as successors
     from semantics.printing import print_changes as print_changes
     from semantics.printing import print_configuration as print_configuration
-    from semantics import Property as Property
-    from semantics import Control as Control
-    from semantics import Scheduler as Scheduler
-    from semantics import Setting as Setting
-    from semantics import expand as expand
-    from semantics import successors as successors
     from specs import Diagnostic as Diagnostic
     from specs import MissionError as MissionError
     from specs import format_mission as format_mission

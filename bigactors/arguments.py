@@ -101,7 +101,10 @@ def _joined(line: Sequence[str]) -> list[str]:
 def _check(parser: Parser) -> None:
     parser.add_argument("files", nargs="+", metavar="FILE", help=MISSION)
     parser.add_argument(
-        "--json", metavar="FILE", help="write the report as JSON (docs/json.md); - for standard output, alone"
+        "--json",
+        metavar="FILE",
+        type=named,
+        help="write the report as JSON (docs/json.md); - for standard output, alone",
     )
     parser.add_argument(
         "--max-configurations",
@@ -119,6 +122,7 @@ def _check(parser: Parser) -> None:
     parser.add_argument(
         "--trace",
         metavar="DIR",
+        type=named,
         help="write the trace of each violation and witness into DIR: as text, as JSON and as pictures",
     )
     parser.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
@@ -127,10 +131,13 @@ def _check(parser: Parser) -> None:
 def _show(parser: Parser) -> None:
     parser.add_argument("file", nargs="?", metavar="FILE", help=f"{MISSION}; with --trace it may be left out")
     parser.add_argument(
-        "--output", metavar="FILE", help="the picture, .svg or .png (default: the mission's name .svg, here)"
+        "--output",
+        metavar="FILE",
+        type=named,
+        help="the picture, .svg or .png (default: the mission's name .svg, here)",
     )
     parser.add_argument(
-        "--trace", metavar="TRACE", help="a trace in JSON, as check --trace and simulate write it"
+        "--trace", metavar="TRACE", type=named, help="a trace in JSON, as check --trace and simulate write it"
     )
     parser.add_argument(
         "--step",
@@ -157,7 +164,10 @@ def _simulate(parser: Parser) -> None:
         help="take no more than N steps (default 100)",
     )
     parser.add_argument(
-        "--json", metavar="FILE", help="write the run as a trace in JSON; - for standard output, alone"
+        "--json",
+        metavar="FILE",
+        type=named,
+        help="write the run as a trace in JSON; - for standard output, alone",
     )
 
 
@@ -166,7 +176,10 @@ def _replay(parser: Parser) -> None:
         "trace", metavar="TRACE", help="a trace in JSON, as check --trace and simulate write it"
     )
     parser.add_argument(
-        "--mission", metavar="FILE", help="replay it on this mission (default: the one that it names)"
+        "--mission",
+        metavar="FILE",
+        type=named,
+        help="replay it on this mission (default: the one that it names)",
     )
 
 
@@ -187,7 +200,7 @@ def _world(parser: Parser) -> None:
         help="only what is inside this box, in degrees",
     )
     parser.add_argument("--kinds", metavar="KIND,...", help="only entities of these kinds")
-    parser.add_argument("--output", metavar="FILE", help="draw it too: a picture, .svg or .png")
+    parser.add_argument("--output", metavar="FILE", type=named, help="draw it too: a picture, .svg or .png")
 
 
 def _explain(parser: Parser) -> None:
@@ -205,7 +218,7 @@ def _fmt(parser: Parser) -> None:
 
 def _demo(parser: Parser) -> None:
     parser.add_argument(
-        "--out", metavar="DIR", default="demo", help="where pictures and traces go (default demo)"
+        "--out", metavar="DIR", type=named, default="demo", help="where pictures and traces go (default demo)"
     )
 
 
@@ -276,7 +289,7 @@ COMMANDS: Final[dict[str, Command]] = {
         (
             "bigactors world harbour.geojson --output harbour.svg",
             "bigactors world harbour.geojson vessels.nmea --at 2020-04-07T21:42:00Z --kinds Vessel,Harbour",
-            "bigactors world vessels.nmea --within 52.96,5.41,52.98,5.45",
+            "bigactors world vessels.nmea --within 52.83,5.66,52.87,5.72",
         ),
         _world,
     ),
@@ -303,6 +316,13 @@ COMMANDS: Final[dict[str, Command]] = {
 
 
 # --- values ---------------------------------------------------------------------------------------------------
+
+
+def named(text: str) -> str:
+    """Return the name of a file or folder, which is not empty."""
+    if not text:
+        raise argparse.ArgumentTypeError("the name of a file is missing")
+    return text
 
 
 def at_least_zero(text: str) -> int:
@@ -349,7 +369,9 @@ def corners(text: str) -> tuple[float, float, float, float]:
     """Return the south, west, north and east of a box."""
     found = [value for part in text.split(",") if (value := _number(part)) is not None]
     if len(found) != 4 or text.count(",") != 3:
-        message = f"'{text:.60}' is no box: write SOUTH,WEST,NORTH,EAST in degrees, such as 52.9,5.4,53.0,5.5"
+        message = (
+            f"'{text:.60}' is no box: write SOUTH,WEST,NORTH,EAST in degrees, such as 52.83,5.66,52.87,5.72"
+        )
         raise argparse.ArgumentTypeError(message)
     south, west, north, east = found
     return south, west, north, east

@@ -113,8 +113,11 @@ def write_pages(folder: Path) -> None:
 
 def main(line: Sequence[str] | None = None) -> int:
     """Write the pages, or with `--check` tell which are stale (exit code 1)."""
-    words = sys.argv[1:] if line is None else line
+    words = list(sys.argv[1:] if line is None else line)
     with safe_output():
+        if words not in ([], ["--check"]):
+            say("usage: python -m bigactors.docs [--check]")
+            return 2
         if "--check" not in words:
             write_pages(FOLDER)
             return 0

@@ -19,7 +19,7 @@ class Evidence:
         stem: What its folder is called.
         about: What it is evidence of.
         trace: Its steps.
-        telling: Whether each of its configurations is worth a picture: it ends in a violation, or in what was looked for.
+        telling: Whether each configuration is worth a picture: it ends in a violation, or in what was looked for.
     """
 
     stem: str

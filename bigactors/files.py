@@ -59,6 +59,17 @@ def write_text(path: str, text: str) -> None:
         raise _unreadable(path, error) from error
 
 
+def check_writable(path: str) -> None:
+    """Refuse a path that cannot be written, before there is anything to write; raises Mistake."""
+    target = Path(os.path.realpath(path))
+    if target.is_dir():
+        raise Mistake("this is a folder, not a file", place=path)
+    if not target.parent.is_dir():
+        raise Mistake("there is no such folder", place=path)
+    if not os.access(target.parent, os.W_OK):
+        raise Mistake("nothing can be written into its folder", place=path)
+
+
 def _fill(name: str, file: Any, text: str, target: Path) -> None:
     try:
         file.write(text)
@@ -81,6 +92,8 @@ def make_folder(path: str) -> Path:
     """Make a folder, and those above it."""
     try:
         Path(path).mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError) as error:
+        raise Mistake("there is a file where a folder should be", place=path) from error
     except (OSError, ValueError) as error:
         raise _unreadable(path, error) from error
     return Path(path)

@@ -24,9 +24,11 @@ def locate(word: str) -> Path:
     """Return the path of a mission: a file, or one that ships, given by its name."""
     shipped = shipped_missions()
     try:
+        if not word:
+            raise Mistake("the path of the mission is empty")
         if word in shipped and not Path(word).is_file():
             return shipped[word]
-        if Path(word).is_file():
+        if Path(word).exists() and not Path(word).is_dir():
             return Path(word)
         reason = "this is a folder, not a mission" if Path(word).is_dir() else "there is no such file"
     except (OSError, ValueError):

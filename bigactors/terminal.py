@@ -31,7 +31,7 @@ def safe_output() -> Iterator[None]:
     """Print what an encoding lacks in plain letters, and leave nothing unprinted at the end."""
     codecs.register_error("bigactors.plain", _plain)
     for stream in (sys.stdout, sys.stderr):
-        if getattr(stream, "errors", "") in ("strict", "backslashreplace"):
+        if getattr(stream, "errors", "") in ("strict", "backslashreplace", "surrogateescape"):
             stream.reconfigure(errors="bigactors.plain")  # type: ignore[union-attr]  # only a TextIOWrapper has errors
     try:
         yield

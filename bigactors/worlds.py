@@ -28,10 +28,12 @@ class World:
     Attributes:
         properties: Of each entity, sorted by name.
         accounts: For each recording, what it had and what of it could not be used.
+        left_out: How many entities were read and not kept.
     """
 
     properties: tuple[PhysicalProperty, ...]
     accounts: tuple[tuple[str, Counts], ...] = ()
+    left_out: int = 0
 
     @property
     def conflicts(self) -> tuple[str, ...]:
@@ -65,7 +67,7 @@ def read_world(
     if time is not None and not accounts:
         raise Mistake("--at is a time of a recording", "GeoJSON files have no times: leave it out")
     kept = tuple(_kept(found, within, frozenset(kinds)))
-    return World(tuple(sorted(kept, key=lambda each: each.entity)), tuple(accounts))
+    return World(tuple(sorted(kept, key=lambda each: each.entity)), tuple(accounts), len(found) - len(kept))
 
 
 def _read(path: str, time: float | None, accounts: list[tuple[str, Counts]]) -> tuple[PhysicalProperty, ...]:
@@ -73,6 +75,9 @@ def _read(path: str, time: float | None, accounts: list[tuple[str, Counts]]) -> 
         if Path(path).suffix.lower() in GEOJSON:
             return read_geojson(read_bytes(path, MAX_BYTES))
         recording = read_recording(path)
+        if recording.counts.lines and not recording.counts.sentences:
+            found = f"none of its {recording.counts.lines:,} lines is an AIS sentence"
+            raise Mistake(found, "give an AIS recording, or GeoJSON in a file called .geojson or .json", path)
         accounts.append((path, recording.counts))
         return world_at(recording, time)
     except GeoJSONError as error:
@@ -153,4 +158,5 @@ def census(world: World) -> str:
     """Say how many entities there are of each kind."""
     counts = Counter(each.kind for each in world.properties)
     listed = ", ".join(f"{count} {kind}" for kind, count in sorted(counts.items()))
-    return f"{len(world.properties)} entities" + (f": {listed}" if listed else "")
+    left_out = f" ({world.left_out} more are not of these kinds or not within)" if world.left_out else ""
+    return f"{len(world.properties)} entities" + (f": {listed}" if listed else "") + left_out

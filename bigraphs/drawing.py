@@ -108,7 +108,7 @@ class _Pen:
     def __init__(self, axes: Axes, bigraph: Bigraph, scale: float, highlight: frozenset[str]) -> None:
         self.axes, self.bigraph, self.scale, self.highlight = axes, bigraph, scale, highlight
         self.labels = node_labels(bigraph)
-        kinds = sorted({node.control for node in bigraph.nodes})
+        kinds = sorted(control.name for control in bigraph.signature.controls)  # the same in every state
         self.kinds = {kind: KINDS[number % len(KINDS)] for number, kind in enumerate(kinds)}
 
     def draw(self, plan: Layout) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 
-from checker.exploration import Exploration, Inspect, Limits, Progress, explore
+from checker.exploration import INTERRUPTION, Exploration, Inspect, Limits, Progress, explore
 from checker.findings import Collected, Finding
 from checker.inspections import Computation, DeadlockFreedom, Invariant, LocalConsistency, Reachability
 from checker.ownership import owned
@@ -63,8 +63,7 @@ class _Check:
         inspections: tuple[Inspect, ...] = (self.deadlock, self.consistency, self.computation, *races)
         self.found = explore(self.initial, (*inspections, *self.formulas.values()), self.limits, self.report)
         if self.searching:
-            start = monitored(self.initial)
-            self.remembered = explore(start, (self.stale,), self.limits, self.report)
+            self.remembered = self.search()
         later = self.remembered.bounds if self.remembered else []
         return Report(
             verdicts=tuple(map(self.decide, self.properties)),
@@ -76,6 +75,15 @@ class _Check:
             notes=notes,
             seconds=self.found.seconds + (self.remembered.seconds if self.remembered else 0.0),
         )
+
+    def search(self) -> Exploration | None:
+        """Explore once more, with memory and in the time that is left; None where the user has asked for the end."""
+        if INTERRUPTION in self.found.bounds:
+            return None
+        start, spent = monitored(self.initial), self.found.seconds
+        remembered = explore(start, (self.stale,), self.limits, self.report, spent=spent)
+        remembered.bounds = [f"{bound}, in the search for stale observations" for bound in remembered.bounds]
+        return remembered
 
     def decide(self, asked: Property) -> Verdict:
         """Return the verdict on one property."""
@@ -89,7 +97,8 @@ class _Check:
             case "local_consistency":
                 return self.verdict(asked, self.consistency.collected)
             case "arrival":
-                return self.verdict(asked, self.deadlock.arrival, note="flights declared to arrive are fair")
+                note = "flights declared to arrive are fair" if self.found.rules["commit"] else ""
+                return self.verdict(asked, self.deadlock.arrival, note)
             case "computation":
                 return self.verdict(asked, self.computation.collected)
             case _:
@@ -120,16 +129,18 @@ class _Check:
         if self.owned:
             note = "by ownership, without a search: no agent may write what another's control rests on"
             return Verdict(asked, Outcome.HOLDS, note=note)
-        assert self.remembered is not None
+        violations = self.violations(self.races.collected, self.found)
+        if self.remembered is None:
+            outcome = Outcome.VIOLATED if violations else Outcome.INCOMPLETE
+            return Verdict(asked, outcome, violations, self.races.collected.count, note="not searched to the end")
         control, stale = self.races.collected, self.stale.collected
-        violations = self.violations(control, self.found) + self.violations(stale, self.remembered)
+        violations += self.violations(stale, self.remembered)
         outcome = self.outcome(bool(violations), self.found, self.remembered)
         witness = None if violations else self.witness(stale, self.remembered)
         shortest = tuple(sorted(violations, key=lambda violation: len(violation.trace)))
         count, examined = control.count + stale.count, control.examined + stale.examined
-        note = (
-            f"searched over {len(self.remembered.configurations):,} configurations with the monitor's memory"
-        )
+        searched = f"{len(self.remembered.configurations):,}"
+        note = f"searched over {searched} configurations with the monitor's memory"
         return Verdict(asked, outcome, shortest, count, examined, witness, note)
 
     def outcome(self, violated: bool, *explorations: Exploration) -> Outcome:

@@ -14,6 +14,9 @@ from semantics.successors import Expansion, expand
 MOST_PENDING = 64
 """Requests of one agent, or messages in one mailbox, beyond which a configuration is not explored further."""
 
+INTERRUPTION = "an interruption"
+"""The bound that is met where the user has asked for the end."""
+
 
 @dataclass(frozen=True, slots=True)
 class Limits:
@@ -88,6 +91,7 @@ def explore(
     limits: Limits | None = None,
     report: Callable[[Progress], None] | None = None,
     every: float = 0.5,
+    spent: float = 0.0,
 ) -> Exploration:
     """Visit everything that is reachable, breadth-first.
 
@@ -97,8 +101,9 @@ def explore(
         limits: Where to stop.
         report: Called about once in `every` seconds.
         every: Seconds.
+        spent: How many of the seconds that the limits allow are gone already.
     """
-    return _Explorer(initial, tuple(inspect), limits or Limits(), report, every).run()
+    return _Explorer(initial, tuple(inspect), limits or Limits(), report, every, spent).run()
 
 
 class _Explorer:
@@ -109,6 +114,7 @@ class _Explorer:
         limits: Limits,
         report: Callable[[Progress], None] | None,
         every: float,
+        spent: float,
     ) -> None:
         self.found = Exploration([initial])
         self.numbers = {initial: 0}
@@ -116,13 +122,14 @@ class _Explorer:
         self.limits = limits
         self.report = report
         self.every = every
+        self.spent = spent
 
     def run(self) -> Exploration:
         started = time.monotonic()
         try:
             self.visit_all(started)
         except KeyboardInterrupt:
-            self.bound("an interruption")
+            self.bound(INTERRUPTION)
         self.found.seconds = time.monotonic() - started
         return self.found
 
@@ -130,8 +137,9 @@ class _Explorer:
         found, reported = self.found, started
         for number, configuration in enumerate(found.configurations):  # grows while it is gone through
             now = time.monotonic()
-            if self.limits.seconds is not None and now - started > self.limits.seconds:
-                self.bound(f"the time limit of {self.limits.seconds:g} s")
+            most = self.limits.seconds
+            if most is not None and now - started + self.spent > most:
+                self.bound(f"the time limit of {most:g} s")
                 break
             if self.report is not None and now - reported >= self.every:
                 self.report(self.progress(number, now - started))

@@ -9,7 +9,7 @@ from semantics.propositions import Proposition, holds
 from semantics.reactions import moved
 from semantics.requests import CTR, FLY, MGR, OBS, SND
 from semantics.signature import Name
-from semantics.statements import Loop, React
+from semantics.statements import Block, Call, Loop, React
 from semantics.stepping import next_statement
 from semantics.successors import Expansion
 
@@ -76,7 +76,10 @@ class DeadlockFreedom:
         self.arrival = Collected()
 
     def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
-        """Look at every configuration in which no agent must move."""
+        """Look at every configuration in which no agent must move, and at every end of a flight."""
+        for transition in expansion.by_agents:
+            if transition.label.rule == "commit":
+                self.arrival.looked(number, transition)
         if any(not is_unfair(c, transition) for transition in expansion.by_agents):
             return
         if expansion.by_agents:
@@ -126,12 +129,26 @@ def is_at_rest(c: Configuration, a: Name) -> bool:
     code = c.alpha.code(a)
     statements = c.setting.program.statements
     around = statements[code[-1]]
-    if isinstance(around, Loop) and around.outermost and code[0] in around.body:
+    if isinstance(around, Loop) and around.outermost and stands_in(c, code[0], around.body):
         return True
     react = statements[code[0]]
     assert isinstance(react, React)
     sayings = [s for s in c.setting.environment if isinstance(s, Says) and s.agent == a and c.read(s.counter)]
     return any(bind(case.pattern, said.message) is not None for case in react.cases for said in sayings)
+
+
+def stands_in(c: Configuration, number: int, block: Block) -> bool:
+    """Tell whether a statement stands in a block, or in that of a behaviour called there: in the call's place."""
+    program, seen, waiting = c.setting.program, set[str](), [block]
+    while waiting:
+        within = waiting.pop()
+        if number in within:
+            return True
+        calls = (each for each in map(program.statements.__getitem__, within) if isinstance(each, Call))
+        called = sorted({call.behaviour for call in calls} - seen)
+        seen.update(called)
+        waiting += [program.behaviours[name].body for name in called]
+    return False
 
 
 class Computation:

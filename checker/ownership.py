@@ -1,6 +1,7 @@
 """Race-freedom by ownership, without a search: the paper's sufficient condition, over-approximated from the text.
 
-No agent may write a slot that another's redex, missing site or tested observation may read or write.
+No agent may write a slot that another's redex, missing site or tested observation may read or write. `children` is no
+slot of its own: it stands for the parents that a missing site reads, so that two who write it don't interfere.
 """
 
 from collections.abc import Iterable, Iterator
@@ -64,7 +65,7 @@ class Footprint:
 
 
 def owned(c: Configuration) -> bool:
-    """Tell whether a mission is race-free by ownership."""
+    """Tell whether a mission is race-free by ownership; c must be its first configuration: nothing is pending yet."""
     footprints = [footprint(c, a) for a in c.alpha.names()]
     texts = [_Text(c, a) for a in c.alpha.names()]
     if any(isinstance(s, Spawn) for text in texts for s in text.statements):
@@ -81,7 +82,8 @@ def owned(c: Configuration) -> bool:
 
 def interferes(one: Footprint, other: Footprint) -> bool:
     """Tell whether one may write what another may read or write."""
-    return any(_overlaps(write, slot) for write in one.writes for slot in other.reads | other.writes)
+    owned_by_other = {slot for slot in other.writes if slot[0] != "children"}  # children follow from parents
+    return any(_overlaps(write, slot) for write in one.writes for slot in other.reads | owned_by_other)
 
 
 def _overlaps(one: Slot, other: Slot) -> bool:
@@ -159,22 +161,40 @@ class _Text:
                 yield make(*chosen)
 
     def writes(self, reaction: Reaction) -> frozenset[Slot]:
-        """Return the slots that a reaction may change; what may contain something takes everything along."""
+        """Return the slots that a reaction may change.
+
+        What may contain something may take anything along. What carries something decides where its cargo can be put.
+        """
         before, after = reaction.redex, reaction.reactum
         moved = {self._term(node) for node, _ in set(after.parents) - set(before.parents)}
         linked = {self._term(node) for _, node in set(after.links) ^ set(before.links)}
         places = {("children", ANY)} if moved else set()
         slots = {("parent", node) for node in moved} | {("links", node) for node in linked} | places
-        return frozenset(slots | ({("parent", ANY)} if any(map(self._holds, moved)) else set()))
+        return frozenset(slots.union(*map(self._along, moved)))
 
-    def _holds(self, node: Name) -> bool:
+    def _along(self, node: Name) -> set[Slot]:
+        """Return what may be elsewhere, or may no longer be put down, once a node has moved."""
         setting = self.c.setting
-        return node == ANY or bool(setting.signature[setting.kind(node)].contains)
+        if node == ANY or setting.signature[setting.kind(node)].contains:
+            return {("parent", ANY)}
+        carried, waiting = set[Name](), [node]
+        while waiting:
+            carrier = waiting.pop()
+            cargo = {name for name in setting.kinds if setting.carries(carrier, name)} - carried
+            carried |= cargo
+            waiting += sorted(cargo)
+        if any(setting.signature[setting.kind(name)].contains for name in carried):
+            return {("parent", ANY)}
+        return {("parent", name) for name in carried}
 
     def redex(self, reaction: Reaction) -> frozenset[Slot]:
-        """Return the slots that a redex uses, missing sites included."""
+        """Return the slots that a redex uses, missing sites included, and those that say where its places are."""
         pattern: Pattern = reaction.redex
+        pairs = (*pattern.parents, *reaction.reactum.parents)
         parents = {("parent", self._term(node)) for node, _ in pattern.parents}
+        parents |= {("parent", place) for _, place in pairs if isinstance(place, str)}
+        if any(self.c.setting.signature[kind].passive for kind in self.c.setting.kinds.values()):
+            parents = {("parent", ANY)}  # nothing reacts inside of what is passive: all places around are read
         links = {("links", self._term(node)) for _, node in pattern.links}
         return frozenset(parents | links | {("children", self._term(node)) for node in pattern.closed})
 

@@ -14,6 +14,26 @@ SCHEMA = "bigactors.report/1"
 MARKS = {Outcome.HOLDS: "✓", Outcome.VIOLATED: "✗", Outcome.INCOMPLETE: "?"}
 
 
+UNITS = {
+    "local_consistency": (" control next in line", " controls next in line"),
+    "race_freedom": (" control or pair of controls", " controls and pairs of controls"),
+    "deadlock_freedom": (" configuration at rest", " configurations at rest"),
+    "arrival": (" end of a flight", " ends of flights"),
+    "computation": (" internal step", " internal steps"),
+    "invariant": (" configuration", " configurations"),
+}
+"""What is examined for each kind of property, one and several; of what is to be reachable, configurations with it."""
+
+NOTHING_EXAMINED = {
+    "local_consistency": "vacuous: no control was ever next in line",
+    "race_freedom": "vacuous: no control was ever served",
+    "deadlock_freedom": "some bigActor can always move",
+    "arrival": "vacuous: no flight ever ends, since none ever begins",
+    "computation": "no bigActor computes anything that could fail",
+}
+"""What it means that nothing was examined."""
+
+
 def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[str]:
     """Yield a report line by line."""
     size = (
@@ -40,17 +60,32 @@ def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
 def _sizes(verdict: Verdict) -> Iterator[str]:
     if verdict.outcome is Outcome.VIOLATED:
         if verdict.violations:
-            yield f"found {verdict.count:,} times"
+            yield "found once" if verdict.count == 1 else f"found {verdict.count:,} times"
     elif verdict.witness is not None:
-        yield f"examined {verdict.examined:,}, a witness of {len(verdict.witness)} steps"
-    elif verdict.property.kind not in ("race_freedom", "arrival") and verdict.outcome is Outcome.HOLDS:
-        yield "vacuous: nothing that it is about was ever reached"
+        yield f"examined {verdict.examined:,}{_unit(verdict)}, a witness of {_steps(len(verdict.witness))}"
+    elif verdict.outcome is Outcome.INCOMPLETE:
+        yield "nothing was found against it as far as was explored" if _speaks_against(verdict) else "not found yet"
+    elif verdict.property.kind in NOTHING_EXAMINED and not verdict.note.startswith(BY_OWNERSHIP):
+        yield NOTHING_EXAMINED[verdict.property.kind]
+
+
+def _unit(verdict: Verdict) -> str:
+    one, many = UNITS.get(verdict.property.kind, ("", ""))
+    return one if verdict.examined == 1 else many
+
+
+def _steps(count: int) -> str:
+    return "1 step" if count == 1 else f"{count:,} steps"
+
+
+def _speaks_against(verdict: Verdict) -> bool:
+    return verdict.property.kind != "reachable"
 
 
 def _violation(violation: Violation, *, traces: bool) -> Iterator[str]:
     yield f"      {violation.kind}: {violation.message}"
     yield from (f"        {detail}" for detail in violation.details)
-    yield f"      a shortest trace, {len(violation.trace)} steps{':' if traces else ''}"
+    yield f"      a shortest trace, {_steps(len(violation.trace))}{':' if traces else ''}"
     if traces:
         yield from (f"        {line}" for line in print_trace(violation.trace))
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from checker.exploration import Exploration
 from semantics.configuration import Configuration, Label, Transition
+from semantics.monitor import monitored
 from semantics.printing import print_changes
 from semantics.successors import expand
 
@@ -53,8 +54,9 @@ class Trace:
 
 
 def step_of(source: Configuration, label: Label, target: Configuration) -> Step:
-    """Return the step between two configurations."""
-    alike = [transition.target for transition in candidates(source) if transition.label == label]
+    """Return the step between two configurations; labels that print alike are alike, as `replay` knows no more."""
+    word = str(label)
+    alike = [transition.target for transition in candidates(source) if str(transition.label) == word]
     return Step(label, alike.index(target), target)
 
 
@@ -107,18 +109,20 @@ def to_json(trace: Trace, mission: str, digest: str) -> dict[str, Any]:
         {"label": str(step.label), "choice": step.choice, "changes": list(print_changes(source, step.target))}
         for step, source in zip(trace.steps, trace.configurations, strict=False)
     ]
-    monitored = trace.initial.setting.monitored
-    return {"schema": SCHEMA, "mission": mission, "digest": digest, "monitored": monitored, "steps": steps}
+    remembering = trace.initial.setting.monitored
+    return {"schema": SCHEMA, "mission": mission, "digest": digest, "monitored": remembering, "steps": steps}
 
 
 def replay(initial: Configuration, data: Any) -> Trace:
-    """Return the trace that plain data describes, run again through the rules.
+    """Return the trace that plain data describes, run again through the rules; with the monitor's memory if it had that.
 
     Raises:
         ReplayError: A step is not allowed.
         ValueError: The data are no trace.
     """
     steps = _steps(data)
+    if data.get("monitored") is True and not initial.setting.monitored:
+        initial = monitored(initial)
     trace: list[Step] = []
     at = initial
     for number, (label, choice) in enumerate(steps, 1):

@@ -323,10 +323,20 @@ def _shifted(shape: shapely.Geometry, by: int) -> shapely.Geometry:
     return translate(shape, by)
 
 
+@lru_cache(maxsize=1 << 16)
+def latitudes(geometry: Geometry) -> tuple[int, int]:
+    """Return the southern-most and northern-most latitude, in 1e-7 degree: edges are straight between vertices."""
+    ring = [latitude for latitude, _ in geometry.ring]
+    return min(ring), max(ring)
+
+
 @lru_cache(maxsize=1 << 18)
 def contains(outer: Geometry, inner: Geometry) -> bool:
     """Whether all of `inner`, its border too, lies in the interior of `outer`. A point contains nothing."""
     if outer.is_point or outer is inner:
+        return False
+    (south, north), (lowest, highest) = latitudes(outer), latitudes(inner)
+    if lowest <= south or highest >= north:  # most pairs are decided here, a hundred times faster
         return False
     fixed = planar(outer)
     return bool(shapely.contains_properly(fixed, beside(fixed, planar(inner))))

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from bigraphs.bigraph import Bigraph
+from bigraphs import Bigraph
 from physical import PhysicalProperty
 from semantics.configuration import Configuration
 from semantics.initial import initial

@@ -66,7 +66,7 @@ class Configuration:
         return hash(self.state)
 
     def __repr__(self) -> str:
-        from semantics.printing import print_configuration  # printing knows configurations
+        from semantics.printing import print_configuration  # noqa: PLC0415  # printing knows configurations
 
         return print_configuration(self)
 

@@ -80,7 +80,7 @@ def _arrives(before: PhysicalModel, node: Name, place: Name, placement: Placemen
 def _put_down(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carried | None:
     """Put what a carrier holds where the carrier is, if the place is there; into another carrier there likewise."""
     by = physical.carrier(node)
-    if by is None or place == REGION or place == node:
+    if by is None or place in (REGION, node):
         return None
     carried = physical.placement(node)
     here, there = physical.position(by), physical.position(place)

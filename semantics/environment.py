@@ -70,21 +70,22 @@ class Leaves:
     channel: Name
     returns: bool
 
+    @property
+    def left(self) -> Cell:
+        """The cell that says whether it was by leaving that the entity is off the channel."""
+        return ("left", self.entity, self.channel)
+
     def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
-        """Yield the entity's leaving or its return."""
+        """Yield the entity's leaving; its return only where it had left, not where a control took it off."""
         channels = frozenset(physical.channels(self.entity))
         if self.entity not in physical:
             return
         if self.channel in channels:
-            yield (
-                f"{self.entity} leaves {self.channel}",
-                physical.joining(self.entity, channels - {self.channel}),
-            )
-        elif self.returns:
-            yield (
-                f"{self.entity} returns to {self.channel}",
-                physical.joining(self.entity, channels | {self.channel}),
-            )
+            left = physical.joining(self.entity, channels - {self.channel})
+            yield f"{self.entity} leaves {self.channel}", left | {self.left: True}
+        elif self.returns and physical.cells.read(self.left):
+            back = physical.joining(self.entity, channels | {self.channel})
+            yield f"{self.entity} returns to {self.channel}", back | {self.left: False}
 
 
 @dataclass(frozen=True, slots=True)

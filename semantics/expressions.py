@@ -302,9 +302,18 @@ def _keys(*kinds: str) -> Callable[..., tuple[Key, ...]]:
 
 
 OPERATORS: Mapping[str, Operator] = {
-    "in": Operator(2, "whether a name is in a set or was shown in an observation", lambda _, x, y: Truth.of(x in _members(y)), _keys("in")),
-    "==": Operator(2, "whether two values are the same", lambda _, x, y: Truth.of(type(x) is type(y) and x == y)),
-    "!=": Operator(2, "whether two values differ", lambda _, x, y: Truth.of(type(x) is not type(y) or x != y)),
+    "in": Operator(
+        2,
+        "whether a name is in a set or was shown in an observation",
+        lambda _, x, y: Truth.of(x in _members(y)),
+        _keys("in"),
+    ),
+    "==": Operator(
+        2, "whether two values are the same", lambda _, x, y: Truth.of(type(x) is type(y) and x == y)
+    ),
+    "!=": Operator(
+        2, "whether two values differ", lambda _, x, y: Truth.of(type(x) is not type(y) or x != y)
+    ),
     "<": Operator(2, "whether a number is less than another", _compare(lambda a, b: a < b)),
     "<=": Operator(2, "whether a number is at most another", _compare(lambda a, b: a <= b)),
     ">": Operator(2, "whether a number is more than another", _compare(lambda a, b: a > b)),
@@ -314,19 +323,41 @@ OPERATORS: Mapping[str, Operator] = {
     "not": Operator(1, "the contrary of a truth value", lambda _, x: Truth.of(not truth(x))),
     "of": Operator(2, "the members of a kind", _of_kind),
     "union": Operator(2, "the members of either set", lambda _, a, b: _members(a) | _members(b)),
-    "minus": Operator(2, "the members of the first set that are not in the second", lambda _, a, b: _members(a) - _members(b)),
+    "minus": Operator(
+        2,
+        "the members of the first set that are not in the second",
+        lambda _, a, b: _members(a) - _members(b),
+    ),
     "intersect": Operator(2, "the members of both sets", lambda _, a, b: _members(a) & _members(b)),
     "size": Operator(1, "how many members a set or an observation has", lambda _, a: len(_members(a))),
-    "empty": Operator(1, "whether a set or an observation has no member", lambda _, a: Truth.of(not _members(a))),
-    "nodes": Operator(1, "the nodes that an observation shows, as a set", lambda _, a: frozenset(_seen(a).shown)),
-    "agents": Operator(1, "the agents that an observation shows, as a set", lambda _, a: frozenset(_seen(a).agents)),
+    "empty": Operator(
+        1, "whether a set or an observation has no member", lambda _, a: Truth.of(not _members(a))
+    ),
+    "nodes": Operator(
+        1, "the nodes that an observation shows, as a set", lambda _, a: frozenset(_seen(a).shown)
+    ),
+    "agents": Operator(
+        1, "the agents that an observation shows, as a set", lambda _, a: frozenset(_seen(a).agents)
+    ),
     "kind": Operator(1, "the kind of an entity, as a text", lambda scope, a: scope.kinds[str(a)]),
-    "parent": Operator(2, "the place in which an observation saw a node", lambda _, x, o: _seen(o).parent(str(x)) or "unknown", _keys("parent")),
-    "children": Operator(2, "the nodes that an observation saw in a place", lambda _, x, o: _seen(o).children(str(x)), _keys("children")),
-    "linked": Operator(3, "whether an observation saw two nodes on one link", _linked, _keys("links", "links")),
+    "parent": Operator(
+        2,
+        "the place in which an observation saw a node",
+        lambda _, x, o: _seen(o).parent(str(x)) or "unknown",
+        _keys("parent"),
+    ),
+    "children": Operator(
+        2,
+        "the nodes that an observation saw in a place",
+        lambda _, x, o: _seen(o).children(str(x)),
+        _keys("children"),
+    ),
+    "linked": Operator(
+        3, "whether an observation saw two nodes on one link", _linked, _keys("links", "links")
+    ),
     "first": Operator(1, "the first member of a set, in the order of names", _first),
     "element": Operator(2, "one element of a tuple, counted from 0", _element),
-}  # fmt: skip
+}
 
 
 def free(expression: Any) -> frozenset[str]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from semantics.agents import Code
 from semantics.cells import AGENTS, NAMES, QUEUE, Changes
 from semantics.configuration import Configuration
-from semantics.environment import Drops, Says
+from semantics.environment import Drops, Leaves, Says
 from semantics.logical_model import links_cell, parent_cell
 from semantics.physical_model import Placement, channels_cell, down_cell, placement_cell
 from semantics.setting import Scheduler, Setting
@@ -50,6 +50,8 @@ def initial(
     for clause in setting.environment:
         if isinstance(clause, Drops):
             contents[down_cell(clause.channel)] = False
+        elif isinstance(clause, Leaves):
+            contents[clause.left] = False
         elif isinstance(clause, Says):
             contents[clause.counter] = clause.times
     for agent, (host, code) in sorted(agents.items()):

@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from bigraphs.bigraph import Bigraph
-from bigraphs.relations import from_relations
+from bigraphs import Bigraph, from_relations, open_signature
 from semantics.cells import NAMES, Cell, Cells, Changes
 from semantics.signature import REGION, Name
 
@@ -81,6 +80,7 @@ class LogicalModel:
             {node: self.setting.kind(node) for node in nodes},
             {node: None if parent == REGION else parent for node, parent in parents.items()},
             {link: [node for node in nodes if link in self.links(node)] for link in links},
+            open_signature(self.setting.kinds.values()),
         )
 
 

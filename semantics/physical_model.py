@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from physical import Band, Geometry, area, band_contains, contains
+from physical import Band, Geometry, area, band_contains, contains, point
 from semantics.cells import NAMES, Cell, Cells, Changes
 from semantics.signature import REGION, Name
 
@@ -23,10 +23,18 @@ class Placed:
 
 @dataclass(frozen=True, slots=True)
 class Carried:
-    """Carried by another entity, wherever that is; `shape` is what it takes up once it is put down."""
+    """Carried by another entity, wherever that is; `shape` is what it takes up once it is put down.
+
+    Where a shape was before means nothing while it is carried: it is kept as it was first given, a point as any point.
+    """
 
     by: Name
     shape: Placed
+
+    def __post_init__(self) -> None:
+        geometry = self.shape.geometry
+        still = point(0, 0) if geometry.is_point else geometry.template or geometry
+        object.__setattr__(self, "shape", Placed(still, self.shape.altitude))
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +129,7 @@ class PhysicalModel:
         """Tell σ_P's `contains`.
 
         An entity in transit is contained only by what contains both ends of its flight, the destination itself
-        excepted: nobody sees it arrived before it has. What is carried takes up no room of its own: it contains nothing.
+        excepted: nobody sees it arrived before it has. What is carried contains nothing: it has no room of its own.
         """
         if place == entity or self.carrier(place) is not None:
             return False

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from textwrap import indent
 
-from bigraphs.text import draw_text
+from bigraphs import draw_text
 from semantics.cells import AGENTS, MONITOR, NAMES, QUEUE, Cell
 from semantics.configuration import Configuration
 from semantics.physical_model import Carried, InTransit, PhysicalModel, Placement

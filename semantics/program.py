@@ -86,7 +86,9 @@ def _live(block: Block, reads: list[Names], statements: tuple[Statement, ...]) -
     return live
 
 
-def _reads(statement: Statement, reads: list[Names], statements: tuple[Statement, ...]) -> Names:
+def _reads(  # noqa: PLR0912  # one case for each kind of statement
+    statement: Statement, reads: list[Names], statements: tuple[Statement, ...]
+) -> Names:
     def live(block: Block) -> Names:
         return _live(block, reads, statements)
 

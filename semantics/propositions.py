@@ -247,7 +247,8 @@ class Property:
     """What is to be checked.
 
     Attributes:
-        kind: `local_consistency`, `race_freedom`, `deadlock_freedom`, `arrival`, `computation`, `invariant` or `reachable`.
+        kind: `local_consistency`, `race_freedom`, `deadlock_freedom`, `arrival`, `computation`, `invariant` or
+            `reachable`.
         name: Its name; that of its kind where the mission gives none.
         formula: Of an invariant, or of what is to be reachable.
         line: Where it stands in the mission's text, from 1; 0 where it was not written.

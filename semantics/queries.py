@@ -214,7 +214,7 @@ def _new_links(name: Name, believed: frozenset[Name], seen: Observation) -> froz
 
 
 def _break_cycles(parents: dict[Name, Name | None], answered: dict[Name, Name]) -> None:
-    """Send to the region what lies on a cycle and was not looked at; A(P) is a forest, so each cycle has such a node."""
+    """Send to the region what lies on a cycle and was not looked at; A(P) is a forest: each cycle has such a node."""
     for start in parents:
         path: list[Name] = []
         place: Name | None = start

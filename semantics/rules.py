@@ -1,7 +1,7 @@
 """The seven inference rules, and the two that take `actuate` apart when control takes time.
 
-Each is a pure function of a configuration and an agent that yields the transitions which the rule allows (`env` is given
-a clause of the environment instead). Above the bar of each docstring stand the premises, below it the conclusion.
+Each is a pure function of a configuration and an agent that yields the transitions which the rule allows (`env` is
+given a clause of the environment instead). Above the bar of each docstring stand the premises, below it the conclusion.
 """
 
 from collections.abc import Callable, Iterator

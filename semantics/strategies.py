@@ -5,7 +5,7 @@ nest or lie apart by construction; what moves is a point or a small polygon in a
 towards few entities, L = A(P), few statements and short runs. Needs the extra `strategies`.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TypeVar
@@ -16,25 +16,12 @@ from physical import Band, box, circle, point
 from semantics.agents import Code
 from semantics.configuration import Configuration
 from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
-from semantics.expressions import (
-    Apply,
-    Either,
-    Expression,
-    Fault,
-    Host,
-    Literal,
-    QueryOf,
-    Self,
-    SetOf,
-    TupleOf,
-    Variable,
-)
+from semantics.expressions import Fault
 from semantics.initial import Beliefs, initial
-from semantics.patterns import Anything, Elements, Exactly
-from semantics.patterns import Pattern as CasePattern
 from semantics.physical_model import Carried, Placed, Placement
-from semantics.program import Behaviour, Program
+from semantics.program import Program
 from semantics.queries import All, Nodes, Of, Query
+from semantics.random_programs import AGENT_NAMES, ONE_ARGUMENT, random_program
 from semantics.reactions import (
     COMMANDS,
     LinkTerm,
@@ -45,39 +32,14 @@ from semantics.reactions import (
     PlaceTerm,
     PlaceVariable,
     Reaction,
+    move_host_to,
 )
 from semantics.setting import Control, Scheduler, Setting
 from semantics.signature import REGION, Kind, Name, Signature
-from semantics.statements import (
-    Assign,
-    Block,
-    Call,
-    Case,
-    Choose,
-    ChooseFrom,
-    ControlBy,
-    Display,
-    For,
-    ForEach,
-    If,
-    Loop,
-    Match,
-    Migrate,
-    Observe,
-    React,
-    Send,
-    Spawn,
-    Statement,
-    Tested,
-    While,
-)
 from semantics.structure import Structure
 from semantics.successors import successors
-from semantics.values import Truth, Value
 
 CHANNELS = ("control:g0", "control:g1", "wifi")
-AGENT_NAMES = ("a", "b", "c", "d")
-SPAWNED_NAMES = ("d", "c", "a")
 KIND_OF = {"place": "Place", "uav": "Uav", "vessel": "Vessel", "crate": "Crate", "station": "Station"}
 OPERATORS = ("PARENT", "CHILDREN", "LINKED_TO", "HOSTED_AT")
 
@@ -93,14 +55,6 @@ def pick(draw: st.DrawFn, options: Sequence[T]) -> T:
 @lru_cache(maxsize=64)
 def _numbers(count: int) -> st.SearchStrategy[int]:
     return st.integers(0, count - 1)
-
-
-def arity(command: str) -> int:
-    """Return how many arguments a command of the language takes."""
-    return 1 if command in ONE_ARGUMENT else 2
-
-
-ONE_ARGUMENT = frozenset({"MOVE_HOST_TO", "CONNECT_HOST_TO", "DISCONNECT_HOST_FROM"})
 
 
 @dataclass(frozen=True)
@@ -344,8 +298,12 @@ _link_terms: st.SearchStrategy[LinkTerm] = st.sampled_from(
 
 @st.composite
 def reactions(draw: st.DrawFn, names: Sequence[Name], host: Name) -> Reaction:
-    """Yield reactions: commands, and redexes with a reactum that moves and relinks some of their nodes."""
-    if pick(draw, [False, True]):
+    """Yield reactions: moves of the host, commands, and redexes whose reactum moves and relinks some of their nodes."""
+    way = pick(draw, ["move", "command", "other"])
+    if way == "move":
+        holders = [name for name in names if name.startswith(("place", "vessel"))]
+        return move_host_to(host, pick(draw, holders or names))
+    if way == "command":
         return draw(commands(host, names))
     redex = draw(patterns(names, host))
     parents = tuple((node, _elsewhere(draw, redex, node, place)) for node, place in redex.parents)
@@ -361,187 +319,14 @@ def _elsewhere(draw: st.DrawFn, redex: Pattern, node: NodeTerm, place: PlaceTerm
 
 # --- behaviours -----------------------------------------------------------------------------------------------
 
-Variables = tuple[str, ...]
-"""The variables in scope: `o1` holds an observation, `v1` any value."""
-
-
-class _Writer:
-    """Draws statements and numbers them; every variable has a name of its own."""
-
-    def __init__(self, draw: st.DrawFn, names: Sequence[Name]) -> None:
-        self.draw = draw
-        self.names = names
-        self.statements: list[Statement] = []
-        self.behaviours: dict[str, Behaviour] = {}
-        self.variables = 0
-
-    def pick(self, options: Sequence[T]) -> T:
-        return pick(self.draw, options)
-
-    def one(self, *options: Expression) -> Expression:
-        return self.pick(options)
-
-    def fresh(self, letter: str = "v") -> str:
-        self.variables += 1
-        return f"{letter}{self.variables}"
-
-    def add(self, statement: Statement) -> int:
-        self.statements.append(statement)
-        return len(self.statements) - 1
-
-    def block(self, scope: Variables, depth: int, least: int = 0) -> Block:
-        """Draw statements that follow each other; what one binds, those after it may read."""
-        block: list[int] = []
-        for _ in range(self.pick(range(least, 4))):
-            statement = self.statement(scope, depth)
-            scope += (statement.variable,) if isinstance(statement, Assign) else ()
-            block.append(self.add(statement))
-        return tuple(block)
-
-    def statement(self, scope: Variables, depth: int) -> Statement:
-        kinds = [*_FLAT, *(_NESTED if depth > 0 else ()), *(("call", "spawn") if self.behaviours else ())]
-        write: Callable[[Variables, int], Statement] = getattr(self, f"write_{self.pick(kinds)}")
-        return write(scope, depth - 1)
-
-    # expressions
-
-    def leaf(self, scope: Variables) -> Expression:
-        values: list[Value] = [*self.names, "go", 1, Truth.TRUE]
-        return self.one(*map(Variable, scope), *map(Literal, values), Host(), Self())
-
-    def expression(self, scope: Variables) -> Expression:
-        leaf = self.leaf(scope)
-        seen = [Apply("nodes", (Variable(name),)) for name in scope if name.startswith("o")]
-        go = TupleOf((Literal("go"), leaf))
-        one = SetOf((leaf,))
-        return self.one(leaf, go, *seen, one, Apply("first", (one,)))
-
-    def name(self, scope: Variables) -> Expression:
-        seen = [
-            Apply("parent", (Literal(self.pick(self.names)), Variable(name)))
-            for name in scope
-            if name.startswith("o")
-        ]
-        return self.one(*map(Literal, self.names), Host(), *map(Variable, scope), *seen)
-
-    def test(self, scope: Variables) -> Expression:
-        seen = [
-            Apply("in", (Literal(self.pick(self.names)), Variable(name)))
-            for name in scope
-            if name.startswith("o")
-        ]
-        same = Apply("==", (self.leaf(scope), self.leaf(scope)))
-        either = [Either(self.pick([False, True]), test, same) for test in seen]
-        return self.one(*seen, same, Apply("not", (same,)), *either)
-
-    def members(self, scope: Variables) -> Expression:
-        seen = [Variable(name) for name in scope if name.startswith("o")]
-        return self.one(*seen, SetOf((Literal(self.pick(self.names)), Literal(self.pick(self.names)))))
-
-    def query(self, depth: int = 3) -> QueryOf:
-        operator = self.pick(["CHILDREN", "PARENT", "LINKED_TO", None, "HOSTED_AT"]) if depth else None
-        if operator is not None:
-            return QueryOf(operator, self.query(depth - 1))
-        if self.pick(range(4)) == 3:
-            return QueryOf("ALL", None)
-        return QueryOf(None, self.one(Host(), *map(Literal, self.names)))
-
-    # commands
-
-    def write_observe(self, _: Variables, __: int) -> Statement:
-        return Observe(self.query())
-
-    def write_control(self, scope: Variables, _: int) -> Statement:
-        command = self.pick(["MOVE_HOST_TO", *sorted(COMMANDS)])
-        return ControlBy(command, tuple(self.name(scope) for _ in range(arity(command))))
-
-    def write_react(self, scope: Variables, depth: int) -> Statement:
-        return React(self.cases(scope, depth))
-
-    def write_send(self, scope: Variables, _: int) -> Statement:
-        return Send(self.expression(scope), Literal(self.pick(AGENT_NAMES)))
-
-    def write_migrate(self, scope: Variables, _: int) -> Statement:
-        return Migrate(self.name(scope))
-
-    def write_spawn(self, scope: Variables, _: int) -> Statement:
-        behaviour = self.behaviours[self.pick(sorted(self.behaviours))]
-        arguments = tuple(self.expression(scope) for _ in behaviour.parameters)
-        return Spawn(self.pick(SPAWNED_NAMES), self.name(scope), behaviour.name, arguments)
-
-    # internal computation
-
-    def write_display(self, scope: Variables, _: int) -> Statement:
-        return Display(self.expression(scope))
-
-    def write_assign(self, scope: Variables, _: int) -> Statement:
-        value = self.expression(scope)
-        return Assign(self.fresh(), value)
-
-    def write_match(self, scope: Variables, depth: int) -> Statement:
-        otherwise = Case(Anything(), None, self.block(scope, depth))
-        return Match(self.expression(scope), (*self.cases(scope, depth), otherwise))
-
-    def cases(self, scope: Variables, depth: int) -> tuple[Case, ...]:
-        return tuple(self.case(scope, depth) for _ in range(self.pick([1, 2])))
-
-    def case(self, scope: Variables, depth: int) -> Case:
-        letter = self.pick("oov")
-        name = self.fresh(letter)
-        message: list[CasePattern] = [
-            Elements((Exactly("go"), Anything(name))),
-            Anything(name, "message"),
-            Anything(name),
-        ]
-        bound: CasePattern = Anything(name, "observation") if letter == "o" else self.pick(message)
-        inside = (*scope, name)
-        guard = self.test(inside) if self.pick([False, True]) else None
-        tested = (self.add(Tested()),) if guard is not None else ()
-        return Case(bound, guard, tested + self.block(inside, depth))
-
-    def write_if(self, scope: Variables, depth: int) -> Statement:
-        return If(self.test(scope), self.block(scope, depth), self.block(scope, depth))
-
-    def write_while(self, scope: Variables, depth: int) -> Statement:
-        return While(self.test(scope), (self.add(self.write_observe(scope, 0)), *self.block(scope, depth)))
-
-    def write_loop(self, scope: Variables, depth: int) -> Statement:
-        return Loop((self.add(self.write_react(scope, 0)), *self.block(scope, depth)))
-
-    def write_for(self, scope: Variables, depth: int) -> Statement:
-        variable = self.fresh()
-        rest = f"{variable}rest#"
-        each = self.add(ForEach(variable, rest, self.block((*scope, variable), depth)))
-        return For(self.members(scope), rest, each)
-
-    def write_choose(self, scope: Variables, depth: int) -> Statement:
-        return Choose((self.block(scope, depth), self.block(scope, depth)))
-
-    def write_choose_from(self, scope: Variables, depth: int) -> Statement:
-        variable = self.fresh()
-        return ChooseFrom(variable, self.members(scope), self.block((*scope, variable), depth, least=1))
-
-    def write_call(self, scope: Variables, _: int) -> Statement:
-        behaviour = self.behaviours[self.pick(sorted(self.behaviours))]
-        return Call(behaviour.name, tuple(self.expression(scope) for _ in behaviour.parameters))
-
-
-_FLAT = ("control", "observe", "react", "observe", "react", "control", "send", "migrate", "display", "assign")
-_NESTED = ("if", "match", "for", "choose", "choose_from", "loop", "while")
-
 
 @st.composite
 def programs(draw: st.DrawFn, names: Sequence[Name], agents: int = 1) -> tuple[Program, tuple[Code, ...]]:
     """Yield a well-scoped program of all statements over these names, and the code of so many agents.
 
-    Some of its computations are faults; none diverges before a command.
+    Some of its computations are faults.
     """
-    writer = _Writer(draw, names)
-    if pick(draw, [False, True]):
-        parameter = writer.fresh()
-        writer.behaviours["helper"] = Behaviour("helper", (parameter,), writer.block((parameter,), 0))
-    code = tuple(writer.block((), 2, least=1) for _ in range(agents))
-    return Program(tuple(writer.statements), writer.behaviours, COMMANDS), code
+    return random_program(lambda count: draw(_numbers(count)), names, agents)
 
 
 # --- configurations -------------------------------------------------------------------------------------------
@@ -597,29 +382,29 @@ def initial_configurations(
     world = draw(worlds())
     number = draw(st.integers(1, 2))
     program, code = draw(programs(sorted(world.kinds), number))
-    hosts = ["uav0", *sorted(world.kinds)]
+    hosts = ["uav0", "uav0", *sorted(world.placements)]
     agents = {AGENT_NAMES[each]: (pick(draw, hosts), code[each]) for each in range(number)}
     setting = world.setting(program, draw(environments(world))).with_(
         scheduler=pick(draw, schedulers),
         control=pick(draw, controls),
         monitored=pick(draw, [False, True]) if monitored is None else monitored,
     )
-    lags = pick(draw, [False, True]) if lagging is None else lagging
+    lags = pick(draw, [False, False, True]) if lagging is None else lagging
     return world.initial(setting, agents, draw(beliefs(world)) if lags else None)
 
 
 @st.composite
 def configurations(
-    draw: st.DrawFn, start: st.SearchStrategy[Configuration] | None = None, steps: int = 12
+    draw: st.DrawFn, start: st.SearchStrategy[Configuration] | None = None, steps: int = 16
 ) -> Configuration:
     """Yield configurations reached by a random run of at most so many steps, none of them into a fault."""
     c = draw(initial_configurations() if start is None else start)
-    for turn in [draw(_numbers(12)) for _ in range(pick(draw, range(steps + 1)))]:
+    for turn in [draw(_numbers(16)) for _ in range(pick(draw, range(steps + 1)))]:
         try:
             allowed = successors(c)
         except Fault:
             break
         if not allowed:
             break
-        c = allowed[turn % len(allowed)].target
+        c = allowed[max(0, turn - 6) % len(allowed)].target  # often the first: what serves a request
     return c

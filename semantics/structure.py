@@ -53,7 +53,10 @@ class Structure:
         return node if node in self.physical else None
 
     def gamma(self, relation: Relation) -> bool:
-        """Tell whether P relates the β-images as γ(relation) says: γ(parent) = contains or carries, γ(linked) = connected."""
+        """Tell whether P relates the β-images as γ says.
+
+        γ(parent) = contains or carries, γ(linked) = connected.
+        """
         physical = self.physical
         if isinstance(relation, Linked):
             return self.beta(relation.node) is not None and physical.connected(relation.link, relation.node)

@@ -1,4 +1,4 @@
-"""All transitions of a configuration: the rules, agent by agent, the scheduler's turn, and the environment's clauses."""
+"""All transitions of a configuration: the rules agent by agent, the scheduler's turn, the environment's clauses."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

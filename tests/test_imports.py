@@ -129,7 +129,7 @@ def test_the_arrows_have_no_cycle():
 
 
 def test_the_walk_tells_what_runs_at_import():
-    text = "import a\ndef f():\n    import b\nclass C:\n    import c\nif TYPE_CHECKING:\n    import d\nelse:\n    pass\n"
+    text = "import a\ndef f():\n    import b\nclass C:\n    import c\nif TYPE_CHECKING:\n    import d\n"
     found = {
         alias.name: at_import
         for node, at_import in walk(ast.parse(text))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from bigactors.checking import Checked, Failed, check_missions, results_json
 from bigactors.exits import Exit, worst
-from bigactors.files import file_stem, json_text, make_folder, write_json
+from bigactors.files import check_writable, file_stem, json_text, make_folder, write_json
 from bigactors.terminal import paint, say, say_text, tell
 from checker import Limits, report_text
 from checker.report import MARKS
@@ -32,6 +32,8 @@ def run(options: Namespace) -> Exit:
     limits = Limits(configurations=options.max_configurations, seconds=options.max_time)
     if options.trace:
         make_folder(options.trace)
+    if options.json not in (None, "-"):
+        check_writable(options.json)
     results: list[Checked | Failed] = []
     folders: set[str] = set()
     for result in check_missions(options.files, limits):

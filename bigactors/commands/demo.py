@@ -1,6 +1,7 @@
 """`bigactors demo`: the missions of the README, checked and drawn."""
 
 from argparse import Namespace
+from pathlib import Path
 
 from bigactors.checking import Checked, check_mission
 from bigactors.commands.check import coloured, report_lines
@@ -16,15 +17,16 @@ MISSIONS = ("oil_spill", "harbour_watch")
 
 def run(options: Namespace) -> Exit:
     """Check both missions, and write a picture and the traces of each."""
-    return worst([_show(name, options.out) for name in MISSIONS])
+    out = make_folder(options.out)
+    return worst([_show(name, out) for name in MISSIONS])
 
 
-def _show(name: str, out: str) -> Exit:
+def _show(name: str, out: Path) -> Exit:
     result = check_mission(name, Limits(seconds=60))
     for line in report_lines(result, traces=True):
         say(coloured(line))
     if isinstance(result, Checked):
-        folder = make_folder(out) / name
+        folder = out / name
         picture = f"{folder}.svg"
         draw(result.mission.initial, picture, title=name)
         say(f"  picture: {picture}")

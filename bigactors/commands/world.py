@@ -7,7 +7,7 @@ from bigactors.drawings import draw
 from bigactors.exits import Exit
 from bigactors.terminal import say, tell
 from bigactors.worlds import census, configuration_of, read_world
-from bigraphs.text import draw_text
+from bigraphs import draw_text
 
 
 def run(options: Namespace) -> Exit:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from bigraphs.bigraph import points
 from bigraphs.drawing import KINDS, LINKS
 from physical.drawing import MapEntity
-from physical.map_style import PALETTE
 from semantics.configuration import Configuration
 from semantics.environment import Appears, Drifts
 from semantics.physical_model import Carried, InTransit
@@ -22,14 +21,10 @@ class Palette:
 
 
 def palette_of(c: Configuration) -> Palette:
-    """Return the colours in which the bigraph is drawn; what is only in P takes those that are left."""
+    """Return the colours in which the bigraph is drawn: of all declared kinds, so that they stay in a trace."""
     bigraph = c.structure.logical.bigraph()
-    believed = sorted({node.control for node in bigraph.nodes})
-    others = sorted({c.setting.kind(name) for name in c.structure.physical.entities()} - set(believed))
-    kinds = {
-        kind: KINDS[rank % len(KINDS)][1] if rank < len(KINDS) else PALETTE[rank % len(PALETTE)]
-        for rank, kind in enumerate([*believed, *others])
-    }
+    declared = sorted(control.name for control in bigraph.signature.controls)
+    kinds = {kind: KINDS[rank % len(KINDS)][1] for rank, kind in enumerate(declared)}
     drawn = [str(link) for link, on in points(bigraph).items() if on]
     links = [*drawn, *(channel for channel in channels_of(c) if channel not in drawn)]
     return Palette(kinds, {link: LINKS[rank % len(LINKS)] for rank, link in enumerate(links)})

@@ -5,5 +5,6 @@ bodies (with statements, expressions and patterns), controls, checks. It knows n
 """
 
 from specs.elaboration.mission import ElaboratedMission, elaborate, load_mission
+from specs.elaboration.variation import Variation
 
-__all__ = ["ElaboratedMission", "elaborate", "load_mission"]
+__all__ = ["ElaboratedMission", "Variation", "elaborate", "load_mission"]

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
@@ -36,15 +36,45 @@ class Refused(Exception):
         super().__init__(message)
 
 
+@dataclass(frozen=True, slots=True)
+class Library:
+    """Where the files of a world are: beside the mission, but for those that others are put in the place of."""
+
+    directory: Path
+    instead: Mapping[str, Path] = field(default_factory=dict)
+
+    def locate(self, name: str) -> Path:
+        """Return the path of the file that a mission names; raises Refused where there is none."""
+        if name in self.instead:
+            return self.instead[name]
+        try:
+            if Path(name).is_absolute() or re.match(r"[A-Za-z]:|[\\/~]", name):
+                raise Refused(
+                    Code.UNREADABLE_FILE,
+                    f"'{shorten(name)}' is an absolute path",
+                    "give it relative to the mission",
+                )
+            path = (self.directory / name).resolve()
+            if not path.is_file():
+                raise Refused(
+                    Code.UNREADABLE_FILE,
+                    f"there is no file '{shorten(name)}' beside the mission",
+                    "check the path",
+                )
+        except (OSError, ValueError, RuntimeError) as error:
+            raise Refused(Code.UNREADABLE_FILE, f"'{shorten(name)}' is no path of a file") from error
+        return path
+
+
 def read_source(
-    entry: s.FromSource, directory: Path, names: Names, notes: list[str]
+    entry: s.FromSource, library: Library, names: Names, notes: list[str]
 ) -> tuple[PhysicalProperty, ...]:
     """Return what a file holds of the world, of kinds of the signature; reports what is wrong, and adds to `notes`."""
     area = None if entry.within is None else elaborate_geometry(entry.within, names.findings)
     for keep in entry.keep:
         names.kind(keep.kind)
     try:
-        found = _read(entry, _locate(entry.file.value, directory), area)
+        found = _read(entry, library.locate(entry.file.value), area)
     except Refused as refused:
         names.findings.add(refused.code, entry.file, refused.message, refused.hint)
         return ()
@@ -56,26 +86,6 @@ def read_source(
             f"of the {len(kept)} entities in {entry.file.value} the first {len(limited)} are in the world"
         )
     return tuple(item for item in limited if _usable(item, entry, names))
-
-
-def _locate(name: str, directory: Path) -> Path:
-    try:
-        if Path(name).is_absolute() or re.match(r"[A-Za-z]:|[\\/~]", name):
-            raise Refused(
-                Code.UNREADABLE_FILE,
-                f"'{shorten(name)}' is an absolute path",
-                "give it relative to the mission",
-            )
-        path = (directory / name).resolve()
-        if not path.is_file():
-            raise Refused(
-                Code.UNREADABLE_FILE,
-                f"there is no file '{shorten(name)}' beside the mission",
-                "check the path",
-            )
-    except (OSError, ValueError, RuntimeError) as error:
-        raise Refused(Code.UNREADABLE_FILE, f"'{shorten(name)}' is no path of a file") from error
-    return path
 
 
 def _read(entry: s.FromSource, path: Path, area: Geometry | None) -> tuple[PhysicalProperty, ...]:

@@ -20,11 +20,13 @@ from specs.elaboration.bodies import declare_behaviours, elaborate_bodies, named
 from specs.elaboration.checks import elaborate_checks, elaborate_control, elaborate_scheduler
 from specs.elaboration.controls import Ground, check_controls
 from specs.elaboration.environment import appearing_channels, elaborate_environment
+from specs.elaboration.files import Library
 from specs.elaboration.findings import Findings
 from specs.elaboration.names import Names
 from specs.elaboration.places import check_nesting, elaborate_mobility, fixed_entities
 from specs.elaboration.rules import elaborate_rules
 from specs.elaboration.signature import elaborate_signature
+from specs.elaboration.variation import AS_WRITTEN, Variation
 from specs.elaboration.world import elaborate_world
 from specs.parser import parse_bytes
 from specs.text import MAX_BYTES
@@ -60,14 +62,16 @@ class ElaboratedMission:
         return 0 if span is None else self.source.line(span.start)
 
 
-def elaborate(mission: s.Mission, source: Source, directory: Path) -> ElaboratedMission:
+def elaborate(
+    mission: s.Mission, source: Source, directory: Path, variation: Variation = AS_WRITTEN
+) -> ElaboratedMission:
     """Return what a mission means; raises MissionError with every mistake that was found, by position.
 
-    Files of the world are looked for in `directory`.
+    Files of the world are looked for in `directory`, but for those that the variation has others for.
     """
     names = Names(Findings(source))
     elaborate_signature(mission, names)
-    world = elaborate_world(mission, names, directory)
+    world = elaborate_world(mission, names, Library(directory, variation.sources))
     appearing_channels(mission, names)
     declare_behaviours(mission, names)
     mobility = elaborate_mobility(mission, names, world)
@@ -82,6 +86,7 @@ def elaborate(mission: s.Mission, source: Source, directory: Path) -> Elaborated
     fixed = fixed_entities(names, mobility)
     check_controls(bodies, Ground(names, world, mobility, fixed))
     scheduler, control = elaborate_scheduler(mission, names), elaborate_control(mission, names)
+    scheduler, control = variation.scheduler or scheduler, variation.control or control
     properties = elaborate_checks(mission, names, bodies)
     _stop(names.findings)
     setting = Setting(names.signature, dict(names.kinds), program, clauses, scheduler, control, arriving)
@@ -102,7 +107,7 @@ def _stop(findings: Findings) -> None:
         raise findings.error()
 
 
-def load_mission(path: str | Path) -> ElaboratedMission:
+def load_mission(path: str | Path, variation: Variation = AS_WRITTEN) -> ElaboratedMission:
     """Read, parse and elaborate a mission file; raises MissionError, for a file that can't be read too."""
     path = Path(path)
     name = str(path)
@@ -116,7 +121,21 @@ def load_mission(path: str | Path) -> ElaboratedMission:
         )
         raise MissionError(Source(name, ""), [unread]) from error
     source, mission = parse_bytes(name, data)
-    return elaborate(mission, source, path.parent)
+    _check_sources(mission, source, variation)
+    return elaborate(mission, source, path.parent, variation)
+
+
+def _check_sources(mission: s.Mission, source: Source, variation: Variation) -> None:
+    """Refuse a substitute for a file that the mission does not name."""
+    entries = (entry for world in mission.each(s.World) for entry in world.entries)
+    named = {entry.file.value for entry in entries if isinstance(entry, s.FromSource)}
+    findings = Findings(source)
+    for name in sorted(set(variation.sources) - named):
+        known = ", ".join(sorted(named)) or "none"
+        findings.add(
+            Code.UNREADABLE_FILE, _START, f"the mission reads no file '{name}'", f"it reads: {known}"
+        )
+    _stop(findings)
 
 
 _START: Final = s.Span(0, 0)

@@ -1,8 +1,9 @@
 """Regions of a rule: which stand for the same place on both sides, and where their roots need one.
 
 In the paper's rules a region is somewhere that the rule doesn't name. Its roots share their parent, which is the
-region's place variable. A reactum's region is the redex's that has a root in common with it; where none or several
-have, the one in the same position, if both sides have as many regions.
+region's place variable. A region of the reactum is the one of the redex that has a root in common with it, so
+`a || b -> b || a` moves nothing. Where that is ambiguous (`a | x || b -> b | x || a`) and both sides have as many
+regions, their position decides.
 """
 
 from __future__ import annotations
@@ -127,7 +128,7 @@ def region_places(before: Side, after: Side) -> RegionPlaces:
     """Return the pairs that say where roots are; a single root that stays one needs none."""
     old = [set(map(before.term, roots)) for roots in before.roots]
     new = [set(map(after.term, roots)) for roots in after.roots]
-    same = {index: _same(roots, index, old, len(new)) for index, roots in enumerate(new)}
+    same = _same(old, new)
     into: dict[int, set[NodeTerm]] = {index: set() for index in range(len(old))}
     for index, place in same.items():
         if place is not None:
@@ -153,11 +154,18 @@ def region_places(before: Side, after: Side) -> RegionPlaces:
     return RegionPlaces(same, redex, tuple(reactum), tuple(unplaced))
 
 
-def _same(roots: set[NodeTerm], index: int, old: list[set[NodeTerm]], regions: int) -> int | None:
-    sharing = [place for place, there in enumerate(old) if there & roots]
-    if len(sharing) == 1:
-        return sharing[0]
-    return index if regions == len(old) else None
+def _same(old: list[set[NodeTerm]], new: list[set[NodeTerm]]) -> dict[int, int | None]:
+    """Return for each region of the reactum the redex's that it is."""
+    sharing = {
+        index: [place for place, there in enumerate(old) if there & roots] for index, roots in enumerate(new)
+    }
+    kept = {index: places[0] for index, places in sharing.items() if len(places) == 1}
+    if len(old) != len(new):
+        return {index: kept.get(index) for index in sharing}
+    if any(len(places) > 1 for places in sharing.values()) or len(set(kept.values())) < len(kept):
+        return {index: index for index in sharing}
+    free = set(sharing) - set(kept.values())
+    return {index: kept.get(index, index if index in free else None) for index in sharing}
 
 
 def _place(index: int) -> PlaceVariable:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Final
 
 from physical import centroid, point
 from semantics.physical_model import Carried, Placed, Placement
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.files import read_source
+from specs.elaboration.files import Library, read_source
 from specs.elaboration.findings import a
 from specs.elaboration.geometry import elaborate_placement
 from specs.elaboration.names import Names
@@ -70,7 +69,7 @@ class _Load:
     shape: Placed | None
 
 
-def elaborate_world(mission: s.Mission, names: Names, directory: Path) -> World:
+def elaborate_world(mission: s.Mission, names: Names, library: Library) -> World:
     """Declare all entities and channels, and return P."""
     world, loads = World(), list[_Load]()
     entries = [entry for section in mission.each(s.World) for entry in section.entries]
@@ -78,7 +77,7 @@ def elaborate_world(mission: s.Mission, names: Names, directory: Path) -> World:
         if isinstance(entry, s.Entity):
             loads += _entity(entry, names, world)
         elif isinstance(entry, s.FromSource):
-            loads += _from_file(entry, names, world, directory)
+            loads += _from_file(entry, names, world, library)
     for entry in entries:
         if isinstance(entry, s.ChannelDeclaration):
             names.channels.add(entry.name.text)
@@ -144,8 +143,8 @@ def _whereabouts(entry: s.Entity) -> tuple[str, str] | None:
     return None
 
 
-def _from_file(entry: s.FromSource, names: Names, world: World, directory: Path) -> Iterator[_Load]:
-    found = read_source(entry, directory, names, world.notes)
+def _from_file(entry: s.FromSource, names: Names, world: World, library: Library) -> Iterator[_Load]:
+    found = read_source(entry, library, names, world.notes)
     for item in found:
         if names.declare("entity", item.entity, entry.file):
             names.kinds[item.entity] = item.kind

@@ -1,4 +1,4 @@
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -92,7 +92,7 @@ Ran = tuple[int, str, str]
 
 
 @pytest.fixture
-def bigactors(capsys: pytest.CaptureFixture[str]) -> Iterator[Callable[..., Ran]]:
+def bigactors(capsys: pytest.CaptureFixture[str]) -> Callable[..., Ran]:
     """Run a command line in this process; returns the exit code, the standard output and the standard error."""
 
     def run(*words: str) -> Ran:
@@ -100,4 +100,4 @@ def bigactors(capsys: pytest.CaptureFixture[str]) -> Iterator[Callable[..., Ran]
         captured = capsys.readouterr()
         return code, captured.out, captured.err
 
-    yield run
+    return run

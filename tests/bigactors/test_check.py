@@ -6,11 +6,13 @@ import sys
 
 import pytest
 
-from bigactors import evidence
+from bigactors import checking, evidence
 from bigactors.commands import check as command
+from checker.report import MARKS
 
 
-def test_a_mission_that_holds_is_a_success_with_its_counts(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_a_mission_that_holds_is_a_success_with_its_counts(bigactors):
     code, out, err = bigactors("check", "holds.mission")
     assert (code, err) == (0, "")
     assert out.startswith("holds.mission: 10 configurations, 10 transitions, depth 8, complete, ")
@@ -19,7 +21,8 @@ def test_a_mission_that_holds_is_a_success_with_its_counts(missions, bigactors):
     assert "\n  rules never used: req_snd, snd, rcv_msg, req_mgr, migrate, spawn\n" in out
 
 
-def test_a_violation_is_shown_with_its_trace(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_a_violation_is_shown_with_its_trace(bigactors):
     code, out, err = bigactors("check", "race.mission")
     assert (code, err) == (1, "")
     assert "  ✗ race_freedom   violated" in out
@@ -27,14 +30,16 @@ def test_a_violation_is_shown_with_its_trace(missions, bigactors):
     assert "L  parent(uav0) : base0 ↦ searchArea0" in out
 
 
-def test_without_traces_the_report_is_short(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_without_traces_the_report_is_short(bigactors):
     code, out, _ = bigactors("check", "race.mission", "--no-traces")
     assert code == 1
     assert "--⟨" not in out
     assert "a shortest trace, 2 steps" in out
 
 
-def test_a_mistake_is_rendered_and_nothing_is_checked(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_a_mistake_is_rendered_and_nothing_is_checked(bigactors):
     code, out, err = bigactors("check", "mistaken.mission")
     assert (code, out) == (2, "")
     assert err == (
@@ -45,8 +50,9 @@ def test_a_mistake_is_rendered_and_nothing_is_checked(missions, bigactors):
     )
 
 
+@pytest.mark.usefixtures("missions")
 @pytest.mark.parametrize("bound", [("--max-configurations", "20"), ("--max-time", "0.3")])
-def test_what_was_cut_off_is_no_success(missions, bigactors, bound):
+def test_what_was_cut_off_is_no_success(bigactors, bound):
     code, out, _ = bigactors("check", "endless.mission", *bound)
     assert code == 3
     assert "INCOMPLETE" in out
@@ -55,7 +61,8 @@ def test_what_was_cut_off_is_no_success(missions, bigactors, bound):
     assert "✓ deadlock_freedom" not in out
 
 
-def test_several_missions_get_a_line_each_and_the_gravest_code(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_several_missions_get_a_line_each_and_the_gravest_code(bigactors):
     names = ("holds.mission", "race.mission", "endless.mission", "mistaken.mission", "nowhere.mission")
     code, out, err = bigactors("check", *names, "--max-configurations", "20", "--no-traces")
     assert code == 2
@@ -77,9 +84,8 @@ def test_several_missions_get_a_line_each_and_the_gravest_code(missions, bigacto
     assert bigactors("check", "holds.mission", "endless.mission", "--max-configurations", "20")[0] == 3
 
 
-def test_a_bug_at_one_mission_does_not_keep_the_others_from_being_checked(missions, bigactors, monkeypatch):
-    import bigactors.checking as checking
-
+@pytest.mark.usefixtures("missions")
+def test_a_bug_at_one_mission_does_not_keep_the_others_from_being_checked(bigactors, monkeypatch):
     honest = checking.check
 
     def failing(initial, *rest, **more):
@@ -96,13 +102,15 @@ def test_a_bug_at_one_mission_does_not_keep_the_others_from_being_checked(missio
     assert "! race.mission      internal error" in out
 
 
-def test_a_mission_that_ships_is_found_by_its_name(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_a_mission_that_ships_is_found_by_its_name(bigactors):
     code, out, _ = bigactors("check", "oil_spill", "--no-traces")
     assert code == 0
     assert out.startswith("oil_spill: ")
 
 
-def test_a_misspelt_shipped_mission_is_suggested(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_a_misspelt_shipped_mission_is_suggested(bigactors):
     assert bigactors("check", "oil_spil") == (
         2,
         "",
@@ -110,13 +118,15 @@ def test_a_misspelt_shipped_mission_is_suggested(missions, bigactors):
     )
 
 
-def test_a_folder_is_no_mission(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_a_folder_is_no_mission(bigactors):
     code, _, err = bigactors("check", ".")
     assert code == 2
     assert ".: this is a folder, not a mission" in err
 
 
-def test_json_on_the_standard_output_is_alone(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_json_on_the_standard_output_is_alone(bigactors):
     code, out, err = bigactors("check", "race.mission", "--json", "-")
     report = json.loads(out)
     assert (code, err) == (1, "")
@@ -133,12 +143,20 @@ def test_json_goes_into_a_file_beside_the_text(missions, bigactors):
     assert sorted(path.name for path in missions.glob(".*")) == []
 
 
-def test_a_file_that_cannot_be_written_is_told(missions, bigactors):
-    code, _, err = bigactors("check", "holds.mission", "--json", "no/such/folder.json")
-    assert code == 2
-    assert "no/such/folder.json: No such file or directory" in err
+@pytest.mark.usefixtures("missions")
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--json", "no/such/folder.json"), "no/such/folder.json: there is no such folder"),
+        (("--json", "."), ".: this is a folder, not a file"),
+        (("--trace", "race.mission"), "race.mission: there is a file where a folder should be"),
+    ],
+)
+def test_what_cannot_be_written_is_told_before_anything_is_explored(bigactors, words, said):
+    assert bigactors("check", "holds.mission", *words) == (2, "", f"{said}\n")
 
 
+@pytest.mark.usefixtures("missions")
 def test_traces_are_kept_as_text_as_json_and_as_pictures(missions, bigactors):
     code, _, err = bigactors("check", "race.mission", "--no-traces", "--trace", "traces")
     assert code == 1
@@ -158,30 +176,41 @@ def test_missions_of_one_name_keep_their_traces_apart(missions, bigactors, monke
     monkeypatch.setattr(evidence, "draw_run", lambda *_, **__: None)
     (missions / "sub").mkdir()
     (missions / "sub" / "holds.mission").write_text((missions / "holds.mission").read_text())
-    assert (
-        bigactors("check", "holds.mission", "sub/holds.mission", "--trace", "traces", "--no-traces")[0] == 0
-    )
+    words = ("check", "holds.mission", "sub/holds.mission", "--trace", "traces", "--no-traces")
+    assert bigactors(*words)[0] == 0
     assert sorted(path.name for path in (missions / "traces").iterdir()) == ["holds", "holds-2"]
 
 
-def test_the_summary_marks_are_those_of_the_report():
-    assert {sign for sign, _ in command.WORDS.values()} == {"✓", "✗", "?", "!"}
+def test_properties_whose_names_differ_in_signs_only_keep_their_traces_apart(
+    missions, bigactors, monkeypatch
+):
+    monkeypatch.setattr(evidence, "draw_run", lambda *_, **__: None)
+    text = (missions / "holds.mission").read_text()
+    twice = text.replace('reachable "found"', 'reachable "found!": uav0 in searchArea0\n  reachable "found?"')
+    (missions / "twice.mission").write_text(twice)
+    assert bigactors("check", "twice.mission", "--trace", "traces")[0] == 0
+    found = sorted(path.name for path in (missions / "traces" / "twice").glob("found*"))
+    assert found == ["found_-witness", "found_-witness-2"]
 
 
+def test_the_marks_of_the_summary_are_those_of_the_report():
+    assert {sign for sign, _ in command.WORDS.values()} == {*MARKS.values(), "!"}
+
+
+@pytest.mark.usefixtures("missions")
 @pytest.mark.skipif(os.name == "nt", reason="signals and terminals are POSIX's")
-def test_an_interrupted_exploration_is_incomplete_and_reports_what_it_found(missions):
+def test_an_interrupted_exploration_is_incomplete_and_reports_what_it_found():
     ours, theirs = os.openpty()
-    process = subprocess.Popen(
-        [sys.executable, "-m", "bigactors", "check", "endless.mission", "holds.mission", "--no-traces"],
-        stdout=subprocess.PIPE,
-        stderr=theirs,
-    )
-    os.close(theirs)
+    words = ("check", "endless.mission", "holds.mission", "--no-traces")
     shown = b""
-    while b"frontier" not in shown:  # the exploration is under way
-        shown += os.read(ours, 1000)
-    process.send_signal(signal.SIGINT)
-    out = process.communicate(timeout=60)[0].decode()
+    with subprocess.Popen(
+        [sys.executable, "-m", "bigactors", *words], stdout=subprocess.PIPE, stderr=theirs
+    ) as process:
+        os.close(theirs)
+        while b"frontier" not in shown:  # the exploration is under way
+            shown += os.read(ours, 1000)
+        process.send_signal(signal.SIGINT)
+        out = process.communicate(timeout=60)[0].decode()
     os.close(ours)
     assert process.returncode == 3
     assert "stopped at an interruption" in out

@@ -9,6 +9,7 @@ import pytest
 from bigactors import __version__
 from bigactors.arguments import COMMANDS
 from bigactors.cli import main
+from bigactors.commands import explain as command
 
 
 def in_a_process(*words, **settings):
@@ -69,6 +70,7 @@ def test_options_are_not_abbreviated(bigactors):
         (("world", "x", "--within", "1,2,3"), "'1,2,3' is no box"),
         (("world", "x", "--at", "noon"), "'noon' is no time"),
         (("check",), "FILE"),
+        (("check", "x", "--json="), "the name of a file is missing"),
         (("fmt", "--check", "--stdout", "x"), "not allowed with"),
     ],
 )
@@ -80,9 +82,7 @@ def test_a_value_that_makes_no_sense_is_told(bigactors, words, said):
 
 
 def test_a_bug_of_ours_is_told_as_one(bigactors, monkeypatch):
-    import bigactors.commands.explain as command
-
-    monkeypatch.setattr(command, "explain", lambda code: 1 / 0)
+    monkeypatch.setattr(command, "explain", lambda _: 1 / 0)
     code, _, err = bigactors("explain", "LS101")
     assert code == 4
     assert "ZeroDivisionError" in err
@@ -90,9 +90,7 @@ def test_a_bug_of_ours_is_told_as_one(bigactors, monkeypatch):
 
 
 def test_an_interruption_is_incomplete(bigactors, monkeypatch):
-    import bigactors.commands.explain as command
-
-    def interrupted(code):
+    def interrupted(_):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(command, "explain", interrupted)
@@ -102,14 +100,16 @@ def test_an_interruption_is_incomplete(bigactors, monkeypatch):
 def test_help_is_there_at_once_and_loads_no_library():
     code = (
         "import sys, bigactors.cli; bigactors.cli.main(['check', '--help']);"
-        "heavy = {'shapely', 'pyproj', 'lark', 'matplotlib', 'numpy', 'networkx', 'checker', 'specs'} & set(sys.modules);"
+        "heavy = {'shapely', 'pyproj', 'lark', 'matplotlib', 'numpy', 'networkx', 'checker', 'specs'};"
+        "heavy &= set(sys.modules);"
         "sys.exit(str(sorted(heavy)) if heavy else 0)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_a_reader_who_leaves_is_no_error_and_does_not_change_the_verdict(missions):
+@pytest.mark.usefixtures("missions")
+def test_a_reader_who_leaves_is_no_error_and_does_not_change_the_verdict():
     for mission, code in (("holds", 0), ("race", 1)):
         reading, writing = os.pipe()
         os.close(reading)
@@ -123,8 +123,9 @@ def test_a_reader_who_leaves_is_no_error_and_does_not_change_the_verdict(mission
         assert (done.returncode, done.stderr) == (code, b"")
 
 
+@pytest.mark.usefixtures("missions")
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no full device here")
-def test_a_full_disk_is_told(missions):
+def test_a_full_disk_is_told():
     with open("/dev/full", "wb") as full:
         done = subprocess.run(
             [sys.executable, "-m", "bigactors", "explain"], stdout=full, stderr=subprocess.PIPE, check=False
@@ -134,7 +135,8 @@ def test_a_full_disk_is_told(missions):
     assert b"Traceback" not in done.stderr
 
 
-def test_an_output_without_greek_letters_gets_words_and_marks_stay_distinct(missions):
+@pytest.mark.usefixtures("missions")
+def test_an_output_without_greek_letters_gets_words_and_marks_stay_distinct():
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
     done = in_a_process("check", "race.mission", env=environment)
     assert done.returncode == 1
@@ -143,7 +145,8 @@ def test_an_output_without_greek_letters_gets_words_and_marks_stay_distinct(miss
     assert done.stderr == b""
 
 
-def test_in_a_pipe_there_are_no_colours_and_no_progress(missions):
+@pytest.mark.usefixtures("missions")
+def test_in_a_pipe_there_are_no_colours_and_no_progress():
     done = in_a_process("check", "race.mission", "endless.mission", "--max-time", "1.2")
     assert b"\033" not in done.stdout + done.stderr
     assert b"\r" not in done.stdout + done.stderr

@@ -1,6 +1,8 @@
 import os
 import stat
 
+from bigactors.commands import fmt as command
+
 UGLY = "mission   m\nsignature { kind Place // a place\n }\nworld { p0 : Place=box (1,2) (3 , 4) }\n"
 NEAT = (
     "mission m\n\nsignature {\n  kind Place  // a place\n}\n\nworld {\n  p0: Place = box (1, 2) (3, 4)\n}\n"
@@ -64,10 +66,8 @@ def test_a_link_stays_a_link(missions, bigactors):
 def test_a_formatter_that_would_change_what_is_said_is_our_bug_and_destroys_nothing(
     missions, bigactors, monkeypatch
 ):
-    import bigactors.commands.fmt as command
-
     (missions / "ugly.mission").write_text(UGLY)
-    monkeypatch.setattr(command, "format_mission", lambda text, name: "mission other\n")
+    monkeypatch.setattr(command, "format_mission", lambda *_: "mission other\n")
     code, _, err = bigactors("fmt", "ugly.mission")
     assert code == 4
     assert "would change what it says" in err

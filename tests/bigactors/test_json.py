@@ -8,9 +8,9 @@ from jsonschema import Draft202012Validator
 from jsonschema.exceptions import ValidationError
 from referencing import Registry, Resource
 
+from bigactors.checking import FAILURE_SCHEMA, REPORTS_SCHEMA
 from checker.report import SCHEMA as REPORT
 from checker.traces import SCHEMA as TRACE
-from bigactors.checking import FAILURE_SCHEMA, REPORTS_SCHEMA
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -31,13 +31,15 @@ def test_the_schemas_are_schemas(name):
     Draft202012Validator.check_schema(schema(name))
 
 
+@pytest.mark.usefixtures("missions")
 @pytest.mark.parametrize("mission", ["holds", "race", "endless", "mistaken", "nowhere"])
-def test_the_report_of_a_mission_is_valid(missions, bigactors, mission):
+def test_the_report_of_a_mission_is_valid(bigactors, mission):
     _, out, _ = bigactors("check", f"{mission}.mission", "--json", "-", "--max-configurations", "50")
     validator("report").validate(json.loads(out))
 
 
-def test_the_report_of_several_missions_is_valid(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_the_report_of_several_missions_is_valid(bigactors):
     names = [f"{name}.mission" for name in ("holds", "race", "mistaken")]
     code, out, _ = bigactors("check", *names, "--json", "-")
     report = json.loads(out)
@@ -49,7 +51,8 @@ def test_the_report_of_several_missions_is_valid(missions, bigactors):
     assert [each["mission"] for each in report["reports"]] == names
 
 
-def test_the_diagnostics_of_a_mistake_have_their_places(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_the_diagnostics_of_a_mistake_have_their_places(bigactors):
     failure = json.loads(bigactors("check", "mistaken.mission", "--json", "-")[1])
     assert failure["diagnostics"] == [
         {
@@ -64,7 +67,8 @@ def test_the_diagnostics_of_a_mistake_have_their_places(missions, bigactors):
     ]
 
 
-def test_every_violation_and_witness_has_a_valid_trace_of_its_length(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_every_violation_and_witness_has_a_valid_trace_of_its_length(bigactors):
     report = json.loads(bigactors("check", "race.mission", "--json", "-")[1])
     properties = {each["name"]: each for each in report["properties"]}
     race = properties["race_freedom"]
@@ -77,13 +81,15 @@ def test_every_violation_and_witness_has_a_valid_trace_of_its_length(missions, b
                 validator("trace").validate(trace)
 
 
-def test_a_simulation_is_a_valid_trace(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_a_simulation_is_a_valid_trace(bigactors):
     trace = json.loads(bigactors("simulate", "holds.mission", "--json", "-")[1])
     validator("trace").validate(trace)
     assert trace["schema"] == TRACE
 
 
-def test_the_schemas_refuse_what_is_not_so(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_the_schemas_refuse_what_is_not_so(bigactors):
     report = json.loads(bigactors("check", "holds.mission", "--json", "-")[1])
     for changed in (
         report | {"schema": "bigactors.report/2"},

@@ -2,6 +2,7 @@ import pytest
 
 from bigactors.missions import canonical, digest_of, locate, open_mission, shipped_missions
 from bigactors.mistakes import Mistake
+from physical import circle
 
 
 def test_the_digest_is_of_the_text_and_of_what_the_files_say(missions):
@@ -27,8 +28,6 @@ def test_the_digest_does_not_depend_on_where_the_mission_is(missions):
 
 
 def test_long_polygons_are_told_apart():
-    from physical import circle
-
     assert canonical(circle((1, 1), 500)) != canonical(circle((1, 1), 501))
 
 
@@ -38,8 +37,9 @@ def test_a_file_goes_before_a_shipped_mission_of_its_name(missions):
     assert str(locate("oil_spill")) == "oil_spill"
 
 
+@pytest.mark.usefixtures("missions")
 @pytest.mark.parametrize("word", ["", "no\0where", "x" * 5000, "no/such.mission"])
-def test_what_is_no_mission_is_told(missions, word):
+def test_what_is_no_mission_is_told(word):
     with pytest.raises(Mistake):
         locate(word)
 

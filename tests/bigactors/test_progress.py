@@ -86,9 +86,10 @@ def test_a_check_in_another_thread_is_watched_without_signals():
     assert not watched[0].interrupted
 
 
+@pytest.mark.usefixtures("missions")
 @pytest.mark.skipif(os.name == "nt", reason="terminals are POSIX's")
 @pytest.mark.parametrize("no_color", ["", "1"])
-def test_marks_are_coloured_on_a_terminal_unless_its_user_wants_none(missions, no_color):
+def test_marks_are_coloured_on_a_terminal_unless_its_user_wants_none(no_color):
     ours, theirs = os.openpty()
     environment = {**os.environ, "TERM": "xterm", "NO_COLOR": no_color}
     words = [sys.executable, "-m", "bigactors", "check", "race.mission", "--no-traces"]

@@ -56,7 +56,8 @@ def test_importing_the_package_loads_no_room_and_no_library():
     assert not loaded_by("import bigactors") & {"shapely", "pyproj", "lark", "matplotlib", *ROOMS[2:]}
 
 
-def test_no_picture_no_matplotlib(missions):
+@pytest.mark.usefixtures("missions")
+def test_no_picture_no_matplotlib():
     found = loaded_by(
         "import bigactors.cli, bigactors.drawings; bigactors.cli.main(['check', 'holds.mission', '--json', 'r.json'])"
     )

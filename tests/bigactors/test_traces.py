@@ -25,7 +25,8 @@ def run(missions, bigactors):
 # --- simulate -------------------------------------------------------------------------------------------------
 
 
-def test_a_simulation_is_printed_in_the_notation_of_the_paper(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_a_simulation_is_printed_in_the_notation_of_the_paper(bigactors):
     code, out, err = bigactors("simulate", "holds.mission", "--seed", "3")
     lines = out.splitlines()
     assert (code, err) == (0, "")
@@ -35,19 +36,22 @@ def test_a_simulation_is_printed_in_the_notation_of_the_paper(missions, bigactor
     assert lines[-1] == "nothing more is enabled"
 
 
-def test_one_seed_gives_one_run(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_one_seed_gives_one_run(bigactors):
     def run(seed):
         return bigactors("simulate", "race.mission", "--seed", seed)
 
     assert run("1") == run("1")
 
 
-def test_another_seed_gives_another_run(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_another_seed_gives_another_run(bigactors):
     runs = {bigactors("simulate", "race.mission", "--seed", str(seed))[1] for seed in range(6)}
     assert len(runs) > 1
 
 
-def test_a_run_and_its_digest_do_not_depend_on_the_hash_seed(missions):
+@pytest.mark.usefixtures("missions")
+def test_a_run_and_its_digest_do_not_depend_on_the_hash_seed():
     def run(hashes):
         words = [sys.executable, "-m", "bigactors", "simulate", "race.mission", "--seed", "1", "--json", "-"]
         environment = {**os.environ, "PYTHONHASHSEED": hashes}
@@ -56,7 +60,8 @@ def test_a_run_and_its_digest_do_not_depend_on_the_hash_seed(missions):
     assert run("0") == run("1")
 
 
-def test_a_simulation_stops_after_its_steps(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_a_simulation_stops_after_its_steps(bigactors):
     code, out, _ = bigactors("simulate", "endless.mission", "--steps", "7")
     assert code == 0
     assert out.endswith("stopped after 7 steps\n")
@@ -76,7 +81,8 @@ def test_what_is_displayed_is_shown(missions, bigactors):
 # --- replay ---------------------------------------------------------------------------------------------------
 
 
-def test_a_simulation_replays(run, bigactors):
+@pytest.mark.usefixtures("run")
+def test_a_simulation_replays(bigactors):
     code, out, err = bigactors("replay", "run.json")
     assert (code, err) == (0, "")
     assert "c7 --⟨actuate : CTR(a, MOVE_HOST_TO oilSpill0)⟩--> c8" in out
@@ -93,7 +99,8 @@ def test_the_traces_of_a_check_replay_those_of_the_monitor_too(missions, bigacto
         assert (code, err) == (0, "")
 
 
-def test_a_step_that_is_not_allowed_is_told_with_what_was_enabled(run, bigactors, missions):
+@pytest.mark.usefixtures("missions")
+def test_a_step_that_is_not_allowed_is_told_with_what_was_enabled(run, bigactors):
     steps = run()["steps"]
     run(steps=[*steps[:2], *steps[3:]])
     code, _, err = bigactors("replay", "run.json")
@@ -112,7 +119,8 @@ def test_a_choice_that_there_is_not_is_told(run, bigactors):
     assert "step 1: " in err
 
 
-def test_a_trace_of_another_mission_is_replayed_with_a_warning_naming_both(run, bigactors, missions):
+@pytest.mark.usefixtures("run")
+def test_a_trace_of_another_mission_is_replayed_with_a_warning_naming_both(bigactors, missions):
     text = (missions / "holds.mission").read_text()
     (missions / "other.mission").write_text(text.replace("radius 400 m", "radius 401 m"))
     code, _, err = bigactors("replay", "run.json", "--mission", "other.mission")
@@ -122,7 +130,8 @@ def test_a_trace_of_another_mission_is_replayed_with_a_warning_naming_both(run, 
     assert "replayed on: other.mission, digest sha256:" in err
 
 
-def test_the_mission_of_a_trace_is_found_beside_it(run, bigactors, missions, monkeypatch, tmp_path_factory):
+@pytest.mark.usefixtures("run")
+def test_the_mission_of_a_trace_is_found_beside_it(bigactors, missions, monkeypatch, tmp_path_factory):
     monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
     code, _, err = bigactors("replay", str(missions / "run.json"))
     assert (code, err) == (0, "")
@@ -153,7 +162,8 @@ def test_what_is_no_trace_is_told(missions, bigactors, text, said):
     assert "Traceback" not in err
 
 
-def test_a_trace_that_is_not_there_is_told(missions, bigactors):
+@pytest.mark.usefixtures("missions")
+def test_a_trace_that_is_not_there_is_told(bigactors):
     code, _, err = bigactors("replay", "trace.json")
     assert (code, err) == (2, "trace.json: No such file or directory\n")
 
@@ -169,13 +179,15 @@ def test_a_mission_is_printed_and_drawn(missions, bigactors):
     assert (missions / "picture.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_any_configuration_of_a_trace_is_shown(run, bigactors, missions):
+@pytest.mark.usefixtures("run")
+def test_any_configuration_of_a_trace_is_shown(bigactors, missions):
     code, out, _ = bigactors("show", "--trace", "run.json", "--step", "2")
     assert code == 0
     assert out.startswith("c1 --⟨actuate : CTR(a, MOVE_HOST_TO searchArea0)⟩--> c2\nc2 = ⟨ α")
     assert (missions / "figure_2-c2.svg").is_file()
 
 
+@pytest.mark.usefixtures("run")
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -189,7 +201,7 @@ def test_any_configuration_of_a_trace_is_shown(run, bigactors, missions):
         ),
     ],
 )
-def test_what_cannot_be_shown_is_told(run, bigactors, words, said):
+def test_what_cannot_be_shown_is_told(bigactors, words, said):
     code, _, err = bigactors("show", *words)
     assert code == 2
     assert said in err

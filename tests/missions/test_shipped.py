@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from checker import Limits, Report, check
-from specs import load_mission
+from specs.elaboration import load_mission
 
 MISSIONS = Path(__file__).parents[2] / "specs" / "missions"
 

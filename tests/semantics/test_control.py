@@ -9,8 +9,9 @@ from semantics import strategies
 from semantics.control import Obstacle, applicable, is_consistent, obstacle, realisations
 from semantics.drive import drive
 from semantics.environment import Drifts, Vanishes
-from semantics.expressions import Literal
+from semantics.expressions import Literal, QueryOf
 from semantics.initial import Beliefs
+from semantics.patterns import Anything
 from semantics.physical_model import Carried, InTransit, Placed
 from semantics.reactions import COMMANDS, Pattern, PlaceVariable, Reaction, moved, relinked
 from semantics.requests import CTR, FLY
@@ -36,7 +37,7 @@ def by(name, *arguments):
 # --- drive ------------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=150)
+@settings(max_examples=100)
 @given(st.data())
 def test_drive_makes_the_reactum_true_and_disturbs_nothing_else(data):
     world = data.draw(strategies.worlds())
@@ -327,7 +328,7 @@ def test_a_lost_target_is_inconsistent():
 
 
 def test_nobody_sees_it_arrived_before_it_has():
-    look = Observe(strategies.QueryOf("CHILDREN", strategies.QueryOf(None, Literal("area"))))
+    look = Observe(QueryOf("CHILDREN", QueryOf(None, Literal("area"))))
     c = mission(
         ["base", "sea", "area", "u0", "u1"],
         (move_to("area"), look),
@@ -346,7 +347,7 @@ def test_a_flight_blocks_its_agents_line_but_messages_arrive():
         move_to("area"),
         Observe(around()),
         Send(Literal("go"), Literal("b")),
-        React((Case(strategies.Anything("m", "message"), None, ()),)),
+        React((Case(Anything("m", "message"), None, ()),)),
     )
     c = mission(["base", "area", "u0"], statements, {"a": ("u0", (0, 1, 2)), "b": ("u0", (3,))}, **TIMED)
     c = run(c, "req_ctr", "command", "req_obs", "req_snd")
@@ -371,7 +372,7 @@ def test_a_command_from_a_carrier_keeps_the_shape_of_what_is_carried():
     assert arrived == at_once.structure.physical.placement("u0")
 
 
-@settings(max_examples=150)
+@settings(max_examples=100)
 @given(st.data())
 def test_atomic_control_is_command_then_commit_with_nothing_between(data):
     world = data.draw(strategies.worlds())

@@ -3,7 +3,7 @@
 from hypothesis import given
 from small_missions import SHAPES, SIGNATURE, aboard, mission
 
-from physical import Band, area, contains, point
+from physical import Band, area, contains, point, translate_to
 from semantics import strategies
 from semantics.physical_model import Carried, InTransit, PhysicalModel, Placed
 from semantics.signature import REGION, Kind, Signature
@@ -134,3 +134,10 @@ def test_an_absent_entity_is_connected_to_nothing_and_nowhere():
     assert "u0" not in c.structure.physical
     assert not c.structure.physical.connected("w", "u0")
     assert c.structure.physical.children("base") == ("u1",)
+
+
+def test_where_a_shape_was_before_it_was_carried_means_nothing():
+    assert Carried("ship", SHAPES["crate"]) == Carried("ship", SHAPES["u0"])
+    moved = translate_to(SHAPES["boat"].geometry, SHAPES["u0"].geometry)
+    assert Carried("ship", Placed(moved)) == Carried("ship", SHAPES["boat"])
+    assert Carried("ship", SHAPES["boat"]) != Carried("ship", SHAPES["ship"])

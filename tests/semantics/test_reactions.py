@@ -12,6 +12,7 @@ from semantics.control import applicable
 from semantics.initial import Beliefs
 from semantics.logical_model import LogicalModel
 from semantics.physical_model import Placed
+from semantics.random_programs import arity
 from semantics.reactions import (
     COMMANDS,
     LinkVariable,
@@ -180,7 +181,7 @@ def test_who_has_no_authority_cannot_hand_over():
 
 
 def test_every_command_prints_as_it_is_written():
-    shown = [str(COMMANDS[name](*"huv"[: 1 + strategies.arity(name)])) for name in sorted(COMMANDS)]
+    shown = [str(COMMANDS[name](*"huv"[: 1 + arity(name)])) for name in sorted(COMMANDS)]
     assert shown == [
         "CONNECT_HOST_TO u",
         "DISCONNECT_HOST_FROM u",

@@ -1,7 +1,8 @@
 """The seven rules: for each its conclusion, and for each premise what happens without it."""
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from small_missions import (
     GUARD,
     SHAPES,
@@ -17,7 +18,7 @@ from small_missions import (
     run,
 )
 
-from physical import point
+from physical import box, point
 from semantics import strategies
 from semantics.configuration import Configuration
 from semantics.control import realisations
@@ -26,9 +27,8 @@ from semantics.expressions import Apply, Fault, Literal, Variable
 from semantics.initial import Beliefs
 from semantics.patterns import Anything
 from semantics.physical_model import Placed
-from semantics.reactions import Match
 from semantics.requests import CTR, FLY, OBS, READY
-from semantics.rules import actuate, env, fun, rcv_obs, req_ctr, req_obs, sense
+from semantics.rules import actuate, command, commit, env, fun, rcv_obs, req_ctr, req_obs, sense
 from semantics.setting import Control, Scheduler
 from semantics.signature import REGION
 from semantics.statements import (
@@ -139,25 +139,22 @@ def test_sense_requires_the_observation_to_be_in_line():
     assert len(list(sense(run(c, "actuate"), "a"))) == 1
 
 
-reached = strategies.configurations(strategies.initial_configurations())
+@given(st.data())
+def test_after_sense_the_structure_is_locally_consistent_with_what_was_seen(data):
+    c = data.draw(asking(lambda names: strategies.queries(names).map(lambda query: OBS("a", query))))
+    (t,) = sense(c, "a")
+    (ready,) = requests(t.target)
+    seen = ready.observation
+    assert t.target.structure.locally_consistent(seen.relations, seen.nodes())
 
 
-def steps_of(c: Configuration, *rules: str):
-    try:
-        return [t for t in successors(c) if t.label.rule in rules]
-    except Fault:
-        return []
-
-
-@given(reached)
-def test_after_sense_the_structure_is_locally_consistent_with_what_was_seen(c):
-    for t in steps_of(c, "sense"):
-        seen = t.target.read(t.served.cell)
-        ready = [each for each in seen if isinstance(each, READY) and each.agent == t.label.agent]
-        assert any(
-            t.target.structure.locally_consistent(each.observation.relations, each.observation.nodes())
-            for each in ready
-        )
+@st.composite
+def asking(draw, request):
+    """Yield configurations in any world, of lagging belief too, with one pending request of a, hosted at uav0."""
+    world = draw(strategies.worlds())
+    beliefs = draw(strategies.beliefs(world)) if draw(st.integers(0, 2)) == 2 else None
+    c = world.initial(agents={"a": ("uav0", ())}, beliefs=beliefs)
+    return c.with_(c.eta.adding(draw(request(sorted(world.kinds)))))
 
 
 # --- rcv_obs ----------------------------------------------------------------------------------------------------
@@ -280,28 +277,28 @@ def test_actuate_requires_something_that_can_be_driven():
 
 
 def test_actuate_requires_room_in_the_new_place():
-    full = {"spill": SHAPES["spill"], "u0": SHAPES["sea"]}  # as large as the sea
+    full = {
+        "spill": SHAPES["spill"],
+        "u0": Placed(box((36.5, -8.8), (36.52, -8.82))),
+    }  # larger than the spill
     c = run(alone(move_to("spill"), entities=("spill", "u0"), placed=full), "req_ctr")
     assert list(actuate(c, "a")) == []
 
 
-@given(reached)
-def test_after_a_control_the_structure_is_locally_consistent_with_the_reactum(c):
-    for t in steps_of(c, "actuate", "commit"):
-        request = t.served.request
-        assert isinstance(request, CTR | FLY)
-        matches = [request.match] if isinstance(request, FLY) else realised(c, request)
-        structure = t.target.structure
-        assert any(
-            structure.locally_consistent(
-                m.relations(request.reaction.reactum), m.nodes(request.reaction.reactum)
-            )
-            for m in matches
-        )
-
-
-def realised(c: Configuration, request: CTR) -> list[Match]:
-    return [found.match for found in realisations(c, request)]
+@settings(max_examples=100)
+@given(st.data(), st.sampled_from(Control))
+def test_after_a_control_the_structure_is_locally_consistent_with_the_reactum(data, control):
+    c = data.draw(
+        asking(lambda names: strategies.reactions(names, "uav0").map(lambda reaction: CTR("a", reaction)))
+    )
+    reaction = requests(c)[0].reaction
+    ways = [found.match for found in realisations(c, requests(c)[0])]
+    timed = Configuration(c.setting.with_(control=control), c.state)
+    flown = [after for t in command(timed, "a") for after in commit(t.target, "a")]
+    ends = [t.target.structure for t in (*actuate(timed, "a"), *flown)]
+    parts = [(m.relations(reaction.reactum), m.nodes(reaction.reactum)) for m in ways]
+    assert len(ends) == len(ways)
+    assert all(any(end.locally_consistent(*part) for part in parts) for end in ends)
 
 
 # --- env --------------------------------------------------------------------------------------------------------

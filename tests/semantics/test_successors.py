@@ -12,10 +12,11 @@ from small_missions import explore, figure_2, mission, move_to
 
 from semantics import strategies
 from semantics.configuration import Configuration
-from semantics.expressions import Fault, Literal
+from semantics.expressions import Fault, Literal, QueryOf
+from semantics.patterns import Anything
 from semantics.requests import READY
 from semantics.setting import Control, Scheduler
-from semantics.statements import Observe, Send
+from semantics.statements import Case, Migrate, Observe, React, Send
 from semantics.successors import successors
 
 
@@ -162,9 +163,9 @@ def short_missions(draw):
     statements = [
         move_to("area"),
         move_to("base"),
-        Observe(strategies.QueryOf("CHILDREN", strategies.QueryOf(None, Literal("base")))),
+        Observe(QueryOf("CHILDREN", QueryOf(None, Literal("base")))),
         Send(Literal("go"), Literal("b")),
-        strategies.Migrate(Literal("u1")),
+        Migrate(Literal("u1")),
     ]
     code = st.lists(st.integers(0, len(statements) - 1), max_size=3).map(tuple)
     channels = draw(st.sampled_from([{}, {"u0": ["wifi"], "u1": ["wifi"]}]))
@@ -194,7 +195,7 @@ def test_fcfs_serves_the_enabled_request_that_was_asked_first():
     statements = (
         Send(Literal("go"), Literal("nobody")),
         move_to("area"),
-        Observe(strategies.QueryOf("ALL", None)),
+        Observe(QueryOf("ALL", None)),
     )
     c = mission(
         ["area", "base", "u0"], statements, {"a": ("u0", (0, 1)), "b": ("u0", (2,))}, scheduler=Scheduler.FCFS
@@ -207,7 +208,7 @@ def test_fcfs_serves_the_enabled_request_that_was_asked_first():
 
 
 def test_fcfs_gives_no_turn_to_commit():
-    statements = (move_to("area"), Observe(strategies.QueryOf("ALL", None)))
+    statements = (move_to("area"), Observe(QueryOf("ALL", None)))
     c = mission(
         ["area", "base", "u0"],
         statements,
@@ -221,11 +222,11 @@ def test_fcfs_gives_no_turn_to_commit():
 
 
 def test_an_observation_is_delivered_in_the_order_in_which_it_was_asked_for():
-    look = strategies.QueryOf("CHILDREN", strategies.QueryOf(None, Literal("base")))
+    look = QueryOf("CHILDREN", QueryOf(None, Literal("base")))
     statements = (
         Observe(look),
-        Observe(strategies.QueryOf("ALL", None)),
-        strategies.React((strategies.Case(strategies.Anything("o"), None, ()),)),
+        Observe(QueryOf("ALL", None)),
+        React((Case(Anything("o"), None, ()),)),
     )
     for scheduler, delivered in ((Scheduler.PROGRAM_ORDER, 1), (Scheduler.UNORDERED, 2)):
         c = mission(["area", "base", "u0"], statements, {"a": ("u0", (0, 1, 2))}, scheduler=scheduler)

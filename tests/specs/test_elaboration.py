@@ -1,6 +1,9 @@
 """Elaboration: what missions come to, phase by phase, and what runs of them count."""
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -137,6 +140,26 @@ def test_elaboration_is_deterministic():
     first, second = elaborated(text), elaborated(text)
     assert first.setting.program.statements == second.setting.program.statements
     assert repr(first.initial) == repr(second.initial)
+
+
+def test_elaboration_is_the_same_under_two_hash_seeds():
+    script = (
+        "import sys; from specs.elaboration import load_mission; m = load_mission(sys.argv[1]);"
+        "print(m.setting.program.statements, m.setting.environment, m.properties, sorted(m.fixed), m.initial)"
+    )
+    mission = str(Path(__file__).parents[1] / "corpus" / "ok" / "everything.mission")
+    runs = [
+        subprocess.run(
+            [sys.executable, "-c", script, mission],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            check=True,
+            text=True,
+        ).stdout
+        for seed in ("1", "2")
+    ]
+    assert runs[0] == runs[1]
+    assert "Says" in runs[0]
 
 
 # --- world and beliefs ----------------------------------------------------------------------------------------

@@ -1,0 +1,27 @@
+"""What may be put in the place of what a mission file says, when it is loaded."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from semantics.setting import Control, Scheduler
+
+
+@dataclass(frozen=True, slots=True)
+class Variation:
+    """The same mission under another scheduler or kind of control, or in a world from other files.
+
+    Attributes:
+        scheduler: In the place of the mission's own; None leaves it.
+        control: Likewise.
+        sources: Files in the place of those that the mission names, by the name that it gives.
+    """
+
+    scheduler: Scheduler | None = None
+    control: Control | None = None
+    sources: Mapping[str, Path] = field(default_factory=dict)
+
+
+AS_WRITTEN = Variation()
