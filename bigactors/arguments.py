@@ -95,6 +95,22 @@ def _joined(line: Sequence[str]) -> list[str]:
     return joined
 
 
+def _varying(parser: Parser) -> None:
+    group = parser.add_argument_group("the mission, but for what it says of")
+    group.add_argument(
+        "--scheduler", choices=("program_order", "unordered", "fcfs"), help="which request is served next"
+    )
+    group.add_argument("--control", choices=("atomic", "timed"), help="whether control takes time")
+    group.add_argument(
+        "--source",
+        metavar="NAME=FILE",
+        action="append",
+        default=[],
+        type=substitute,
+        help='read FILE where the mission says from "NAME"; may be repeated',
+    )
+
+
 # --- the commands ---------------------------------------------------------------------------------------------
 
 
@@ -126,6 +142,7 @@ def _check(parser: Parser) -> None:
         help="write the trace of each violation and witness into DIR: as text, as JSON and as pictures",
     )
     parser.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
+    _varying(parser)
 
 
 def _show(parser: Parser) -> None:
@@ -145,6 +162,7 @@ def _show(parser: Parser) -> None:
         type=at_least_zero,
         help="show c_K of the trace (default: its last configuration)",
     )
+    _varying(parser)
 
 
 def _simulate(parser: Parser) -> None:
@@ -169,6 +187,7 @@ def _simulate(parser: Parser) -> None:
         type=named,
         help="write the run as a trace in JSON; - for standard output, alone",
     )
+    _varying(parser)
 
 
 def _replay(parser: Parser) -> None:
@@ -181,6 +200,7 @@ def _replay(parser: Parser) -> None:
         type=named,
         help="replay it on this mission (default: the one that it names)",
     )
+    _varying(parser)
 
 
 def _world(parser: Parser) -> None:
@@ -330,6 +350,16 @@ def at_least_zero(text: str) -> int:
     if not re.fullmatch(r"[0-9]{1,12}", text):
         raise argparse.ArgumentTypeError(f"'{text:.40}' is not a whole number from 0")
     return int(text)
+
+
+def substitute(word: str) -> tuple[str, str]:
+    """Read NAME=FILE."""
+    name, equals, file = word.partition("=")
+    if not (name and equals and file):
+        raise argparse.ArgumentTypeError(
+            f"'{word:.60}' is not NAME=FILE, such as harbour_watch.nmea=marina.nmea"
+        )
+    return name, file
 
 
 def at_least_one(text: str) -> int:

@@ -10,7 +10,7 @@ from bigactors.mistakes import Mistake, describe_bug
 from bigactors.progress import watching
 from bigactors.terminal import tell
 from checker import Limits, Report, check, report_json
-from specs.elaboration import ElaboratedMission
+from specs.elaboration import ElaboratedMission, Variation
 
 FAILURE_SCHEMA = "bigactors.failure/1"
 REPORTS_SCHEMA = "bigactors.reports/1"
@@ -66,10 +66,10 @@ class Failed:
         }
 
 
-def check_mission(name: str, limits: Limits) -> Checked | Failed:
+def check_mission(name: str, limits: Limits, variation: Variation) -> Checked | Failed:
     """Check one mission; what goes wrong is told on the standard error and returned."""
     try:
-        mission = open_mission(name)
+        mission = open_mission(name, variation)
         with watching(mission.name) as watch:
             report = check(mission.initial, mission.properties, limits, watch, notes=mission.notes)
         return Checked(name, mission, digest_of(mission), report, watch.interrupted)
@@ -83,14 +83,14 @@ def check_mission(name: str, limits: Limits) -> Checked | Failed:
         return Failed(name, Exit.BUG, f"internal error: {type(error).__name__}: {error}")
 
 
-def check_missions(names: list[str], limits: Limits) -> Iterator[Checked | Failed]:
+def check_missions(names: list[str], limits: Limits, variation: Variation) -> Iterator[Checked | Failed]:
     """Check missions in turn; after an interruption the others are not begun."""
     interrupted = False
     for name in names:
         if interrupted:
             yield Failed(name, Exit.INCOMPLETE, "not begun")
             continue
-        result = check_mission(name, limits)
+        result = check_mission(name, limits, variation)
         interrupted = result.interrupted
         yield result
 

@@ -1,6 +1,7 @@
 """Missions by the path or the name that the user gives, with a digest of all that they say."""
 
 import hashlib
+from argparse import Namespace
 from dataclasses import fields, is_dataclass
 from importlib.resources import files as resources
 from pathlib import Path
@@ -8,8 +9,9 @@ from typing import Any
 
 from bigactors import __version__
 from bigactors.mistakes import Mistake, suggestion
+from semantics.setting import Control, Scheduler
 from specs import Diagnostic, MissionError, Source
-from specs.elaboration import ElaboratedMission, load_mission
+from specs.elaboration import ElaboratedMission, Variation, load_mission
 
 SUFFIX = ".mission"
 
@@ -38,10 +40,23 @@ def locate(word: str) -> Path:
     raise Mistake(reason, hint, word)
 
 
-def open_mission(word: str) -> ElaboratedMission:
+def variation_of(options: Namespace) -> Variation:
+    """Return what the options put in the place of what a mission says; raises Mistake for a file that isn't there."""
+    sources = {name: Path(file) for name, file in options.source}
+    for name, path in sources.items():
+        if not path.is_file():
+            raise Mistake("there is no such file", f"it was to be read in the place of {name}", str(path))
+    return Variation(
+        Scheduler(options.scheduler) if options.scheduler else None,
+        Control(options.control) if options.control else None,
+        sources,
+    )
+
+
+def open_mission(word: str, variation: Variation) -> ElaboratedMission:
     """Return a mission, ready to be explored; raises Mistake with all its diagnostics."""
     try:
-        return load_mission(locate(word))
+        return load_mission(locate(word), variation)
     except MissionError as error:
         raise as_mistake(error) from error
 
@@ -69,13 +84,14 @@ def diagnostic_json(diagnostic: Diagnostic, source: Source) -> dict[str, object]
 
 
 def digest_of(mission: ElaboratedMission) -> str:
-    """Return a digest of the mission's text, of the world that it begins in, and of the version of bigactors.
+    """Return a digest of the mission's text, its scheduler, control and first world, and the version of bigactors.
 
     Two missions with one digest have the same configurations: what files say that a mission names is in its world.
     """
     initial = mission.initial
     world = dict(initial.state.items())  # type: ignore[attr-defined]  # a stored configuration
-    said = "\0".join((__version__, mission.source.text, canonical(world)))
+    setting = (mission.setting.scheduler.value, mission.setting.control.value)
+    said = "\0".join((__version__, mission.source.text, *setting, canonical(world)))
     return "sha256:" + hashlib.sha256(said.encode("utf-8", "surrogatepass")).hexdigest()
 
 

@@ -132,7 +132,9 @@ class _Check:
         violations = self.violations(self.races.collected, self.found)
         if self.remembered is None:
             outcome = Outcome.VIOLATED if violations else Outcome.INCOMPLETE
-            return Verdict(asked, outcome, violations, self.races.collected.count, note="not searched to the end")
+            return Verdict(
+                asked, outcome, violations, self.races.collected.count, note="not searched to the end"
+            )
         control, stale = self.races.collected, self.stale.collected
         violations += self.violations(stale, self.remembered)
         outcome = self.outcome(bool(violations), self.found, self.remembered)
@@ -141,6 +143,8 @@ class _Check:
         count, examined = control.count + stale.count, control.examined + stale.examined
         searched = f"{len(self.remembered.configurations):,}"
         note = f"searched over {searched} configurations with the monitor's memory"
+        if outcome is Outcome.HOLDS and not examined:
+            note += "; vacuous: no control was ever served"
         return Verdict(asked, outcome, shortest, count, examined, witness, note)
 
     def outcome(self, violated: bool, *explorations: Exploration) -> Outcome:

@@ -194,7 +194,9 @@ class _Text:
         parents = {("parent", self._term(node)) for node, _ in pattern.parents}
         parents |= {("parent", place) for _, place in pairs if isinstance(place, str)}
         if any(self.c.setting.signature[kind].passive for kind in self.c.setting.kinds.values()):
-            parents = {("parent", ANY)}  # nothing reacts inside of what is passive: all places around are read
+            parents = {
+                ("parent", ANY)
+            }  # nothing reacts inside of what is passive: all places around are read
         links = {("links", self._term(node)) for _, node in pattern.links}
         return frozenset(parents | links | {("children", self._term(node)) for node in pattern.closed})
 

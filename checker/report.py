@@ -13,7 +13,6 @@ SCHEMA = "bigactors.report/1"
 
 MARKS = {Outcome.HOLDS: "✓", Outcome.VIOLATED: "✗", Outcome.INCOMPLETE: "?"}
 
-
 UNITS = {
     "local_consistency": (" control next in line", " controls next in line"),
     "race_freedom": (" control or pair of controls", " controls and pairs of controls"),
@@ -26,9 +25,8 @@ UNITS = {
 
 NOTHING_EXAMINED = {
     "local_consistency": "vacuous: no control was ever next in line",
-    "race_freedom": "vacuous: no control was ever served",
     "deadlock_freedom": "some bigActor can always move",
-    "arrival": "vacuous: no flight ever ends, since none ever begins",
+    "arrival": "vacuous: no flight ever ends",
     "computation": "no bigActor computes anything that could fail",
 }
 """What it means that nothing was examined."""
@@ -64,8 +62,8 @@ def _sizes(verdict: Verdict) -> Iterator[str]:
     elif verdict.witness is not None:
         yield f"examined {verdict.examined:,}{_unit(verdict)}, a witness of {_steps(len(verdict.witness))}"
     elif verdict.outcome is Outcome.INCOMPLETE:
-        yield "nothing was found against it as far as was explored" if _speaks_against(verdict) else "not found yet"
-    elif verdict.property.kind in NOTHING_EXAMINED and not verdict.note.startswith(BY_OWNERSHIP):
+        yield "not found so far" if verdict.property.kind == "reachable" else "nothing against it so far"
+    elif verdict.property.kind in NOTHING_EXAMINED:
         yield NOTHING_EXAMINED[verdict.property.kind]
 
 
@@ -76,10 +74,6 @@ def _unit(verdict: Verdict) -> str:
 
 def _steps(count: int) -> str:
     return "1 step" if count == 1 else f"{count:,} steps"
-
-
-def _speaks_against(verdict: Verdict) -> bool:
-    return verdict.property.kind != "reachable"
 
 
 def _violation(violation: Violation, *, traces: bool) -> Iterator[str]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from bigactors.checking import Checked, Failed, check_missions, results_json
 from bigactors.exits import Exit, worst
 from bigactors.files import check_writable, file_stem, json_text, make_folder, write_json
+from bigactors.missions import variation_of
 from bigactors.terminal import paint, say, say_text, tell
 from checker import Limits, report_text
 from checker.report import MARKS
@@ -36,7 +37,7 @@ def run(options: Namespace) -> Exit:
         check_writable(options.json)
     results: list[Checked | Failed] = []
     folders: set[str] = set()
-    for result in check_missions(options.files, limits):
+    for result in check_missions(options.files, limits, variation_of(options)):
         results.append(result)
         if options.json != "-":
             for line in report_lines(result, traces=not options.no_traces):

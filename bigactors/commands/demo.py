@@ -11,6 +11,7 @@ from bigactors.exits import Exit, worst
 from bigactors.files import make_folder
 from bigactors.terminal import say
 from checker import Limits
+from specs.elaboration import Variation
 
 MISSIONS = ("oil_spill", "harbour_watch")
 
@@ -22,7 +23,7 @@ def run(options: Namespace) -> Exit:
 
 
 def _show(name: str, out: Path) -> Exit:
-    result = check_mission(name, Limits(seconds=60))
+    result = check_mission(name, Limits(seconds=60), Variation())
     for line in report_lines(result, traces=True):
         say(coloured(line))
     if isinstance(result, Checked):

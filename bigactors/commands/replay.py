@@ -6,19 +6,19 @@ from typing import Any
 
 from bigactors.exits import Exit
 from bigactors.files import read_json
-from bigactors.missions import digest_of, open_mission, shipped_missions
+from bigactors.missions import digest_of, open_mission, shipped_missions, variation_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
 from checker import ReplayError, Trace, print_trace, replay
 from semantics.monitor import monitored
 from semantics.printing import print_configuration
-from specs.elaboration import ElaboratedMission
+from specs.elaboration import ElaboratedMission, Variation
 
 
 def run(options: Namespace) -> Exit:
     """Replay a trace and print it; a step that the rules do not allow ends it."""
     try:
-        mission, trace = read_trace(options.trace, options.mission)
+        mission, trace = read_trace(options.trace, options.mission, variation_of(options))
     except ReplayError as error:
         tell(f"{options.trace}: {error}")
         return Exit.VIOLATED
@@ -29,7 +29,7 @@ def run(options: Namespace) -> Exit:
     return Exit.HOLDS
 
 
-def read_trace(path: str, mission_file: str | None) -> tuple[ElaboratedMission, Trace]:
+def read_trace(path: str, mission_file: str | None, variation: Variation) -> tuple[ElaboratedMission, Trace]:
     """Return the mission of a trace and the trace, replayed; warn where it was written of another mission.
 
     Raises:
@@ -40,7 +40,7 @@ def read_trace(path: str, mission_file: str | None) -> tuple[ElaboratedMission, 
     named = data.get("mission") if isinstance(data, dict) else None
     if mission_file is None and not isinstance(named, str):
         raise Mistake("the file says no mission: it is no trace", "give the mission with --mission", path)
-    mission = open_mission(mission_file or _beside(path, str(named)))
+    mission = open_mission(mission_file or _beside(path, str(named)), variation)
     _warn_of_another(path, data, mission, mission_file or str(named))
     try:
         start = monitored(mission.initial) if data.get("monitored") is True else mission.initial

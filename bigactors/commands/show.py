@@ -6,7 +6,7 @@ from bigactors.commands.replay import read_trace
 from bigactors.drawings import draw
 from bigactors.exits import Exit
 from bigactors.files import file_stem
-from bigactors.missions import open_mission
+from bigactors.missions import open_mission, variation_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
 from checker import ReplayError, Trace
@@ -38,9 +38,9 @@ def _chosen(options: Namespace) -> tuple[str, Trace, int]:
             raise Mistake("there is nothing to show", "give a mission, or a trace with --trace")
         if options.step is not None:
             raise Mistake("--step is a step of a trace", "give the trace with --trace")
-        mission = open_mission(options.file)
+        mission = open_mission(options.file, variation_of(options))
         return mission.name, Trace(mission.initial), 0
-    mission, trace = read_trace(options.trace, options.file)
+    mission, trace = read_trace(options.trace, options.file, variation_of(options))
     step = len(trace) if options.step is None else options.step
     if step > len(trace):
         raise Mistake(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from bigactors.exits import Exit
 from bigactors.files import json_text, write_json
-from bigactors.missions import digest_of, open_mission
+from bigactors.missions import digest_of, open_mission, variation_of
 from bigactors.terminal import say, say_text, tell
 from checker import Step, Trace, to_json
 from semantics.configuration import Configuration
@@ -17,7 +17,7 @@ from semantics.successors import Expansion, expand
 
 def run(options: Namespace) -> Exit:
     """Print one run; write it as a trace if asked."""
-    mission = open_mission(options.file)
+    mission = open_mission(options.file, variation_of(options))
     simulation = simulate(mission.initial, options.seed, options.steps)
     if options.json != "-":
         for line in print_simulation(simulation):

@@ -54,11 +54,17 @@ def test_a_channel_drops_and_returns_only_if_it_says_so():
 
 
 def test_an_entity_leaves_one_channel_and_returns_only_if_it_says_so():
-    c = mission(["u0", "u1"], channels={"u0": ["v", "w"], "u1": ["w"]})
-    left = after(c, Leaves("u0", "w", returns=True))
+    clause = Leaves("u0", "w", returns=True)
+    c = mission(["u0", "u1"], channels={"u0": ["v", "w"], "u1": ["w"]}, environment=(clause,))
+    left = after(c, clause)
     assert (left.structure.physical.links("u0"), left.structure.physical.links("u1")) == (("v",), ("w",))
-    assert after(left, Leaves("u0", "w", returns=True)) == c
+    assert after(left, clause) == c
     assert effects(left, Leaves("u0", "w", returns=False)) == []
+
+
+def test_an_entity_does_not_return_to_a_channel_that_it_never_left():
+    clause = Leaves("u0", "w", returns=True)
+    assert effects(mission(["u0"], channels={"u0": ["v"]}, environment=(clause,)), clause) == []
 
 
 def test_an_absent_entity_appears_with_its_channels_and_a_present_one_does_not():

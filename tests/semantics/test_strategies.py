@@ -69,11 +69,11 @@ def test_a_configuration_has_the_scheduler_and_control_that_were_asked_for(c):
 def test_every_rule_is_reached_by_random_runs():
     seen: set[str] = set()
 
-    @settings(max_examples=120)
+    @settings(max_examples=300)
     @given(strategies.initial_configurations(), st.randoms(use_true_random=False))
     def run(c: Configuration, dice: random.Random) -> None:
         with suppress(Fault):
-            for _ in range(15):
+            for _ in range(12):
                 allowed = [t for t in successors(c) if t.label.rule != "env" or dice.random() < 0.2]
                 seen.update(t.label.rule for t in allowed)
                 c = dice.choice(allowed).target if allowed else c

@@ -94,7 +94,7 @@ WRITES = {
     "snd": {"mailbox", "eta"},
     "migrate": {"host", "eta"},
     "spawn": {"code", "store", "agents", "host", "mailbox", "eta"},
-    "env": {"placement", "channels", "down"},
+    "env": {"placement", "channels", "down", "left"},
     "say": {"mailbox", "says"},
 }
 """What each rule may write: the words of cells; `eta` for lines, queue and what is on its way."""
