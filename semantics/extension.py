@@ -55,7 +55,7 @@ def req_snd(c: Configuration, a: Name) -> Iterator[Transition]:
     send = SND(a, name_in(to), message)
     rests_on = resting_on(process, carried, chosen)
     process.leave()
-    label = Label("req_snd", a, f"send({show(message)}, {send.to})")
+    label = Label("req_snd", a, f"send({show(message, frozenset())}, {send.to})")
     yield Transition(label, c.with_(continuing(c, process), c.eta.adding(send, rests_on)))
 
 

@@ -11,9 +11,9 @@ from semantics.agents import Watch, watch_cell
 from semantics.cells import MONITOR, QUEUE, Cell, Changes
 from semantics.configuration import Configuration, Transition
 from semantics.eta import line_cell, sends_cell
-from semantics.provenance import NOTHING, SLOT, Change, Dependency, Key, Provenance, differences
+from semantics.provenance import NOTHING, SLOT, Dependency, Key, Provenance, differences
 from semantics.queries import Query, evaluate
-from semantics.requests import CTR, FLY, Request
+from semantics.requests import CTR, FLY, SND, Request
 from semantics.signature import Name
 from semantics.structure import Parent, Relation
 
@@ -22,20 +22,22 @@ CONTROLS = frozenset({"actuate", "command", "commit"})
 
 
 def marked(c: Configuration, transition: Transition) -> Transition:
-    """Return the transition with what it changed marked in what agents rest on, where that is monitored."""
+    """Return the transition with what it changed marked in what others rest on, where that is monitored.
+
+    What an agent changes itself it knows: it makes nothing stale that the agent holds, nor what it sends afterwards. A
+    message on its way is its receiver's, so what the sender changes after sending is another's doing.
+    """
     if not c.setting.monitored or transition.label.rule not in CONTROLS:
         return transition
     after = transition.target
     slots = changed_slots(c, after)
     author = str(transition.label.agent)
-    mark = partial(
-        _mark,
-        memo={},
-        answer=lambda query: {(author, key) for key in slots | _changed_answers(c, after, query)},
-    )
+    mark = partial(_mark, memo={}, answer=lambda query: slots | _changed_answers(c, after, query))
     changes: Changes = {}
     for agent in after.alpha.names():
-        changes |= _mark_agent(after, agent, author, mark)
+        changes |= _mark_memory(after, agent, mark) if agent != author else {}
+    for cell in _request_cells(after):
+        changes |= _mark_requests(after, cell, author, mark)
     return replace(transition, target=after.with_(changes)) if changes else transition
 
 
@@ -63,7 +65,9 @@ def stale_tests(request: Request, rests_on: Provenance, used: frozenset[Key]) ->
     if not isinstance(request, CTR | FLY):
         return ()
     stale = (
-        each for each in rests_on if each.asked is not None and (each.stale or used.intersection(each.keys()))
+        each
+        for each in rests_on
+        if each.asked is not None and (each.stale or used.intersection(each.changed))
     )
     return tuple(sorted(stale, key=repr))
 
@@ -74,44 +78,41 @@ def _changed_answers(before: Configuration, after: Configuration, query: Query) 
 
 
 Mark = Callable[[Provenance], Provenance]
+Memo = dict[Query, frozenset[Key]]
 
 
-def _mark(
-    provenance: Provenance, *, memo: dict[Query, set[Change]], answer: Callable[[Query], set[Change]]
-) -> Provenance:
+def _mark(provenance: Provenance, *, memo: Memo, answer: Callable[[Query], frozenset[Key]]) -> Provenance:
     return frozenset(_mark_one(each, memo, answer) for each in provenance)
 
 
-def _mark_one(
-    each: Dependency, memo: dict[Query, set[Change]], answer: Callable[[Query], set[Change]]
-) -> Dependency:
+def _mark_one(each: Dependency, memo: Memo, answer: Callable[[Query], frozenset[Key]]) -> Dependency:
     if each.query not in memo:
         memo[each.query] = answer(each.query)
     changed = memo[each.query].difference(each.changed)
     return replace(each, changed=tuple(sorted(changed.union(each.changed)))) if changed else each
 
 
-def _mark_agent(c: Configuration, agent: Name, author: Name, mark: Mark) -> Changes:
-    changes: Changes = {}
+def _mark_memory(c: Configuration, agent: Name, mark: Mark) -> Changes:
     watch = c.alpha.watch(agent)
-    if watch is not None:
-        parts = (tuple(map(mark, part)) for part in (watch.code, watch.store, watch.mailbox))
-        changes[watch_cell(agent)] = Watch(*parts)
-    cells: tuple[Cell, ...] = (line_cell(agent), sends_cell(agent), QUEUE)
-    for cell in cells:
-        kept: tuple[Provenance, ...] = c.read((MONITOR, *cell)) or ()
-        requests: tuple[Request, ...] = c.read(cell) or ()
-        if kept:
-            changes[MONITOR, *cell] = tuple(
-                mark(each) if request.agent == agent and not _own(request, author) else each
-                for request, each in zip(requests, kept, strict=True)
-            )
-    return changes
+    if watch is None:
+        return {}
+    parts = (tuple(map(mark, part)) for part in (watch.code, watch.store, watch.mailbox))
+    return {watch_cell(agent): Watch(*parts)}
 
 
-def _own(request: Request, author: Name) -> bool:
-    """Tell whether a control is its author's: what that changes itself makes nothing of its own stale."""
-    return isinstance(request, CTR | FLY) and request.agent == author
+def _request_cells(c: Configuration) -> list[Cell]:
+    cells = [QUEUE, *(make(agent) for agent in c.alpha.names() for make in (line_cell, sends_cell))]
+    return [cell for cell in cells if c.read(cell)]
+
+
+def _mark_requests(c: Configuration, cell: Cell, author: Name, mark: Mark) -> Changes:
+    kept = zip(c.read(cell), c.read((MONITOR, *cell)), strict=True)
+    marked = tuple(each if _holder(request) == author else mark(each) for request, each in kept)
+    return {(MONITOR, *cell): marked}
+
+
+def _holder(request: Request) -> Name:
+    return request.to if isinstance(request, SND) else request.agent
 
 
 def monitored(c: Configuration) -> Configuration:

@@ -76,7 +76,8 @@ def _change(before: Configuration, after: Configuration, cell: Cell) -> Iterator
         shown = (
             after.alpha.host(whose)
             if what == "host"
-            else ", ".join(map(show, after.alpha.mailbox(whose))) or "∅"
+            else ", ".join(show(each, frozenset(after.setting.kinds)) for each in after.alpha.mailbox(whose))
+            or "∅"
         )
         yield f"α  {what}({whose}) = {shown}"
     elif what in ("parent", "links"):

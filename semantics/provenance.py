@@ -16,9 +16,6 @@ SLOT = "slot "
 EVERYTHING: Key = ("all",)
 """The question whose answer is the whole observation."""
 
-Change = tuple[str, Key]
-"""Whose control it was, and what it changed: to whom a message comes, its sender is another agent."""
-
 
 @dataclass(frozen=True, slots=True)
 class Dependency:
@@ -26,34 +23,26 @@ class Dependency:
 
     Attributes:
         query: What was asked of A(P).
-        changed: Which answers and slots of A(P) have been changed since the `sense`, and by whom; sorted.
+        changed: Which answers and slots of A(P) others than its holder have changed since the `sense`; sorted.
         asked: What was tested of it; None for the observation as it is stored.
     """
 
     query: Query
-    changed: tuple[Change, ...] = ()
+    changed: tuple[Key, ...] = ()
     asked: Key | None = None
 
     @property
     def stale(self) -> bool:
         """Whether the tested answer has been changed."""
-        return self.asked in self.keys()
-
-    def keys(self) -> frozenset[Key]:
-        """Return what has been changed, whoever did it."""
-        return frozenset(key for _, key in self.changed)
+        return self.asked in self.changed
 
     def testing(self, key: Key) -> "Dependency":
         """Return the dependency on one answer of this observation."""
         return replace(self, asked=key)
 
-    def pruned(self, agent: str) -> "Dependency":
-        """Forget what an agent changed itself, and what it doesn't ask; slots are kept, a redex may use them."""
-        kept = (
-            (author, key)
-            for author, key in self.changed
-            if author != agent and (key == self.asked or key[0].startswith(SLOT))
-        )
+    def pruned(self) -> "Dependency":
+        """Forget what nobody asks any more; slots are kept, a redex may use them."""
+        kept = (key for key in self.changed if key == self.asked or key[0].startswith(SLOT))
         return replace(self, changed=tuple(kept))
 
 

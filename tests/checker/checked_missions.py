@@ -26,13 +26,13 @@ world {
   uav1: UAV = point (36.98, -8.70) linked control:gcs1, mesh
   vessel0: Vessel = point (36.975, -8.69) linked mesh
   drifter0: Drifter carried by vessel0
-  gcs0: Station = point (37.06, -8.70) linked control:gcs0, mesh
-  gcs1: Station = point (37.07, -8.70) linked control:gcs1, mesh
-  gcs2: Station = point (37.08, -8.70) linked control:gcs2, mesh
+  gcs0: Station = point (37.06, -8.70) linked control:gcs0, internet
+  gcs1: Station = point (37.07, -8.70) linked control:gcs1, internet
+  gcs2: Station = point (37.08, -8.70) linked control:gcs2, internet
   spill0: OilSpill absent
 }
 """
-"""Two UAVs, a vessel and three stations, all of one mesh, around an empty gate."""
+"""Two UAVs and a vessel on one mesh, three stations on the internet, and an empty gate."""
 
 SPARE = Limits(configurations=20_000)
 

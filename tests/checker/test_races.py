@@ -1,0 +1,414 @@
+"""Control races and stale-observation races (semantics.md, check 2), each of their clauses."""
+
+import pytest
+from checked_missions import kinds, load, moves, rules_of, verdict, violation
+
+from checker import explore
+from checker.races import ControlRaces, StaleObservationRaces
+from checker.verdicts import Outcome
+from semantics.monitor import monitored
+
+STALE = "stale-observation race"
+ENTERS = moves("gate0", "b", "uav1")
+"""Enters the gate without a look."""
+
+
+def control_races(text):
+    """Return the first message of a control race, None where there is none; ownership is not asked."""
+    looked = ControlRaces()
+    explore(load(text).initial, (looked,))
+    first = looked.collected.first.get("control race")
+    return first and first.message
+
+
+def stale(text):
+    """Return whose controls are found to rest on a stale observation; ownership is not asked."""
+    found = set()
+
+    class Each(StaleObservationRaces):
+        def __call__(self, number, c, expansion):
+            before = self.collected.count
+            for transition in expansion.by_agents:
+                one = type(expansion)((transition,), (), (), ())
+                super().__call__(number, c, one)
+                if self.collected.count > before:
+                    found.add(transition.label.agent)
+                    before = self.collected.count
+
+    explore(monitored(load(text).initial), (Each(),))
+    return found
+
+
+# --- control races --------------------------------------------------------------------------------------------
+
+PILOTS = """
+BigActor a hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }
+BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) }
+"""
+HANDS_AND_MOVES = """
+BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }
+BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) }
+"""
+MOVES_TWICE = "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) control(MOVE_HOST_TO south0) }\n"
+
+
+def test_two_orders_that_end_differently_are_a_race():
+    found = verdict(PILOTS, "race_freedom")
+    assert kinds(found) == {"control race": 2}
+    race = violation(found, "control race")
+    assert race.message == "CTR(a, MOVE uav0 TO south0) and CTR(b, MOVE uav0 TO gate0) end differently in the two orders"
+    assert rules_of(race.trace) == ["req_ctr", "req_ctr"]
+    assert race.details == (
+        "enabled here: ⟨actuate : CTR(a, MOVE uav0 TO south0)⟩ and ⟨actuate : CTR(b, MOVE uav0 TO gate0)⟩",
+    )
+
+
+def test_serving_one_that_disables_the_other_is_a_race_whichever_it_is():
+    message = "serving CTR({}, HAND uav0 TO gcs1) disables CTR({}, MOVE uav0 TO gate0)"
+    assert control_races(HANDS_AND_MOVES) == message.format("a", "b")
+    swapped = HANDS_AND_MOVES.replace("Actor a", "Actor x").replace("Actor b", "Actor a").replace("Actor x", "Actor b")
+    assert control_races(swapped) == message.format("b", "a")
+
+
+def test_controls_that_commute_are_no_race():
+    assert control_races(moves("gate0", "a", "uav0") + ENTERS) is None
+
+
+def test_whose_turn_it_is_hides_no_race():
+    assert control_races(PILOTS + "scheduler fcfs") is not None
+    assert control_races(HANDS_AND_MOVES + "scheduler fcfs") is not None
+
+
+def test_the_order_of_what_is_pending_makes_no_race():
+    looks = " observe(PARENT(HOST)) }"
+    text = (moves("gate0", "a", "uav0") + ENTERS).replace(" }", looks)
+    for scheduler in ("program_order", "fcfs", "unordered"):
+        assert control_races(text + f"scheduler {scheduler}") is None
+
+
+def test_one_agent_races_with_itself_only_where_there_is_no_line():
+    assert control_races(MOVES_TWICE) is None
+    assert control_races(MOVES_TWICE + "scheduler fcfs") is None
+    assert "end differently" in control_races(MOVES_TWICE + "scheduler unordered")
+
+
+def test_one_agents_controls_that_commute_are_no_race_in_no_line_either():
+    text = """
+    BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) control(DISCONNECT_HOST_FROM uav1) }
+    scheduler unordered
+    """
+    assert control_races(text) is None
+
+
+def test_two_commands_for_one_vehicle_are_a_race_since_one_has_to_wait():
+    message = "serving CTR(a, MOVE uav0 TO south0) disables CTR(b, MOVE uav0 TO gate0)"
+    assert control_races(PILOTS + "control timed") == message
+
+
+def test_a_flight_races_with_what_takes_its_authority_away():
+    assert "disables FLY(b, MOVE uav0 TO gate0)" in flights_only(HANDS_AND_MOVES + "control timed")
+
+
+def flights_only(text):
+    """Return the message of a control race in which a flight takes part."""
+    looked = []
+
+    class Flights(ControlRaces):
+        def __call__(self, number, c, expansion):
+            self.collected.first.clear()
+            super().__call__(number, c, expansion)
+            looked.extend(each.message for each in self.collected.first.values() if "FLY" in each.message)
+
+    explore(load(text).initial, (Flights(),))
+    return looked[0]
+
+
+def test_flights_of_two_vehicles_into_one_place_are_no_control_race():
+    assert control_races(moves("gate0", "a", "uav0") + ENTERS + "control timed") is None
+
+
+def test_the_environment_is_no_partner_of_a_race():
+    text = moves("gate0", "a", "uav0") + "environment { uav0 drifts among south0 gate0 vanishes }"
+    assert control_races(text) is None
+    assert verdict(text, "race_freedom").outcome is Outcome.HOLDS
+
+
+# --- stale observations: the paper's example ------------------------------------------------------------------
+
+
+def looks(host, other, agent):
+    return f"""
+    BigActor {agent} hosted_at {host} with_behavior {{
+      observe(CHILDREN(gate0))
+      react {{ case obs if not ({other} in obs) => control(MOVE_HOST_TO gate0) case obs => skip }}
+    }}
+    """
+
+
+BOTH_LOOK = looks("uav0", "uav1", "a") + looks("uav1", "uav0", "b")
+
+
+@pytest.mark.parametrize("control", ["atomic", "timed"])
+@pytest.mark.parametrize("scheduler", ["unordered", "program_order", "fcfs"])
+def test_two_that_look_before_they_enter_are_racing_though_their_moves_commute(scheduler, control):
+    text = BOTH_LOOK + f"scheduler {scheduler}\ncontrol {control}\n"
+    assert control_races(text) is None
+    assert stale(text) == {"a", "b"}
+
+
+def test_a_stale_observation_is_told_with_the_query_and_the_test_and_a_shortest_trace():
+    found = verdict(BOTH_LOOK, "race_freedom")
+    assert list(kinds(found)) == [STALE]
+    race = violation(found, STALE)
+    assert race.message == (
+        "CTR(b, MOVE_HOST_TO gate0) rests on 'in uav0' of observe(CHILDREN(gate0)), "
+        "and another agent has changed that answer since it was sensed"
+    ) or race.message.startswith("CTR(a, MOVE_HOST_TO gate0) rests on 'in uav1'")
+    assert len(race.trace) == 12  # each looks and asks in 5 steps, then both are served
+    assert rules_of(race.trace).count("actuate") == 2
+    assert rules_of(race.trace)[-1] == "actuate"
+
+
+def test_two_that_look_at_different_places_are_not_racing():
+    assert stale(looks("uav0", "uav1", "a") + looks("uav1", "uav0", "b").replace("gate0", "south0")) == set()
+
+
+# --- what a control rests on ----------------------------------------------------------------------------------
+
+WAYS = {
+    "a guard": "react { case obs if not (uav1 in obs) => control(MOVE_HOST_TO gate0) case obs => skip }",
+    "an earlier guard": "react { case obs if uav1 in obs => skip case obs => control(MOVE_HOST_TO gate0) }",
+    "an if": "react { case obs => if uav1 in obs { skip } else { control(MOVE_HOST_TO gate0) } }",
+    "an if around an if": """
+      react { case obs => if not (uav1 in obs) { if true { control(MOVE_HOST_TO gate0) } } }""",
+    "a match": """
+      react { case obs => match size(obs) { case 1 => control(MOVE_HOST_TO gate0) case _ => skip } }""",
+    "a guard in a match": """
+      react { case obs => match 0 { case n if not (uav1 in obs) => control(MOVE_HOST_TO gate0) case _ => skip } }""",
+    "a for": "react { case obs => for x in obs { control(MOVE_HOST_TO gate0) } }",
+    "a choice": "react { case obs => choose x in nodes(obs) { control(MOVE_HOST_TO gate0) } }",
+    "a stored value": """
+      let clear = false
+      react { case obs => clear = not (uav1 in obs) }
+      if clear { control(MOVE_HOST_TO gate0) }""",
+    "a value stored under a test": """
+      let clear = false
+      react { case obs => if not (uav1 in obs) { clear = true } }
+      if clear { control(MOVE_HOST_TO gate0) }""",
+    "a stored observation": """
+      let seen = 0
+      react { case obs => seen = obs }
+      if not (uav1 in seen) { control(MOVE_HOST_TO gate0) }""",
+    "an argument": "react { case obs => control(MOVE_HOST_TO first(nodes(obs))) }",
+    "an argument of a behaviour": "react { case obs => enter(not (uav1 in obs)) }",
+    "the size of it": "react { case obs => if size(obs) < 2 { control(MOVE_HOST_TO gate0) } }",
+    "the second half of a test": "react { case obs => if uav0 in obs or not (uav1 in obs) { control(MOVE_HOST_TO gate0) } }",
+}
+ENTER = "def enter(clear) = { if clear { control(MOVE_HOST_TO gate0) } }\n"
+
+
+@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+def test_a_control_rests_on(way):
+    text = ENTER + f"BigActor a hosted_at uav0 with_behavior {{ observe(CHILDREN(gate0)) {way} }}\n" + ENTERS
+    assert stale(text) == {"a"}
+    assert STALE in kinds(verdict(text, "race_freedom"))
+
+
+def test_the_exit_of_a_while_is_a_test():
+    text = """
+    BigActor a hosted_at uav0 with_behavior {
+      let full = true
+      while full { observe(CHILDREN(gate0)) react { case obs => full = uav1 in obs } }
+      control(MOVE_HOST_TO gate0)
+    }
+    """
+    assert stale(text + ENTERS) == {"a"}
+
+
+def test_a_query_made_of_an_observation_carries_it():
+    text = """
+    BigActor a hosted_at uav0 with_behavior {
+      observe(CHILDREN(gate0))
+      react { case obs => let seen = nodes(obs) observe(PARENT(seen)) }
+      react { case place if gate0 in place => skip case place => control(MOVE_HOST_TO gate0) }
+    }
+    """
+    assert stale(text + ENTERS) == {"a"}
+
+
+UNTESTED = {
+    "what is only held": "react { case obs => control(MOVE_HOST_TO gate0) }",
+    "what is only displayed": "react { case obs => display(uav1 in obs) control(MOVE_HOST_TO gate0) }",
+    "an answer that nobody changes": "react { case obs if not (drifter0 in obs) => control(MOVE_HOST_TO gate0) case o => skip }",
+    "both ways of a test alike": "react { case obs => if uav1 in obs { skip } control(MOVE_HOST_TO gate0) }",
+    "a control that comes before": "control(MOVE_HOST_TO gate0) react { case obs if uav1 in obs => skip case obs => skip }",
+}
+
+
+@pytest.mark.parametrize("way", UNTESTED.values(), ids=UNTESTED)
+def test_a_control_does_not_rest_on(way):
+    text = f"BigActor a hosted_at uav0 with_behavior {{ observe(CHILDREN(gate0)) {way} }}\n" + ENTERS
+    assert stale(text) == set()
+
+
+def test_a_relation_that_the_redex_uses_may_not_have_been_changed_by_another_since():
+    text = """
+    BigActor a hosted_at uav0 with_behavior {
+      observe(CHILDREN(gate0))
+      react { case obs if not (uav1 in obs) => control(MOVE_HOST_TO gate0) case obs => skip }
+    }
+    BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }
+    """
+    assert stale(text) == {"a"}
+    message = violation(verdict(text, "race_freedom"), STALE).message
+    assert message.endswith("another agent has changed a relation that it uses since it was sensed")
+
+
+def test_after_a_fresh_observation_there_is_no_race():
+    text = """
+    BigActor a hosted_at uav0 with_behavior {
+      observe(CHILDREN(gate0))
+      react { case obs => display(obs) }
+      react { case "in" => observe(CHILDREN(gate0)) }
+      react { case obs if not (uav1 in obs) => control(MOVE_HOST_TO gate0) case obs => skip }
+    }
+    BigActor b hosted_at uav1 with_behavior {
+      control(MOVE_HOST_TO gate0)
+      observe(PARENT(HOST))
+      react { case inside => send("in", a) }
+    }
+    """
+    assert stale(text) == set()
+
+
+def test_one_agents_own_controls_make_nothing_of_its_own_stale():
+    text = """
+    BigActor a hosted_at uav0 with_behavior {
+      observe(CHILDREN(gate0))
+      react { case obs if not (uav0 in obs) => control(MOVE_HOST_TO gate0) control(MOVE_HOST_TO south0) case o => skip }
+    }
+    """
+    assert stale(text) == set()
+
+
+def test_what_the_environment_changes_is_no_race():
+    text = looks("uav0", "uav1", "a") + "environment { uav1 drifts among gate0 }"
+    assert stale(text) == set()
+    assert verdict(text, "race_freedom").outcome is Outcome.HOLDS
+
+
+def test_a_loop_that_looks_again_forgets_what_it_saw_before():
+    text = """
+    BigActor a hosted_at uav0 with_behavior {
+      loop {
+        observe(PARENT(HOST))
+        react { case obs if north0 in obs => control(MOVE_HOST_TO gate0) case obs => control(MOVE_HOST_TO north0) }
+      }
+    }
+    """
+    assert stale(text + ENTERS) == set()
+
+
+# --- messages -------------------------------------------------------------------------------------------------
+
+LOOKOUT = """
+BigActor c hosted_at gcs0 with_behavior {
+  observe(CHILDREN(gate0))
+  react { case obs if not (uav1 in obs) => send("clear", a) case obs => send("full", a) }
+}
+"""
+
+
+def test_a_message_carries_the_test_under_which_it_was_sent():
+    text = 'BigActor a hosted_at uav0 with_behavior { react { case "clear" => control(MOVE_HOST_TO gate0) case "full" => skip } }\n'
+    assert stale(text + LOOKOUT + ENTERS) == {"a"}
+
+
+def test_a_message_carries_the_observation_that_it_holds():
+    text = """
+    BigActor c hosted_at gcs0 with_behavior { observe(CHILDREN(gate0)) react { case obs => send(obs, a) } }
+    BigActor a hosted_at uav0 with_behavior {
+      react { case seen if not (uav1 in seen) => control(MOVE_HOST_TO gate0) case seen => skip }
+    }
+    """
+    assert stale(text + ENTERS) == {"a"}
+    assert stale(text.replace("uav1 in", "drifter0 in") + ENTERS) == set()
+
+
+def test_a_message_is_passed_on_with_what_it_rests_on():
+    text = """
+    BigActor relay hosted_at gcs0 with_behavior { react { case word: Message => send(word, a) } }
+    BigActor a hosted_at uav0 with_behavior { react { case "clear" => control(MOVE_HOST_TO gate0) case "full" => skip } }
+    """
+    assert stale(text + LOOKOUT.replace(", a)", ", relay)") + ENTERS) == {"a"}
+
+
+def test_what_the_sender_changes_after_it_has_sent_makes_the_message_stale():
+    text = """
+    BigActor c hosted_at uav1 with_behavior {
+      observe(CHILDREN(gate0))
+      react { case obs if not (uav1 in obs) => send("clear", a) control(MOVE_HOST_TO gate0) case obs => skip }
+    }
+    BigActor a hosted_at uav0 with_behavior { react { case "clear" => control(MOVE_HOST_TO gate0) } }
+    """
+    assert stale(text) == {"a"}
+
+
+HANDOVER = """
+BigActor op1 hosted_at gcs0 with_behavior {
+  observe(LINKED_TO_HOST)
+  react {
+    case obs if uav0 in obs =>
+      control(HAND uav0 TO gcs1)
+      observe(LINKED_TO(uav0))
+      react { case again => send("yours", op2) }
+    case obs => skip
+  }
+}
+BigActor op2 hosted_at gcs1 with_behavior { react { case "yours" => control(HAND uav0 TO gcs2) } }
+"""
+
+
+def test_what_an_agent_changes_between_its_test_and_its_message_makes_no_receiver_stale():
+    assert stale(HANDOVER) == set()
+    assert stale(HANDOVER + "control timed") == set()
+    text = HANDOVER.replace("control(HAND uav0 TO gcs2)", "control(MOVE uav0 TO gate0)")
+    assert verdict(text, "race_freedom").outcome is Outcome.HOLDS
+
+
+def test_what_a_third_changes_between_the_test_and_the_message_does():
+    third = "BigActor op3 hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs2) }\n"
+    text = HANDOVER.replace("control(HAND uav0 TO gcs1)", "skip").replace("HAND uav0 TO gcs2", "HAND uav1 TO gcs2")
+    assert stale(text) == set()
+    assert stale(text + third) == {"op2"}
+
+
+# --- what had to be passed ------------------------------------------------------------------------------------
+
+PASSED = {
+    "a guard that had to hold": """
+      BigActor a hosted_at uav0 with_behavior {
+        observe(CHILDREN(gate0))
+        react { case obs if not (uav1 in obs) => skip }
+        control(MOVE_HOST_TO gate0)
+      }""",
+    "a message that had to come": LOOKOUT
+    + 'BigActor a hosted_at uav0 with_behavior { react { case "clear" => skip } control(MOVE_HOST_TO gate0) }',
+    "the exit of a loop in a behaviour that is called": """
+      def await() = {
+        let full = true
+        while full { observe(CHILDREN(gate0)) react { case obs => full = uav1 in obs } }
+      }
+      BigActor a hosted_at uav0 with_behavior { await() control(MOVE_HOST_TO gate0) }""",
+    "the exit of a loop in a block": """
+      BigActor a hosted_at uav0 with_behavior {
+        let full = true
+        if HOST == uav0 { while full { observe(CHILDREN(gate0)) react { case obs => full = uav1 in obs } } }
+        control(MOVE_HOST_TO gate0)
+      }""",
+}
+
+
+@pytest.mark.parametrize("text", PASSED.values(), ids=PASSED)
+def test_what_comes_after_rests_on(text):
+    assert stale(text + "\n" + ENTERS) == {"a"}

@@ -1,0 +1,304 @@
+"""Traces: printed in the paper's notation, replayed to the same configurations, and refused where they don't fit."""
+
+import json
+from pathlib import Path
+
+import pytest
+from checked_missions import checked, load, moves, rules_of, verdict_of, violation
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from checker import Limits, ReplayError, Step, Trace, check, explore, print_trace, replay, to_json
+from checker.traces import MOST_STEPS, candidates, step_of, trace_to
+from semantics.configuration import Label
+from semantics.strategies import initial_configurations
+from specs.elaboration import load_mission
+
+OIL_SPILL = Path(__file__).parents[2] / "specs" / "missions" / "oil_spill.mission"
+
+
+@pytest.fixture(scope="module")
+def oil_spill():
+    return load_mission(OIL_SPILL)
+
+
+@pytest.fixture(scope="module")
+def witness(oil_spill):
+    report = check(oil_spill.initial, oil_spill.properties)
+    return verdict_of(report, "over the spill").witness
+
+
+def through_json(trace):
+    return json.loads(json.dumps(to_json(trace, "m", "sha256:0")))
+
+
+# --- the paper's run ------------------------------------------------------------------------------------------
+
+
+def test_the_shortest_way_over_the_spill_is_the_papers_run(witness):
+    labels = [str(step.label) for step in witness.steps]
+    assert labels == [
+        "⟨req_ctr : a, control(MOVE_HOST_TO searchArea0)⟩",
+        "⟨actuate : CTR(a, MOVE_HOST_TO searchArea0)⟩",
+        "⟨req_obs : a, observe(CHILDREN(PARENT(uav0)))⟩",
+        "⟨sense : OBS(a, CHILDREN(PARENT(uav0)))⟩",
+        "⟨rcv_obs : a, react({oilSpill0, searchArea0, uav0})⟩",
+        "⟨fun : a⟩",
+        "⟨req_ctr : a, control(MOVE_HOST_TO oilSpill0)⟩",
+        "⟨actuate : CTR(a, MOVE_HOST_TO oilSpill0)⟩",
+    ]
+    assert len(witness.configurations) == 9  # c0 … c8
+
+
+def test_a_trace_is_printed_in_the_papers_notation_with_what_changed_below(witness):
+    assert list(print_trace(witness))[:6] == [
+        "c0 --⟨req_ctr : a, control(MOVE_HOST_TO searchArea0)⟩--> c1",
+        "      α  a@uav0 at observe (line 24)",
+        "      η  a: CTR(a, MOVE_HOST_TO searchArea0)",
+        "c1 --⟨actuate : CTR(a, MOVE_HOST_TO searchArea0)⟩--> c2",
+        "      η  a: ∅",
+        "      L  parent(uav0) : airfield0 ↦ searchArea0",
+    ]
+    steps = list(print_trace(witness, changes=False))
+    assert [line.split(" --⟨")[0] for line in steps] == [f"c{number}" for number in range(8)]
+    assert steps[-1] == "c7 --⟨actuate : CTR(a, MOVE_HOST_TO oilSpill0)⟩--> c8"
+
+
+# --- replay ---------------------------------------------------------------------------------------------------
+
+
+def test_a_trace_replays_to_the_same_configurations_through_json(oil_spill, witness):
+    again = replay(oil_spill.initial, through_json(witness))
+    assert again.configurations == witness.configurations
+    assert again == witness
+
+
+def test_a_trace_with_the_monitors_memory_replays_from_where_it_was_written_and_without():
+    text = "".join(
+        f"""
+        BigActor {agent} hosted_at {host} with_behavior {{
+          observe(CHILDREN(gate0))
+          react {{ case o if not ({other} in o) => control(MOVE_HOST_TO gate0) case o => skip }}
+        }}
+        """
+        for agent, host, other in (("a", "uav0", "uav1"), ("b", "uav1", "uav0"))
+    )
+    trace = violation(verdict_of(checked(text), "race_freedom"), "stale-observation race").trace
+    data = through_json(trace)
+    assert data["monitored"] is True
+    again = replay(load(text).initial, data)
+    assert [c.unmonitored() for c in again.configurations] == [c.unmonitored() for c in trace.configurations]
+    assert again.initial.setting.monitored
+    assert replay(again.initial, data).configurations == again.configurations
+
+
+def test_the_empty_trace_replays(oil_spill):
+    data = through_json(Trace(oil_spill.initial))
+    assert data["steps"] == []
+    assert replay(oil_spill.initial, data) == Trace(oil_spill.initial)
+
+
+def test_which_of_several_successors_of_one_label_was_taken_is_kept():
+    text = "BigActor a hosted_at uav0 with_behavior { choose x in {1, 2, 3} { display(x) send(x, a) } }"
+    found = explore(load(text).initial)
+    ways = [trace_to(found, number) for number, depth in enumerate(found.depths) if depth == 1]
+    assert sorted(way.steps[0].choice for way in ways) == [0, 1, 2]
+    for way in ways:
+        assert replay(load(text).initial, through_json(way)) == way
+
+
+def test_two_messages_that_print_alike_are_told_apart():
+    text = """
+    BigActor a hosted_at uav0 with_behavior {
+      observe(PARENT(uav0)) react { case o => send(o, b) }
+      observe(PARENT(drifter0)) react { case o => send(o, b) }
+    }
+    BigActor b hosted_at uav0 with_behavior { loop { react { case m => skip } } }
+    environment { vessel0 drifts among point (37.02, -8.69) }
+    """.replace("PARENT(drifter0)", "PARENT(vessel0)")
+    c = load(text).initial
+    found = explore(c)
+    alike = [
+        number
+        for number, label in enumerate(found.labels)
+        if label is not None and label.rule == "snd" and len(candidates_of(found, number)) == 2
+    ]
+    assert alike  # both messages are on their way, show {north0}, and hold different relations
+    for number in alike:
+        trace = trace_to(found, number)
+        assert replay(c, through_json(trace)) == trace
+
+
+def candidates_of(found, number):
+    source = found.configurations[found.origins[number]]
+    return [t for t in candidates(source) if str(t.label) == str(found.labels[number])]
+
+
+@settings(max_examples=25)
+@given(initial_configurations(monitored=None), st.randoms(use_true_random=False))
+def test_every_configuration_of_a_generated_mission_has_a_trace_that_replays(c, random):
+    found = explore(c, limits=Limits(configurations=80))
+    number = random.randrange(len(found.configurations))
+    trace = trace_to(found, number)
+    assert trace.configurations[-1] == found.configurations[number]
+    assert replay(c, through_json(trace)) == trace
+
+
+def test_a_step_that_waits_for_its_turn_may_end_a_trace():
+    text = """
+    BigActor a hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }
+    BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) }
+    scheduler fcfs
+    """
+    found = explore(load(text).initial)
+    last = next(c for c in found.configurations if len(c.eta.all()) == 2)
+    waiting = [t for t in candidates(last) if t.served is not None]
+    assert len(waiting) == 2
+    assert [step_of(last, t.label, t.target).choice for t in waiting] == [0, 0]
+
+
+# --- what does not fit ----------------------------------------------------------------------------------------
+
+
+def test_a_changed_mission_says_at_which_step_and_what_is_enabled_instead(oil_spill, witness, tmp_path):
+    changed = tmp_path / "changed.mission"
+    changed.write_text(OIL_SPILL.read_text().replace("PARENT(HOST)", "searchArea0"))
+    with pytest.raises(ReplayError) as caught:
+        replay(load_mission(changed).initial, through_json(witness))
+    assert caught.value.step == 3
+    assert "⟨req_obs : a, observe(CHILDREN(searchArea0))⟩" in caught.value.enabled
+    assert str(caught.value).splitlines() == [
+        "step 3: ⟨req_obs : a, observe(CHILDREN(PARENT(uav0)))⟩ is not enabled: "
+        "the mission, its scheduler or its environment may have changed since the trace was written",
+        "enabled instead:",
+        *(f"  {label}" for label in caught.value.enabled),
+    ]
+
+
+def test_where_nothing_is_enabled_it_says_so():
+    c = load(moves("gate0", "a", "uav0")).initial
+    data = {"schema": "bigactors.trace/1", "steps": [{"label": "⟨fun : a⟩"}]}
+    ended = load("BigActor a hosted_at uav0 with_behavior { }").initial
+    with pytest.raises(ReplayError, match=r"(?s)step 1: ⟨fun : a⟩ is not enabled.*enabled instead:\n  nothing"):
+        replay(ended, data)
+    with pytest.raises(ReplayError, match="control"):
+        replay(c, data)
+
+
+def test_a_choice_that_is_not_there_is_told_apart_from_a_label_that_is_not():
+    c = load(moves("gate0", "a", "uav0")).initial
+    label = str(candidates(c)[0].label)
+    data = {"schema": "bigactors.trace/1", "steps": [{"label": label, "choice": 1}]}
+    with pytest.raises(ReplayError, match="it has 1 successors here, fewer than the trace chose from"):
+        replay(c, data)
+
+
+def test_the_steps_before_the_one_that_fails_are_no_matter(oil_spill, witness):
+    data = through_json(witness)
+    data["steps"][5]["label"] = "⟨fun : b⟩"
+    with pytest.raises(ReplayError) as caught:
+        replay(oil_spill.initial, data)
+    assert caught.value.step == 6
+    assert "⟨fun : a⟩" in caught.value.enabled
+
+
+# --- what is no trace -----------------------------------------------------------------------------------------
+
+SCHEMA = "bigactors.trace/1"
+NO_TRACES = [
+    (None, "this is no trace: it should be an object with 'schema': 'bigactors.trace/1'"),
+    ([], "this is no trace: it should be an object with"),
+    ({}, "this is no trace: it should be an object with"),
+    ({"schema": "bigactors.trace/2", "steps": []}, "this is no trace: it should be an object with"),
+    ({"schema": [SCHEMA], "steps": []}, "this is no trace: it should be an object with"),
+    ({"schema": SCHEMA}, "this is no trace: 'steps' should be a list of at most 1,000,000 steps"),
+    ({"schema": SCHEMA, "steps": {}}, "'steps' should be a list"),
+    ({"schema": SCHEMA, "steps": "abc"}, "'steps' should be a list"),
+    ({"schema": SCHEMA, "steps": ["fun"]}, "step 1 should have a 'label' (a text) and a 'choice' (a number from 0)"),
+    ({"schema": SCHEMA, "steps": [{}]}, "step 1 should have"),
+    ({"schema": SCHEMA, "steps": [{"label": 7}]}, "step 1 should have"),
+    ({"schema": SCHEMA, "steps": [{"label": "x", "choice": -1}]}, "step 1 should have"),
+    ({"schema": SCHEMA, "steps": [{"label": "x", "choice": True}]}, "step 1 should have"),
+    ({"schema": SCHEMA, "steps": [{"label": "x", "choice": 0.0}]}, "step 1 should have"),
+    ({"schema": SCHEMA, "steps": [{"label": "x", "choice": None}]}, "step 1 should have"),
+    ({"schema": SCHEMA, "steps": [{"label": "x"}, None]}, "step 2 should have"),
+]
+
+
+@pytest.mark.parametrize(("data", "message"), NO_TRACES, ids=lambda value: None)
+def test_what_is_no_trace_is_told_in_words(oil_spill, data, message):
+    with pytest.raises(ValueError, match="this is no trace|should have") as caught:
+        replay(oil_spill.initial, data)
+    assert message in str(caught.value)
+
+
+def test_a_trace_is_bounded_in_length(oil_spill):
+    steps = [{"label": "x"}] * (MOST_STEPS + 1)
+    with pytest.raises(ValueError, match="at most 1,000,000 steps"):
+        replay(oil_spill.initial, {"schema": SCHEMA, "steps": steps})
+
+
+PLAIN = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(max_size=8),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
+    max_leaves=8,
+)
+STEPS = st.fixed_dictionaries(
+    {}, optional={"label": PLAIN | st.just("⟨fun : a⟩"), "choice": PLAIN, "changes": PLAIN}
+)
+TRACES = st.fixed_dictionaries(
+    {"schema": st.just(SCHEMA)}, optional={"steps": PLAIN | st.lists(PLAIN | STEPS), "monitored": PLAIN}
+)
+
+
+@given(PLAIN | TRACES)
+def test_whatever_is_read_is_replayed_or_refused_in_words(data):
+    c = load(moves("gate0", "a", "uav0")).initial
+    try:
+        trace = replay(c, data)
+    except ValueError as error:
+        assert "should" in str(error)
+    except ReplayError as error:
+        assert error.step >= 1
+        assert error.enabled
+    else:
+        assert len(trace) == len(data["steps"])
+
+
+@given(st.data())
+def test_a_damaged_trace_replays_or_is_refused(data):
+    text = moves("gate0", "a", "uav0") + moves("gate0", "b", "uav1")
+    c = load(text).initial
+    found = explore(c)
+    written = through_json(trace_to(found, len(found.configurations) - 1))
+    number = data.draw(st.integers(0, len(written["steps"]) - 1))
+    key = data.draw(st.sampled_from(["label", "choice", "changes"]))
+    written["steps"][number][key] = data.draw(PLAIN)
+    try:
+        again = replay(c, written)
+    except ReplayError as error:
+        assert error.step >= number + 1
+    except ValueError as error:
+        assert str(error).startswith(f"step {number + 1} should have")
+    else:
+        assert again.configurations[-1] == found.configurations[-1]
+
+
+# --- values ---------------------------------------------------------------------------------------------------
+
+
+def test_a_trace_is_a_value_with_its_configurations():
+    c = load(moves("gate0", "a", "uav0")).initial
+    first = candidates(c)[0]
+    trace = Trace(c).extended(first)
+    assert (len(Trace(c)), len(trace)) == (0, 1)
+    assert trace.configurations == (c, first.target)
+    assert trace.steps == (Step(first.label, 0, first.target),)
+    assert rules_of(trace) == ["req_ctr"]
+
+
+def test_a_step_is_no_step_where_the_label_is_not_enabled():
+    c = load(moves("gate0", "a", "uav0")).initial
+    assume_not = Label("fun", "a")
+    with pytest.raises(ValueError, match="not in list"):
+        step_of(c, assume_not, c)
