@@ -1,6 +1,7 @@
 """Check a mission: explore it, decide each property, and find shortest traces."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 
 from checker.exploration import INTERRUPTION, Exploration, Inspect, Limits, Progress, explore
 from checker.findings import Collected, Finding
@@ -80,8 +81,8 @@ class _Check:
         """Explore once more, with memory and in the time that is left; None where the user has asked for the end."""
         if INTERRUPTION in self.found.bounds:
             return None
-        start, spent = monitored(self.initial), self.found.seconds
-        remembered = explore(start, (self.stale,), self.limits, self.report, spent=spent)
+        limits = replace(self.limits, spent=self.limits.spent + self.found.seconds)
+        remembered = explore(monitored(self.initial), (self.stale,), limits, self.report)
         remembered.bounds = [f"{bound}, in the search for stale observations" for bound in remembered.bounds]
         return remembered
 

@@ -26,11 +26,13 @@ class Limits:
         configurations: How many are visited at most.
         seconds: For how long.
         pending: How many requests an agent may have pending, or messages in its mailbox.
+        spent: How many of the seconds are gone already.
     """
 
     configurations: int | None = 2_000_000
     seconds: float | None = None
     pending: int = MOST_PENDING
+    spent: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +93,6 @@ def explore(
     limits: Limits | None = None,
     report: Callable[[Progress], None] | None = None,
     every: float = 0.5,
-    spent: float = 0.0,
 ) -> Exploration:
     """Visit everything that is reachable, breadth-first.
 
@@ -101,9 +102,8 @@ def explore(
         limits: Where to stop.
         report: Called about once in `every` seconds.
         every: Seconds.
-        spent: How many of the seconds that the limits allow are gone already.
     """
-    return _Explorer(initial, tuple(inspect), limits or Limits(), report, every, spent).run()
+    return _Explorer(initial, tuple(inspect), limits or Limits(), report, every).run()
 
 
 class _Explorer:
@@ -114,7 +114,6 @@ class _Explorer:
         limits: Limits,
         report: Callable[[Progress], None] | None,
         every: float,
-        spent: float,
     ) -> None:
         self.found = Exploration([initial])
         self.numbers = {initial: 0}
@@ -122,7 +121,6 @@ class _Explorer:
         self.limits = limits
         self.report = report
         self.every = every
-        self.spent = spent
 
     def run(self) -> Exploration:
         started = time.monotonic()
@@ -138,7 +136,7 @@ class _Explorer:
         for number, configuration in enumerate(found.configurations):  # grows while it is gone through
             now = time.monotonic()
             most = self.limits.seconds
-            if most is not None and now - started + self.spent > most:
+            if most is not None and now - started + self.limits.spent > most:
                 self.bound(f"the time limit of {most:g} s")
                 break
             if self.report is not None and now - reported >= self.every:

@@ -43,7 +43,7 @@ def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[s
     width = max((len(verdict.property.name) for verdict in report.verdicts), default=0)
     for verdict in report.verdicts:
         yield from _verdict(verdict, width, traces=traces)
-    yield "  rules: " + ", ".join(f"{rule} {count:,}" for rule, count in report.rules.items())
+    yield "  rules: " + (", ".join(f"{rule} {count:,}" for rule, count in report.rules.items()) or "none")
     yield from (f"  note: {note}" for note in report.notes)
 
 

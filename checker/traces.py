@@ -114,7 +114,7 @@ def to_json(trace: Trace, mission: str, digest: str) -> dict[str, Any]:
 
 
 def replay(initial: Configuration, data: Any) -> Trace:
-    """Return the trace that plain data describes, run again through the rules; with the monitor's memory if it had that.
+    """Return the trace that plain data describes, run again through the rules, with the monitor's memory if it had it.
 
     Raises:
         ReplayError: A step is not allowed.

@@ -3,6 +3,7 @@ import pytest
 from bigactors.missions import canonical, digest_of, locate, open_mission, shipped_missions
 from bigactors.mistakes import Mistake
 from physical import circle
+from specs.elaboration import Variation
 
 
 def test_the_digest_is_of_the_text_and_of_what_the_files_say(missions):
@@ -10,11 +11,13 @@ def test_the_digest_is_of_the_text_and_of_what_the_files_say(missions):
     (missions / "with_file.mission").write_text(
         'signature { kind Boat driven }\nworld { from "a.geojson" }\ncheck { deadlock_freedom }\n'
     )
-    first = digest_of(open_mission("with_file.mission"))
-    assert first == digest_of(open_mission("with_file.mission"))
+    first = digest_of(open_mission("with_file.mission", Variation()))
+    assert first == digest_of(open_mission("with_file.mission", Variation()))
     (missions / "a.geojson").write_text(FEATURES % 2)
-    assert digest_of(open_mission("with_file.mission")) != first
-    assert digest_of(open_mission("holds.mission")) != digest_of(open_mission("race.mission"))
+    assert digest_of(open_mission("with_file.mission", Variation())) != first
+    assert digest_of(open_mission("holds.mission", Variation())) != digest_of(
+        open_mission("race.mission", Variation())
+    )
 
 
 FEATURES = """{"type": "FeatureCollection", "features": [{"type": "Feature",
@@ -24,7 +27,9 @@ FEATURES = """{"type": "FeatureCollection", "features": [{"type": "Feature",
 def test_the_digest_does_not_depend_on_where_the_mission_is(missions):
     (missions / "sub").mkdir()
     (missions / "sub" / "same.mission").write_text((missions / "holds.mission").read_text())
-    assert digest_of(open_mission("sub/same.mission")) == digest_of(open_mission("holds.mission"))
+    assert digest_of(open_mission("sub/same.mission", Variation())) == digest_of(
+        open_mission("holds.mission", Variation())
+    )
 
 
 def test_long_polygons_are_told_apart():

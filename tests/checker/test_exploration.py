@@ -1,5 +1,6 @@
 """The reference explorer: exact, shortest first, and never more certain than what it saw."""
 
+import itertools
 import sys
 
 import pytest
@@ -18,7 +19,10 @@ BigActor a hosted_at uav0 with_behavior {
 }
 BigActor b hosted_at uav1 with_behavior { loop { observe(PARENT(HOST)) react { case obs => skip } } }
 """
-ENDLESS = "BigActor a hosted_at gcs0 with_behavior { loop { send(SELF, b) } }\nBigActor b hosted_at gcs0 with_behavior { }"
+ENDLESS = """
+BigActor a hosted_at gcs0 with_behavior { loop { send(SELF, b) } }
+BigActor b hosted_at gcs0 with_behavior { }
+"""
 
 EXAMPLES = {
     "two movers": TWO_MOVERS,
@@ -26,7 +30,8 @@ EXAMPLES = {
     "in no line": TWO_MOVERS + "scheduler unordered\ncontrol timed",
     "in one line": TWO_MOVERS + "scheduler fcfs\ncontrol timed",
     "a loop": SLOW,
-    "an environment": TWO_MOVERS + "environment { gate0 drifts among north0, south0 uav1 leaves mesh and returns }",
+    "an environment": TWO_MOVERS
+    + "environment { gate0 drifts among north0, south0 uav1 leaves mesh and returns }",
 }
 
 
@@ -63,7 +68,7 @@ def test_the_origins_lead_back_to_the_first_configuration_by_shortest_paths():
 def test_each_configuration_is_inspected_once_in_the_order_of_discovery():
     numbers, sources = [], []
 
-    def look(number, configuration, expansion):
+    def look(number, configuration, _):
         numbers.append(number)
         sources.append(configuration)
 
@@ -96,8 +101,8 @@ def test_a_limit_of_time_ends_incomplete():
 
 
 def test_time_that_was_spent_before_counts():
-    assert explore(start(SLOW), limits=Limits(seconds=60.0), spent=61.0).bounds == ["the time limit of 60 s"]
-    assert explore(start(SLOW), limits=Limits(seconds=60.0), spent=1.0).complete
+    assert explore(start(SLOW), limits=Limits(seconds=60.0, spent=61.0)).bounds == ["the time limit of 60 s"]
+    assert explore(start(SLOW), limits=Limits(seconds=60.0, spent=1.0)).complete
 
 
 def test_what_an_agent_leaves_pending_is_bounded():
@@ -115,8 +120,12 @@ def test_what_waits_in_a_mailbox_is_bounded():
 
 CUT = """
 BigActor a hosted_at gcs0 with_behavior { loop { send(SELF, b) } }
-BigActor b hosted_at uav0 with_behavior { loop { observe(PARENT(HOST)) react { case obs => control(MOVE_HOST_TO gate0) } } }
-BigActor c hosted_at uav1 with_behavior { observe(ALL) react { case obs if uav0 in obs => control(MOVE_HOST_TO gate0) } }
+BigActor b hosted_at uav0 with_behavior {
+  loop { observe(PARENT(HOST)) react { case obs => control(MOVE_HOST_TO gate0) } }
+}
+BigActor c hosted_at uav1 with_behavior {
+  observe(ALL) react { case obs if uav0 in obs => control(MOVE_HOST_TO gate0) }
+}
 check { local_consistency race_freedom deadlock_freedom arrival invariant "always": true reachable "never": false }
 """
 
@@ -146,7 +155,7 @@ def test_a_limit_that_only_the_search_for_stale_observations_meets_is_said_to_be
     plain = len(explore(mission.initial).configurations)
     report = check(mission.initial, mission.properties, Limits(configurations=plain))
     assert report.bounds == (f"the limit of {plain} configurations, in the search for stale observations",)
-    assert [verdict.outcome for verdict in report.verdicts][0] is Outcome.HOLDS
+    assert report.verdicts[0].outcome is Outcome.HOLDS
     assert report.exit_code in (1, 3)
 
 
@@ -181,9 +190,9 @@ def test_an_interrupted_check_ends_at_once_and_decides_nothing(monkeypatch):
     explored = []
     mission = load(SLOW + TWO_MOVERS.replace("BigActor a", "BigActor c").replace("BigActor b", "BigActor d"))
 
-    def once(initial, inspect, limits, report, **more):
+    def once(initial, inspect, limits, report):
         explored.append(initial)
-        return explore(initial, inspect, limits, report, every=0.0, **more)
+        return explore(initial, inspect, limits, report, every=0.0)
 
     monkeypatch.setattr(sys.modules["checker.check"], "explore", once)
     report = check(mission.initial, mission.properties, report=interrupting(5))
@@ -196,7 +205,7 @@ def test_progress_is_reported_as_it_grows():
     seen = []
     found = explore(start(SLOW), report=seen.append, every=0.0)
     assert len(seen) == len(found.configurations)
-    for earlier, later in zip(seen, seen[1:], strict=False):
+    for earlier, later in itertools.pairwise(seen):
         assert earlier.configurations <= later.configurations
         assert earlier.transitions < later.transitions
         assert earlier.depth <= later.depth

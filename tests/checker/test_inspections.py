@@ -86,12 +86,16 @@ def test_looking_again_repairs_what_is_inconsistent_if_nothing_moves_in_between(
     believes { uav0 in south0 }
     """
     assert consistency(text).outcome is Outcome.HOLDS
-    assert kinds(consistency(moves("gate0", "a", "uav0") + "believes { uav0 in south0 }")) == {"inconsistent": 1}
+    assert kinds(consistency(moves("gate0", "a", "uav0") + "believes { uav0 in south0 }")) == {
+        "inconsistent": 1
+    }
 
 
 def test_only_the_control_next_in_line_is_asked_for():
     text = """
-    BigActor a hosted_at uav0 with_behavior { observe(PARENT(HOST)) control(MOVE_HOST_TO gate0) react { case o => skip } }
+    BigActor a hosted_at uav0 with_behavior {
+      observe(PARENT(HOST)) control(MOVE_HOST_TO gate0) react { case o => skip }
+    }
     believes { uav0 in south0 }
     """
     assert consistency(text).outcome is Outcome.HOLDS
@@ -99,7 +103,9 @@ def test_only_the_control_next_in_line_is_asked_for():
 
 
 def test_whose_turn_it_is_makes_no_difference_to_consistency():
-    text = moves("gate0", "a", "uav0") + moves("gate0", "b", "uav1") + "environment { uav1 drifts among north0 }"
+    text = (
+        moves("gate0", "a", "uav0") + moves("gate0", "b", "uav1") + "environment { uav1 drifts among north0 }"
+    )
     for scheduler in ("program_order", "fcfs"):
         found = consistency(text + f"\nscheduler {scheduler}")
         assert kinds(found) == {"inconsistent": 2}
@@ -139,8 +145,14 @@ def test_a_flight_to_a_target_that_moved_is_renewed():
     text = """
     BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO spill0) }
     control timed
-    environment { spill0 drifts among circle (36.98, -8.70) radius 200 m, circle (37.02, -8.69) radius 200 m uav0 arrives }
-    check { local_consistency deadlock_freedom arrival reachable "there": actually uav0 in spill0 and ended a and not pending a }
+    environment {
+      spill0 drifts among circle (36.98, -8.70) radius 200 m, circle (37.02, -8.69) radius 200 m
+      uav0 arrives
+    }
+    check {
+      local_consistency deadlock_freedom arrival
+      reachable "there": actually uav0 in spill0 and ended a and not pending a
+    }
     """
     report = checked(text, SPILL)
     assert verdict_of(report, "deadlock_freedom").outcome is Outcome.HOLDS
@@ -163,7 +175,7 @@ def deadlock(text):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("BigActor a hosted_at gcs0 with_behavior { react { case \"x\" => skip } }", "a waits at a react"),
+        ('BigActor a hosted_at gcs0 with_behavior { react { case "x" => skip } }', "a waits at a react"),
         (
             "BigActor a hosted_at gcs0 with_behavior { control(HAND uav1 TO gcs2) }",
             "CTR(a, HAND uav1 TO gcs2) is pending",
@@ -173,7 +185,7 @@ def deadlock(text):
             "MGR(a, drifter0) is pending",
         ),
         (
-            "BigActor a hosted_at drifter0 with_behavior { send(\"x\", b) }\nBigActor b hosted_at gcs0 with_behavior { }",
+            'BigActor a hosted_at drifter0 with_behavior { send("x", b) }\nBigActor b hosted_at gcs0 with_behavior { }',
             'SND(a, b, "x") is pending',
         ),
         (
@@ -235,7 +247,9 @@ def test_not_at_rest(body):
 
 
 def test_a_case_that_someone_may_still_say_is_rest_until_it_was_said_too_often():
-    text = 'BigActor a hosted_at gcs0 with_behavior { react { case "x" => skip } react { case "x" => skip } }\n'
+    text = (
+        'BigActor a hosted_at gcs0 with_behavior { react { case "x" => skip } react { case "x" => skip } }\n'
+    )
     assert deadlock(text + 'environment { says "x" to a at most 2 times }').outcome is Outcome.HOLDS
     assert kinds(deadlock(text + 'environment { says "x" to a }')) == {"deadlock": 2}
     assert kinds(deadlock(text + 'environment { says "y" to a }')) == {"deadlock": 0}
@@ -322,6 +336,17 @@ def test_one_agents_fault_does_not_stop_the_others():
     assert kinds(verdict_of(report, "computation")) == {"fails": 0}
 
 
+def test_what_a_failed_agent_had_asked_for_is_served_all_the_same():
+    text = """
+    BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) send(first({}), a) }
+    BigActor b hosted_at uav1 with_behavior { control(MOVE_HOST_TO gate0) display(first({})) observe(ALL) }
+    check { reachable "a": actually uav0 in gate0 reachable "b": actually uav1 in gate0 }
+    """
+    report = checked(text)
+    assert verdict_of(report, "computation").outcome is Outcome.VIOLATED
+    assert [verdict_of(report, name).outcome for name in ("a", "b")] == [Outcome.HOLDS, Outcome.HOLDS]
+
+
 # --- invariants and reachability ------------------------------------------------------------------------------
 
 FORMULAS = [
@@ -337,7 +362,8 @@ FORMULAS = [
 @pytest.mark.parametrize("formula", FORMULAS)
 def test_invariants_and_reachability_agree_with_a_naive_enumeration_and_are_shortest(formula):
     text = moves("gate0", "a", "uav0") + moves("gate0", "b", "uav1")
-    text += f'\ncheck {{ invariant "always": {formula} invariant "never": not ({formula}) reachable "once": {formula} }}'
+    asked = f'invariant "always": {formula} invariant "never": not ({formula}) reachable "once": {formula}'
+    text += f"\ncheck {{ {asked} }}"
     mission = load(text)
     proposition = next(each.formula for each in mission.properties if each.kind == "reachable")
     depths = enumerate_naively(mission.initial)[0]

@@ -3,7 +3,7 @@
 import pytest
 from checked_missions import WORLD, load, moves, start, verdict
 from hypothesis import assume, event, given, reject, settings
-from hypothesis import strategies as st
+from mission_texts import missions
 
 from checker import Limits, explore, owned
 from checker.races import ControlRaces, StaleObservationRaces
@@ -24,68 +24,6 @@ def races(c, most=1_500):
 
 
 # --- owned implies that the search finds nothing --------------------------------------------------------------
-
-PLACES = ("gate0", "north0", "south0")
-EVERYONES = (
-    *(f"control(MOVE {uav} TO {place})" for uav in ("uav0", "uav1") for place in PLACES[:2]),
-    *(f"control(HAND {uav} TO {gcs})" for uav in ("uav0", "uav1") for gcs in ("gcs0", "gcs1")),
-    "control(CONNECT_HOST_TO uav1)",
-    "control(DISCONNECT_HOST_FROM uav0)",
-    "control(land(uav0, south0))",
-    "control(swap(uav1))",
-)
-DRIVERS = (*(f"control(MOVE_HOST_TO {place})" for place in (*PLACES, "vessel0")), *EVERYONES)
-CONTROLS = {
-    "uav0": DRIVERS[:3] + DRIVERS,
-    "uav1": DRIVERS,
-    "vessel0": (*DRIVERS[:3], "control(PUT drifter0 IN south0)", "control(PUT uav1 IN gate0)"),
-    "gcs0": EVERYONES,
-    "gcs1": EVERYONES,
-}
-QUERIES = ("CHILDREN(gate0)", "CHILDREN(PARENT(HOST))", "PARENT(uav1)", "LINKED_TO(HOST)", "PARENT(PARENT(HOST))", "ALL")
-TESTS = (
-    "uav0 in o",
-    "not (uav1 in o)",
-    "gate0 in o",
-    "drifter0 in o",
-    "size(o) > 1",
-    "empty(o of UAV)",
-    "parent(uav1, o) == north0",
-    "linked(uav0, gcs0, o)",
-)
-RULES = """
-rule land(u: UAV, b: Location) { u[c] || b.$0 -> b.(u[c] | $0) }
-rule swap(u: UAV) { HOST || gate0 || north0.(u | $0) -> HOST || gate0.u || north0.$0 }
-"""
-
-
-@st.composite
-def bodies(draw, host, other):
-    """Yield the text of a behaviour: controls, tests of what was observed, messages to the other."""
-    lines = []
-    for _ in range(draw(st.integers(1, 2))):
-        control = draw(st.sampled_from(CONTROLS[host]))
-        way = draw(st.sampled_from(["bare", "bare", "tested", "looked", "told", "heard"]))
-        if way == "bare":
-            lines.append(control)
-        elif way == "heard":
-            lines.append(f'react {{ case "go" => {control} case x: Observation => skip case m => skip }}')
-        else:
-            test = draw(st.sampled_from(TESTS))
-            then = {"tested": control, "looked": "skip", "told": f'send("go", {other})'}[way]
-            lines.append(f"observe({draw(st.sampled_from(QUERIES))})")
-            lines.append(f"react {{ case o if {test} => {then} case o => skip }}")
-            lines += [control] if way == "looked" else []
-    return " ".join(lines)
-
-
-@st.composite
-def missions(draw):
-    text = RULES
-    for agent, other in (("a", "b"), ("b", "a")):
-        host = draw(st.sampled_from(sorted(CONTROLS)))
-        text += f"BigActor {agent} hosted_at {host} with_behavior {{ {draw(bodies(host, other))} }}\n"
-    return text + f"control {draw(st.sampled_from(['atomic', 'timed']))}\n"
 
 
 @settings(max_examples=100)
@@ -117,7 +55,8 @@ def test_what_is_owned_among_generated_configurations_has_no_race(c):
 
 
 OWNED = {
-    "one agent alone": 'BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) control(HAND uav0 TO gcs1) }',
+    "one agent alone": """
+    BigActor a hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) control(HAND uav0 TO gcs1) }""",
     "each moves its own": moves("gate0", "a", "uav0") + moves("gate0", "b", "uav1"),
     "each moves its own while the other looks at what nobody moves": moves("gate0", "a", "uav0")
     + """
@@ -180,17 +119,24 @@ NOT_OWNED = {
         "CHILDREN(gate0)", "gcs0 in o", "gcs0", "control(MOVE first(o) TO gate0)"
     )
     + B_ENTERS,
-    "a host that is not known from the text": 'BigActor a hosted_at uav0 with_behavior { migrate(vessel0) control(MOVE_HOST_TO gate0) }\n'
+    "a host that is not known from the text": """
+    BigActor a hosted_at uav0 with_behavior { migrate(vessel0) control(MOVE_HOST_TO gate0) }
+    """
     + B_ENTERS,
     "a carrier that another moves": """
     BigActor a hosted_at vessel0 with_behavior { control(PUT drifter0 IN south0) }
     BigActor b hosted_at vessel0 with_behavior { control(MOVE_HOST_TO north0) }""",
-    "a place closed to others": "rule only() { HOST.u0_UAV -> HOST.u0_UAV }\nrule clear() { gate0 || HOST -> gate0.HOST }\n"
-    + "BigActor a hosted_at uav0 with_behavior { control(clear()) }\n"
+    "a place closed to others": """
+    rule enter() { gate0 || HOST -> gate0.HOST }
+    BigActor a hosted_at uav0 with_behavior { control(enter()) }
+    """
     + B_ENTERS,
-    "one that is yet to be spawned": "def enter() = { control(MOVE_HOST_TO gate0) }\n"
-    + "BigActor a hosted_at uav0 with_behavior { spawn d hosted_at uav1 with_behavior enter() }",
-    "one alone in no line": 'BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) }\nscheduler unordered',
+    "one that is yet to be spawned": """
+    def enter() = { control(MOVE_HOST_TO gate0) }
+    BigActor a hosted_at uav0 with_behavior { spawn d hosted_at uav1 with_behavior enter() }""",
+    "one alone in no line": """
+    BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) }
+    scheduler unordered""",
 }
 
 
@@ -206,9 +152,11 @@ def test_cargo_cannot_be_put_down_once_its_carrier_has_been_moved():
 
 
 def test_cargo_of_cargo_goes_along():
-    world = WORLD.replace("kind Drifter\n", "kind Drifter carries Buoy\n  kind Buoy\n").replace(
-        "gcs0: Station =", "buoy0: Buoy carried by drifter0\n  gcs0: Station ="
-    ).replace("contains Location,", "contains Buoy, Location,")
+    world = (
+        WORLD.replace("kind Drifter\n", "kind Drifter carries Buoy\n  kind Buoy\n")
+        .replace("gcs0: Station =", "buoy0: Buoy carried by drifter0\n  gcs0: Station =")
+        .replace("contains Location,", "contains Buoy, Location,")
+    )
     text = """
     BigActor a hosted_at drifter0 with_behavior { control(PUT buoy0 IN south0) }
     BigActor b hosted_at vessel0 with_behavior { control(MOVE_HOST_TO north0) }

@@ -49,14 +49,19 @@ HANDS_AND_MOVES = """
 BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }
 BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) }
 """
-MOVES_TWICE = "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) control(MOVE_HOST_TO south0) }\n"
+MOVES_TWICE = (
+    "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) control(MOVE_HOST_TO south0) }\n"
+)
 
 
 def test_two_orders_that_end_differently_are_a_race():
     found = verdict(PILOTS, "race_freedom")
     assert kinds(found) == {"control race": 2}
     race = violation(found, "control race")
-    assert race.message == "CTR(a, MOVE uav0 TO south0) and CTR(b, MOVE uav0 TO gate0) end differently in the two orders"
+    assert (
+        race.message
+        == "CTR(a, MOVE uav0 TO south0) and CTR(b, MOVE uav0 TO gate0) end differently in the two orders"
+    )
     assert rules_of(race.trace) == ["req_ctr", "req_ctr"]
     assert race.details == (
         "enabled here: ⟨actuate : CTR(a, MOVE uav0 TO south0)⟩ and ⟨actuate : CTR(b, MOVE uav0 TO gate0)⟩",
@@ -66,7 +71,11 @@ def test_two_orders_that_end_differently_are_a_race():
 def test_serving_one_that_disables_the_other_is_a_race_whichever_it_is():
     message = "serving CTR({}, HAND uav0 TO gcs1) disables CTR({}, MOVE uav0 TO gate0)"
     assert control_races(HANDS_AND_MOVES) == message.format("a", "b")
-    swapped = HANDS_AND_MOVES.replace("Actor a", "Actor x").replace("Actor b", "Actor a").replace("Actor x", "Actor b")
+    swapped = (
+        HANDS_AND_MOVES.replace("Actor a", "Actor x")
+        .replace("Actor b", "Actor a")
+        .replace("Actor x", "Actor b")
+    )
     assert control_races(swapped) == message.format("b", "a")
 
 
@@ -163,7 +172,7 @@ def test_a_stale_observation_is_told_with_the_query_and_the_test_and_a_shortest_
     assert race.message == (
         "CTR(b, MOVE_HOST_TO gate0) rests on 'in uav0' of observe(CHILDREN(gate0)), "
         "and another agent has changed that answer since it was sensed"
-    ) or race.message.startswith("CTR(a, MOVE_HOST_TO gate0) rests on 'in uav1'")
+    )
     assert len(race.trace) == 12  # each looks and asks in 5 steps, then both are served
     assert rules_of(race.trace).count("actuate") == 2
     assert rules_of(race.trace)[-1] == "actuate"
@@ -202,7 +211,8 @@ WAYS = {
     "an argument": "react { case obs => control(MOVE_HOST_TO first(nodes(obs))) }",
     "an argument of a behaviour": "react { case obs => enter(not (uav1 in obs)) }",
     "the size of it": "react { case obs => if size(obs) < 2 { control(MOVE_HOST_TO gate0) } }",
-    "the second half of a test": "react { case obs => if uav0 in obs or not (uav1 in obs) { control(MOVE_HOST_TO gate0) } }",
+    "the second half of a test": """
+      react { case obs => if uav0 in obs or not (uav1 in obs) { control(MOVE_HOST_TO gate0) } }""",
 }
 ENTER = "def enter(clear) = { if clear { control(MOVE_HOST_TO gate0) } }\n"
 
@@ -239,9 +249,11 @@ def test_a_query_made_of_an_observation_carries_it():
 UNTESTED = {
     "what is only held": "react { case obs => control(MOVE_HOST_TO gate0) }",
     "what is only displayed": "react { case obs => display(uav1 in obs) control(MOVE_HOST_TO gate0) }",
-    "an answer that nobody changes": "react { case obs if not (drifter0 in obs) => control(MOVE_HOST_TO gate0) case o => skip }",
+    "an answer that nobody changes": """
+      react { case obs if not (drifter0 in obs) => control(MOVE_HOST_TO gate0) case o => skip }""",
     "both ways of a test alike": "react { case obs => if uav1 in obs { skip } control(MOVE_HOST_TO gate0) }",
-    "a control that comes before": "control(MOVE_HOST_TO gate0) react { case obs if uav1 in obs => skip case obs => skip }",
+    "a control that comes before": """
+      control(MOVE_HOST_TO gate0) react { case obs if uav1 in obs => skip case obs => skip }""",
 }
 
 
@@ -317,11 +329,15 @@ BigActor c hosted_at gcs0 with_behavior {
   react { case obs if not (uav1 in obs) => send("clear", a) case obs => send("full", a) }
 }
 """
+TOLD = """
+BigActor a hosted_at uav0 with_behavior {
+  react { case "clear" => control(MOVE_HOST_TO gate0) case "full" => skip }
+}
+"""
 
 
 def test_a_message_carries_the_test_under_which_it_was_sent():
-    text = 'BigActor a hosted_at uav0 with_behavior { react { case "clear" => control(MOVE_HOST_TO gate0) case "full" => skip } }\n'
-    assert stale(text + LOOKOUT + ENTERS) == {"a"}
+    assert stale(TOLD + LOOKOUT + ENTERS) == {"a"}
 
 
 def test_a_message_carries_the_observation_that_it_holds():
@@ -336,11 +352,8 @@ def test_a_message_carries_the_observation_that_it_holds():
 
 
 def test_a_message_is_passed_on_with_what_it_rests_on():
-    text = """
-    BigActor relay hosted_at gcs0 with_behavior { react { case word: Message => send(word, a) } }
-    BigActor a hosted_at uav0 with_behavior { react { case "clear" => control(MOVE_HOST_TO gate0) case "full" => skip } }
-    """
-    assert stale(text + LOOKOUT.replace(", a)", ", relay)") + ENTERS) == {"a"}
+    relay = "BigActor relay hosted_at gcs0 with_behavior { react { case word: Message => send(word, a) } }"
+    assert stale(TOLD + relay + LOOKOUT.replace(", a)", ", relay)") + ENTERS) == {"a"}
 
 
 def test_what_the_sender_changes_after_it_has_sent_makes_the_message_stale():
@@ -378,7 +391,9 @@ def test_what_an_agent_changes_between_its_test_and_its_message_makes_no_receive
 
 def test_what_a_third_changes_between_the_test_and_the_message_does():
     third = "BigActor op3 hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs2) }\n"
-    text = HANDOVER.replace("control(HAND uav0 TO gcs1)", "skip").replace("HAND uav0 TO gcs2", "HAND uav1 TO gcs2")
+    text = HANDOVER.replace("control(HAND uav0 TO gcs1)", "skip").replace(
+        "HAND uav0 TO gcs2", "HAND uav1 TO gcs2"
+    )
     assert stale(text) == set()
     assert stale(text + third) == {"op2"}
 

@@ -1,6 +1,7 @@
 """Traces: printed in the paper's notation, replayed to the same configurations, and refused where they don't fit."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -53,7 +54,7 @@ def test_the_shortest_way_over_the_spill_is_the_papers_run(witness):
 def test_a_trace_is_printed_in_the_papers_notation_with_what_changed_below(witness):
     assert list(print_trace(witness))[:6] == [
         "c0 --⟨req_ctr : a, control(MOVE_HOST_TO searchArea0)⟩--> c1",
-        "      α  a@uav0 at observe (line 24)",
+        "      α  a@uav0 at observe (line 21)",
         "      η  a: CTR(a, MOVE_HOST_TO searchArea0)",
         "c1 --⟨actuate : CTR(a, MOVE_HOST_TO searchArea0)⟩--> c2",
         "      η  a: ∅",
@@ -160,7 +161,7 @@ def test_a_step_that_waits_for_its_turn_may_end_a_trace():
 # --- what does not fit ----------------------------------------------------------------------------------------
 
 
-def test_a_changed_mission_says_at_which_step_and_what_is_enabled_instead(oil_spill, witness, tmp_path):
+def test_a_changed_mission_says_at_which_step_and_what_is_enabled_instead(witness, tmp_path):
     changed = tmp_path / "changed.mission"
     changed.write_text(OIL_SPILL.read_text().replace("PARENT(HOST)", "searchArea0"))
     with pytest.raises(ReplayError) as caught:
@@ -168,8 +169,10 @@ def test_a_changed_mission_says_at_which_step_and_what_is_enabled_instead(oil_sp
     assert caught.value.step == 3
     assert "⟨req_obs : a, observe(CHILDREN(searchArea0))⟩" in caught.value.enabled
     assert str(caught.value).splitlines() == [
-        "step 3: ⟨req_obs : a, observe(CHILDREN(PARENT(uav0)))⟩ is not enabled: "
-        "the mission, its scheduler or its environment may have changed since the trace was written",
+        (
+            "step 3: ⟨req_obs : a, observe(CHILDREN(PARENT(uav0)))⟩ is not enabled: "
+            "the mission, its scheduler or its environment may have changed since the trace was written"
+        ),
         "enabled instead:",
         *(f"  {label}" for label in caught.value.enabled),
     ]
@@ -179,7 +182,9 @@ def test_where_nothing_is_enabled_it_says_so():
     c = load(moves("gate0", "a", "uav0")).initial
     data = {"schema": "bigactors.trace/1", "steps": [{"label": "⟨fun : a⟩"}]}
     ended = load("BigActor a hosted_at uav0 with_behavior { }").initial
-    with pytest.raises(ReplayError, match=r"(?s)step 1: ⟨fun : a⟩ is not enabled.*enabled instead:\n  nothing"):
+    with pytest.raises(
+        ReplayError, match=r"(?s)step 1: ⟨fun : a⟩ is not enabled.*enabled instead:\n  nothing"
+    ):
         replay(ended, data)
     with pytest.raises(ReplayError, match="control"):
         replay(c, data)
@@ -214,7 +219,10 @@ NO_TRACES = [
     ({"schema": SCHEMA}, "this is no trace: 'steps' should be a list of at most 1,000,000 steps"),
     ({"schema": SCHEMA, "steps": {}}, "'steps' should be a list"),
     ({"schema": SCHEMA, "steps": "abc"}, "'steps' should be a list"),
-    ({"schema": SCHEMA, "steps": ["fun"]}, "step 1 should have a 'label' (a text) and a 'choice' (a number from 0)"),
+    (
+        {"schema": SCHEMA, "steps": ["fun"]},
+        "step 1 should have a 'label' (a text) and a 'choice' (a number from 0)",
+    ),
     ({"schema": SCHEMA, "steps": [{}]}, "step 1 should have"),
     ({"schema": SCHEMA, "steps": [{"label": 7}]}, "step 1 should have"),
     ({"schema": SCHEMA, "steps": [{"label": "x", "choice": -1}]}, "step 1 should have"),
@@ -225,11 +233,10 @@ NO_TRACES = [
 ]
 
 
-@pytest.mark.parametrize(("data", "message"), NO_TRACES, ids=lambda value: None)
+@pytest.mark.parametrize(("data", "message"), NO_TRACES, ids=map(str, range(len(NO_TRACES))))
 def test_what_is_no_trace_is_told_in_words(oil_spill, data, message):
-    with pytest.raises(ValueError, match="this is no trace|should have") as caught:
+    with pytest.raises(ValueError, match=re.escape(message)):
         replay(oil_spill.initial, data)
-    assert message in str(caught.value)
 
 
 def test_a_trace_is_bounded_in_length(oil_spill):
@@ -253,35 +260,38 @@ TRACES = st.fixed_dictionaries(
 
 @given(PLAIN | TRACES)
 def test_whatever_is_read_is_replayed_or_refused_in_words(data):
-    c = load(moves("gate0", "a", "uav0")).initial
-    try:
-        trace = replay(c, data)
-    except ValueError as error:
-        assert "should" in str(error)
-    except ReplayError as error:
-        assert error.step >= 1
-        assert error.enabled
+    outcome = replayed(load(moves("gate0", "a", "uav0")).initial, data)
+    if isinstance(outcome, Trace):
+        assert len(outcome) == len(data["steps"])
+    elif isinstance(outcome, ReplayError):
+        assert outcome.step >= 1
+        assert outcome.enabled
     else:
-        assert len(trace) == len(data["steps"])
+        assert "should" in str(outcome)
 
 
 @given(st.data())
 def test_a_damaged_trace_replays_or_is_refused(data):
-    text = moves("gate0", "a", "uav0") + moves("gate0", "b", "uav1")
-    c = load(text).initial
+    c = load(moves("gate0", "a", "uav0") + moves("gate0", "b", "uav1")).initial
     found = explore(c)
     written = through_json(trace_to(found, len(found.configurations) - 1))
     number = data.draw(st.integers(0, len(written["steps"]) - 1))
     key = data.draw(st.sampled_from(["label", "choice", "changes"]))
     written["steps"][number][key] = data.draw(PLAIN)
-    try:
-        again = replay(c, written)
-    except ReplayError as error:
-        assert error.step >= number + 1
-    except ValueError as error:
-        assert str(error).startswith(f"step {number + 1} should have")
+    outcome = replayed(c, written)
+    if isinstance(outcome, Trace):
+        assert outcome.configurations[-1] == found.configurations[-1]
+    elif isinstance(outcome, ReplayError):
+        assert outcome.step >= number + 1
     else:
-        assert again.configurations[-1] == found.configurations[-1]
+        assert str(outcome).startswith(f"step {number + 1} should have")
+
+
+def replayed(c, data):
+    try:
+        return replay(c, data)
+    except (ReplayError, ValueError) as error:
+        return error
 
 
 # --- values ---------------------------------------------------------------------------------------------------
@@ -299,6 +309,6 @@ def test_a_trace_is_a_value_with_its_configurations():
 
 def test_a_step_is_no_step_where_the_label_is_not_enabled():
     c = load(moves("gate0", "a", "uav0")).initial
-    assume_not = Label("fun", "a")
+    elsewhere = Label("fun", "a")
     with pytest.raises(ValueError, match="not in list"):
-        step_of(c, assume_not, c)
+        step_of(c, elsewhere, c)

@@ -1,4 +1,4 @@
-"""The missions that ship: their exact counts, verdicts and lengths of traces (default scheduler, monitor not counted)."""
+"""The missions that ship: exact counts, verdicts and lengths of traces (default scheduler, monitor not counted)."""
 
 import os
 from dataclasses import dataclass, field

@@ -1,0 +1,72 @@
+"""Generated mission texts of two agents: controls, tests of what was observed, and messages."""
+
+from hypothesis import strategies as st
+
+PLACES = ("gate0", "north0", "south0")
+EVERYONES = (
+    *(f"control(MOVE {uav} TO {place})" for uav in ("uav0", "uav1") for place in PLACES[:2]),
+    *(f"control(HAND {uav} TO {gcs})" for uav in ("uav0", "uav1") for gcs in ("gcs0", "gcs1")),
+    "control(CONNECT_HOST_TO uav1)",
+    "control(DISCONNECT_HOST_FROM uav0)",
+    "control(land(uav0, south0))",
+    "control(swap(uav1))",
+)
+DRIVERS = (*(f"control(MOVE_HOST_TO {place})" for place in (*PLACES, "vessel0")), *EVERYONES)
+CONTROLS = {
+    "uav0": DRIVERS[:3] + DRIVERS,
+    "uav1": DRIVERS,
+    "vessel0": (*DRIVERS[:3], "control(PUT drifter0 IN south0)", "control(PUT uav1 IN gate0)"),
+    "gcs0": EVERYONES,
+    "gcs1": EVERYONES,
+}
+QUERIES = (
+    "CHILDREN(gate0)",
+    "CHILDREN(PARENT(HOST))",
+    "PARENT(uav1)",
+    "LINKED_TO(HOST)",
+    "PARENT(PARENT(HOST))",
+    "ALL",
+)
+TESTS = (
+    "uav0 in o",
+    "not (uav1 in o)",
+    "gate0 in o",
+    "drifter0 in o",
+    "size(o) > 1",
+    "empty(o of UAV)",
+    "parent(uav1, o) == north0",
+    "linked(uav0, gcs0, o)",
+)
+RULES = """
+rule land(u: UAV, b: Location) { u[c] || b.$0 -> b.(u[c] | $0) }
+rule swap(u: UAV) { HOST || gate0 || north0.(u | $0) -> HOST || gate0.u || north0.$0 }
+"""
+
+
+@st.composite
+def bodies(draw, host, other):
+    """Yield the text of a behaviour: controls, tests of what was observed, messages to the other."""
+    lines = []
+    for _ in range(draw(st.integers(1, 2))):
+        control = draw(st.sampled_from(CONTROLS[host]))
+        way = draw(st.sampled_from(["bare", "bare", "tested", "looked", "told", "heard"]))
+        if way == "bare":
+            lines.append(control)
+        elif way == "heard":
+            lines.append(f'react {{ case "go" => {control} case x: Observation => skip case m => skip }}')
+        else:
+            test = draw(st.sampled_from(TESTS))
+            then = {"tested": control, "looked": "skip", "told": f'send("go", {other})'}[way]
+            lines.append(f"observe({draw(st.sampled_from(QUERIES))})")
+            lines.append(f"react {{ case o if {test} => {then} case o => skip }}")
+            lines += [control] if way == "looked" else []
+    return " ".join(lines)
+
+
+@st.composite
+def missions(draw):
+    text = RULES
+    for agent, other in (("a", "b"), ("b", "a")):
+        host = draw(st.sampled_from(sorted(CONTROLS)))
+        text += f"BigActor {agent} hosted_at {host} with_behavior {{ {draw(bodies(host, other))} }}\n"
+    return text + f"control {draw(st.sampled_from(['atomic', 'timed']))}\n"
