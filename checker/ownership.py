@@ -122,7 +122,7 @@ class _Text:
         match statement:
             case If(_, then, otherwise):
                 yield from (*then, *otherwise)
-            case While(_, body, _) | Loop(body) | ForEach(_, _, body) | ChooseFrom(_, _, body):
+            case While(_, body) | Loop(body) | ForEach(_, _, body) | ChooseFrom(_, _, body):
                 yield from body
             case For(_, _, each):
                 yield each
@@ -252,7 +252,7 @@ class _Text:
 def expressions_of(statement: Statement) -> Iterable[Expression]:
     """Return the expressions whose value decides something, or is kept, sent or used."""
     match statement:
-        case Assign(_, expression) | If(expression, _, _) | While(expression, _, _) | For(expression, _, _):
+        case Assign(_, expression) | If(expression, _, _) | While(expression, _) | For(expression, _, _):
             return (expression,)
         case ChooseFrom(_, expression, _) | Migrate(expression):
             return (expression,)

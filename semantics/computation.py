@@ -39,6 +39,10 @@ MOST_STEPS: Final = 10_000
 """Internal steps after which a computation that reached no command is said to diverge."""
 
 
+LOOPS: Final = (Loop, While, ForEach)
+"""Statements that come again: what one turn had to pass says nothing of the next, which looks anew."""
+
+
 @dataclass(slots=True)
 class Process:
     """One agent's code and variables while it computes, with what each rests on, and what it displays."""
@@ -64,6 +68,13 @@ class Process:
         """Put a block before what is left."""
         self.code = block + self.code
         self.rests_on = (rests_on,) * len(block) + self.rests_on
+
+    def passing(self, tests: Provenance) -> None:
+        """Let what is left rest on tests that had to turn out so to come there; the next turn of a loop looks anew."""
+        if tests:
+            turns = (isinstance(self.program.statements[number], LOOPS) for number in self.code)
+            kept = zip(self.rests_on, turns, strict=True)
+            self.rests_on = tuple(each if turn else each | tests for each, turn in kept)
 
     def unroll(self) -> None:
         """Take the jumps of loops that come next.
@@ -167,8 +178,8 @@ def _step(process: Process, statement: Internal) -> None:
         case If(test, then, otherwise):
             value, rests_on = process.evaluate(test)
             process.enter(then if truth(value) else otherwise, process.leave() | tested(rests_on))
-        case While(test, body, after):
-            _step_while(process, test, body, after)
+        case While(test, body):
+            _step_while(process, test, body)
         case For(members, rest, each):
             found, rests_on = process.members(members)
             here = process.leave() | rests_on
@@ -188,17 +199,14 @@ def _step(process: Process, statement: Internal) -> None:
             process.enter(called.body, here)
 
 
-def _step_while(process: Process, test: Expression, body: Block, after: Block) -> None:
+def _step_while(process: Process, test: Expression, body: Block) -> None:
     value, rests_on = process.evaluate(test)
     here = process.rests_on[0]
     if truth(value):
         process.enter(body, here | tested(rests_on))
         return
     process.leave()
-    # What follows in the same block runs only because the test failed.
-    follows = sum(1 for left, then in zip(process.code, after, strict=False) if left == then)
-    marked = tuple(kept | tested(rests_on) for kept in process.rests_on[:follows])
-    process.rests_on = marked + process.rests_on[follows:]
+    process.passing(tested(rests_on))  # what follows runs only because the test failed
 
 
 def _step_for(process: Process, variable: str, rest: str, body: Block) -> None:
@@ -218,6 +226,7 @@ def enter_case(
 
     The body rests on the guards that were tried; what the pattern binds, on what the value rests on.
     """
+    before = here
     for case in cases:
         binding = bind(case.pattern, value)
         if binding is None:
@@ -230,6 +239,8 @@ def enter_case(
             if not truth(verdict):
                 continue
         process.scope.binding(binding, rests_on)
+        if not any(each.guard is None and bind(each.pattern, value) is not None for each in cases):
+            process.passing(here - before)
         process.enter(case.body, here)
         return True
     return False

@@ -6,7 +6,7 @@ Written like the seven rules.
 from collections.abc import Iterator
 
 from semantics.cells import Changes
-from semantics.computation import bind_parameters, enter_case
+from semantics.computation import bind_parameters, enter_case, tested
 from semantics.configuration import Configuration, Label, Transition
 from semantics.environment import Clause, Says
 from semantics.expressions import Fault, evaluated, name_in
@@ -91,6 +91,7 @@ def rcv_msg(c: Configuration, a: Name) -> Iterator[Transition]:
         rests_on = watch.mailbox[position] if watch else NOTHING
         process = process_of(c, a)
         here = process.leave() | rests_on
+        process.passing(tested(rests_on))  # what follows waits for the message
         if not enter_case(process, statement.cases, message, rests_on, here):  # premise: a case for it
             continue
         taken = c.with_(c.alpha.taking(a, position))

@@ -106,7 +106,7 @@ def _reads(  # noqa: PLR0912  # one case for each kind of statement
             return free(host).union(*map(free, arguments))
         case If(test, then, otherwise):
             return free(test) | live(then) | live(otherwise)
-        case While(test, body, _):
+        case While(test, body):
             return free(test) | live(body)
         case Loop(body):
             return live(body)

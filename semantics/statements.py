@@ -103,11 +103,10 @@ class If:
 
 @dataclass(frozen=True, slots=True)
 class While:
-    """`while e { body }`; `after` are the statements that follow it in its own block."""
+    """`while e { body }`."""
 
     test: Expression
     body: Block
-    after: Block = ()
 
 
 @dataclass(frozen=True, slots=True)

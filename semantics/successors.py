@@ -25,20 +25,20 @@ def rules_of(control: Control) -> tuple[Rule, ...]:
     return RULES + (TIMED_RULES if control is Control.TIMED else ()) + EXTENSION
 
 
-def steps(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Yield what one agent's rules allow, apart from others' turns.
+def steps(c: Configuration, a: Name) -> Iterator[Transition | Fault]:
+    """Yield what one agent's rules allow, apart from others' turns, and each fault in the place of what it hinders.
 
-    Raises:
-        Fault: The agent's computation fails or diverges.
+    A failed computation hinders only its own rule: what the agent had asked for is served all the same.
     """
     idle = not c.eta.of(a)
-    try:
-        for rule in rules_of(c.setting.control):
-            if not (idle and rule in SERVING):
-                yield from rule(c, a)
-    except Fault as fault:
-        fault.agent = a
-        raise
+    for rule in rules_of(c.setting.control):
+        if idle and rule in SERVING:
+            continue
+        try:
+            yield from rule(c, a)
+        except Fault as fault:
+            fault.agent = a
+            yield fault
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,13 +73,13 @@ def expand(c: Configuration) -> Expansion:
     found: list[Transition] = []
     faults: list[Fault] = []
     for a in c.alpha.names():
-        try:
-            found.extend(steps(c, a))
-        except Fault as fault:
-            faults.append(fault)
-    found.sort(
-        key=lambda transition: transition.served is None
-    )  # as in the paper's run: what is asked is served first
+        for step in steps(c, a):
+            if isinstance(step, Fault):
+                faults.append(step)
+            else:
+                found.append(step)
+    # As in the paper's run, what is asked is served first.
+    found.sort(key=lambda transition: transition.served is None)
     allowed = tuple(dict.fromkeys(marked(c, transition) for transition in found))
     waiting: tuple[Transition, ...] = ()
     if c.setting.scheduler is Scheduler.FCFS:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Final
 
@@ -131,10 +131,6 @@ class _Statements:
             numbers.append(number)
             place = _Place(scope, tail and last, top and (last or not isinstance(statement, s.Call)))
             self.program.statements[number] = _STATEMENTS[type(statement)](self, statement, place, number)
-        for position, number in enumerate(numbers):
-            loop = self.program.statements[number]
-            if isinstance(loop, k.While):
-                self.program.statements[number] = replace(loop, after=tuple(numbers[position + 1 :]))
         return tuple(numbers)
 
     # --- names

@@ -54,7 +54,14 @@ VESSELS = (
     Vessel(244999008, "A", "ZEEDUIVEL", 30, 52.84400, 5.70200, 0.0, 0.0),
 )
 BASE_STATION = {"type": 4, "mmsi": 2449990, "lat": 52.83880, "lon": 5.71000}
-BUOY = {"type": 21, "mmsi": 992449991, "name": "NOORDERHOEK 1", "aid_type": 24, "lat": 52.84000, "lon": 5.70550}
+BUOY = {
+    "type": 21,
+    "mmsi": 992449991,
+    "name": "NOORDERHOEK 1",
+    "aid_type": 24,
+    "lat": 52.84000,
+    "lon": 5.70550,
+}
 
 REFUSED = {"type": 1, "mmsi": 244999008, "lat": 91, "lon": 181, "course": 360, "heading": 511}
 """A position that is *not available*."""

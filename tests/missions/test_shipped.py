@@ -69,7 +69,7 @@ def test_a_mission_that_ships_has_its_counts_verdicts_and_shortest_traces(name):
     reached = {
         v.property.name: len(v.witness)
         for v in report.verdicts
-        if v.property.kind == "reachable" and v.witness
+        if v.property.kind == "reachable" and v.witness is not None
     }
     assert reached == expected.witnesses
 

@@ -24,7 +24,6 @@ from semantics.statements import (
     Match,
     React,
     Spawn,
-    While,
 )
 from semantics.successors import successors
 from specs.diagnostics import MissionError, Source
@@ -295,13 +294,6 @@ def test_a_guard_in_a_match_is_not():
     found = statements("match 1 { case x if x == 1 => skip case _ => display(0) }")
     assert isinstance(found[0], Match)
     assert k.Tested() not in found
-
-
-def test_while_knows_what_follows_it():
-    found = statements("let i = 0 while i < 2 { i = i + 1 } display(i) display(0)")
-    loop = next(each for each in found if isinstance(each, While))
-    assert loop.after == (3, 4)
-    assert loop.body == (2,)
 
 
 def test_for_goes_through_what_is_left_under_a_hidden_name():
