@@ -23,6 +23,9 @@ exit codes:
 
 Of several missions the gravest counts: 4, then 2, 1, 3, 0."""
 
+FORMATS: Final = ("json", "junit", "sarif", "github")
+"""What `check --output` writes; `github` are the annotations of GitHub Actions."""
+
 MISSION: Final = "a mission file, or the name of a mission that ships with bigactors, such as oil_spill"
 
 
@@ -121,6 +124,15 @@ def _check(parser: Parser) -> None:
         metavar="FILE",
         type=named,
         help="write the report as JSON (docs/json.md); - for standard output, alone",
+    )
+    parser.add_argument(
+        "--output",
+        metavar="FORMAT:FILE",
+        action="append",
+        default=[],
+        type=output,
+        help=f"write the report for other programs (docs/output.md): {', '.join(FORMATS)}; - as FILE for standard "
+        "output, alone; may be repeated",
     )
     parser.add_argument(
         "--max-configurations",
@@ -273,6 +285,7 @@ COMMANDS: Final[dict[str, Command]] = {
             "bigactors check --no-traces specs/missions/*.mission",
             "bigactors check --json - oil_spill.mission | jq '.properties[] | [.name, .verdict]'",
             "bigactors check --trace traces --max-time 60 handover.mission",
+            "bigactors check --output junit:report.xml --output sarif:report.sarif specs/missions/*.mission",
         ),
         _check,
     ),
@@ -343,6 +356,22 @@ def named(text: str) -> str:
     if not text:
         raise argparse.ArgumentTypeError("the name of a file is missing")
     return text
+
+
+def output(word: str) -> tuple[str, str]:
+    """Read FORMAT:FILE.
+
+    >>> output("sarif:report.sarif")
+    ('sarif', 'report.sarif')
+    """
+    name, _, file = word.partition(":")
+    if name not in FORMATS:
+        near = suggestion(name, FORMATS)
+        message = f"unknown format '{name:.40}': {near or 'the formats are ' + ', '.join(FORMATS)}"
+        raise argparse.ArgumentTypeError(message)
+    if not file:
+        raise argparse.ArgumentTypeError(f"'{word:.60}' is not FORMAT:FILE, such as {name}:report")
+    return name, file
 
 
 def at_least_zero(text: str) -> int:

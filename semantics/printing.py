@@ -15,7 +15,7 @@ from semantics.values import show
 
 def print_agent(c: Configuration, a: Name) -> str:
     """Print an agent: its name, host, what it is at, variables and mailbox."""
-    agents, names = c.alpha, frozenset(c.setting.kinds)
+    agents, names = c.alpha, frozenset((*c.setting.kinds, *c.alpha.names()))
     code = agents.code(a)
     line = c.setting.program.lines[code[0]] if code and c.setting.program.lines else None
     at = word_of(c.setting.program.statements[code[0]]) if code else "ended"

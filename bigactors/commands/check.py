@@ -6,11 +6,12 @@ from argparse import Namespace
 from collections.abc import Iterator
 from pathlib import Path
 
-from bigactors.checking import Checked, Failed, check_missions, results_json
+from bigactors.checking import Checked, Failed, check_missions
 from bigactors.exits import Exit, worst
-from bigactors.files import check_writable, file_stem, json_text, make_folder, write_json
+from bigactors.files import file_stem, make_folder
 from bigactors.missions import variation_of
-from bigactors.terminal import paint, say, say_text, tell
+from bigactors.outputs import outputs_of, write_outputs
+from bigactors.terminal import paint, say, tell
 from checker import Limits, report_text
 from checker.report import MARKS
 from checker.verdicts import Outcome
@@ -33,25 +34,22 @@ def run(options: Namespace) -> Exit:
     limits = Limits(configurations=options.max_configurations, seconds=options.max_time)
     if options.trace:
         make_folder(options.trace)
-    if options.json not in (None, "-"):
-        check_writable(options.json)
+    outputs = outputs_of(options)
+    alone = any(output.to_standard_output for output in outputs)
     results: list[Checked | Failed] = []
     folders: set[str] = set()
     for result in check_missions(options.files, limits, variation_of(options)):
         results.append(result)
-        if options.json != "-":
+        if not alone:
             for line in report_lines(result, traces=not options.no_traces):
                 say(coloured(line))
         if options.trace and isinstance(result, Checked):
             keep_evidence(result, options.trace, folders)
     code = worst(result.exit for result in results)
-    if options.json == "-":
-        say_text(json_text(results_json(results, code)))
-    elif len(results) > 1:
+    if len(results) > 1 and not alone:
         for line in summary(results):
             say(coloured(line))
-    if options.json not in (None, "-"):
-        write_json(options.json, results_json(results, code))
+    write_outputs(outputs, results, code)
     return code
 
 

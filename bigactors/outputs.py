@@ -1,0 +1,150 @@
+"""What `check` writes for other programs: which formats go where, and the writing."""
+
+import os
+from argparse import Namespace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from bigactors import __version__
+from bigactors.checking import Checked, Failed, results_json
+from bigactors.exits import Exit
+from bigactors.files import check_writable, json_text, write_text
+from bigactors.missions import locate
+from bigactors.mistakes import Mistake
+from bigactors.terminal import say_text
+from checker.annotations import annotations
+from checker.junit import junit_text
+from checker.results import Issue, Level, Result
+from checker.sarif import sarif_json
+from specs import parse_bytes
+from specs.elaboration import ElaboratedMission
+from specs.syntax import Check
+
+STANDARD_OUTPUT: Final = "-"
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """A document that is asked for: its format, and its file or `-`."""
+
+    format: str
+    file: str
+
+    @property
+    def to_standard_output(self) -> bool:
+        """Whether it goes where the text report would."""
+        return self.file == STANDARD_OUTPUT
+
+
+def outputs_of(options: Namespace) -> tuple[Output, ...]:
+    """Return what `--json` and `--output` ask for; raises Mistake for what cannot be written."""
+    asked = [("json", options.json)] if options.json is not None else []
+    outputs = tuple(Output(*each) for each in (*asked, *options.output))
+    taken: dict[str, Output] = {}
+    for output in outputs:
+        place = output.file if output.to_standard_output else os.path.realpath(_checked(output.file))
+        if other := taken.get(place):
+            where = "the standard output" if output.to_standard_output else output.file
+            raise Mistake(f"{other.format} and {output.format} cannot both go to {where}", "give one a file")
+        taken[place] = output
+    return outputs
+
+
+def _checked(file: str) -> str:
+    try:
+        check_writable(file)
+    except ValueError as error:  # a zero byte
+        raise Mistake("this is no path of a file", place=repr(file)) from error
+    return file
+
+
+def write_outputs(outputs: Iterable[Output], results: Sequence[Checked | Failed], code: Exit) -> None:
+    """Write every document to its place."""
+    for output in outputs:
+        text = FORMATS[output.format](results, code)
+        if not output.to_standard_output:
+            write_text(output.file, text)
+        elif output.format == "junit":  # whatever the terminal's encoding: what it lacks would become markup
+            say_text(
+                text.encode("ascii", "xmlcharrefreplace").decode("ascii").replace("UTF-8", "US-ASCII", 1)
+            )
+        else:
+            say_text(text)
+
+
+# --- formats --------------------------------------------------------------------------------------------------
+
+
+def _json(results: Sequence[Checked | Failed], code: Exit) -> str:
+    text = json_text(results_json(list(results), code))
+    return text.encode("utf-8", "backslashreplace").decode()  # what names hold that is not UTF-8 is escaped
+
+
+def _junit(results: Sequence[Checked | Failed], _: Exit) -> str:
+    return junit_text(map(result_of, results))
+
+
+def _sarif(results: Sequence[Checked | Failed], _: Exit) -> str:
+    return json_text(sarif_json(map(result_of, results), __version__))
+
+
+def _github(results: Sequence[Checked | Failed], _: Exit) -> str:
+    return "".join(f"{line}\n" for line in annotations(map(result_of, results)))
+
+
+FORMATS: Final[dict[str, Callable[[Sequence[Checked | Failed], Exit], str]]] = {
+    "json": _json,
+    "junit": _junit,
+    "sarif": _sarif,
+    "github": _github,
+}
+"""What makes a document of each format; their names are those of `arguments.FORMATS`."""
+
+
+# --- results --------------------------------------------------------------------------------------------------
+
+
+def result_of(checked: Checked | Failed) -> Result:
+    """Return a mission's result in the shape that the formats share."""
+    file = file_of(checked.name)
+    if isinstance(checked, Checked):
+        return Result(checked.name, file, checked.report, check_line=check_line(checked.mission))
+    return Result(checked.name, file, failures=tuple(_failures(checked)))
+
+
+def file_of(name: str) -> str:
+    """Return the file of a mission, from the working directory where it lies inside."""
+    try:
+        path = Path(os.path.abspath(locate(name)))
+    except Mistake:
+        return name
+    here = Path.cwd()
+    return str(path.relative_to(here) if path.is_relative_to(here) else path)
+
+
+def check_line(mission: ElaboratedMission) -> int:
+    """Return the line of a mission's first `check` section, 1 without one."""
+    source, tree = parse_bytes(mission.source.name, mission.source.text.encode())
+    return next((source.line(section.span.start) for section in tree.each(Check)), 1)
+
+
+def _failures(failed: Failed) -> Iterable[Issue]:
+    if failed.exit is Exit.MISTAKE:
+        yield from map(_mistake, failed.details)
+        return
+    level = Level.BUG if failed.exit is Exit.BUG else Level.INCOMPLETE
+    yield Issue(level, "exploration", level.value, failed.message, identity=(level.value,))
+
+
+def _mistake(said: dict[str, object]) -> Issue:
+    line, column, end_line, end_column = (
+        int(str(said.get(key, 0))) for key in ("line", "column", "end_line", "end_column")
+    )
+    rule, message, hint = str(said.get("code", "mistake")), str(said["message"]), str(said.get("hint", ""))
+    details = (f"hint: {hint}",) if hint else ()
+    return Issue(
+        Level.WRONG, rule, rule, message, line, column, end_line, end_column,
+        identity=(rule, message), details=details,
+    )  # fmt: skip

@@ -1,0 +1,56 @@
+"""Results of small missions, and one whose every text is hostile."""
+
+from checked_missions import SPARE, load, moves, start
+
+from checker import Limits, Outcome, Report, Trace, Verdict, Violation, check
+from checker.results import Issue, Level, Result
+from semantics.propositions import Property
+
+ENTERS = moves("gate0", "a", "uav0")
+PILOTS = moves("south0", "a", "uav0") + moves("gate0", "b", "uav0")
+HOSTILE = '<a b="c"> & ]]> ::error::%0A,line=1\n\r\t\x00\x07\x1b[31m\x9f\ud800\ufffe\'→'
+"""Markup, commands, controls, a lone surrogate and a non-character."""
+
+
+def result(text, name="m.mission", limits=SPARE):
+    mission = load(text)
+    return Result(name, name, check(mission.initial, mission.properties, limits), check_line=7)
+
+
+def cut_off(text=ENTERS, name="m.mission"):
+    return result(text, name, Limits(configurations=2))
+
+
+def failed(*issues, name="m.mission"):
+    return Result(name, name, failures=issues)
+
+
+MISTAKE = Issue(
+    Level.WRONG, "LS201", "LS201", "unknown name 'gaet0'", 17, 24, 17, 29,
+    identity=("LS201", "unknown name 'gaet0'"), details=("hint: did you mean 'gate0'?",),
+)  # fmt: skip
+UNPLACED = Issue(Level.WRONG, "mistake", "mistake", "there is no such file", identity=("mistake",))
+NOT_BEGUN = Issue(Level.INCOMPLETE, "exploration", "incomplete", "not begun", identity=("incomplete",))
+BUG = Issue(Level.BUG, "exploration", "internal error", "internal error: KeyError: 'x'", identity=("bug",))
+
+
+def hostile():
+    asked = (Property("invariant", HOSTILE, line=3), Property("reachable", f"{HOSTILE} never", line=4))
+    trace = Trace(start(ENTERS))
+    verdicts = (
+        Verdict(asked[0], Outcome.VIOLATED, (Violation(HOSTILE, HOSTILE, trace, (HOSTILE,)),), 1),
+        Verdict(asked[1], Outcome.INCOMPLETE),
+    )
+    return Result(HOSTILE, HOSTILE, Report(verdicts, 1, 0, 0, (HOSTILE,), notes=(HOSTILE,)))
+
+
+def all_sorts():
+    return [
+        result(ENTERS, "holds.mission"),
+        result(PILOTS, "race.mission"),
+        cut_off(name="cut_off.mission"),
+        failed(MISTAKE, UNPLACED, name="mistaken.mission"),
+        failed(NOT_BEGUN, name="not_begun.mission"),
+        failed(BUG, name="bug.mission"),
+        hostile(),
+    ]
