@@ -154,6 +154,12 @@ def _check(parser: Parser) -> None:
         help="write the trace of each violation and witness into DIR: as text, as JSON and as pictures",
     )
     parser.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
+    parser.add_argument(
+        "--engine",
+        choices=("learned", "reference"),
+        default="learned",
+        help="how it explores; verdicts are the same",
+    )
     _varying(parser)
 
 

@@ -9,7 +9,7 @@ from bigactors.missions import digest_of, open_mission
 from bigactors.mistakes import Mistake, describe_bug
 from bigactors.progress import watching
 from bigactors.terminal import tell
-from checker import Limits, Report, check, report_json
+from checker import Engine, Limits, Report, check, report_json
 from specs.elaboration import ElaboratedMission, Variation
 
 FAILURE_SCHEMA = "bigactors.failure/1"
@@ -66,12 +66,14 @@ class Failed:
         }
 
 
-def check_mission(name: str, limits: Limits, variation: Variation) -> Checked | Failed:
+def check_mission(
+    name: str, limits: Limits, variation: Variation, engine: Engine = Engine.LEARNED
+) -> Checked | Failed:
     """Check one mission; what goes wrong is told on the standard error and returned."""
     try:
         mission = open_mission(name, variation)
         with watching(mission.name) as watch:
-            report = check(mission.initial, mission.properties, limits, watch, notes=mission.notes)
+            report = check(mission.initial, mission.properties, limits, watch, mission.notes, engine)
         return Checked(name, mission, digest_of(mission), report, watch.interrupted)
     except Mistake as mistake:
         tell(str(mistake))
@@ -83,14 +85,16 @@ def check_mission(name: str, limits: Limits, variation: Variation) -> Checked | 
         return Failed(name, Exit.BUG, f"internal error: {type(error).__name__}: {error}")
 
 
-def check_missions(names: list[str], limits: Limits, variation: Variation) -> Iterator[Checked | Failed]:
+def check_missions(
+    names: list[str], limits: Limits, variation: Variation, engine: Engine
+) -> Iterator[Checked | Failed]:
     """Check missions in turn; after an interruption the others are not begun."""
     interrupted = False
     for name in names:
         if interrupted:
             yield Failed(name, Exit.INCOMPLETE, "not begun")
             continue
-        result = check_mission(name, limits, variation)
+        result = check_mission(name, limits, variation, engine)
         interrupted = result.interrupted
         yield result
 

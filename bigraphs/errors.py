@@ -22,7 +22,7 @@ class BigraphError(ValueError):
 class NotationError(BigraphError):
     """A mistake at a place in a text; `offset` and `length` count characters of `text`."""
 
-    def __init__(  # noqa: PLR0913 - what is optional is by keyword
+    def __init__(
         self, code: str, message: str, text: str, offset: int, *, length: int = 1, hint: str = ""
     ) -> None:
         super().__init__(code, message, hint)

@@ -49,7 +49,7 @@ class ReactionRule:
                 raise BigraphError("rule", f"the redex has no site {site}")
 
 
-def rule(  # noqa: PLR0913 - what is optional is by keyword
+def rule(
     redex: Bigraph,
     reactum: Bigraph,
     instantiation: tuple[int, ...] | None = None,

@@ -4,13 +4,14 @@ It knows the calculus by `semantics.successors` alone: nothing of files, vehicle
 """
 
 from checker.check import check
-from checker.exploration import Exploration, Limits, Progress, explore
+from checker.exploration import Engine, Exploration, Limits, Progress, explore
 from checker.ownership import owned
 from checker.report import report_json, report_text
 from checker.traces import ReplayError, Step, Trace, print_trace, replay, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
 
 __all__ = [
+    "Engine",
     "Exploration",
     "Limits",
     "Outcome",

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
-from checker.exploration import INTERRUPTION, Exploration, Inspect, Limits, Progress, explore
+from checker.exploration import INTERRUPTION, Engine, Exploration, Inspect, Limits, Progress, explore
 from checker.findings import Collected, Finding
 from checker.inspections import Computation, DeadlockFreedom, Invariant, LocalConsistency, Reachability
 from checker.ownership import owned
@@ -23,13 +23,14 @@ def check(
     limits: Limits | None = None,
     report: Reporter | None = None,
     notes: tuple[str, ...] = (),
+    engine: Engine = Engine.LEARNED,
 ) -> Report:
     """Explore everything that is reachable and decide the properties.
 
     Race-freedom is first looked for in the text (by ownership); where that doesn't settle it, the mission is explored
     once more with what observations rest on remembered. Configurations are counted without that memory.
     """
-    return _Check(initial, tuple(properties), limits or Limits(), report).run(notes)
+    return _Check(initial, tuple(properties), limits or Limits(), report, engine).run(notes)
 
 
 class _Check:
@@ -39,11 +40,13 @@ class _Check:
         properties: tuple[Property, ...],
         limits: Limits,
         report: Reporter | None,
+        engine: Engine,
     ) -> None:
         self.initial = initial
         self.properties = properties
         self.limits = limits
         self.report = report
+        self.engine = engine
         self.deadlock = DeadlockFreedom()
         self.consistency = LocalConsistency()
         self.computation = Computation()
@@ -62,7 +65,7 @@ class _Check:
     def run(self, notes: tuple[str, ...]) -> Report:
         races = (self.races,) if self.searching else ()
         inspections: tuple[Inspect, ...] = (self.deadlock, self.consistency, self.computation, *races)
-        self.found = explore(self.initial, (*inspections, *self.formulas.values()), self.limits, self.report)
+        self.found = self.explore(self.initial, (*inspections, *self.formulas.values()), self.limits)
         if self.searching:
             self.remembered = self.search()
         later = self.remembered.bounds if self.remembered else []
@@ -77,12 +80,15 @@ class _Check:
             seconds=self.found.seconds + (self.remembered.seconds if self.remembered else 0.0),
         )
 
+    def explore(self, start: Configuration, inspections: tuple[Inspect, ...], limits: Limits) -> Exploration:
+        return explore(start, inspections, limits, self.report, engine=self.engine)
+
     def search(self) -> Exploration | None:
         """Explore once more, with memory and in the time that is left; None where the user has asked for the end."""
         if INTERRUPTION in self.found.bounds:
             return None
         limits = replace(self.limits, spent=self.limits.spent + self.found.seconds)
-        remembered = explore(monitored(self.initial), (self.stale,), limits, self.report)
+        remembered = self.explore(monitored(self.initial), (self.stale,), limits)
         remembered.bounds = [f"{bound}, in the search for stale observations" for bound in remembered.bounds]
         return remembered
 

@@ -7,7 +7,9 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from enum import Enum
 
+from checker.learned import Learner
 from semantics.configuration import Configuration, Label, Transition
 from semantics.successors import Expansion, expand
 
@@ -46,6 +48,13 @@ class Progress:
     rate: float
 
 
+class Engine(Enum):
+    """How configurations are expanded; the results are the same."""
+
+    REFERENCE = "reference"
+    LEARNED = "learned"
+
+
 Inspect = Callable[[int, Configuration, Expansion], None]
 """What looks at each configuration as it is expanded, given its number."""
 
@@ -63,6 +72,7 @@ class Exploration:
         rules: How many transitions each rule has.
         bounds: The limits that were met; empty where the exploration is complete.
         seconds: How long it took.
+        rule_runs: How often an actor's rules were run in Python, where they were learned.
     """
 
     configurations: list[Configuration]
@@ -73,6 +83,7 @@ class Exploration:
     rules: Counter[str] = field(default_factory=Counter)
     bounds: list[str] = field(default_factory=list)
     seconds: float = 0.0
+    rule_runs: int | None = None
 
     @property
     def complete(self) -> bool:
@@ -93,6 +104,7 @@ def explore(
     limits: Limits | None = None,
     report: Callable[[Progress], None] | None = None,
     every: float = 0.5,
+    engine: Engine = Engine.LEARNED,
 ) -> Exploration:
     """Visit everything that is reachable, breadth-first.
 
@@ -102,8 +114,13 @@ def explore(
         limits: Where to stop.
         report: Called about once in `every` seconds.
         every: Seconds.
+        engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
     """
-    return _Explorer(initial, tuple(inspect), limits or Limits(), report, every).run()
+    explorer = _Explorer(initial, tuple(inspect), limits or Limits(), report, every)
+    if engine is Engine.LEARNED:
+        explorer.learner = Learner()
+        explorer.allowed = explorer.learner.expand
+    return explorer.run()
 
 
 class _Explorer:
@@ -121,6 +138,8 @@ class _Explorer:
         self.limits = limits
         self.report = report
         self.every = every
+        self.allowed: Callable[[Configuration], Expansion] = expand
+        self.learner: Learner | None = None
 
     def run(self) -> Exploration:
         started = time.monotonic()
@@ -129,6 +148,7 @@ class _Explorer:
         except KeyboardInterrupt:
             self.bound(INTERRUPTION)
         self.found.seconds = time.monotonic() - started
+        self.found.rule_runs = self.learner.runs if self.learner else None
         return self.found
 
     def visit_all(self, started: float) -> None:
@@ -145,7 +165,7 @@ class _Explorer:
             self.expand(number, configuration)
 
     def expand(self, number: int, configuration: Configuration) -> None:
-        expansion = expand(configuration)
+        expansion = self.allowed(configuration)
         for look in self.inspect:
             look(number, configuration, expansion)
         if crowded(configuration, self.limits.pending):

@@ -37,7 +37,7 @@ BULGES: Final = (0.12, -0.12, 0.05, -0.05, 0.19, -0.19)
 """How far the lines of channels leave the straight way, a share of its length."""
 
 
-def draw_map(  # noqa: PLR0913 - the optional ones are how it looks
+def draw_map(
     entities: Iterable[MapEntity],
     axes: Axes,
     *,

@@ -81,7 +81,7 @@ def _draw_line_icon(axes: Axes, line: Line, at: Spot) -> None:
         draw_mark(axes, at, 4.6)
 
 
-def draw_icon(  # noqa: PLR0913 - the optional ones are how it looks
+def draw_icon(
     axes: Axes, at: Spot, shape: Outline, colour: str, *, radius: float = RADIUS, hollow: bool = False
 ) -> None:
     """Draw a marker; a hollow one for what is on its way."""

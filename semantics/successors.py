@@ -1,10 +1,11 @@
 """All transitions of a configuration: the rules agent by agent, the scheduler's turn, the environment's clauses."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 
 from semantics.configuration import Configuration, Transition
+from semantics.environment import Clause
 from semantics.expressions import Fault
 from semantics.extension import EXTENSION, migrate, say, snd
 from semantics.monitor import marked
@@ -70,21 +71,30 @@ class Expansion:
 
 def expand(c: Configuration) -> Expansion:
     """Return everything that a configuration allows: rule by rule, agent by agent, clause by clause."""
-    found: list[Transition] = []
-    faults: list[Fault] = []
-    for a in c.alpha.names():
-        for step in steps(c, a):
-            if isinstance(step, Fault):
-                faults.append(step)
-            else:
-                found.append(step)
+    by_agents = [step for a in c.alpha.names() for step in steps(c, a)]
+    return expansion_of(c, by_agents, [t for clause in c.setting.environment for t in by_clause(c, clause)])
+
+
+def by_clause(c: Configuration, clause: Clause) -> Iterator[Transition]:
+    """Yield what one clause of the environment allows."""
+    for rule in (env, say):
+        yield from rule(c, clause)
+
+
+def expansion_of(
+    c: Configuration, by_agents: Iterable[Transition | Fault], by_environment: Iterable[Transition]
+) -> Expansion:
+    """Return what the rules gave, marked for the monitor, in one order, once each, in the scheduler's turn."""
+    steps_found = list(by_agents)
+    faults = tuple(step for step in steps_found if isinstance(step, Fault))
+    found = [step for step in steps_found if not isinstance(step, Fault)]
     # As in the paper's run, what is asked is served first.
     found.sort(key=lambda transition: transition.served is None)
     allowed = tuple(dict.fromkeys(marked(c, transition) for transition in found))
     waiting: tuple[Transition, ...] = ()
     if c.setting.scheduler is Scheduler.FCFS:
         allowed, waiting = _in_turn(allowed)
-    return Expansion(allowed, _by_environment(c), waiting, tuple(faults))
+    return Expansion(allowed, tuple(dict.fromkeys(by_environment)), waiting, faults)
 
 
 def _in_turn(found: tuple[Transition, ...]) -> tuple[tuple[Transition, ...], tuple[Transition, ...]]:
@@ -98,11 +108,6 @@ def _in_turn(found: tuple[Transition, ...]) -> tuple[tuple[Transition, ...], tup
 def _turn(transition: Transition) -> int | None:
     served = transition.served
     return None if served is None or transition.label.rule in TURNLESS else served.position
-
-
-def _by_environment(c: Configuration) -> tuple[Transition, ...]:
-    clauses = c.setting.environment
-    return tuple(dict.fromkeys(t for clause in clauses for rule in (env, say) for t in rule(c, clause)))
 
 
 def successors(c: Configuration) -> tuple[Transition, ...]:

@@ -101,7 +101,7 @@ def _check_named(
         )
 
 
-def _error(  # noqa: PLR0913 - an error is all of this
+def _error(
     code: str, message: str, text: str, offset: int, word: str = "", *, hint: str = ""
 ) -> NotationError:
     return NotationError(code, message, text, offset, length=len(word), hint=hint)
