@@ -190,9 +190,9 @@ def test_an_interrupted_check_ends_at_once_and_decides_nothing(monkeypatch):
     explored = []
     mission = load(SLOW + TWO_MOVERS.replace("BigActor a", "BigActor c").replace("BigActor b", "BigActor d"))
 
-    def once(initial, inspect, limits, report):
+    def once(initial, inspect, limits, report, **more):
         explored.append(initial)
-        return explore(initial, inspect, limits, report, every=0.0)
+        return explore(initial, inspect, limits, report, every=0.0, **more)
 
     monkeypatch.setattr(sys.modules["checker.check"], "explore", once)
     report = check(mission.initial, mission.properties, report=interrupting(5))
