@@ -24,7 +24,7 @@ lint: $(STAMP)
 types: $(STAMP)
 	$(BIN)/mypy
 
-fuzz: $(STAMP)  ## 100,000 mutated missions (some 20 minutes on two cores)
+fuzz: $(STAMP)  ## 100,000 mutated missions (some 15 minutes on two cores)
 	BIGACTORS_FUZZ=100000 $(BIN)/python -m pytest -n 2 -q -m fuzz
 
 docs: $(STAMP)  ## write the generated pages of docs/
