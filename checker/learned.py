@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from semantics.cells import Cell, Changes, Question, State
+from semantics.cells import Cell, Changes, Question, State, Written
 from semantics.configuration import Configuration, Label, Transition
 from semantics.eta import Pending
 from semantics.expressions import Fault
@@ -55,7 +55,7 @@ class Recorder:
         answer: bool = self._note(Ask(cell, question, constants))
         return answer
 
-    def with_(self, changes: Mapping[Cell, Any]) -> "Written":
+    def with_(self, changes: Mapping[Cell, Any]) -> Written:
         """Return the cells with a rule's conclusion over them."""
         return Written(self, dict(changes))
 
@@ -63,28 +63,6 @@ class Recorder:
         if ask not in self.answers:
             self.answers[ask] = ask.of(self.cells)
         return self.answers[ask]
-
-
-class Written:
-    """A rule's conclusion over recorded cells."""
-
-    def __init__(self, recorder: Recorder, changes: Changes) -> None:
-        self.recorder = recorder
-        self.changes = changes
-
-    def read(self, cell: Cell) -> Any:
-        """Return what was written, else what was there."""
-        return self.changes[cell] if cell in self.changes else self.recorder.read(cell)
-
-    def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
-        """Ask what was written, else what was there."""
-        if cell in self.changes:
-            return question(self.changes[cell], *constants)
-        return self.recorder.test(cell, question, *constants)
-
-    def with_(self, changes: Mapping[Cell, Any]) -> "Written":
-        """Return the cells with more written over them."""
-        return Written(self.recorder, {**self.changes, **changes})
 
 
 @dataclass(frozen=True, slots=True)

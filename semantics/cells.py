@@ -43,6 +43,30 @@ class State(Cells, Protocol):
         """Return the cells with these values."""
 
 
+class Written:
+    """Cells with some changes before them: what a conclusion, or a P' that is being built, is read from."""
+
+    __slots__ = ("cells", "changes")
+
+    def __init__(self, cells: Cells, changes: Changes) -> None:
+        self.cells = cells
+        self.changes = changes
+
+    def read(self, cell: Cell) -> Any:
+        """Return what was written, else what was there."""
+        return self.changes[cell] if cell in self.changes else self.cells.read(cell)
+
+    def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
+        """Ask what was written, else what was there."""
+        if cell in self.changes:
+            return question(self.changes[cell], *constants)
+        return self.cells.test(cell, question, *constants)
+
+    def with_(self, changes: Mapping[Cell, Any]) -> "Written":
+        """Return the cells with more written over them."""
+        return Written(self.cells, {**self.changes, **changes})
+
+
 class Layout:
     """A sorted tuple of cells with its index; one object for each tuple, so that rows compare by position."""
 

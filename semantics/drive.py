@@ -1,10 +1,10 @@
 """`drive(P, m(R'))`: make a reactum physically true, or say that it can't be done."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from physical import Geometry, band_contains, centroid, nearest_placement, translate_to
-from semantics.cells import Cell, Cells, Changes, Question
+from semantics.cells import Cells, Changes, Written
 from semantics.logical_model import LogicalModel
 from semantics.physical_model import Carried, PhysicalModel, Placed, Placement, encloses, measure
 from semantics.reactions import Match, Reaction, moved, relinked
@@ -13,26 +13,6 @@ from semantics.structure import Structure
 
 if TYPE_CHECKING:
     from semantics.setting import Setting
-
-
-class Written:
-    """A configuration's cells with some changes before it: the P' that `drive` is building."""
-
-    __slots__ = ("cells", "changes")
-
-    def __init__(self, cells: Cells, changes: Changes) -> None:
-        self.cells = cells
-        self.changes = changes
-
-    def read(self, cell: Cell) -> Any:
-        """Return what was written, else what was there."""
-        return self.changes[cell] if cell in self.changes else self.cells.read(cell)
-
-    def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
-        """Ask what was written, else what was there."""
-        if cell in self.changes:
-            return question(self.changes[cell], *constants)
-        return self.cells.test(cell, question, *constants)
 
 
 @dataclass(frozen=True, slots=True)
