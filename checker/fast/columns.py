@@ -178,8 +178,14 @@ class Packing:
 
     def holds(self, sizes: Sequence[int]) -> bool:
         """Tell whether every column has bits for as many values."""
-        given = np.array(sizes, np.uint64) - np.uint64(1)
-        return len(given) <= len(self.mask) and bool(np.all(given <= self.mask[: len(given)]))
+        return bool(np.all(np.array(sizes, np.uint64) - np.uint64(1) <= self.mask))
+
+    def extended(self, sizes: Sequence[int]) -> "Packing":
+        """Return the packing with the columns that are new: as long as they have one value, they take no bits."""
+        missing = len(sizes) - len(self.mask)
+        if not missing:
+            return self
+        return Packing(self.words, np.concatenate([self.columns, np.zeros(3 * missing, np.uint64)]))
 
 
 def packing(sizes: Sequence[int], words: int = 1) -> Packing:

@@ -4,9 +4,11 @@ It visits the same configurations in the same order and stops at the same bounds
 """
 
 from collections import Counter
+from collections.abc import Iterator
 from itertools import accumulate
 
 import numpy as np
+from numpy.typing import NDArray
 
 from checker.fast import kernel
 from checker.fast.arrays import Growing
@@ -121,19 +123,49 @@ class Space:
                 return
             if ended == kernel.FULL:
                 self._make_room()
-            elif self.state[NODE] == kernel.WIDE:
-                self._make_batch(2 * len(self.batch.hashes))
             else:
-                self._learn()
+                self._miss()
 
-    def _learn(self) -> None:
+    def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
+        """Return the leaf that each row leads to in a tree, learning what is not known on the way."""
+        found = np.zeros(len(rows), np.int32)
+        done = 0
+        while done < len(rows):
+            done += kernel.classify(self.model, self.words.room, rows[done:], tree, found[done:], self.state)
+            if done < len(rows):
+                self._learn(int(rows[done]))
+        return found
+
+    def edges(self, rows: range) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int64]]]:
+        """Yield the transitions of rows that were expanded, some at a time: origins, steps, and targets (< 0: none)."""
+        expanded, self.state[AT] = self.expanded, rows.start
+        try:
+            while self.state[AT] < rows.stop:
+                known = kernel.gather(self.model, self.words.room, self.batch, self.state, rows.stop)
+                count = int(self.state[GATHERED])
+                targets = np.zeros(count, np.int64)
+                kernel.look_up(self.words.room, self.table.room, self.batch, targets, self.state)
+                self.state[GATHERED] = 0
+                yield self.batch.origins[:count].copy(), self.batch.steps[:count].copy(), targets
+                if not known:
+                    self._miss()
+        finally:
+            self.state[AT] = expanded
+
+    def _miss(self) -> None:
+        if self.state[NODE] == kernel.WIDE:
+            self._make_batch(2 * len(self.batch.hashes))
+        else:
+            self._learn(int(self.state[AT]))
+
+    def _learn(self, row: int) -> None:
         learner, node, code = self.learner, int(self.state[NODE]), int(self.state[CODE])
         known = False
         if node >= 0:
             column = learner.columns.all[learner.trees.column_of(node)]
             known = learner.trees.settle(node, code, column)
         if not known:
-            learner.learn(int(self.state[TREE]), CodedSource(learner.columns, self.codes(self.expanded)))
+            learner.learn(int(self.state[TREE]), CodedSource(learner.columns, self.codes(row)))
         self._see()
 
     def _see(self) -> None:
@@ -187,6 +219,7 @@ class Space:
     def _pack(self) -> None:
         """Pack the rows anew where a column has outgrown its bits; the batch is empty of rows that matter."""
         sizes = [len(column.values) for column in self.learner.columns.all]
+        self.packing = self.packing.extended(sizes)
         if self.packing.holds(sizes):
             return
         old, self.packing = self.packing, packing(sizes, self.packing.words)

@@ -364,6 +364,33 @@ def advance(
 
 
 @njit(cache=True)
+def classify(m: Model, words: Words, rows: State, tree: int, found: Ints, state: State) -> int:
+    """Note the leaf that each of some rows leads to in a tree; return how many were led, all where it knows all."""
+    root, nodes, leads, columns = m.root, m.nodes, m.next, m.columns
+    width = state[WORDS]
+    done = np.int64(0)
+    for k in range(len(rows)):
+        reference = walk(words, rows[k] * width, root[tree], nodes, leads, columns, state)
+        if reference == 0:
+            state[TREE] = tree
+            break
+        found[k] = -reference - 1
+        done += 1
+    return done
+
+
+@njit(cache=True)
+def look_up(words: Words, table: Any, batch: Batch, targets: Any, state: State) -> None:
+    """Note the row that each successor of the batch is."""
+    target, hashes = batch.words, batch.hashes
+    width = state[WORDS]
+    state[TOUCHED] = touch(words, table, hashes, state[GATHERED], width)
+    bits = np.uint32(bits_for(len(table)))
+    for k in range(state[GATHERED]):
+        targets[k] = find(words, table, target, k, hashes[k], width, bits)
+
+
+@njit(cache=True)
 def rebuild(words: Words, size: int, width: int, table: Any) -> None:
     """Fill an empty table with the rows, all of them different; their places are touched some ahead."""
     slots = len(table)

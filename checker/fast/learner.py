@@ -13,6 +13,7 @@ from checker.fast.columns import Columns
 from checker.fast.leaves import ALIKE, CROWDED, NO_TURN, STEP, UNLIKE, Effect, Leaves, Step
 from checker.fast.recording import Ask, Asked, Recorder, Source
 from checker.fast.trees import Trees
+from checker.fast.values import settled
 from checker.fast.writing import Concluded, Relearn, Writing
 from semantics.agents import mailbox_cell
 from semantics.cells import Cell, Row
@@ -38,8 +39,8 @@ class Actor(NamedTuple):
     about: Name | Clause
 
 
-Judge = Callable[[Configuration, Actor, Found], tuple[int, Hashable]]
-"""What else is to be known of an actor's steps, asked of the same cells: flags, and a judgement."""
+Question = Callable[[Configuration], Hashable]
+"""A pure function of a configuration: its tree tells rows apart by the answer."""
 
 PREDICTED = ("code", "store", "line")
 """What varies in every mission; that other cells do is found out when something is written there."""
@@ -102,30 +103,30 @@ class Learner:
         setting: The mission.
         still: The initial configuration's cells: what never varies has its value there.
         pending: How many requests or messages an agent may have before it is not followed further.
-        judge: What else is to be known of an agent's steps, asked of the same cells.
         runs: How many times an actor's rules were run in Python.
         owners: What each tree is about.
         taken: For each tree the cells that were taken to be never written.
-        judgements: What `judge` said, leaf by leaf.
+        answers: What a question is answered with, leaf by leaf.
+        reads: For each leaf of an actor the columns that it was found by.
         steps: The label of each transition, as it was when it was learned.
     """
 
     setting: Setting
     still: Row
     pending: int
-    judge: Judge | None = None
     columns: Columns = field(init=False)
     writing: Writing = field(init=False)
     trees: Trees = field(default_factory=Trees)
     leaves: Leaves = field(default_factory=Leaves)
-    owners: list[Actor | PartOf] = field(default_factory=list)
+    owners: list[Actor | PartOf | Question] = field(default_factory=list)
     taken: list[set[Cell]] = field(default_factory=list)
     planted: dict[Actor, int] = field(default_factory=dict)
     varying: set[Cell] = field(default_factory=set)
     rules: dict[str, int] = field(default_factory=dict)
     labels: dict[Hashable, Known] = field(default_factory=dict)
     steps: dict[int, Label] = field(default_factory=dict)
-    judgements: dict[int, Hashable] = field(default_factory=dict)
+    answers: dict[int, Hashable] = field(default_factory=dict)
+    reads: dict[int, frozenset[int]] = field(default_factory=dict)
     runs: int = 0
 
     def __post_init__(self) -> None:
@@ -143,7 +144,11 @@ class Learner:
             self.planted[actor] = self._plant(actor)
         return self.planted[actor]
 
-    def _plant(self, owner: Actor | PartOf) -> int:
+    def question(self, question: Question) -> int:
+        """Return the number of a new tree for a question."""
+        return self._plant(question)
+
+    def _plant(self, owner: Actor | PartOf | Question) -> int:
         self.owners.append(owner)
         self.taken.append(set())
         return self.trees.plant()
@@ -156,9 +161,12 @@ class Learner:
             if isinstance(owner, PartOf):
                 owner.recorder.source = source  # it agrees on all that the rules themselves asked
                 self._learn_part(tree, owner, source)
-            else:
-                recorder = Recorder(source, self.still, self.varying.__contains__, self.columns.mobile)
+                return
+            recorder = Recorder(source, self.still, self.varying.__contains__, self.columns.mobile)
+            if isinstance(owner, Actor):
                 self._learn_root(tree, owner, recorder, source)
+            else:
+                self._learn_answer(tree, owner, recorder, source)
         except Relearn as news:
             for known, taken in enumerate(self.taken):
                 if news.cell is None or news.cell in taken:
@@ -168,19 +176,29 @@ class Learner:
         c = Configuration(self.setting, recorder)
         found = [step if isinstance(step, Fault) else marked(c, step) for step in actor.rules(c, actor.about)]
         concluded = [self.writing.conclude(step) for step in found if isinstance(step, Transition)]
-        flags, judgement = self.judge(c, actor, found) if self.judge else (0, None)
-        if actor.rules is served and is_crowded(c, str(actor.about), self.pending):
-            flags |= CROWDED
+        is_full = actor.rules is served and is_crowded(c, str(actor.about), self.pending)
         parts = [[self._plant(PartOf(recorder, each, name)) for name in each.apart] for each in concluded]
         for each, trees in zip(concluded, parts, strict=True):
             each.effect.parts = trees
-        leaf = self.leaves.add(self._steps(actor, concluded), flags)
-        self.judgements[leaf] = judgement
+        leaf = self.leaves.add(self._steps(actor, concluded), CROWDED if is_full else 0)
+        self.reads[leaf] = self._columns(recorder.scopes[0])
         self._grow(tree, recorder.scopes[0], recorder.taken, leaf, source)
         for part in (part for trees in parts for part in trees):
             owner = self.owners[part]
             assert isinstance(owner, PartOf)
             self._learn_part(part, owner, source)
+
+    def _learn_answer(self, tree: int, question: Question, recorder: Recorder, source: CodedSource) -> None:
+        answer = settled(question(Configuration(self.setting, recorder)))
+        leaf = self.leaves.add(())
+        self.answers[leaf] = answer
+        self._grow(tree, recorder.scopes[0], recorder.taken, leaf, source)
+
+    def _columns(self, asked: Asked) -> frozenset[int]:
+        return frozenset(self._column(ask) for ask in asked)
+
+    def _column(self, ask: Ask) -> int:
+        return self.columns.number((ask.cell,) if ask.hole is None else (ask.cell, *ask.hole))
 
     def _learn_part(self, tree: int, part: PartOf, source: CodedSource) -> None:
         writes, asked = part.recorder.apart(lambda: self.writing.part(part.concluded, part.name))
@@ -191,7 +209,7 @@ class Learner:
         path: list[tuple[Ask, Any]] = []
         columns = []
         for ask, answer in asked.items():
-            number = self.columns.number((ask.cell,) if ask.hole is None else (ask.cell, *ask.hole))
+            number = self._column(ask)
             columns.append((self.columns.all[number], number))
             path.append((ask, source.code(number) if ask.question is None else answer))
         self.trees.grow(tree, path, leaf, columns)
