@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from checker.exploration import INTERRUPTION, Engine, Exploration, Inspect, Limits, Progress, explore
-from checker.findings import Collected, Finding
+from checker.findings import MOST_VIOLATIONS, Collected, Finding
 from checker.inspections import Computation, DeadlockFreedom, Invariant, LocalConsistency, Reachability
 from checker.ownership import owned
 from checker.races import ControlRaces, StaleObservationRaces
@@ -17,20 +17,23 @@ from semantics.propositions import Property
 Reporter = Callable[[Progress], None]
 
 
-def check(
+def check(  # noqa: PLR0913 - each says one thing of a check
     initial: Configuration,
     properties: Iterable[Property],
     limits: Limits | None = None,
     report: Reporter | None = None,
     notes: tuple[str, ...] = (),
     engine: Engine = Engine.LEARNED,
+    *,
+    violations: int = MOST_VIOLATIONS,
 ) -> Report:
     """Explore everything that is reachable and decide the properties.
 
     Race-freedom is first looked for in the text (by ownership); where that doesn't settle it, the mission is explored
-    once more with what observations rest on remembered. Configurations are counted without that memory.
+    once more with what observations rest on remembered. Configurations are counted without that memory. Of each
+    property so many different `violations` are shown at the most, each with a shortest trace.
     """
-    return _Check(initial, tuple(properties), limits or Limits(), report, engine).run(notes)
+    return _Check(initial, tuple(properties), limits or Limits(), report, engine, violations).run(notes)
 
 
 class _Check:
@@ -41,17 +44,19 @@ class _Check:
         limits: Limits,
         report: Reporter | None,
         engine: Engine,
+        most: int,
     ) -> None:
         self.initial = initial
         self.properties = properties
         self.limits = limits
         self.report = report
         self.engine = engine
-        self.deadlock = DeadlockFreedom()
-        self.consistency = LocalConsistency()
-        self.computation = Computation()
-        self.races = ControlRaces()
-        self.stale = StaleObservationRaces()
+        self.most = most
+        self.deadlock = DeadlockFreedom(most)
+        self.consistency = LocalConsistency(most)
+        self.computation = Computation(most)
+        self.races = ControlRaces(most)
+        self.stale = StaleObservationRaces(most)
         self.formulas = {
             each: Invariant(each.formula) if each.kind == "invariant" else Reachability(each.formula)
             for each in self.properties
@@ -116,10 +121,19 @@ class _Check:
         violations = self.violations(collected, self.found)
         outcome = self.outcome(bool(violations), self.found)
         witness = None if violations else self.witness(collected, self.found)
-        return Verdict(asked, outcome, violations, collected.count, collected.examined, witness, note)
+        return Verdict(
+            asked,
+            outcome,
+            violations,
+            collected.count,
+            collected.examined,
+            witness,
+            note,
+            len(collected.different),
+        )
 
     def decide_deadlock(self, asked: Property) -> Verdict:
-        late = self.deadlock.arrival.first.get("not arrived")
+        late = next(iter(self.deadlock.arrival.first.values()), None)
         note = f"{late.message}; declare that it arrives, or check arrival" if late else ""
         return self.verdict(asked, self.deadlock.collected, note)
 
@@ -139,20 +153,21 @@ class _Check:
         violations = self.violations(self.races.collected, self.found)
         if self.remembered is None:
             outcome = Outcome.VIOLATED if violations else Outcome.INCOMPLETE
-            return Verdict(
-                asked, outcome, violations, self.races.collected.count, note="not searched to the end"
-            )
+            count, different = self.races.collected.count, len(self.races.collected.different)
+            note = "not searched to the end"
+            return Verdict(asked, outcome, violations, count, note=note, different=different)
         control, stale = self.races.collected, self.stale.collected
         violations += self.violations(stale, self.remembered)
         outcome = self.outcome(bool(violations), self.found, self.remembered)
         witness = None if violations else self.witness(stale, self.remembered)
-        shortest = tuple(sorted(violations, key=lambda violation: len(violation.trace)))
+        shown = _shown(violations, self.most)
+        different = len(control.different) + len(stale.different)
         count, examined = control.count + stale.count, control.examined + stale.examined
         searched = f"{len(self.remembered.configurations):,}"
         note = f"searched over {searched} configurations with the monitor's memory"
         if outcome is Outcome.HOLDS and not examined:
             note += "; vacuous: no control was ever served"
-        return Verdict(asked, outcome, shortest, count, examined, witness, note)
+        return Verdict(asked, outcome, shown, count, examined, witness, note, different)
 
     def outcome(self, violated: bool, *explorations: Exploration) -> Outcome:
         if violated:
@@ -161,8 +176,8 @@ class _Check:
 
     def violations(self, collected: Collected, found: Exploration) -> tuple[Violation, ...]:
         return tuple(
-            Violation(each.kind, each.message, _trace(found, each), each.details)
-            for each in collected.first.values()
+            Violation(each.kind, each.message, _trace(found, each), each.details, each.subject)
+            for each in collected.chosen()
         )
 
     def witness(self, collected: Collected, found: Exploration) -> Trace | None:
@@ -170,6 +185,14 @@ class _Check:
             return None
         trace = trace_to(found, collected.example)
         return trace.extended(collected.example_by) if collected.example_by else trace
+
+
+def _shown(violations: tuple[Violation, ...], most: int) -> tuple[Violation, ...]:
+    """Return the shortest violations of two explorations: one of each kind before a second of any."""
+    shortest = sorted(violations, key=lambda violation: len(violation.trace))
+    firsts = list({each.kind: each for each in reversed(shortest)}.values())
+    kept = sorted(firsts, key=shortest.index) + [each for each in shortest if each not in firsts]
+    return tuple(each for each in shortest if each in kept[:most])
 
 
 def _trace(found: Exploration, finding: Finding) -> Trace:

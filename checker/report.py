@@ -58,13 +58,25 @@ def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
 def _sizes(verdict: Verdict) -> Iterator[str]:
     if verdict.outcome is Outcome.VIOLATED:
         if verdict.violations:
-            yield "found once" if verdict.count == 1 else f"found {verdict.count:,} times"
+            yield _found(verdict)
     elif verdict.witness is not None:
         yield f"examined {verdict.examined:,}{_unit(verdict)}, a witness of {_steps(len(verdict.witness))}"
     elif verdict.outcome is Outcome.INCOMPLETE:
         yield "not found so far" if verdict.property.kind == "reachable" else "nothing against it so far"
     elif verdict.property.kind in NOTHING_EXAMINED:
         yield NOTHING_EXAMINED[verdict.property.kind]
+
+
+def _found(verdict: Verdict) -> str:
+    shown = len(verdict.violations)
+    if verdict.count == 1:
+        return "found once"
+    times = f"found {verdict.count:,} times"
+    if verdict.different <= 1:
+        return times
+    if verdict.different == shown:
+        return f"{times}, {shown} different"
+    return f"{times}, {verdict.different:,} different, of which {shown} are shown"
 
 
 def _unit(verdict: Verdict) -> str:
@@ -116,9 +128,16 @@ def _property_json(name: str, digest: str, verdict: Verdict) -> dict[str, Any]:
         "verdict": verdict.outcome.value,
         "trace": trace(verdict.violations[0].trace if verdict.violations else None),
         "violations": [
-            {"kind": v.kind, "message": v.message, "details": list(v.details), "trace": trace(v.trace)}
+            {
+                "kind": v.kind,
+                "subject": v.subject,
+                "message": v.message,
+                "details": list(v.details),
+                "trace": trace(v.trace),
+            }
             for v in verdict.violations
         ],
+        "different": verdict.different,
         "count": verdict.count,
         "examined": verdict.examined,
         "witness": trace(verdict.witness),

@@ -114,7 +114,7 @@ class Result:
             violation.message,
             violation_line(violation) or self.line_of(verdict),
             asked=self.line_of(verdict),
-            identity=(asked.kind, asked.name, violation.kind),
+            identity=(asked.kind, asked.name, violation.kind, *filter(None, [violation.subject])),
             details=violation.details,
             trace=violation.trace,
         )

@@ -42,6 +42,14 @@ def fill(parser: Parser) -> None:
         type=named,
         help="write the trace of each violation and witness into DIR: as text, as JSON and as pictures",
     )
+    parser.add_argument(
+        "--violations",
+        metavar="N",
+        type=at_least_one,
+        default=5,
+        help="show no more than N different violations of each property, each with a shortest trace; the others are "
+        "counted (default 5)",
+    )
     parser.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
     parser.add_argument(
         "--engine",

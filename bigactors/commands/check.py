@@ -38,7 +38,8 @@ def run(options: Namespace) -> Exit:
     alone = any(output.to_standard_output for output in outputs)
     results: list[Checked | Failed] = []
     folders: set[str] = set()
-    for result in check_missions(options.files, limits, variation_of(options), Engine(options.engine)):
+    engine, most = Engine(options.engine), options.violations
+    for result in check_missions(options.files, limits, variation_of(options), engine, most):
         results.append(result)
         if not alone:
             for line in report_lines(result, traces=not options.no_traces):

@@ -126,6 +126,46 @@ def test_without_traces_only_their_lengths_are_shown():
     assert not any("--⟨" in line for line in found)
 
 
+THREE_STALE = """
+BigActor a hosted_at gcs0 with_behavior { control(MOVE uav1 TO gate0) }
+BigActor b hosted_at gcs1 with_behavior { control(MOVE uav0 TO gate0) control(MOVE uav0 TO south0) }
+BigActor c hosted_at vessel0 with_behavior { control(MOVE_HOST_TO gate0) }
+environment { vessel0 drifts among point (36.985, -8.71), point (37.02, -8.69) }
+check { local_consistency }
+"""
+
+
+def test_each_request_that_cannot_be_served_is_a_violation_of_its_own():
+    found = [line for line in lines(THREE_STALE) if line.startswith(("  ✗", "      "))]
+    assert [line for line in found if not line.startswith("        ")] == [
+        "  ✗ local_consistency  violated; found 69 times, 3 different",
+        "      unmatched: CTR(a, MOVE uav1 TO gate0) is unmatched: its redex matches nothing in L",
+        "      a shortest trace, 1 step",
+        "      unmatched: CTR(b, MOVE uav0 TO gate0) is unmatched: its redex matches nothing in L",
+        "      a shortest trace, 1 step",
+        (
+            "      inconsistent: CTR(c, MOVE_HOST_TO gate0) is inconsistent: L believes what P no longer shows: "
+            "nobody looked since"
+        ),
+        "      a shortest trace, 2 steps",
+    ]
+
+
+def test_only_so_many_violations_are_shown_and_the_others_counted():
+    mission = load(THREE_STALE)
+    for most, said in ((1, "3 different, of which 1 are shown"), (2, "3 different, of which 2 are shown")):
+        report = check(mission.initial, mission.properties, violations=most)
+        assert len(report.verdicts[0].violations) == most
+        assert said in next(line for line in report_text("m", report) if "✗" in line)
+
+
+def test_each_kind_is_shown_before_a_second_of_any():
+    mission = load(THREE_STALE)
+    shown = check(mission.initial, mission.properties, violations=2).verdicts[0]
+    assert [each.kind for each in shown.violations] == ["unmatched", "inconsistent"]
+    assert shown.different == 3
+
+
 def test_findings_are_counted():
     text = ENTERS + 'check { invariant "out": not (uav0 in gate0) invariant "north": actually uav0 in gate0 }'
     found = lines(text)
