@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
+from checker.coverage import coverage
 from checker.exploration import INTERRUPTION, Engine, Exploration, Inspect, Limits, Progress, explore
 from checker.findings import MOST_VIOLATIONS, Collected, Finding
 from checker.inspections import Computation, DeadlockFreedom, Invariant, LocalConsistency, Reachability
@@ -10,11 +11,19 @@ from checker.ownership import owned
 from checker.races import ControlRaces, StaleObservationRaces
 from checker.traces import Trace, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Violation
+from checker.visited import Visited
 from semantics.configuration import Configuration
 from semantics.monitor import monitored
 from semantics.propositions import Property
 
 Reporter = Callable[[Progress], None]
+
+VACUOUS = {
+    "local_consistency": "no control was ever next in line",
+    "race_freedom": "no control was ever served",
+    "arrival": "no flight ever ends",
+}
+"""What it means that nothing was examined that a property is about."""
 
 
 def check(  # noqa: PLR0913 - each says one thing of a check
@@ -52,6 +61,7 @@ class _Check:
         self.report = report
         self.engine = engine
         self.most = most
+        self.visited = Visited()
         self.deadlock = DeadlockFreedom(most)
         self.consistency = LocalConsistency(most)
         self.computation = Computation(most)
@@ -69,7 +79,13 @@ class _Check:
 
     def run(self, notes: tuple[str, ...]) -> Report:
         races = (self.races,) if self.searching else ()
-        inspections: tuple[Inspect, ...] = (self.deadlock, self.consistency, self.computation, *races)
+        inspections: tuple[Inspect, ...] = (
+            self.visited,
+            self.deadlock,
+            self.consistency,
+            self.computation,
+            *races,
+        )
         self.found = self.explore(self.initial, (*inspections, *self.formulas.values()), self.limits)
         if self.searching:
             self.remembered = self.search()
@@ -83,6 +99,7 @@ class _Check:
             rules=dict(sorted(self.found.rules.items())),
             notes=notes,
             seconds=self.found.seconds + (self.remembered.seconds if self.remembered else 0.0),
+            coverage=coverage(self.initial, self.visited, complete=self.found.complete),
         )
 
     def explore(self, start: Configuration, inspections: tuple[Inspect, ...], limits: Limits) -> Exploration:
@@ -114,7 +131,7 @@ class _Check:
             case "computation":
                 return self.verdict(asked, self.computation.collected)
             case _:
-                return self.verdict(asked, self.formulas[asked].collected)
+                return self.decide_invariant(asked)
 
     def verdict(self, asked: Property, collected: Collected, note: str = "") -> Verdict:
         """Return the verdict of a property that no finding may speak against."""
@@ -130,6 +147,7 @@ class _Check:
             witness,
             note,
             len(collected.different),
+            self.vacuous(asked, outcome, collected.examined),
         )
 
     def decide_deadlock(self, asked: Property) -> Verdict:
@@ -137,11 +155,20 @@ class _Check:
         note = f"{late.message}; declare that it arrives, or check arrival" if late else ""
         return self.verdict(asked, self.deadlock.collected, note)
 
+    def decide_invariant(self, asked: Property) -> Verdict:
+        looked = self.formulas[asked]
+        verdict = self.verdict(asked, looked.collected)
+        if verdict.outcome is not Outcome.HOLDS or not isinstance(looked, Invariant):
+            return verdict
+        return replace(verdict, remarks=looked.valuations.remarks(self.initial.setting.kinds))
+
     def decide_reachable(self, asked: Property) -> Verdict:
         collected = self.formulas[asked].collected
         if collected.example is not None:
             witness = trace_to(self.found, collected.example)
-            return Verdict(asked, Outcome.HOLDS, examined=collected.examined, witness=witness)
+            remarks = () if witness.steps else ("it is true from the start",)
+            examined = collected.examined
+            return Verdict(asked, Outcome.HOLDS, examined=examined, witness=witness, remarks=remarks)
         note = f"no reachable configuration satisfies: {asked.formula}" if self.found.complete else ""
         outcome = Outcome.VIOLATED if self.found.complete else Outcome.INCOMPLETE
         return Verdict(asked, outcome, note=note)
@@ -165,9 +192,13 @@ class _Check:
         count, examined = control.count + stale.count, control.examined + stale.examined
         searched = f"{len(self.remembered.configurations):,}"
         note = f"searched over {searched} configurations with the monitor's memory"
-        if outcome is Outcome.HOLDS and not examined:
-            note += "; vacuous: no control was ever served"
-        return Verdict(asked, outcome, shown, count, examined, witness, note, different)
+        remarks = self.vacuous(asked, outcome, examined)
+        return Verdict(asked, outcome, shown, count, examined, witness, note, different, remarks)
+
+    def vacuous(self, asked: Property, outcome: Outcome, examined: int) -> tuple[str, ...]:
+        """Return what it means that nothing was examined, where that makes a verdict say nothing."""
+        empty = outcome is Outcome.HOLDS and not examined and asked.kind in VACUOUS
+        return (f"vacuous: {VACUOUS[asked.kind]}",) if empty else ()
 
     def outcome(self, violated: bool, *explorations: Exploration) -> Outcome:
         if violated:

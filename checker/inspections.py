@@ -1,6 +1,7 @@
 """Inspections of single configurations: local consistency, deadlock, invariants, reachability, computation."""
 
 from checker.findings import MOST_VIOLATIONS, Collected, Finding
+from checker.vacuity import Valuations
 from semantics.configuration import Configuration, Transition
 from semantics.control import Obstacle, obstacle
 from semantics.environment import Says
@@ -176,10 +177,11 @@ class Invariant:
     def __init__(self, formula: Proposition) -> None:
         self.formula = formula
         self.collected = Collected()
+        self.valuations = Valuations(formula)
 
     def __call__(self, number: int, c: Configuration, _: Expansion) -> None:
         """Look at every configuration."""
-        if holds(self.formula, c):
+        if self.valuations.holds(c):
             self.collected.looked(number)
         else:
             self.collected.add(Finding("invariant", f"not true here: {self.formula}", number))

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
+from checker.coverage_report import coverage_json
 from checker.traces import Trace, print_trace, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
 from semantics.setting import Control
@@ -24,12 +25,10 @@ UNITS = {
 """What is examined for each kind of property, one and several; of what is to be reachable, configurations with it."""
 
 NOTHING_EXAMINED = {
-    "local_consistency": "vacuous: no control was ever next in line",
     "deadlock_freedom": "some bigActor can always move",
-    "arrival": "vacuous: no flight ever ends",
     "computation": "no bigActor computes anything that could fail",
 }
-"""What it means that nothing was examined."""
+"""What it means that nothing was examined, where that is no shortcoming."""
 
 
 def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[str]:
@@ -49,7 +48,7 @@ def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[s
 
 def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
     line = f"  {MARKS[verdict.outcome]} {verdict.property.name:<{width}}  {verdict.outcome.value}"
-    remarks = [verdict.note, *_sizes(verdict)]
+    remarks = [verdict.note, *verdict.remarks, *_sizes(verdict)]
     yield line + "".join(f"; {remark}" for remark in remarks if remark)
     for violation in verdict.violations:
         yield from _violation(violation, traces=traces)
@@ -112,6 +111,7 @@ def report_json(name: str, digest: str, report: Report, control: Control) -> dic
         "properties": [_property_json(name, digest, verdict) for verdict in report.verdicts],
         "rules": dict(report.rules),
         "rules_never_used": silent,
+        "coverage": None if report.coverage is None else coverage_json(report.coverage),
         "notes": list(report.notes),
         "seconds": round(report.seconds, 3),
     }
@@ -142,4 +142,5 @@ def _property_json(name: str, digest: str, verdict: Verdict) -> dict[str, Any]:
         "examined": verdict.examined,
         "witness": trace(verdict.witness),
         "note": verdict.note,
+        "remarks": list(verdict.remarks),
     }

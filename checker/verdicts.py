@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
+from checker.coverage import Coverage
 from checker.traces import Trace
 from semantics.propositions import Property
 
@@ -48,6 +49,7 @@ class Verdict:
         witness: A trace to one of them, where something holds.
         note: How it was decided, or what else is to be known.
         different: How many kinds and subjects of violations there were, shown or not.
+        remarks: What makes a verdict that holds say less than it seems to.
     """
 
     property: Property
@@ -58,6 +60,7 @@ class Verdict:
     witness: Trace | None = None
     note: str = ""
     different: int = 0
+    remarks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +76,7 @@ class Report:
         rules: How many transitions each inference rule has.
         notes: What is to be known of the verdicts.
         seconds: How long it took.
+        coverage: What was reached of the mission's text.
     """
 
     verdicts: tuple[Verdict, ...]
@@ -83,6 +87,7 @@ class Report:
     rules: Mapping[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     seconds: float = 0.0
+    coverage: Coverage | None = None
 
     @property
     def complete(self) -> bool:

@@ -13,6 +13,7 @@ from bigactors.missions import variation_of
 from bigactors.outputs import outputs_of, write_outputs
 from bigactors.terminal import paint, say, tell
 from checker import Engine, Limits, report_text
+from checker.coverage_report import coverage_text
 from checker.report import MARKS
 from checker.verdicts import Outcome
 from semantics.successors import rules_of
@@ -67,6 +68,8 @@ def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
     ]
     if silent:
         yield f"  rules never used: {', '.join(silent)}"
+    if report.coverage is not None:
+        yield from coverage_text(result.name, report.coverage, result.mission.source.text)
 
 
 def summary(results: list[Checked | Failed]) -> Iterator[str]:

@@ -131,7 +131,8 @@ def elaborate_bodies(
     }
     reactions = {name: checked(name, command, names.kinds) for name, command in COMMANDS.items()}
     reactions |= {name: Maker(schema, names.kinds) for name, schema in bodies.schemas.items()}
-    return bodies, Program(tuple(program.statements), behaviours, reactions, tuple(program.lines))
+    statements, lines = tuple(program.statements), tuple(program.lines)
+    return bodies, Program(statements, behaviours, reactions, lines, program.branch_lines)
 
 
 def _parameters(definition: s.Definition, names: Names) -> dict[str, str]:

@@ -52,7 +52,10 @@ def test_what_holds_is_said_with_what_was_examined():
         ),
         "  ✓ deadlock_freedom   holds; examined 1 configuration at rest, a witness of 2 steps",
         "  ✓ arrival            holds; vacuous: no flight ever ends",
-        "  ✓ never              holds; examined 3 configurations, a witness of 0 steps",
+        (
+            "  ✓ never              holds; vacuous: nothing that it speaks of ever changes; examined 3 configurations, "
+            "a witness of 0 steps"
+        ),
         "  ✓ in                 holds; examined 1, a witness of 2 steps",
         "  ✓ computation        holds; no bigActor computes anything that could fail",
         "  rules: actuate 1, req_ctr 1",
@@ -246,6 +249,15 @@ def test_the_data_say_what_the_report_says():
             "migrate",
             "spawn",
         ],
+        "coverage": {
+            "complete": True,
+            "statements": {"reached": 2, "of": 2},
+            "branches": {"reached": 0, "of": 0},
+            "clauses": {"reached": 0, "of": 0},
+            "lines_reached": [25, 26],
+            "lines_not_reached": [],
+            "gaps": [],
+        },
         "notes": ["a note"],
     }
     assert data["seconds"] >= 0

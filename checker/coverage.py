@@ -1,0 +1,175 @@
+"""Coverage: which statements, branches and clauses of a mission were ever reached; one answer to *why did it pass*.
+
+A pure function of the mission and of what was visited, whatever explored it.
+"""
+
+from collections.abc import Iterable, Iterator, Set
+from dataclasses import dataclass
+
+from checker.visited import Visited, passages
+from semantics.computation import STEPPED, Passage
+from semantics.configuration import Configuration
+from semantics.program import Program
+from semantics.statements import (
+    Block,
+    Choose,
+    ChooseFrom,
+    For,
+    ForEach,
+    If,
+    Loop,
+    Match,
+    React,
+    Statement,
+    Tested,
+    While,
+    branches,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """How many of them were reached."""
+
+    reached: int
+    of: int
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """Something that no run reaches.
+
+    Attributes:
+        line: Where it begins, from 1; 0 where that is not known.
+        sort: `statement`, `branch`, `behaviour` or `clause`.
+        message: What is to be said of it.
+    """
+
+    line: int
+    sort: str
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """What was reached of a mission's text.
+
+    Attributes:
+        complete: Whether everything reachable was visited: else a gap is no more than what was not reached so far.
+        statements: How many of the statements.
+        branches: How many of the cases, alternatives and outcomes of tests.
+        clauses: How many of the environment's clauses.
+        lines: The lines of which something was reached, in order.
+        unreached: The lines with statements, cases or clauses of which nothing was.
+        gaps: Where runs never go, from the top of the text; what lies within one is not told again.
+    """
+
+    complete: bool
+    statements: Tally
+    branches: Tally
+    clauses: Tally
+    lines: tuple[int, ...]
+    unreached: tuple[int, ...]
+    gaps: tuple[Gap, ...]
+
+
+def coverage(initial: Configuration, visited: Visited, *, complete: bool) -> Coverage:
+    """Return what was reached of a mission that begins so."""
+    setting, program = initial.setting, initial.setting.program
+    passed = {passage for moment in visited.moments for passage in passages(setting, moment)}
+    stood = {code[0] for codes in visited.codes.values() for code in codes if code}
+    reached = _with_loops(program, stood | {number for number, branch in passed if branch == STEPPED})
+    taken = frozenset(passage for passage in passed if passage[1] != STEPPED)
+    found = _Reached(program, reached, taken)
+    clauses = tuple(not visited.happened.isdisjoint(clause.words) for clause in setting.environment)
+    starts = [initial.alpha.code(a) for a in initial.alpha.names()]
+    all_lines, lines = found.lines(), {line for line, was in found.lines() if was}
+    at_clauses = tuple(zip(setting.clause_lines, clauses, strict=False))
+    lines |= {line for line, was in at_clauses if was}
+    gaps = {
+        *found.gaps(starts),
+        *(Gap(line, "clause", "this never happens") for line, was in at_clauses if not was),
+    }
+    return Coverage(
+        complete,
+        Tally(len(found.written & reached), len(found.written)),
+        Tally(len(taken), len(found.branches)),
+        Tally(sum(clauses), len(clauses)),
+        tuple(sorted(lines - {0})),
+        tuple(sorted({line for line, _ in (*all_lines, *at_clauses)} - lines - {0})),
+        tuple(sorted(gaps, key=lambda gap: (gap.line, gap.sort, gap.message))),
+    )
+
+
+def _with_loops(program: Program, reached: Set[int]) -> frozenset[int]:
+    """Add the loops that were entered: their jumps belong to the step that they stand before."""
+    found = set(reached)
+    loops = [(number, s) for number, s in enumerate(program.statements) if isinstance(s, Loop) and s.body]
+    for number, loop in reversed(loops):  # inner ones have the higher numbers
+        if loop.body[0] in found:
+            found.add(number)
+    return frozenset(found)
+
+
+class _Reached:
+    """A program, and what was reached of it."""
+
+    def __init__(self, program: Program, reached: frozenset[int], taken: frozenset[Passage]) -> None:
+        self.program, self.reached, self.taken = program, reached, taken
+        statements = program.statements
+        self.written = frozenset(n for n, s in enumerate(statements) if not isinstance(s, Tested | ForEach))
+        self.branches = [(n, rank) for n, s in enumerate(statements) for rank in range(len(branches(s)))]
+
+    def lines(self) -> list[tuple[int, bool]]:
+        """Return the lines of statements and of cases with whether they were reached."""
+        program = self.program
+        stated = [(program.line(number), number in self.reached) for number in sorted(self.written)]
+        begun = [(line, branch in self.taken) for branch, line in sorted(program.branch_lines.items())]
+        return stated + begun
+
+    def gaps(self, starts: Iterable[Block]) -> Iterator[Gap]:
+        """Yield the gaps of agents' bodies and of behaviours."""
+        for start in starts:
+            yield from self.within(start)
+        for name, behaviour in sorted(self.program.behaviours.items()):
+            if behaviour.body and behaviour.body[0] not in self.reached:
+                line = self.program.line(behaviour.body[0])
+                yield Gap(line, "behaviour", f"behaviour '{name}' is never run")
+            else:
+                yield from self.within(behaviour.body)
+
+    def within(self, block: Block) -> Iterator[Gap]:
+        """Yield the gaps of a block: what follows its first statement that is never reached is not told again."""
+        for number in block:
+            if number not in self.reached:
+                yield Gap(self.program.line(number), "statement", "this is never reached")
+                return
+            statement = self.program.statements[number]
+            if not isinstance(statement, Loop):
+                yield from self.below(number, statement)
+            else:
+                yield from self.within(statement.body)
+
+    def below(self, number: int, statement: Statement) -> Iterator[Gap]:
+        """Yield the gaps of a statement's branches."""
+        if isinstance(statement, For):
+            yield from self.below(statement.each, self.program.statements[statement.each])
+        for rank, block in enumerate(branches(statement)):
+            if (number, rank) in self.taken:
+                yield from self.within(block)
+            else:
+                yield self.untaken(number, statement, rank)
+
+    def untaken(self, number: int, statement: Statement, rank: int) -> Gap:
+        """Return the gap of a branch: of a case at its line, of a test's outcome at the test's."""
+        if isinstance(statement, React | Match | Choose):
+            sort = "alternative" if isinstance(statement, Choose) else "case"
+            return Gap(self.program.branch_line(number, rank), "branch", f"this {sort} is never taken")
+        message = {
+            (If, 0): "this condition is never true",
+            (If, 1): "this condition is never false",
+            (While, 0): "this condition is never true",
+            (ForEach, 0): "there is never anything to go through",
+            (ChooseFrom, 0): "there is never anything to choose from",
+        }[type(statement), rank]
+        return Gap(self.program.line(number), "branch", message)
