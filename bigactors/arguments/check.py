@@ -40,7 +40,8 @@ def fill(parser: Parser) -> None:
         "--trace",
         metavar="DIR",
         type=named,
-        help="write the trace of each violation and witness into DIR: as text, as JSON and as pictures",
+        help="write the trace of each violation and witness into DIR: as text, as JSON, as pictures and as a page that "
+        "steps through it",
     )
     parser.add_argument(
         "--violations",

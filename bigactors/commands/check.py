@@ -110,4 +110,4 @@ def keep_evidence(checked: Checked, folder: str, taken: set[str]) -> None:
         name, number = f"{stem}-{number}", number + 1
     taken.add(name)
     for written in write_evidence(checked, Path(folder) / name):
-        tell(f"  trace: {written}/trace.txt, .json and .svg")
+        tell(f"  trace: {written}/trace.html, .txt, .json and .svg")
