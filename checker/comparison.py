@@ -3,9 +3,13 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
+from typing import Final
 
 from checker.traces import Step, Trace
 from semantics.differences import Difference, differences
+
+MOST_ALIGNED: Final = 1_000
+"""How many steps of each trace are aligned after they part: what it costs grows with the square."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,13 +26,15 @@ class Comparison:
 
     Attributes:
         shared: How many steps they have in common from the start.
-        pairs: All steps after that, aligned by their labels.
+        pairs: The steps after that, aligned by their labels; of each trace `MOST_ALIGNED` at the most.
+        beyond: How many steps more each trace has.
         ends: What differs between the last configurations, from the one to the other; None where they are of missions
             with different entities.
     """
 
     shared: int
     pairs: tuple[Pair, ...]
+    beyond: tuple[int, int]
     ends: tuple[Difference, ...] | None
 
 
@@ -40,7 +46,9 @@ def compare(one: Trace, other: Trace) -> Comparison:
     kinds = [trace.initial.setting.kinds for trace in (one, other)]
     ends = (one.configurations[-1], other.configurations[-1])
     differ = differences(*ends) if dict(kinds[0]) == dict(kinds[1]) else None
-    return Comparison(shared, tuple(_aligned(ways[0][shared:], ways[1][shared:], shared)), differ)
+    rests = [each[shared : shared + MOST_ALIGNED] for each in ways]
+    left, right = (max(0, len(each) - shared - MOST_ALIGNED) for each in ways)
+    return Comparison(shared, tuple(_aligned(rests[0], rests[1], shared)), (left, right), differ)
 
 
 def _ways(steps: Sequence[Step]) -> list[tuple[str, int]]:
@@ -72,6 +80,8 @@ def comparison_text(one: Trace, other: Trace, names: tuple[str, str]) -> Iterato
     yield f"the same for {steps}, up to c{found.shared}; then"
     for pair in found.pairs:
         yield _pair(pair, one, other)
+    if any(found.beyond):
+        yield f"  and {found.beyond[0]:,} steps more of the first, {found.beyond[1]:,} of the second, not compared"
     yield from _ends(found)
 
 

@@ -14,6 +14,7 @@ from semantics.statements import (
     Block,
     Choose,
     ChooseFrom,
+    ControlBy,
     For,
     ForEach,
     If,
@@ -41,7 +42,7 @@ class Gap:
 
     Attributes:
         line: Where it begins, from 1; 0 where that is not known.
-        sort: `statement`, `branch`, `behaviour` or `clause`.
+        sort: `statement`, `branch`, `behaviour`, `rule` or `clause`.
         message: What is to be said of it.
     """
 
@@ -58,6 +59,7 @@ class Coverage:
         complete: Whether everything reachable was visited: else a gap is no more than what was not reached so far.
         statements: How many of the statements.
         branches: How many of the cases, alternatives and outcomes of tests.
+        rules: How many of the mission's own rules.
         clauses: How many of the environment's clauses.
         lines: The lines of which something was reached, in order.
         unreached: The lines with statements, cases or clauses of which nothing was.
@@ -67,6 +69,7 @@ class Coverage:
     complete: bool
     statements: Tally
     branches: Tally
+    rules: Tally
     clauses: Tally
     lines: tuple[int, ...]
     unreached: tuple[int, ...]
@@ -75,30 +78,35 @@ class Coverage:
 
 def coverage(initial: Configuration, visited: Visited, *, complete: bool) -> Coverage:
     """Return what was reached of a mission that begins so."""
-    setting, program = initial.setting, initial.setting.program
-    passed = {passage for moment in visited.moments for passage in passages(setting, moment)}
-    stood = {code[0] for codes in visited.codes.values() for code in codes if code}
-    reached = _with_loops(program, stood | {number for number, branch in passed if branch == STEPPED})
-    taken = frozenset(passage for passage in passed if passage[1] != STEPPED)
-    found = _Reached(program, reached, taken)
-    clauses = tuple(not visited.happened.isdisjoint(clause.words) for clause in setting.environment)
+    setting = initial.setting
+    found = reached(initial, visited)
+    happened = [not visited.happened.isdisjoint(clause.words) for clause in setting.environment]
+    clauses = tuple(zip(setting.clause_lines, happened, strict=False))
+    lines = [*found.lines(), *clauses]
+    met = {line for line, was in lines if was}
     starts = [initial.alpha.code(a) for a in initial.alpha.names()]
-    all_lines, lines = found.lines(), {line for line, was in found.lines() if was}
-    at_clauses = tuple(zip(setting.clause_lines, clauses, strict=False))
-    lines |= {line for line, was in at_clauses if was}
-    gaps = {
-        *found.gaps(starts),
-        *(Gap(line, "clause", "this never happens") for line, was in at_clauses if not was),
-    }
+    missing = (Gap(line, "clause", "this never happens") for line, was in clauses if not was)
+    gaps = {*found.gaps(starts), *found.idle(), *missing}
     return Coverage(
         complete,
-        Tally(len(found.written & reached), len(found.written)),
-        Tally(len(taken), len(found.branches)),
-        Tally(sum(clauses), len(clauses)),
-        tuple(sorted(lines - {0})),
-        tuple(sorted({line for line, _ in (*all_lines, *at_clauses)} - lines - {0})),
+        Tally(len(found.written & found.numbers), len(found.written)),
+        Tally(len(found.taken), len(found.branches)),
+        Tally(len(found.rules & found.used), len(found.rules)),
+        Tally(sum(happened), len(happened)),
+        tuple(sorted(met - {0})),
+        tuple(sorted({line for line, _ in lines} - met - {0})),
         tuple(sorted(gaps, key=lambda gap: (gap.line, gap.sort, gap.message))),
     )
+
+
+def reached(initial: Configuration, visited: Visited) -> "Reached":
+    """Return what was reached of the program: where agents stood, and what they passed."""
+    setting = initial.setting
+    passed = {passage for moment in visited.moments for passage in passages(setting, moment)}
+    stood = {code[0] for codes in visited.codes.values() for code in codes if code}
+    stepped = {number for number, branch in passed if branch == STEPPED}
+    taken = frozenset(passage for passage in passed if passage[1] != STEPPED)
+    return Reached(setting.program, _with_loops(setting.program, stood | stepped), taken)
 
 
 def _with_loops(program: Program, reached: Set[int]) -> frozenset[int]:
@@ -111,19 +119,22 @@ def _with_loops(program: Program, reached: Set[int]) -> frozenset[int]:
     return frozenset(found)
 
 
-class _Reached:
-    """A program, and what was reached of it."""
+class Reached:
+    """A program, and the numbers and branches of its statements that were reached."""
 
-    def __init__(self, program: Program, reached: frozenset[int], taken: frozenset[Passage]) -> None:
-        self.program, self.reached, self.taken = program, reached, taken
+    def __init__(self, program: Program, numbers: frozenset[int], taken: frozenset[Passage]) -> None:
+        self.program, self.numbers, self.taken = program, numbers, taken
         statements = program.statements
         self.written = frozenset(n for n, s in enumerate(statements) if not isinstance(s, Tested | ForEach))
         self.branches = [(n, rank) for n, s in enumerate(statements) for rank in range(len(branches(s)))]
+        self.rules = frozenset(name for sort, name in program.declared if sort == "rule")
+        at = (statements[number] for number in numbers)
+        self.used = frozenset(each.name for each in at if isinstance(each, ControlBy))
 
     def lines(self) -> list[tuple[int, bool]]:
         """Return the lines of statements and of cases with whether they were reached."""
         program = self.program
-        stated = [(program.line(number), number in self.reached) for number in sorted(self.written)]
+        stated = [(program.line(number), number in self.numbers) for number in sorted(self.written)]
         begun = [(line, branch in self.taken) for branch, line in sorted(program.branch_lines.items())]
         return stated + begun
 
@@ -132,16 +143,21 @@ class _Reached:
         for start in starts:
             yield from self.within(start)
         for name, behaviour in sorted(self.program.behaviours.items()):
-            if behaviour.body and behaviour.body[0] not in self.reached:
-                line = self.program.line(behaviour.body[0])
+            if behaviour.body and behaviour.body[0] not in self.numbers:
+                line = self.program.declared.get(("behaviour", name), self.program.line(behaviour.body[0]))
                 yield Gap(line, "behaviour", f"behaviour '{name}' is never run")
             else:
                 yield from self.within(behaviour.body)
 
+    def idle(self) -> Iterator[Gap]:
+        """Yield the mission's rules that no control that is reached names."""
+        for name in self.rules - self.used:
+            yield Gap(self.program.declared["rule", name], "rule", f"rule '{name}' is never used")
+
     def within(self, block: Block) -> Iterator[Gap]:
         """Yield the gaps of a block: what follows its first statement that is never reached is not told again."""
         for number in block:
-            if number not in self.reached:
+            if number not in self.numbers:
                 yield Gap(self.program.line(number), "statement", "this is never reached")
                 return
             statement = self.program.statements[number]

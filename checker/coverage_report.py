@@ -14,6 +14,7 @@ def coverage_text(name: str, covered: Coverage, text: str) -> Iterator[str]:
     tallies = (
         (covered.statements, "statement", "statements"),
         (covered.branches, "branch", "branches"),
+        (covered.rules, "rule", "rules"),
         (covered.clauses, "clause of the environment", "clauses of the environment"),
     )
     counts = ", ".join(
@@ -46,7 +47,12 @@ def _quoted(line: str) -> str:
 
 def coverage_json(covered: Coverage) -> dict[str, Any]:
     """Return coverage as plain data."""
-    tallies = {"statements": covered.statements, "branches": covered.branches, "clauses": covered.clauses}
+    tallies = {
+        "statements": covered.statements,
+        "branches": covered.branches,
+        "rules": covered.rules,
+        "clauses": covered.clauses,
+    }
     return {
         "complete": covered.complete,
         **{name: {"reached": tally.reached, "of": tally.of} for name, tally in tallies.items()},

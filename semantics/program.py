@@ -56,7 +56,8 @@ class Program:
         behaviours: The parametrised behaviours.
         reactions: Commands and named rules: from the host and the arguments to a `Reaction`.
         lines: The line of the mission's text that each statement stands in (from 1), as far as there is one.
-        branch_lines: The same of the cases and alternatives that begin in a line of their own, by statement and rank.
+        branch_lines: The same of cases and alternatives, by statement and rank.
+        declared: The line in which each rule and behaviour is declared, by sort (`rule`, `behaviour`) and name.
     """
 
     statements: tuple[Statement, ...] = ()
@@ -64,6 +65,7 @@ class Program:
     reactions: Mapping[str, "Callable[..., Reaction]"] = field(default_factory=dict)
     lines: tuple[int, ...] = ()
     branch_lines: Mapping[tuple[int, int], int] = field(default_factory=dict)
+    declared: Mapping[tuple[str, str], int] = field(default_factory=dict)
 
     def line(self, number: int) -> int:
         """Return the line of a statement, 0 where there is none."""

@@ -1,6 +1,6 @@
 """What a page tells of a trace: its configurations, each with its pictures."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from bigactors.pictures import Panels, Picture
@@ -9,6 +9,10 @@ from semantics.configuration import Configuration
 
 MOST_PICTURES: Final = 100
 """The most configurations that are drawn; of a longer trace the last ones."""
+
+
+MOST_FRAMES: Final = 2_000
+"""The most configurations that a page holds; of a longer trace the last ones."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +28,7 @@ class Story:
         drawn: How many configurations are drawn, the last ones.
         note: Where it comes from, such as the digest of the mission.
         details: More of what it is evidence of, line by line.
+        first: How many configurations are left out before the trace.
     """
 
     title: str
@@ -34,6 +39,7 @@ class Story:
     drawn: int = MOST_PICTURES
     note: str = ""
     details: tuple[str, ...] = ()
+    first: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,11 +61,21 @@ class Frame:
     physical: Picture | None
 
 
+def latest(story: Story) -> Story:
+    """Return a story whose trace a page can hold: of one that is too long its end."""
+    left_out = len(story.trace) + 1 - MOST_FRAMES
+    if left_out <= 0:
+        return story
+    trace = Trace(story.trace.configurations[left_out], story.trace.steps[left_out:])
+    return replace(story, trace=trace, first=left_out, start=max(0, story.start - left_out))
+
+
 def frames_of(story: Story) -> tuple[Frame, ...]:
     """Return the configurations of a trace with their pictures."""
     configurations = story.trace.configurations
     panels = Panels.of(configurations)
-    labels = ["the first configuration", *(str(step.label) for step in story.trace.steps)]
+    begin = f"after {story.first:,} steps that are left out" if story.first else "the first configuration"
+    labels = [begin, *(str(step.label) for step in story.trace.steps)]
     first_drawn = max(0, len(configurations) - max(1, min(story.drawn, MOST_PICTURES)))
     found = []
     for number, (label, c) in enumerate(zip(labels, configurations, strict=True)):

@@ -7,6 +7,7 @@
   const pictures = all("[data-picture]");
   const slider = one("#step");
   const last = frames.length - 1;
+  const first = Number(document.body.dataset.first);
   const still = window.matchMedia("(prefers-reduced-motion: reduce)");
   let at = -1;
   let timer = null;
@@ -25,11 +26,11 @@
       else row.removeAttribute("aria-current");
     });
     slider.value = String(at);
-    slider.setAttribute("aria-valuetext", `c${at}: ${frame.dataset.label}`);
-    one("#number").textContent = `c${at} of c${last}`;
+    slider.setAttribute("aria-valuetext", `c${first + at}: ${frame.dataset.label}`);
+    one("#number").textContent = `c${first + at} of c${first + last}`;
     one("#caption").textContent = frame.dataset.label;
     one("#missing").hidden = frame.dataset.l !== "";
-    if (begun) history.replaceState(null, "", `#c${at}`);
+    if (begun) history.replaceState(null, "", `#c${first + at}`);
     reveal(rows[at], begun);
   }
 
@@ -57,8 +58,8 @@
   }
 
   function named() {
-    const found = /^#c(\d{1,6})$/.exec(location.hash);
-    return found ? Number(found[1]) : null;
+    const found = /^#c(\d{1,9})$/.exec(location.hash);
+    return found ? Number(found[1]) - first : null;
   }
 
   const keys = {

@@ -7,7 +7,7 @@ from importlib.resources import files as resources
 from typing import Final
 
 from bigactors.pages.markup import element, text
-from bigactors.pages.story import Frame, Story, frames_of
+from bigactors.pages.story import Frame, Story, frames_of, latest
 from bigactors.pictures import Look, Picture, channels_of, look_of, shown_names
 from bigraphs import draw_text
 from bigraphs.drawing import HIGHLIGHT
@@ -22,8 +22,15 @@ NARROWEST: Final = 7
 """How wide a lane is at the least, in ems; its boxes may reach over the next."""
 
 
+UNSCRIPTED: Final = (
+    "[hidden], .unscripted { display: revert !important; } .controls { display: none !important; }"
+)
+"""What a page without scripts looks like: everything is there at once."""
+
+
 def trace_page(story: Story) -> str:
     """Return the page."""
+    story = latest(story)
     frames, lanes = frames_of(story), lanes_of_trace(story.trace)
     script, style = _resource("trace.js"), _resource("trace.css")
     allowed = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
@@ -38,10 +45,11 @@ def trace_page(story: Story) -> str:
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
         element("title", text(story.title)),
         element("style", style),
-        "<noscript><style>[hidden] { display: revert !important; }</style></noscript>",
+        element("noscript", element("style", UNSCRIPTED)),
     )
-    main = element("main", _run(lanes), _stage(frames))
-    body = element("body", _header(story), main, element("script", script), data_start=story.start)
+    main = element("main", _run(lanes, story.first), _stage(frames, story.first))
+    start = {"data_start": story.start, "data_first": story.first}
+    body = element("body", _header(story), main, element("script", script), **start)
     return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
 
 
@@ -50,7 +58,7 @@ def _resource(name: str) -> str:
 
 
 def _header(story: Story) -> str:
-    steps = len(story.trace)
+    steps = len(story.trace) + story.first
     return element(
         "header",
         element("h1", text(story.title)),
@@ -63,11 +71,12 @@ def _header(story: Story) -> str:
 # --- lanes ----------------------------------------------------------------------------------------------------
 
 
-def _run(lanes: Lanes) -> str:
+def _run(lanes: Lanes, first: int) -> str:
     heads = (element("th", text(name), scope="col") for name in lanes.names)
     head = element("thead", element("tr", element("th", text("c"), scope="col"), *heads))
-    start = _row(0, [element("td")] * len(lanes.names))
-    body = element("tbody", start, *(_row(step.number, list(_cells(step, lanes))) for step in lanes.steps))
+    start = _row(first, [element("td")] * len(lanes.names))
+    steps = (_row(first + step.number, list(_cells(step, lanes))) for step in lanes.steps)
+    body = element("tbody", start, *steps)
     return element(
         "section",
         element("table", head, body, style=f"min-width: {4 + NARROWEST * len(lanes.names)}em"),
@@ -105,7 +114,7 @@ def _step(step: LaneStep) -> str:
 # --- the stage ------------------------------------------------------------------------------------------------
 
 
-def _stage(frames: Sequence[Frame]) -> str:
+def _stage(frames: Sequence[Frame], first: int) -> str:
     pictures = {
         picture.key: picture
         for frame in frames
@@ -125,7 +134,7 @@ def _stage(frames: Sequence[Frame]) -> str:
         element("p", "", class_="caption", id="caption", aria_live="polite"),
         models,
         element("p", text(hint), class_="quiet", id="missing", hidden=True),
-        *(_frame(number, frame) for number, frame in enumerate(frames)),
+        *(_frame(number, frame) for number, frame in enumerate(frames, first)),
         _legend(frames),
         class_="stage",
         aria_label="One configuration",
@@ -197,6 +206,7 @@ def _frame(number: int, frame: Frame) -> str:
     words = element("pre", text(draw_text(frame.c.structure.logical.bigraph())), tabindex="0")
     return element(
         "div",
+        element("h2", text(f"c{number}: {frame.label}"), class_="unscripted"),
         lists,
         element("details", element("summary", text("L in words")), words),
         data_frame=number,

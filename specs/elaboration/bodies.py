@@ -132,7 +132,12 @@ def elaborate_bodies(
     reactions = {name: checked(name, command, names.kinds) for name, command in COMMANDS.items()}
     reactions |= {name: Maker(schema, names.kinds) for name, schema in bodies.schemas.items()}
     statements, lines = tuple(program.statements), tuple(program.lines)
-    return bodies, Program(statements, behaviours, reactions, lines, program.branch_lines)
+    declared = {
+        key: names.findings.source.line(span.start)
+        for key, span in names.spans.items()
+        if key[0] in ("rule", "behaviour")
+    }
+    return bodies, Program(statements, behaviours, reactions, lines, program.branch_lines, declared)
 
 
 def _parameters(definition: s.Definition, names: Names) -> dict[str, str]:

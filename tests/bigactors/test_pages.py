@@ -128,6 +128,18 @@ def test_a_long_trace_is_drawn_at_its_end_only(trace):
     assert drawn == [False] * (len(trace) - 1) + [True] * 2
 
 
+def test_of_a_trace_that_no_page_can_hold_the_end_is_shown(trace, monkeypatch):
+    monkeypatch.setattr("bigactors.pages.story.MOST_FRAMES", 3)
+    read = Reader(trace_page(Story("t", "", False, trace, start=5)))
+    count = len(trace)
+    numbers = [str(number) for number in range(count - 2, count + 1)]
+    assert [each["data-row"] for _, each in read.elements if "data-row" in each] == numbers
+    assert [each["data-frame"] for _, each in read.elements if "data-frame" in each] == numbers
+    (body,) = read.all("body")
+    assert body == {"data-start": str(5 - (count - 2)), "data-first": str(count - 2)}
+    assert f"{count} steps. " in read.texts
+
+
 def test_a_trace_without_steps_is_a_page(trace):
     read = Reader(trace_page(Story("t", "", False, Trace(trace.initial))))
     assert [each["max"] for each in read.all("input")] == ["0"]

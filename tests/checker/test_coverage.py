@@ -103,12 +103,21 @@ def test_loops_are_reached_with_what_they_begin_with():
     assert (found.statements, found.gaps) == (Tally(4, 4), ())
 
 
-def test_a_behaviour_that_nobody_runs_is_told_at_its_first_line():
+RULE = "rule {}(u: UAV, b: Location) {{ u || b.$0 -> b.(u | $0) }}\n"
+
+
+def test_a_rule_that_no_control_names_is_told():
+    text = RULE.format("land") + RULE.format("leave") + agent("control(land(uav0, gate0))")
+    assert covered(text).rules == Tally(1, 2)
+    assert gaps(text) == [(2, "rule 'leave' is never used")]
+
+
+def test_a_behaviour_that_nobody_runs_is_told_where_it_is_declared():
     text = (
         agent("used(gate0)")
         + "def used(p) = {\ncontrol(MOVE_HOST_TO gate0)\n}\ndef idle() = {\nobserve(ALL)\n}\n"
     )
-    assert gaps(text) == [(8, "behaviour 'idle' is never run")]
+    assert gaps(text) == [(7, "behaviour 'idle' is never run")]
 
 
 def test_a_spawned_agent_reaches_its_behaviour():
@@ -152,6 +161,7 @@ def test_coverage_as_data_says_the_same():
         "complete": True,
         "statements": {"reached": 3, "of": 4},
         "branches": {"reached": 1, "of": 3},
+        "rules": {"reached": 0, "of": 0},
         "clauses": {"reached": 0, "of": 0},
         "lines_reached": [FIRST + 1, FIRST + 2, FIRST + 4],
         "lines_not_reached": [FIRST + 3, FIRST + 5],

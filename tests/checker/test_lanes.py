@@ -108,6 +108,12 @@ def test_a_trace_is_the_same_as_itself_and_parts_from_a_longer_one_at_its_end():
     assert compare(one, longer).pairs == (Pair(None, 4),)
 
 
+def test_of_long_traces_only_so_many_steps_are_aligned(monkeypatch):
+    monkeypatch.setattr("checker.comparison.MOST_ALIGNED", 1)
+    found = compare(follow(RACE, *ONE), follow(RACE, *OTHER))
+    assert (found.pairs, found.beyond) == ((Pair(3, None), Pair(None, 3)), (1, 1))
+
+
 def test_two_ways_to_one_end_end_alike():
     text = moves("gate0", "a", "uav0") + moves("south0", "b", "uav1")
     one = follow(text, "req_ctr : a", "req_ctr : b", "CTR(a", "CTR(b")

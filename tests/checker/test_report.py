@@ -253,6 +253,7 @@ def test_the_data_say_what_the_report_says():
             "complete": True,
             "statements": {"reached": 2, "of": 2},
             "branches": {"reached": 0, "of": 0},
+            "rules": {"reached": 0, "of": 0},
             "clauses": {"reached": 0, "of": 0},
             "lines_reached": [25, 26],
             "lines_not_reached": [],
