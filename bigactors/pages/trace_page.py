@@ -23,7 +23,8 @@ NARROWEST: Final = 7
 
 
 UNSCRIPTED: Final = (
-    "[hidden], .unscripted { display: revert !important; } .controls { display: none !important; }"
+    "[hidden], .unscripted { display: revert !important; } "
+    ".controls, .hint, #missing { display: none !important; }"
 )
 """What a page without scripts looks like: everything is there at once."""
 
