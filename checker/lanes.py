@@ -54,13 +54,26 @@ class Lanes:
     Attributes:
         names: What each lane is called: the agents, then the environment where it does anything.
         steps: The steps, from the first.
+        loop: The number of the configuration from which the run repeats for ever, where it does: the last is the same.
     """
 
     names: tuple[Name, ...]
     steps: tuple[LaneStep, ...]
+    loop: int | None = None
+
+    @property
+    def end(self) -> str:
+        """How the run goes on for ever, empty where it doesn't."""
+        if self.loop is None:
+            return ""
+        if self.loop == len(self.steps):
+            return f"c{self.loop}, for ever"
+        return f"↻ c{len(self.steps)} is c{self.loop}: from there on again and again"
 
 
-def lanes_of(configurations: Sequence[Configuration], labels: Sequence[Label]) -> Lanes:
+def lanes_of(
+    configurations: Sequence[Configuration], labels: Sequence[Label], loop: int | None = None
+) -> Lanes:
     """Return a run in lanes; there is one label fewer than configurations."""
     agents = tuple(sorted({a for c in configurations for a in c.alpha.names()}))
     around = any(label.agent is None for label in labels)
@@ -68,12 +81,12 @@ def lanes_of(configurations: Sequence[Configuration], labels: Sequence[Label]) -
     for number, (label, (before, after)) in enumerate(zip(labels, pairwise(configurations), strict=True), 1):
         lane = len(agents) if label.agent is None else agents.index(label.agent)
         steps.append(LaneStep(number, lane, label, differences(before, after)))
-    return Lanes((*agents, *([ENVIRONMENT] if around else [])), tuple(steps))
+    return Lanes((*agents, *([ENVIRONMENT] if around else [])), tuple(steps), loop)
 
 
-def lanes_of_trace(trace: Trace) -> Lanes:
+def lanes_of_trace(trace: Trace, loop: int | None = None) -> Lanes:
     """Return a trace in lanes."""
-    return lanes_of(trace.configurations, [step.label for step in trace.steps])
+    return lanes_of(trace.configurations, [step.label for step in trace.steps], loop)
 
 
 def lanes_text(lanes: Lanes, width: int = 100) -> Iterator[str]:
@@ -88,6 +101,8 @@ def lanes_text(lanes: Lanes, width: int = 100) -> Iterator[str]:
             cells = ["│"] * columns
             cells[step.lane] = line
             yield _row(f"c{step.number}" if rank == 0 else "", cells, each)
+    if lanes.end:
+        yield lanes.end
 
 
 def _lines(step: LaneStep) -> Iterator[str]:

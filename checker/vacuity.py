@@ -11,8 +11,8 @@ from functools import reduce
 from operator import and_, or_
 from typing import Any, Final
 
+from checker.learned import Ask, Recorder
 from checker.quantified import Path, is_quantified
-from semantics.cells import Cell, Question, State, Written
 from semantics.configuration import Configuration
 from semantics.propositions import Always, And, Atom, Not, Or, Proposition, holds
 from semantics.signature import Name
@@ -40,7 +40,7 @@ class Valuations:
     formula: Proposition
     atoms: tuple[Atom, ...] = ()
     met: set[int] = field(default_factory=set)
-    still: dict["Ask", Any] | None = None
+    still: dict[Ask, Any] | None = None
     begun: bool = False
 
     def __post_init__(self) -> None:
@@ -61,7 +61,7 @@ class Valuations:
         """Note whether a configuration still answers as the first one did."""
         if not self.begun:
             self.begun = True
-            asking = Asking(c.state)
+            asking = Recorder(c.state)
             holds(self.formula, Configuration(c.setting, asking))
             self.still = asking.answers
         elif self.still is not None and any(ask.of(c.state) != said for ask, said in self.still.items()):
@@ -221,46 +221,3 @@ def _others(parts: tuple[Proposition, ...], part: Part) -> tuple[Proposition, ..
     """Return the operands of a connective but for one."""
     rank = part.paths[0][-1]
     return parts[:rank] + parts[rank + 1 :]
-
-
-# --- what a formula reads -------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class Ask:
-    """What is asked of a cell: its value, or (with a question) a yes or no."""
-
-    cell: Cell
-    question: Question | None = None
-    constants: tuple[Any, ...] = ()
-
-    def of(self, cells: State) -> Any:
-        """Return the answer."""
-        if self.question is None:
-            return cells.read(self.cell)
-        return cells.test(self.cell, self.question, *self.constants)
-
-
-class Asking:
-    """Cells that note what is asked of them."""
-
-    def __init__(self, cells: State) -> None:
-        self.cells = cells
-        self.answers: dict[Ask, Any] = {}
-
-    def read(self, cell: Cell) -> Any:
-        """Return the value of a cell, and note it."""
-        return self._note(Ask(cell))
-
-    def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
-        """Ask a cell, and note the yes or no."""
-        return bool(self._note(Ask(cell, question, constants)))
-
-    def with_(self, changes: Mapping[Cell, Any]) -> Written:
-        """Return the cells with others over them."""
-        return Written(self, dict(changes))
-
-    def _note(self, ask: Ask) -> Any:
-        answer = ask.of(self.cells)
-        self.answers[ask] = answer
-        return answer

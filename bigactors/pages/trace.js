@@ -8,6 +8,7 @@
   const slider = one("#step");
   const last = frames.length - 1;
   const first = Number(document.body.dataset.first);
+  const loop = Number(document.body.dataset.loop ?? -1) - first;
   const still = window.matchMedia("(prefers-reduced-motion: reduce)");
   let at = -1;
   let timer = null;
@@ -54,7 +55,11 @@
     if (at === last) go(0);
     one("#play").textContent = "Pause";
     one("#play").setAttribute("aria-pressed", "true");
-    timer = setInterval(() => (at === last ? stop() : go(at + 1)), 1100);
+    timer = setInterval(() => {
+      if (at < last) go(at + 1);
+      else if (loop >= 0 && loop < last) go(loop);
+      else stop();
+    }, 1100);
   }
 
   function named() {

@@ -32,7 +32,7 @@ UNSCRIPTED: Final = (
 def trace_page(story: Story) -> str:
     """Return the page."""
     story = latest(story)
-    frames, lanes = frames_of(story), lanes_of_trace(story.trace)
+    frames, lanes = frames_of(story), lanes_of_trace(story.trace, story.loop)
     script, style = _resource("trace.js"), _resource("trace.css")
     allowed = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     policy = (
@@ -49,7 +49,7 @@ def trace_page(story: Story) -> str:
         element("noscript", element("style", UNSCRIPTED)),
     )
     main = element("main", _run(lanes, story.first), _stage(frames, story.first))
-    start = {"data_start": story.start, "data_first": story.first}
+    start = {"data_start": story.start, "data_first": story.first, "data_loop": story.loop}
     body = element("body", _header(story), main, element("script", script), **start)
     return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
 
@@ -78,12 +78,18 @@ def _run(lanes: Lanes, first: int) -> str:
     start = _row(first, [element("td")] * len(lanes.names))
     steps = (_row(first + step.number, list(_cells(step, lanes))) for step in lanes.steps)
     body = element("tbody", start, *steps)
+    foot = element("tfoot", element("tr", _end(lanes))) if lanes.end else ""
     return element(
         "section",
-        element("table", head, body, style=f"min-width: {4 + NARROWEST * len(lanes.names)}em"),
+        element("table", head, body, foot, style=f"min-width: {4 + NARROWEST * len(lanes.names)}em"),
         class_="run",
         aria_label="The run, a lane for each agent",
     )
+
+
+def _end(lanes: Lanes) -> str:
+    link = element("a", text(lanes.end), href=f"#c{lanes.loop}")
+    return element("td", link, colspan=len(lanes.names) + 1)
 
 
 def _row(number: int, cells: Sequence[str]) -> str:

@@ -89,16 +89,17 @@ def draw_overview(
     *,
     title: str | None = None,
     links: Sequence[str] = (),
+    loop: int | None = None,
 ) -> None:
     """Write one picture of a trace: the steps in their lanes, from top to bottom, with what each changed.
 
-    `links` are what the boxes lead to in an SVG, one for each step.
+    `links` are what the boxes lead to in an SVG, one for each step; `loop` is from where the run repeats for ever.
 
     Raises:
         PictureError: The name of the file ends in neither `.svg` nor `.png`.
         OSError: The file cannot be written.
     """
-    lanes = lanes_of(configurations, labels)
+    lanes = lanes_of(configurations, labels, loop)
     with plain_style():
         _page(lanes, title and title.rstrip(":"), links).save(Path(path), title or "trace")
 
@@ -130,7 +131,9 @@ def _page(lanes: Lanes, title: str | None, links: Sequence[str]) -> Page:
     end = MARGIN + NUMBERS + len(starts) * (LANE + GUTTER)
     top = MARGIN + (24.0 if title else 0.0) + HEAD
     tops = list(accumulate((row.height for row in rows), initial=top))
-    page = Page(end + CHANGES + MARGIN, tops[-1] + MARGIN)
+    page = Page(end + CHANGES + MARGIN, tops[-1] + MARGIN + (HEAD if lanes.end else 0.0))
+    if lanes.end:
+        page.write(MARGIN, tops[-1] + HEAD, lanes.end, 8.0, bold=True)
     if title:
         page.write(MARGIN, MARGIN + 9, title, 14.0, bold=True, width=page.width - 2 * MARGIN)
     for name, start in zip(lanes.names, starts, strict=True):

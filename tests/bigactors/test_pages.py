@@ -24,8 +24,8 @@ EMPTY = {"meta", "input", "br", "img", "link"}
 DRAWN = {"g", "path", "text", "tspan", "use", "defs", "clippath", "rect", "circle", "ellipse", "line", "svg"}
 WRITTEN = {
     "html", "head", "meta", "title", "style", "noscript", "body", "header", "h1", "h2", "p", "main", "section",
-    "table", "thead", "tbody", "tr", "th", "td", "a", "div", "b", "ul", "li", "span", "small", "button", "input",
-    "output", "figure", "details", "summary", "pre", "script",
+    "table", "thead", "tbody", "tfoot", "tr", "th", "td", "a", "div", "b", "ul", "li", "span", "small", "button",
+    "input", "output", "figure", "details", "summary", "pre", "script",
 }  # fmt: skip
 
 
@@ -138,6 +138,12 @@ def test_of_a_trace_that_no_page_can_hold_the_end_is_shown(trace, monkeypatch):
     (body,) = read.all("body")
     assert body == {"data-start": str(5 - (count - 2)), "data-first": str(count - 2)}
     assert f"{count} steps. " in read.texts
+
+
+def test_a_run_that_repeats_leads_back(trace):
+    read = Reader(trace_page(Story("t", "", False, trace, drawn=1, loop=2)))
+    assert read.all("body")[0]["data-loop"] == "2"
+    assert f"↻ c{len(trace)} is c2: from there on again and again" in read.texts
 
 
 def test_a_trace_without_steps_is_a_page(trace):

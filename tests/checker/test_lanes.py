@@ -54,6 +54,12 @@ def test_lanes_are_columns_of_text():
     ]
 
 
+def test_a_run_that_repeats_says_from_where():
+    trace = follow(RACE, *ONE)
+    assert list(lanes_text(lanes_of_trace(trace, 2)))[-1] == "↻ c4 is c2: from there on again and again"
+    assert list(lanes_text(lanes_of_trace(trace, 4)))[-1] == "c4, for ever"
+
+
 def test_a_trace_without_steps_has_its_agents_lanes():
     assert list(lanes_text(lanes_of_trace(Trace(start(RACE))), 60)) == [
         "      a                          b",
