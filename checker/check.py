@@ -176,7 +176,8 @@ class _Check:
     def decide_races(self, asked: Property) -> Verdict:
         if self.owned:
             note = "by ownership, without a search: no agent may write what another's control rests on"
-            return Verdict(asked, Outcome.HOLDS, note=note)
+            served = self.witness(self.consistency.collected, self.found)
+            return Verdict(asked, Outcome.HOLDS, witness=served, note=note)
         violations = self.violations(self.races.collected, self.found)
         if self.remembered is None:
             outcome = Outcome.VIOLATED if violations else Outcome.INCOMPLETE

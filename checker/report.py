@@ -58,7 +58,7 @@ def _sizes(verdict: Verdict) -> Iterator[str]:
     if verdict.outcome is Outcome.VIOLATED:
         if verdict.violations:
             yield _found(verdict)
-    elif verdict.witness is not None:
+    elif verdict.witness is not None and verdict.examined:
         yield f"examined {verdict.examined:,}{_unit(verdict)}, a witness of {_steps(len(verdict.witness))}"
     elif verdict.outcome is Outcome.INCOMPLETE:
         yield "not found so far" if verdict.property.kind == "reachable" else "nothing against it so far"

@@ -352,3 +352,12 @@ def test_a_verdict_and_its_violations_are_values():
         "command",
         "commit",
     ]
+
+
+def test_race_freedom_by_ownership_has_a_run_in_which_a_control_is_served():
+    (race,) = (each for each in as_json(ENTERS + EVERYTHING)["properties"] if each["name"] == "race_freedom")
+    assert race["note"].startswith("by ownership")
+    assert [step["label"] for step in race["witness"]["steps"]] == [
+        "⟨req_ctr : a, control(MOVE_HOST_TO gate0)⟩",
+        "⟨actuate : CTR(a, MOVE_HOST_TO gate0)⟩",
+    ]
