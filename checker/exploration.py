@@ -120,7 +120,7 @@ def explore(
         engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
     """
     if engine is Engine.FAST:
-        from checker.fast import explore_fast  # noqa: PLC0415  # numba takes its time to load
+        from checker.fast.explorer import explore_fast  # noqa: PLC0415  # numba takes its time to load
 
         return explore_fast(initial, tuple(inspect), limits or Limits(), report, every)
     return _Explorer(initial, tuple(inspect), limits or Limits(), report, every).run()
