@@ -52,7 +52,8 @@ class Graph:
     @cached_property
     def terminal(self) -> Bools:
         """For each configuration, whether nothing is enabled there."""
-        return (np.diff(self.starts) == 0) & ~self.open
+        ends: Bools = (np.diff(self.starts) == 0) & ~self.open
+        return ends
 
     def total(self) -> "Graph":
         """Return the graph in which a terminal configuration stutters: it has one edge, to itself."""

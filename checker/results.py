@@ -7,7 +7,7 @@ from enum import Enum
 
 from checker.places import violation_line
 from checker.report import report_text
-from checker.traces import Trace, print_trace
+from checker.traces import Trace, print_length, print_trace
 from checker.verdicts import Outcome, Report, Verdict, Violation
 
 
@@ -130,9 +130,7 @@ def issue_text(issue: Issue) -> str:
     """Return an issue with its details and its trace as lines of text."""
     lines = [issue.message, *(f"  {detail}" for detail in issue.details)]
     if issue.trace is not None:
-        lines.append(
-            f"a shortest trace, {len(issue.trace):,} {'step' if len(issue.trace) == 1 else 'steps'}:"
-        )
+        lines.append(f"{print_length(issue.trace)}:")
         lines += [f"  {line}" for line in print_trace(issue.trace)]
     return "\n".join(lines)
 

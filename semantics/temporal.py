@@ -7,6 +7,9 @@ from semantics.configuration import Label
 from semantics.propositions import And, Or, Proposition
 from semantics.signature import Name
 
+TEMPORAL = ("ltl", "ctl", "progress")
+"""The kinds of properties that are about runs, and not about configurations one by one."""
+
 ENVIRONMENTS = ("env", "say")
 """The rules that are nobody's."""
 

@@ -63,8 +63,10 @@ class Branching:
 
     def _evaluate(self, formula: Temporal, perhaps: bool) -> Bools:
         match formula:
-            case Now() | Enabled():
+            case Now():
                 return self.truth.here(formula)
+            case Enabled():
+                return self.truth.here(formula) | self.graph.open if perhaps else self.truth.here(formula)
             case Denied(inner):
                 return ~self._where(inner, not perhaps and self.graph.partial is not None)
             case Both(left, right):

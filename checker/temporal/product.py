@@ -9,7 +9,7 @@ from checker.graph import Bools, Graph, Numbers
 from checker.temporal.arrows import leaving
 from checker.temporal.automaton import Automaton, Move
 from checker.temporal.components import Conditions
-from checker.temporal.truth import Truth
+from checker.temporal.truth import Truth, is_about_steps
 from semantics.temporal import Taken
 
 
@@ -151,6 +151,8 @@ class _Search:
         for formula, claimed in map(self.automaton.literals.__getitem__, move.literals):
             if not isinstance(formula, Taken):
                 found &= self.truth.here(formula)[configurations] == claimed
+                if is_about_steps(formula):  # what is enabled where not all is known, nobody can say
+                    found &= ~self.graph.open[configurations]
         return found
 
     def on_edges(self, move: Move) -> list[tuple[Taken, bool]]:

@@ -8,7 +8,7 @@ import numpy as np
 from checker.graph import Bools, Graph
 from semantics.configuration import Configuration
 from semantics.propositions import Always, Proposition, holds
-from semantics.temporal import Both, Denied, Either, Enabled, Now, Steps, Taken, Temporal
+from semantics.temporal import Both, Denied, Either, Enabled, Now, Steps, Taken, Temporal, atoms
 
 Valuation = Mapping[Proposition, Bools]
 """For each proposition, for each configuration, whether it is true there."""
@@ -66,3 +66,8 @@ class Truth:
         if atom not in self.known:
             self.known[atom] = self.steps(atom.steps)
         return self.known[atom]
+
+
+def is_about_steps(formula: Temporal) -> bool:
+    """Tell whether it is asked what is enabled."""
+    return any(isinstance(atom, Enabled) for atom in atoms(formula))

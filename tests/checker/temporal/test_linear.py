@@ -1,7 +1,9 @@
 """Linear time: the automata and the search beside runs that are enumerated and evaluated by the definitions."""
 
 from hypothesis import given, settings
+from hypothesis import strategies as st
 from structures import (
+    STEPS,
     P,
     Q,
     Unrolled,
@@ -17,8 +19,16 @@ from structures import (
 from checker.temporal.lassos import Lasso
 from checker.temporal.linear import counterexample
 from checker.temporal.words import is_true_on
+from semantics.temporal import Denied, Either, Eventually, Globally, Now, Taken
 
-LONGEST = 6
+LONGEST = 5
+RECURRENCES = (
+    Eventually(Now(P)),
+    Globally(Eventually(Now(P))),
+    Globally(Either(Denied(Now(P)), Eventually(Now(Q)))),
+    Globally(Eventually(Taken(STEPS[0]))),
+    Eventually(Globally(Now(P))),
+)
 
 
 def violated(truth, formula, declared):
@@ -36,9 +46,7 @@ def continued(truth, stem, declared):
             yield before, loop
 
 
-@settings(max_examples=400)
-@given(truths(), linear, fairnesses)
-def test_a_formula_is_violated_if_a_fair_run_violates_it(truth, formula, declared):
+def decided_as_by_enumeration(truth, formula, declared):
     found = counterexample(truth.graph, truth, formula, conditions(truth, declared))
     if found is None:
         assert violated(truth, formula, declared) is None
@@ -47,6 +55,18 @@ def test_a_formula_is_violated_if_a_fair_run_violates_it(truth, formula, declare
         assert is_fair(truth, found.loop, declared)
         assert not Unrolled(truth, found.stem, found.loop).holds(formula)
         assert not is_true_on(found, formula, truth)
+
+
+@settings(max_examples=200)
+@given(truths(), linear, st.lists(fairnesses, max_size=3))
+def test_a_formula_is_violated_if_a_fair_run_violates_it(truth, formula, declared):
+    decided_as_by_enumeration(truth, formula, declared)
+
+
+@settings(max_examples=200)
+@given(truths(), st.sampled_from(RECURRENCES), st.lists(fairnesses, min_size=1, max_size=3))
+def test_what_recurs_is_violated_if_a_fair_run_violates_it(truth, formula, declared):
+    decided_as_by_enumeration(truth, formula, declared)
 
 
 @settings(max_examples=150)
