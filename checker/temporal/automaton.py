@@ -15,8 +15,8 @@ import networkx as nx
 from checker.temporal.normal import FALSE, TRUE, Formulas, Literal, Number
 from semantics.temporal import Temporal
 
-MOST_STATES = 256
-MOST_TERMS = 2_048
+MOST_STATES = 128
+MOST_TERMS = 512
 MOST_UNTILS = 60
 """Where a formula's automaton is refused: untils are bits of a 64-bit word, the others bound time and memory."""
 
