@@ -13,7 +13,7 @@ Bools = NDArray[np.bool_]
 Numbers = NDArray[np.integer]
 
 STUTTER = -1
-"""The action of a step that changes nothing: where nothing is enabled, time passes all the same."""
+"""The action of a step that changes nothing: where nothing has to happen, time passes all the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,19 +49,20 @@ class Graph:
         """For each edge, the number of the configuration that it leaves."""
         return np.repeat(np.arange(self.size, dtype=self.targets.dtype), np.diff(self.starts))
 
-    @cached_property
-    def terminal(self) -> Bools:
-        """For each configuration, whether nothing is enabled there."""
-        ends: Bools = (np.diff(self.starts) == 0) & ~self.open
-        return ends
+    def total(self, optional: Bools | None = None) -> "Graph":
+        """Return the graph with one edge more, to itself, at each configuration where nothing has to happen.
 
-    def total(self) -> "Graph":
-        """Return the graph in which a terminal configuration stutters: it has one edge, to itself."""
-        ends = np.flatnonzero(self.terminal)
+        Args:
+            optional: For each label, whether its steps need never happen. Without it, and where nothing is enabled at
+                all, there is that one edge and no other.
+        """
+        needless = self.taken(np.zeros(len(self.labels), dtype=np.bool_) if optional is None else optional)
+        resting = ~self.enabled(~needless) & ~self.open
+        ends = np.flatnonzero(resting)
         if not len(ends):
             return self
-        at = self.starts[ends]
-        added = np.concatenate(([0], np.cumsum(self.terminal)))
+        at = self.starts[ends + 1]
+        added = np.concatenate(([0], np.cumsum(resting)))
         return Graph(
             self.starts + added.astype(self.starts.dtype),
             np.insert(self.targets, at, ends),

@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 from checker.exploration import Exploration
+from checker.inspections import is_unfair
 from semantics.configuration import Configuration, Label, Transition
 from semantics.monitor import monitored
 from semantics.printing import print_changes
@@ -40,7 +41,7 @@ class Trace:
         initial: Where it begins.
         steps: What is done.
         loop: The number of the configuration from which the run repeats for ever: the last is the same. If it is the
-            last itself, nothing is enabled there, and the run stays. None where the run is not for ever.
+            last itself, nothing has to happen there, and the run stays. None where the run is not for ever.
     """
 
     initial: Configuration
@@ -100,7 +101,7 @@ def print_loop(trace: Trace) -> str:
     """Print where a run that goes on for ever comes round."""
     end = len(trace)
     if trace.loop == end:
-        return f"c{end} stays for ever: nothing is enabled"
+        return f"c{end} stays for ever: nothing has to happen"
     return f"c{end} = c{trace.loop}: {_steps_of(end - (trace.loop or 0))} from there on, again and again"
 
 
@@ -179,9 +180,10 @@ def _closed(trace: Trace) -> Trace:
     if trace.loop is None:
         return trace
     last = trace.configurations[-1]
-    enabled = sorted({str(transition.label) for transition in expand(last).transitions})
-    if trace.loop == len(trace) and enabled:
-        raise ReplayError(len(trace), "staying for ever", enabled, "something can still be done")
+    expansion = expand(last)
+    enabled = sorted({str(transition.label) for transition in expansion.transitions})
+    if trace.loop == len(trace) and any(not is_unfair(last, each) for each in expansion.by_agents):
+        raise ReplayError(len(trace), "staying for ever", enabled, "something has to be done")
     if last != trace.configurations[trace.loop]:
         raise ReplayError(
             len(trace), f"coming round to c{trace.loop}", enabled, "its last step leads elsewhere"

@@ -9,7 +9,7 @@ from bigactors.files import file_stem
 from bigactors.missions import open_mission, variation_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
-from checker import ReplayError, Trace
+from checker import ReplayError, Trace, print_loop
 from semantics.printing import print_configuration
 
 
@@ -24,6 +24,8 @@ def run(options: Namespace) -> Exit:
     if step:
         say(f"c{step - 1} --{trace.steps[step - 1].label}--> c{step}")
     say(f"c{step} = {print_configuration(configuration)}")
+    if trace.loop is not None and step in (trace.loop, len(trace)):
+        say(print_loop(trace))
     output = options.output or f"{file_stem(name)}{f'-c{step}' if step else ''}.svg"
     before = trace.configurations[step - 1] if step else None
     draw(configuration, output, f"{name}, c{step}", before)

@@ -7,7 +7,7 @@ from checker.graph import Graph, graph_of
 from checker.temporal.automaton import TooLargeError
 from checker.temporal.branching import Branching
 from checker.temporal.components import Conditions
-from checker.temporal.fairness import EACH_RULE_AND_REQUEST, classes, conditions_of
+from checker.temporal.fairness import EACH_RULE_AND_REQUEST, classes, conditions_of, optional
 from checker.temporal.lassos import Lasso
 from checker.temporal.linear import counterexample
 from checker.temporal.progress import Progress, Starved, pending_requests
@@ -26,7 +26,8 @@ class Decider:
         assert found.edges is not None
         self.found = found
         self.setting = found.configurations[0].setting
-        self.graph: Graph = graph_of(found.edges, len(found.configurations)).total()
+        kept = graph_of(found.edges, len(found.configurations))
+        self.graph: Graph = kept.total(optional(kept.labels, self.setting.arriving))
         asked = (atom for each in properties if each.temporal is not None for atom in atoms(each.temporal))
         propositions = [atom.proposition for atom in asked if isinstance(atom, Now)]
         self.truth = Truth(self.graph, valuation(found.configurations, propositions))
@@ -93,7 +94,7 @@ class Decider:
         pending = pending_requests(self.found.configurations, arriving)
         fairness = self.conditions((*EACH_RULE_AND_REQUEST, *asked.fairness))
         starved, count = Progress(self.graph, pending, fairness, arriving).starved()
-        note = "; ".join(("under weak fairness of each rule and request", *self.notes(asked.fairness)))
+        note = "; ".join(self.notes(asked.fairness, "weak fairness of each rule and request"))
         violations = sorted(map(self.violation, starved), key=lambda violation: len(violation.trace))
         outcome = Outcome.VIOLATED if violations else self.unless_violated()
         if not pending:
@@ -121,12 +122,12 @@ class Decider:
         """Return what fair runs do infinitely often."""
         return conditions_of(declared, self.graph, self.setting.arriving)
 
-    def notes(self, declared: Iterable[Fairness]) -> Iterator[str]:
+    def notes(self, declared: tuple[Fairness, ...], *always: str) -> Iterator[str]:
         """Yield what is assumed, and what of it is about nothing."""
-        listed = tuple(declared)
-        if listed:
-            yield f"under {' and '.join(map(str, listed))}"
-        for each in listed:
+        assumed = (*always, *map(str, declared))
+        if assumed:
+            yield f"under {' and '.join(assumed)}"
+        for each in declared:
             if not any(True for _ in classes(each, self.graph.labels, self.setting.arriving)):
                 yield f"{each} is about no step that ever is"
 

@@ -55,6 +55,12 @@ def classes(fairness: Fairness, labels: tuple[Label, ...], arriving: Collection[
         yield marked
 
 
+def optional(labels: tuple[Label, ...], arriving: Collection[Name]) -> Bools:
+    """Return for each label whether its steps need never happen: the world's, and ends of flights that may last."""
+    found = (label.agent is None or not arrives(label, arriving) for label in labels)
+    return np.fromiter(found, dtype=np.bool_, count=len(labels))
+
+
 def arrives(label: Label, arriving: Collection[Name]) -> bool:
     """Tell whether a step is no end of a flight, or the end of one that the mission says arrives."""
     if label.rule != "commit" or not isinstance(label.about, FLY):
