@@ -63,7 +63,10 @@ def truths(draw, most=4):
     Drawn by a seed: what hypothesis draws edge by edge is mostly too small to have components of some shape.
     """
     chance = Random(draw(st.integers(0, 2**32)))
-    graph = random_graph(chance, most).total()
+    return valued(random_graph(chance, most).total(), chance)
+
+
+def valued(graph, chance):
     values = {each: [chance.random() < 0.5 for _ in range(graph.size)] for each in (P, Q)}
     return Truth(graph, {each: np.array(row, dtype=np.bool_) for each, row in values.items()})
 
