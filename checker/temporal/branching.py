@@ -10,7 +10,7 @@ import numpy as np
 from checker.graph import Bools, Graph
 from checker.temporal.arrows import Rows, reaching, reversed_rows, shortest
 from checker.temporal.components import Conditions, fair_components
-from checker.temporal.lassos import Lasso, fair_cycle, tightened
+from checker.temporal.lassos import Lasso, component_of, fair_cycle, tightened
 from checker.temporal.truth import Truth
 from semantics.propositions import Always
 from semantics.temporal import (
@@ -157,7 +157,8 @@ class Branching:
         else:
             path = ()
         entry = int(self.graph.targets[path[-1]]) if path else at
-        return tightened(Lasso(path, fair_cycle(self.graph, components, entry, self.fairness)))
+        part = component_of(self.graph, components, entry, self.fairness)
+        return tightened(Lasso(path, fair_cycle(part, entry)))
 
 
 def core(formula: Temporal) -> Temporal:

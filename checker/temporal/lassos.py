@@ -1,5 +1,6 @@
 """Lassos: a way to a fair component, and a cycle in it that is fair."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -10,7 +11,9 @@ from checker.temporal.arrows import Arrows, Rows, rows_of, shortest
 from checker.temporal.components import Conditions
 
 MOST_ENTRIES: Final = 16
-"""At so many entries to fair components a cycle is looked for, the nearest first; the shortest lasso is taken."""
+MOST_EDGES: Final = 1_000_000
+"""A cycle is looked for at so many entries to fair components, the nearest first, and the shortest lasso is taken; at
+fewer where that means to search more than so many edges, and at one at least."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,8 +28,8 @@ class Lasso:
 
 
 @dataclass(frozen=True, eq=False)
-class _Component:
-    """A component as a graph of its own: of its nodes and edges, which they are of the whole."""
+class Component:
+    """A fair component as a graph of its own: its nodes and edges, by their numbers in the whole."""
 
     nodes: Numbers
     edges: Numbers
@@ -34,14 +37,24 @@ class _Component:
     conditions: Conditions
 
 
-def fair_cycle(
-    arrows: Arrows, components: Numbers, entry: int, conditions: Conditions, by: Bools | None = None
-) -> tuple[int, ...]:
+def component_of(
+    arrows: Arrows, components: Numbers, node: int, conditions: Conditions, by: Bools | None = None
+) -> Component:
+    """Return the component that a node is in."""
+    inside = components == components[node]
+    nodes = np.flatnonzero(inside)
+    allowed = inside[arrows.sources] & inside[arrows.targets]
+    edges = np.flatnonzero(allowed if by is None else allowed & by)
+    numbers = np.cumsum(inside) - 1
+    sources, targets = (numbers[ends[edges]] for ends in (arrows.sources, arrows.targets))
+    return Component(nodes, edges, rows_of(sources, targets, len(nodes)), conditions.over(nodes, edges))
+
+
+def fair_cycle(part: Component, entry: int) -> tuple[int, ...]:
     """Return the edges of a short cycle through a node of a fair component, which meets the conditions.
 
     Each of them that the shortest cycle doesn't meet is met by a detour to where it is met nearest.
     """
-    part = _part(arrows, components, entry, conditions, by)
     start = int(np.searchsorted(part.nodes, entry))
     home = part.rows.targets == start
     path: tuple[int, ...] = ()
@@ -57,18 +70,24 @@ def fair_cycle(
         path += detour
 
 
-def _part(
-    arrows: Arrows, components: Numbers, entry: int, conditions: Conditions, by: Bools | None
-) -> _Component:
-    inside = components == components[entry]
-    nodes = np.flatnonzero(inside)
-    allowed = inside[arrows.sources] & inside[arrows.targets]
-    edges = np.flatnonzero(allowed if by is None else allowed & by)
-    sources, targets = (np.searchsorted(nodes, ends[edges]) for ends in (arrows.sources, arrows.targets))
-    return _Component(nodes, edges, rows_of(sources, targets, len(nodes)), conditions.over(nodes, edges))
+def fair_cycles(
+    arrows: Arrows, components: Numbers, conditions: Conditions
+) -> Iterator[tuple[int, tuple[int, ...]]]:
+    """Yield entries to fair components, those of smaller numbers first, each with a cycle."""
+    entries = np.flatnonzero(components >= 0)[:MOST_ENTRIES]
+    parts: dict[int, Component] = {}
+    searched = 0
+    for entry in map(int, entries):
+        number = int(components[entry])
+        if number not in parts:
+            parts[number] = component_of(arrows, components, entry, conditions)
+        searched += len(parts[number].edges)
+        if searched > MOST_EDGES and entry != entries[0]:
+            return
+        yield entry, fair_cycle(parts[number], entry)
 
 
-def _unmet(part: _Component, cycle: tuple[int, ...]) -> Bools:
+def _unmet(part: Component, cycle: tuple[int, ...]) -> Bools:
     """Return the edges by which some condition is met that a cycle doesn't meet."""
     taken = np.array(cycle, dtype=np.int64)
     visited = part.rows.targets[taken]

@@ -1,11 +1,9 @@
 """Linear time: is there a fair run on which a formula is false? If so, one that is as short as reasonable."""
 
-import numpy as np
-
 from checker.graph import Bools, Graph
 from checker.temporal.automaton import automaton_of
 from checker.temporal.components import Conditions, fair_components
-from checker.temporal.lassos import MOST_ENTRIES, Lasso, fair_cycle, tightened
+from checker.temporal.lassos import Lasso, fair_cycles, tightened
 from checker.temporal.product import Product, product_of
 from checker.temporal.truth import Truth
 from semantics.temporal import Both, Globally, Temporal
@@ -54,10 +52,8 @@ def _counterexample(graph: Graph, truth: Truth, formula: Temporal, fairness: Con
 def _lasso(product: Product, conditions: Conditions, within: Bools | None) -> Lasso | None:
     """Return a lasso; `within` are the nodes of which it is known what is enabled, where that matters."""
     components = fair_components(product, conditions, within)
-    entries = np.flatnonzero(components >= 0)[:MOST_ENTRIES]  # numbered by distance: the nearest first
-    cycles = ((int(node), fair_cycle(product, components, int(node), conditions)) for node in entries)
-    lassos = (
+    lassos = (  # nodes are numbered by their distance: the nearest come first
         Lasso(product.way_to(node), tuple(int(product.edges[edge]) for edge in cycle))
-        for node, cycle in cycles
+        for node, cycle in fair_cycles(product, components, conditions)
     )
     return min(map(tightened, lassos), key=len, default=None)

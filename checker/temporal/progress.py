@@ -9,7 +9,7 @@ from checker.graph import Bools, Graph
 from checker.temporal.arrows import shortest
 from checker.temporal.components import Conditions, fair_components
 from checker.temporal.fairness import arrives
-from checker.temporal.lassos import Lasso, fair_cycle, tightened
+from checker.temporal.lassos import Lasso, component_of, fair_cycle, tightened
 from semantics.configuration import Configuration, Label
 from semantics.requests import FLY, READY, Request
 from semantics.signature import Name
@@ -97,7 +97,8 @@ class Progress:
     def _starved(self, request: Request, entry: int) -> Starved:
         serving = self.serving(request)
         components = self.waiting(request)
-        loop = fair_cycle(self.graph, components, entry, self.fairness, by=~serving)
+        part = component_of(self.graph, components, entry, self.fairness, by=~serving)
+        loop = fair_cycle(part, entry)
         stem = shortest(self.graph, 0, self.graph.targets == entry) if entry else ()
         assert stem is not None  # everything that was explored is reached
         enabled = self.graph.enabled(serving)
