@@ -110,7 +110,7 @@ class Both:
     right: "Temporal"
 
     def __str__(self) -> str:
-        return f"{_operand(self.left)} and {_operand(self.right)}"
+        return " and ".join(_chained(each, Both) for each in (self.left, self.right))
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +121,7 @@ class Either:
     right: "Temporal"
 
     def __str__(self) -> str:
-        return f"{_operand(self.left)} or {_operand(self.right)}"
+        return " or ".join(_chained(each, Either) for each in (self.left, self.right))
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,6 +217,10 @@ def _operand(formula: Temporal) -> str:
     loose = Both | Either | Until | Release | WeakUntil
     joined = isinstance(formula, Now) and isinstance(formula.proposition, And | Or)
     return f"({formula})" if joined or isinstance(formula, loose) else str(formula)
+
+
+def _chained(formula: Temporal, sort: type) -> str:
+    return str(formula) if isinstance(formula, sort) else _operand(formula)
 
 
 def parts(formula: Temporal) -> tuple[Temporal, ...]:

@@ -124,7 +124,7 @@ class _Tableau:
         return found
 
     def state(self, term: _Term) -> State:
-        """Return what a term leaves to be fulfilled, conjunctions taken apart."""
+        """Return what a term leaves to be fulfilled: conjunctions taken apart, `f` left out where `[] f` is owed."""
         found, waiting = set[Number](), sorted(term.after)
         while waiting:
             number = waiting.pop()
@@ -133,7 +133,9 @@ class _Tableau:
                 waiting += operation.operands
             elif number != TRUE:
                 found.add(number)
-        return tuple(sorted(found))
+        owed = (self.formulas.nodes[number] for number in found)
+        ever = {each.operands[1] for each in owed if each.operator == "release" and each.operands[0] == FALSE}
+        return tuple(sorted(found - ever))
 
     def literal(self, number: Number) -> Literal:
         literal = self.formulas.nodes[number].literal

@@ -58,7 +58,7 @@ class Decider:
         if lasso.loop and is_true_on(lasso, asked.temporal, self.truth):
             raise AssertionError(f"the counterexample is none: {asked.temporal}")
         violation = Violation(asked.kind, message, self.trace(lasso))
-        return Verdict(asked, Outcome.VIOLATED, (violation,), 1, self.graph.size, note=note)
+        return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note)
 
     def vacuous(self, formula: Temporal) -> Iterator[str]:
         """Yield what a formula rests on and never happens."""

@@ -65,13 +65,32 @@ class Formulas:
         """Return a conjunction."""
         if FALSE in (left, right):
             return FALSE
+        inner = self._inside("until", TRUE, "release", FALSE, left, right)
+        if inner is not None:  # <> [] f and <> [] g is <> [] (f and g)
+            return self.until(TRUE, self.release(FALSE, self.both(*inner)))
         return self._pair("and", left, right, TRUE)
 
     def either(self, left: Number, right: Number) -> Number:
         """Return a disjunction."""
         if TRUE in (left, right):
             return TRUE
+        inner = self._inside("release", FALSE, "until", TRUE, left, right)
+        if inner is not None:  # [] <> f or [] <> g is [] <> (f or g)
+            return self.release(FALSE, self.until(TRUE, self.either(*inner)))
         return self._pair("or", left, right, FALSE)
+
+    def _inside(
+        self, outer: str, first: Number, inner: str, second: Number, *formulas: Number
+    ) -> tuple[Number, ...] | None:
+        """Return what stands behind two operators, if all formulas begin with these."""
+        found = []
+        for number in formulas:
+            around = self.nodes[number]
+            within = self.nodes[around.operands[1]] if around.operator == outer else around
+            if (within.operator, *around.operands[:1], *within.operands[:1]) != (inner, first, second):
+                return None
+            found.append(within.operands[1])
+        return tuple(found)
 
     def _pair(self, operator: str, left: Number, right: Number, neutral: Number) -> Number:
         members = sorted({left, right} - {neutral})

@@ -29,6 +29,8 @@ SIZES = {
     "<> [] p": (Eventually(Globally(p)), 2),
     "not (p leads to q)": (Denied(Globally(Either(Denied(p), Eventually(q)))), 2),
     "[] <> p and [] <> q": (Both(Globally(Eventually(p)), Globally(Eventually(q))), 1),
+    "[] <> p or [] <> q": (Either(Globally(Eventually(p)), Globally(Eventually(q))), 1),
+    "<> [] p and <> [] q": (Both(Eventually(Globally(p)), Eventually(Globally(q))), 2),
     "X X p": (Next(Next(p)), 4),
     "<> (p U q)": (Eventually(Until(p, q)), 2),
     "[] (p R q)": (Globally(Release(p, q)), 1),

@@ -19,7 +19,7 @@ from structures import (
 from checker.temporal.lassos import Lasso
 from checker.temporal.linear import counterexample
 from checker.temporal.words import is_true_on
-from semantics.temporal import Denied, Either, Eventually, Globally, Now, Taken
+from semantics.temporal import Both, Denied, Either, Eventually, Globally, Now, Taken
 
 LONGEST = 5
 RECURRENCES = (
@@ -28,6 +28,9 @@ RECURRENCES = (
     Globally(Either(Denied(Now(P)), Eventually(Now(Q)))),
     Globally(Eventually(Taken(STEPS[0]))),
     Eventually(Globally(Now(P))),
+    Either(Globally(Eventually(Now(P))), Globally(Eventually(Now(Q)))),
+    Both(Eventually(Globally(Now(P))), Eventually(Globally(Now(Q)))),
+    Either(Eventually(Globally(Now(P))), Eventually(Globally(Now(Q)))),
 )
 
 
