@@ -24,6 +24,9 @@ RULES = {
     "arrival": "No run waits for ever for the end of a flight.",
     "invariant": "A proposition is true of every configuration.",
     "reachable": "A proposition is true of some configuration.",
+    "ltl": "A formula of linear time is true of every fair run.",
+    "ctl": "A formula of branching time is true of the tree of fair runs.",
+    "progress": "Every pending request is eventually served on every fair run.",
     "computation": "No bigActor's computation fails or diverges.",
     "exploration": "Everything reachable is visited.",
 }
