@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from checker.coverage import coverage
 from checker.exploration import (
@@ -24,6 +25,10 @@ from checker.visited import Visited
 from semantics.configuration import Configuration
 from semantics.monitor import monitored
 from semantics.propositions import Property
+from semantics.temporal import TEMPORAL
+
+if TYPE_CHECKING:
+    from checker.temporal.decide import Decider
 
 Reporter = Callable[[Progress], None]
 
@@ -105,6 +110,8 @@ class _Check:
         self.owned = asked and owned(initial)
         self.searching = asked and not self.owned
         self.remembered: Exploration | None = None
+        self.temporal = tuple(each for each in self.properties if each.kind in TEMPORAL)
+        self.decider: Decider | None = None
 
     def run(self, notes: tuple[str, ...]) -> Report:
         races = (self.races,) if self.searching else ()
@@ -115,7 +122,8 @@ class _Check:
             self.computation,
             *races,
         )
-        self.found = self.explore(self.initial, (*inspections, *self.formulas.values()), self.limits)
+        everything = (*inspections, *self.formulas.values())
+        self.found = self.explore(self.initial, everything, self.limits, edges=bool(self.temporal))
         if self.searching:
             self.remembered = self.search()
         later = self.remembered.bounds if self.remembered else []
@@ -131,8 +139,10 @@ class _Check:
             coverage=coverage(self.initial, self.visited, complete=self.found.complete),
         )
 
-    def explore(self, start: Configuration, inspections: tuple[Inspect, ...], limits: Limits) -> Exploration:
-        return explore(start, inspections, limits, self.report, engine=self.engine)
+    def explore(
+        self, start: Configuration, inspections: tuple[Inspect, ...], limits: Limits, *, edges: bool = False
+    ) -> Exploration:
+        return explore(start, inspections, limits, self.report, engine=self.engine, edges=edges)
 
     def search(self) -> Exploration | None:
         """Explore once more, with memory and in the time that is left; None where the user has asked for the end."""
@@ -159,8 +169,17 @@ class _Check:
                 return self.verdict(asked, self.deadlock.arrival, note)
             case "computation":
                 return self.verdict(asked, self.computation.collected)
+            case kind if kind in TEMPORAL:
+                return self.decide_temporal(asked)
             case _:
                 return self.decide_invariant(asked)
+
+    def decide_temporal(self, asked: Property) -> Verdict:
+        from checker.temporal.decide import Decider  # noqa: PLC0415 - numpy and scipy take their time to load
+
+        if self.decider is None:
+            self.decider = Decider(self.found, self.temporal)
+        return self.decider.decide(asked)
 
     def verdict(self, asked: Property, collected: Collected, note: str = "") -> Verdict:
         """Return the verdict of a property that no finding may speak against."""

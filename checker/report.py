@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from checker.coverage_report import coverage_json
-from checker.traces import Trace, print_trace, to_json
+from checker.traces import Trace, print_length, print_trace, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
 from semantics.setting import Control
 from semantics.successors import rules_of
@@ -21,8 +21,12 @@ UNITS = {
     "arrival": (" end of a flight", " ends of flights"),
     "computation": (" internal step", " internal steps"),
     "invariant": (" configuration", " configurations"),
+    "ctl": (" configuration", " configurations"),
 }
 """What is examined for each kind of property, one and several; of what is to be reachable, configurations with it."""
+
+OF_RUNS = ("ltl", "ctl")
+"""Kinds of properties of which one violation is looked for, and not how many there are."""
 
 NOTHING_EXAMINED = {
     "deadlock_freedom": "some bigActor can always move",
@@ -56,7 +60,7 @@ def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
 
 def _sizes(verdict: Verdict) -> Iterator[str]:
     if verdict.outcome is Outcome.VIOLATED:
-        if verdict.violations:
+        if verdict.violations and verdict.property.kind not in OF_RUNS:
             yield _found(verdict)
     elif verdict.witness is not None and verdict.examined:
         yield f"examined {verdict.examined:,}{_unit(verdict)}, a witness of {_steps(len(verdict.witness))}"
@@ -90,7 +94,7 @@ def _steps(count: int) -> str:
 def _violation(violation: Violation, *, traces: bool) -> Iterator[str]:
     yield f"      {violation.kind}: {violation.message}"
     yield from (f"        {detail}" for detail in violation.details)
-    yield f"      a shortest trace, {_steps(len(violation.trace))}{':' if traces else ''}"
+    yield f"      {print_length(violation.trace)}{':' if traces else ''}"
     if traces:
         yield from (f"        {line}" for line in print_trace(violation.trace))
 

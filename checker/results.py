@@ -9,7 +9,7 @@ from checker.coverage import Gap
 from checker.coverage_report import coverage_text, line_text
 from checker.places import violation_line
 from checker.report import report_text
-from checker.traces import Trace, print_trace
+from checker.traces import Trace, print_length, print_trace
 from checker.verdicts import Outcome, Report, Verdict, Violation
 
 
@@ -165,9 +165,7 @@ def issue_text(issue: Issue) -> str:
     """Return an issue with its details and its trace as lines of text."""
     lines = [issue.message, *(f"  {detail}" for detail in issue.details)]
     if issue.trace is not None:
-        lines.append(
-            f"a shortest trace, {len(issue.trace):,} {'step' if len(issue.trace) == 1 else 'steps'}:"
-        )
+        lines.append(f"{print_length(issue.trace)}:")
         lines += [f"  {line}" for line in print_trace(issue.trace)]
     return "\n".join(lines)
 

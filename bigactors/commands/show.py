@@ -11,7 +11,7 @@ from bigactors.files import file_stem
 from bigactors.missions import open_mission, variation_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
-from checker import ReplayError, Trace
+from checker import ReplayError, Trace, print_loop
 from checker.comparison import comparison_text
 from checker.lanes import lanes_of_trace, lanes_text
 from semantics.printing import print_configuration
@@ -59,6 +59,8 @@ def _show_configuration(trace: Trace, step: int) -> None:
     if step:
         say(f"c{step - 1} --{trace.steps[step - 1].label}--> c{step}")
     say(f"c{step} = {print_configuration(trace.configurations[step])}")
+    if trace.loop is not None and step in (trace.loop, len(trace)):
+        say(print_loop(trace))
 
 
 def _write(options: Namespace, name: str, trace: Trace, step: int) -> None:
