@@ -59,6 +59,7 @@ class Recorder:
         scopes: What was asked, by the rule itself and then by the part that is being recorded.
         taken: The cells that were taken to be never written.
         known: What was worked out already, scope by scope.
+        families: The pointwise definitions that were made.
     """
 
     source: Source
@@ -68,6 +69,7 @@ class Recorder:
     scopes: list[Asked] = field(default_factory=lambda: [{}])
     taken: set[Cell] = field(default_factory=set)
     known: list[dict[Any, Any]] = field(default_factory=lambda: [{}])
+    families: list[Any] = field(default_factory=list)
 
     def read(self, cell: Cell) -> Any:
         """Return the value of a cell, and note its skeleton; what its observations say is noted as it is asked."""
@@ -93,7 +95,9 @@ class Recorder:
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
         """Return a pointwise definition whose parts wait until somebody asks for them."""
-        return Pointwise(self, tuple(names), part)
+        family = Pointwise(self, tuple(names), part)
+        self.families.append(family)  # what is known of it is kept by its identity
+        return family
 
     def with_(self, changes: Mapping[Cell, Any]) -> "Conclusion":
         """Return the cells with a rule's conclusion over them."""
