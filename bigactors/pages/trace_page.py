@@ -99,8 +99,17 @@ def _row(number: int, cells: Sequence[str]) -> str:
 
 def _cells(step: LaneStep, lanes: Lanes) -> Iterator[str]:
     for lane in range(len(lanes.names)):
-        late = "late" if lane * 2 >= len(lanes.names) else None  # there is room to its left
-        yield element("td", _step(step), class_=late) if lane == step.lane else element("td")
+        if lane == step.lane:
+            yield element("td", _step(step), class_=_side(lane, len(lanes.names)))
+        else:
+            yield element("td")
+
+
+def _side(lane: int, count: int) -> str | None:
+    """Return where a box may reach over its lane: to the right from the first, to the left from the last, else both."""
+    if lane == 0:
+        return None
+    return "last" if lane == count - 1 else "inner"
 
 
 def _step(step: LaneStep) -> str:
