@@ -32,7 +32,7 @@ UNSCRIPTED: Final = (
 def trace_page(story: Story) -> str:
     """Return the page."""
     story = latest(story)
-    frames, lanes = frames_of(story), lanes_of_trace(story.trace, story.loop)
+    frames, lanes = frames_of(story), lanes_of_trace(story.trace)
     script, style = _resource("trace.js"), _resource("trace.css")
     allowed = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     policy = (
@@ -49,7 +49,7 @@ def trace_page(story: Story) -> str:
         element("noscript", element("style", UNSCRIPTED)),
     )
     main = element("main", _run(lanes, story.first), _stage(frames, story.first))
-    start = {"data_start": story.start, "data_first": story.first, "data_loop": story.loop}
+    start = {"data_start": story.start, "data_first": story.first, "data_loop": story.trace.loop}
     body = element("body", _header(story), main, element("script", script), **start)
     return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
 
