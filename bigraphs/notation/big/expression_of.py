@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from bigraphs.bigraph import Bigraph, Link, Node, Place, children, sites_in
 from bigraphs.errors import BigraphError
@@ -27,9 +28,12 @@ from bigraphs.notation.big.syntax import (
 )
 from bigraphs.system import Value
 
+DEEPEST: Final = 90
+"""How deep places nest that are written: each may need a dot and a parenthesis, and sharing two of these."""
+
 
 def write_big(bigraph: Bigraph) -> str:
-    """Write a bigraph of anonymous nodes; raises BigraphError for a named node, which this notation cannot say.
+    """Write a bigraph of anonymous nodes; raises BigraphError for a named node, and for places that nest too deeply.
 
     >>> from bigraphs.relations import from_relations
     >>> from dataclasses import replace
@@ -47,12 +51,26 @@ def expression_of(bigraph: Bigraph) -> Expression:
             raise BigraphError(
                 "notation", f"this notation cannot name a node, as {node}", "use the paper's notation"
             )
+    if _depth(bigraph) > DEEPEST:
+        hint = "the texts that are read nest no deeper"
+        raise BigraphError("too-deep", f"places nest deeper than {DEEPEST}", hint)
     edges = _edge_names(bigraph)
     shared = any(len(parents) > 1 for parents in [*(node.parents for node in bigraph.nodes), *bigraph.sites])
     places = _layers(bigraph, edges) if shared else _nested(bigraph, edges)
     parts = [*places, *_wires(bigraph, edges)]
     body = _chain("||", parts) if parts else Number(0)
     return Wired(tuple(Close((name,)) for name in edges), body) if edges else body
+
+
+def _depth(bigraph: Bigraph) -> int:
+    """Count how many nodes are in each other, layer by layer."""
+    inside = children(bigraph)
+    layer: set[Place] = set(range(-bigraph.regions, 0))
+    depth = 0
+    while layer and depth <= DEEPEST:
+        layer = {child for place in layer for child in inside[place]}
+        depth += bool(layer)
+    return depth
 
 
 def _edge_names(bigraph: Bigraph) -> list[str]:

@@ -85,6 +85,15 @@ def test_constants_are_evaluated_in_any_order_and_can_be_given():
     assert read_system(text, constants={"b": 5}).initial.nodes[0].control == "K(4,7.0)"
 
 
+def test_constants_that_are_given_must_be_there_and_of_their_type():
+    text = system("int a = 1; fun ctrl K(x, y) = 0; big t = K(a, b).1;", init="t")
+    assert read_system(text, constants={"b": 2.5}).initial.nodes[0].control == "K(1,2.5)"
+    with pytest.raises(NotationError, match=r"an int was expected, this is the float 2\.5"):
+        read_system(text, constants={"a": 2.5, "b": 1})
+    with pytest.raises(NotationError, match="no constant 'c' is in the file"):
+        read_system(text, constants={"b": 1, "c": 1})
+
+
 def test_whole_numbers_are_divided_towards_zero():
     found = read("fun ctrl K(a, b, c) = 0; big t = K(-7 / 2, 7 / -2, 7 / 2.0).1;", init="t")
     assert found.initial.nodes[0].control == "K(-3,-3,3.5)"
