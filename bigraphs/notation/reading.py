@@ -14,7 +14,7 @@ from bigraphs.errors import NotationError
 MAX_BYTES: Final = 1_000_000
 MAX_NESTING: Final = 200
 MAX_TOKEN: Final = 10_000
-MAX_WORDS: Final = 60_000
+MAX_WORDS: Final = 200_000
 
 _WORD: Final = re.compile(r"\w+|[^\w\s]")
 _STEPS: Final = re.compile(r"[()]|\.|\|\|?|-->|->|[;,=]|[^\W\d]\w*|/")

@@ -217,6 +217,17 @@ MISTAKES = [
         {"declarations": "fun ctrl K(i) = 0; fun big f(i) = K(i); big b = f(1) || f(2.5);"},
         "'i' of 'f' is of type int, this is the float 2.5",
     ),
+    (
+        "type",
+        {"declarations": "fun big f(i) = par(i, A.1); big b = f(1) || f(1.0);"},
+        "'i' of 'f' is of type int, this is the float 1.0",
+    ),
+    (
+        "name",
+        {"declarations": "big b(1) = 1; big b(2 - 1) = 1;", "preds": "b(1)"},
+        "'b(1)' is declared twice",
+    ),
+    ("name", {"declarations": "big b(1) = 1; big c = b(1.0);"}, "'b' is not given for these arguments"),
     ("cycle", {"declarations": "int n = m; int m = n + 1;"}, "'m' needs 'n', which is not known before it"),
     ("cycle", {"declarations": "big b = A.c; big c = A.b;"}, "'b' is made of itself"),
     ("number", {"declarations": "int n = 1 / 0;"}, "division by zero"),
@@ -462,7 +473,7 @@ def test_the_work_of_one_file_is_bounded(monkeypatch):
 
 
 def test_the_number_of_words_of_one_file_is_bounded():
-    (found,) = mistakes("begin brs init s; rules = [" + "{r}, " * 50_000 + "{r}]; end")
+    (found,) = mistakes("begin brs init s; rules = [" + "{r}, " * 80_000 + "{r}]; end")
     assert found.code == "too-long"
 
 
