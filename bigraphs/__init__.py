@@ -38,47 +38,22 @@ from bigraphs.relations import from_relations
 from bigraphs.rewriting import rewrite, successors
 from bigraphs.rules import ReactionRule, matches, rule
 from bigraphs.signature import Control, Signature, open_signature
-from bigraphs.sorting import LinkSort, Sorting
-from bigraphs.system import (
-    Action,
-    Condition,
-    Position,
-    Predicate,
-    PriorityClass,
-    Rule,
-    System,
-    SystemKind,
-    Value,
-    Where,
-)
 from bigraphs.text import draw_text
 
 __all__ = [
-    "Action",
     "Bigraph",
     "BigraphError",
-    "Condition",
     "Control",
     "Interface",
     "Layout",
     "Link",
-    "LinkSort",
     "Match",
     "Node",
     "NotationError",
     "Parts",
     "Place",
-    "Position",
-    "Predicate",
-    "PriorityClass",
     "ReactionRule",
-    "Rule",
     "Signature",
-    "Sorting",
-    "System",
-    "SystemKind",
-    "Value",
-    "Where",
     "assemble",
     "atom",
     "canonical",
