@@ -12,8 +12,10 @@ from enum import Enum
 from typing import TypeAlias
 
 from bigraphs.bigraph import Bigraph
+from bigraphs.properties import Property
 from bigraphs.rules import ReactionRule
 from bigraphs.signature import Signature
+from bigraphs.sorting import UNSORTED, Sorting
 
 Value: TypeAlias = int | float | str
 
@@ -64,7 +66,8 @@ class Rule:
 
     Site `i` of the reactum holds what site `instantiation[i]` of the redex held. `weight` is a weight or a
     rate, None in a BRS; infinity is a rate of an instantaneous rule. `action` names the action that it is part
-    of, in an NBRS only, and `reward` is that action's.
+    of, in an NBRS only, and `reward` is that action's. An outer name of the redex stands for any link, but one
+    of `link_constants` (BigMC's declared names) for the link of that name.
     """
 
     name: str
@@ -76,16 +79,23 @@ class Rule:
     reward: int | float = 0
     conditions: tuple[Condition, ...] = ()
     parameters: tuple[Value, ...] = ()
+    link_constants: frozenset[str] = frozenset()
     position: Position | None = field(default=None, compare=False)
 
     @property
     def label(self) -> str:
-        """Return the name with its parameters, `move(1, "a")`: distinct within a system."""
+        """Return the name with its parameters, `move(1,"a")`: distinct within a system."""
         return call(self.name, self.parameters)
 
     def reaction(self) -> ReactionRule:
         """Return the bare reaction rule, for `bigraphs.matching` and `bigraphs.rewriting`."""
-        return ReactionRule(self.redex, self.reactum, self.instantiation, self.label)
+        return ReactionRule(
+            self.redex,
+            self.reactum,
+            self.instantiation,
+            self.label,
+            link_constants=self.link_constants,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +132,10 @@ class Action:
 
 @dataclass(frozen=True, slots=True)
 class System:
-    """A reactive system; `classes` come from the highest priority down, `initial` is ground."""
+    """A reactive system; `classes` come from the highest priority down, `initial` is ground.
+
+    Rules keep every state sorted by `sorting`, and `properties` (BigMC's) are to hold in every state.
+    """
 
     kind: SystemKind
     signature: Signature
@@ -130,6 +143,8 @@ class System:
     classes: tuple[PriorityClass, ...] = ()
     predicates: tuple[Predicate, ...] = ()
     actions: tuple[Action, ...] = ()
+    properties: tuple[Property, ...] = ()
+    sorting: Sorting = UNSORTED
 
     def rules(self) -> Iterator[Rule]:
         """Yield every rule, from the highest priority down."""
@@ -140,9 +155,9 @@ def call(name: str, parameters: tuple[Value, ...]) -> str:
     """Write a name with its parameters.
 
     >>> call("move", (1, 2.0, "a"))
-    'move(1, 2.0, "a")'
+    'move(1,2.0,"a")'
     """
-    return f"{name}({', '.join(map(_written, parameters))})" if parameters else name
+    return f"{name}({','.join(map(_written, parameters))})" if parameters else name
 
 
 def _written(value: Value) -> str:

@@ -6,21 +6,26 @@ from collections.abc import Sequence
 
 from bigraphs.bigraph import Bigraph, Link, Node, Place, children, sites_in
 from bigraphs.errors import BigraphError
-from bigraphs.notation.big_printer import format_expression
-from bigraphs.notation.big_syntax import (
+from bigraphs.notation.big.printer import format_expression
+from bigraphs.notation.big.syntax import (
+    Arguments,
     Chain,
     Close,
     Expression,
     Identity,
     Ion,
+    Literal,
+    Negated,
     Nest,
     NewNames,
     Number,
     Placed,
     Share,
     Substitute,
+    ValueExpression,
     Wired,
 )
+from bigraphs.system import Value
 
 
 def write_big(bigraph: Bigraph) -> str:
@@ -76,7 +81,27 @@ def _wires(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
 
 
 def _ion(node: Node, edges: Sequence[str]) -> Ion:
-    return Ion(node.control, tuple(_named(link, edges) for link in node.ports))
+    name, _, parameters = node.control.partition("(")
+    return Ion(name, tuple(_named(link, edges) for link in node.ports), values_of(parameters))
+
+
+def values_of(parameters: str) -> Arguments:
+    """Return the values in `1,2.5,"a")`, what follows the parenthesis in the name of a parametrised control."""
+    return tuple(map(_literal, parameters.removesuffix(")").split(","))) if parameters else ()
+
+
+def _literal(written: str) -> ValueExpression:
+    if written.startswith('"'):
+        return Literal(written.strip('"'))
+    number = float(written) if set(written) & set(".einf") else int(written)
+    return written_value(number)
+
+
+def written_value(value: Value) -> ValueExpression:
+    """Return how a value is written: a negative number has a sign."""
+    if isinstance(value, str) or value >= 0:
+        return Literal(value)
+    return Negated(Literal(-value))
 
 
 def _nested(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
@@ -88,7 +113,7 @@ def _nested(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
         parts: list[Expression] = []
         for child in inside[place]:
             ion = _ion(bigraph.nodes[child], edges)
-            atomic = bigraph.signature[ion.control].status == "atomic"
+            atomic = bigraph.signature[bigraph.nodes[child].control].status == "atomic"
             parts.append(ion if atomic else Nest(ion, within(child)))
         written.extend(sited.get(place, ()))
         parts.extend(Identity() for _ in sited.get(place, ()))
