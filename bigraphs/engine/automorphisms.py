@@ -42,6 +42,10 @@ class Representatives:
         self.twins = pattern.twins
         self.symmetries = symmetries
 
+    def choose(self, occurrences: list[Occurrence]) -> list[Occurrence]:
+        """Return one of each that are equal, in the order given."""
+        return list(filter(self.chosen, occurrences)) if self.symmetries else occurrences
+
     def chosen(self, occurrence: Occurrence) -> bool:
         """Say whether an occurrence is the least of those that it stands for."""
         mine = (occurrence.nodes, occurrence.links)

@@ -42,14 +42,15 @@ class Spot:
         number = reaction.number
         found = self.found[number]
         if found is None:
-            before, chosen = self._before[number], reaction.representatives.chosen
+            before = self._before[number]
             if before is None:
                 fresh, found = reaction.matcher.find(self.state), []
             else:
                 touched = self._touched(reaction)
                 fresh = reaction.matcher.find_at(self.state, touched)
                 found = [each for each in before if not each.mask & touched]
-            found += fresh if not reaction.representatives.symmetries else filter(chosen, fresh)
+            if fresh:
+                found += reaction.representatives.choose(fresh)
             self.found[number] = found
         return found
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 from bigraphs.engine.automorphisms import Representatives, symmetries
@@ -59,7 +60,6 @@ class Reaction:
         self.world, self.rule, self.number = world, rule, number
         self.pattern = compile_pattern(world, rule.redex)
         self.matcher = Matcher(world, self.pattern)
-        self.representatives = Representatives(self.pattern, symmetries(rule, self.pattern))
         self.conditions = tuple(ConditionCheck(world, condition) for condition in rule.conditions)
         self.wide = world.passive or self.pattern.wide()
         self.exact = frozenset(
@@ -69,6 +69,11 @@ class Reaction:
         )
         self.closed = rule.redex.edges > 0
         self._compile()
+
+    @cached_property
+    def representatives(self) -> Representatives:
+        """What chooses among occurrences that are one; made when the rule has an occurrence."""
+        return Representatives(self.pattern, symmetries(self.rule, self.pattern))
 
     def _compile(self) -> None:
         rule, world = self.rule, self.world
@@ -146,6 +151,9 @@ class Reaction:
 
         def places(written: tuple[int, ...]) -> tuple[int, ...]:
             found = [[slots[place]] if place >= 0 else regions[~place] for place in written]
+            if not any(found):
+                message = f"rule '{self.rule.label}' puts something into a region that lies nowhere here"
+                raise BigraphError("orphan", message, "give it a place in a node of the rule, too")
             return tuple(sorted({place for some in found for place in some}))
 
         self._relink(draft, occurrence, slots)

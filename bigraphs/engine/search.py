@@ -3,7 +3,7 @@
 A plan places the nodes of a pattern one after the other, next to those that are placed already, so that its
 candidates are an intersection of a few masks. An occurrence maps nodes injectively and keeps controls, nesting
 and links: a node without a site has nothing else in it, an edge is matched with all of its points, a name by any
-link. Whether its regions lie where rules may act is asked afterwards (`bigraphs.engine.contexts`), since that can
+link. Only a region all of whose nodes are in other nodes, too, may lie nowhere. Whether the regions lie where rules may act is asked afterwards (`bigraphs.engine.contexts`), since that can
 change without any node of the occurrence being touched.
 """
 
@@ -57,7 +57,14 @@ class Matcher:
     def __init__(self, world: World, pattern: Pattern) -> None:
         self.world = world
         self.pattern = pattern
-        self.plans = [_plan(world, pattern, node) for node in range(pattern.size)]
+        self._plans: list[Placing | None] = [None] * pattern.size
+
+    def plan(self, first: int) -> Placing:
+        """Return what places the whole pattern from one node on; it is made when it is first asked for."""
+        found = self._plans[first]
+        if found is None:
+            found = self._plans[first] = _plan(self.world, self.pattern, first)
+        return found
 
     def find(self, state: State, allowed: int = -1, *, once: bool = False) -> list[Occurrence]:
         """Return every occurrence within the allowed slots, or one of them."""
@@ -66,9 +73,10 @@ class Matcher:
             return [Occurrence((), tuple(run.links), 0)]
         counts = [state.by_control[control].bit_count() for control in pattern.controls]
         first = counts.index(min(counts))
-        for slot in bits(state.by_control[pattern.controls[first]] & allowed):
-            if self.plans[first](run, 0, slot):
-                break
+        candidates = state.by_control[pattern.controls[first]] & allowed
+        if candidates:
+            plan = self.plan(first)
+            any(plan(run, 0, slot) for slot in bits(candidates))
         return run.found
 
     def find_at(self, state: State, touched: int) -> list[Occurrence]:
@@ -79,7 +87,7 @@ class Matcher:
             control = self.world.control_of[state.labels[slot]]
             for node, wanted in enumerate(controls):
                 if wanted == control:
-                    self.plans[node](run, 0, slot)
+                    self.plan(node)(run, 0, slot)
             run.allowed &= ~(1 << slot)  # what holds this slot has been found
         return run.found
 
@@ -104,11 +112,12 @@ def _order(pattern: Pattern, first: int) -> list[int]:
     return order
 
 
-def _nearness(pattern: Pattern, node: int, placed: list[int]) -> tuple[bool, bool, bool]:
+def _nearness(pattern: Pattern, node: int, placed: list[int]) -> tuple[bool, ...]:
     return (
         any(child in placed for child in pattern.kids[node]),
         any(other in placed for link in pattern.ports[node] for other in pattern.on[link]),
         any(parent in placed for parent in pattern.parents[node]),
+        any(_beside(pattern, node, other) for other in placed),
     )
 
 
@@ -117,6 +126,7 @@ def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing
     control = pattern.controls[node]
     above = tuple(parent for parent in pattern.parents[node] if parent in bound)
     below = tuple(kid for kid in pattern.kids[node] if kid in bound)
+    beside = next((other for other in sorted(bound) if _beside(pattern, node, other)), -1)
     along = tuple({link for link in pattern.ports[node] if bound & frozenset(pattern.on[link])})
     before = [
         twin for group in pattern.twins if node in group for twin in group if twin < node and twin in bound
@@ -132,6 +142,8 @@ def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing
             mask &= state.kids[nodes[parent]]
         for kid in below:
             mask &= _mask(state.parents[nodes[kid]])
+        if beside >= 0:
+            mask &= state.kids[state.parents[nodes[beside]][0]]
         for link in along:
             mask &= state.points[run.links[link]]
         for twin in before:
@@ -148,6 +160,12 @@ def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing
     return step
 
 
+def _beside(pattern: Pattern, node: int, other: int) -> bool:
+    """Say whether two nodes are in one region and nowhere else, so that all their places are the same."""
+    alone = not pattern.parents[node] and not pattern.parents[other]
+    return alone and len(pattern.homes[node]) == 1 and pattern.homes[node] == pattern.homes[other]
+
+
 def _mask(places: tuple[int, ...]) -> int:
     found = 0
     for place in places:
@@ -160,6 +178,7 @@ def _placing(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
     """Return what checks a slot for a node, binds its links, and goes on."""
     inside, sited = len(pattern.kids[node]), pattern.sited[node]
     above, rooted = len(pattern.parents[node]), bool(pattern.homes[node])
+    alone = rooted and not above
     label = pattern.labels[node]
     bind = _binding(world, pattern, node, then)
 
@@ -169,7 +188,12 @@ def _placing(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
         if there < inside or (there > inside and not sited):
             return False
         spare = len(state.parents[slot]) - above
-        if spare < 0 or (spare > 0) is not rooted or (label >= 0 and state.labels[slot] != label):
+        if (
+            spare < 0
+            or (spare > 0 and not rooted)
+            or (not spare and alone)
+            or (label >= 0 and state.labels[slot] != label)
+        ):
             return False
         run.nodes[node] = slot
         return bind(run, used | 1 << slot, slot)

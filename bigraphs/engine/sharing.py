@@ -2,7 +2,8 @@
 
 A place outside of an occurrence holds each region whose top nodes are all in it, unless it holds a larger one;
 what is in an occurrence is in each site whose places it is all in, unless there is a larger one. So there is one
-way to take a state apart, and it does not depend on how anything is numbered.
+way to take a state apart, and it does not depend on how anything is numbered. A region whose nodes all have places in
+the pattern itself may lie nowhere (as in Sevegnani and Calder's bigraphs with sharing, where a site may be an orphan).
 """
 
 from __future__ import annotations
@@ -20,8 +21,6 @@ def shared_places_fit(pattern: Pattern, state: State, nodes: Sequence[int], used
     for place, inside in _around(state, nodes, used).items():
         if inside != _union(tops[region] for region, found in enumerate(places) if place in found):
             return False
-    if not all(places):
-        return False
     homes = _site_masks(pattern, nodes)
     for slot in bits(_held(state, nodes) & ~used):
         within = _matched_parents(state, slot, used)

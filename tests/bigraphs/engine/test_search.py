@@ -18,9 +18,9 @@ from bigraphs.errors import BigraphError
 SLOT, ONE = merge(1), merge(0)
 
 
-def engine_matches(redex, target, *, active=True):
-    """Return (nodes, links) of every occurrence, twins in each order."""
-    world = World(SIGNATURE, target.outer_names, target.regions, sharing=True)
+def engine_matches(redex, target, *, sharing=False):
+    """Return (nodes, links) of every occurrence, twins in order."""
+    world = World(SIGNATURE, target.outer_names, target.regions, sharing=sharing)
     pattern = compile_pattern(world, redex)
     state = make_state(world, target)
     around = Surroundings(state)
@@ -30,7 +30,7 @@ def engine_matches(redex, target, *, active=True):
     return pattern, {
         (each.nodes, tuple(names[link] for link in each.links))
         for each in found
-        if not active or around.admits(pattern, each)
+        if around.admits(pattern, each)
     }
 
 
@@ -39,22 +39,25 @@ def in_order(pattern, redex, matches):
     return {
         (nodes, tuple(links[link] for link in (*redex.outer_names, *range(redex.edges))))
         for nodes, links in matches
-        if all(nodes[a] < nodes[b] for group in pattern.twins for a, b in zip(group, group[1:], strict=False))
+        if all(nodes[a] < nodes[b] for group in pattern.twins for a, b in pairwise(group))
     }
 
 
 @given(solid_redexes(max_nodes=3), targets(max_nodes=6, max_edges=2))
 def test_occurrences_are_those_of_the_naive_enumerator(redex, target):
-    pattern, found = engine_matches(redex, target)
     naive = [(match.nodes, dict(match.links)) for match in naive_matches(redex, target)]
-    assert found == in_order(pattern, redex, naive)
+    for sharing in (False, True):
+        pattern, found = engine_matches(redex, target, sharing=sharing)
+        assert found == in_order(pattern, redex, naive)
 
 
 @settings(deadline=None)
 @given(solid_redexes(max_nodes=2, sharing=True), targets(max_nodes=4, sharing=True))
 def test_occurrences_in_shared_places_are_those_of_the_naive_enumerator(redex, target):
-    pattern, found = engine_matches(redex, target)
-    naive = [(match.nodes, dict(match.links)) for match in naive_matches(redex, target, sharing=True)]
+    pattern, found = engine_matches(redex, target, sharing=True)
+    naive = [
+        (match.nodes, dict(match.links)) for match in naive_matches(redex, target, sharing=True, nowhere=True)
+    ]
     assert found == in_order(pattern, redex, naive)
 
 
