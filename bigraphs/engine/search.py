@@ -3,8 +3,9 @@
 A plan places the nodes of a pattern one after the other, next to those that are placed already, so that its
 candidates are an intersection of a few masks. An occurrence maps nodes injectively and keeps controls, nesting
 and links: a node without a site has nothing else in it, an edge is matched with all of its points, a name by any
-link. Only a region all of whose nodes are in other nodes, too, may lie nowhere. Whether the regions lie where rules may act is asked afterwards (`bigraphs.engine.contexts`), since that can
-change without any node of the occurrence being touched.
+link. Only a region all of whose nodes are in other nodes, too, may lie nowhere. Whether the regions lie where rules
+may act is asked afterwards (`bigraphs.engine.contexts`), since that can change without any node of the occurrence
+being touched.
 """
 
 from __future__ import annotations

@@ -1,5 +1,7 @@
 """The engine's search against the naive enumerator and against a SAT solver."""
 
+from itertools import pairwise
+
 import pytest
 from bigraph_strategies import PLAIN, SIGNATURE, grounds
 from engine_strategies import solid_redexes, targets
