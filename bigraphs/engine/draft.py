@@ -13,15 +13,17 @@ class Draft:
         changed: The mask of the slots whose control, places or links are not what they were.
         emptied: The mask of the slots in which something else is now.
         relinked: The mask of the links on which something else is now.
+        removed: The mask of the slots whose node is gone, even if there is another one in its place.
     """
 
-    __slots__ = ("changed", "emptied", "relinked", "state")
+    __slots__ = ("changed", "emptied", "relinked", "removed", "state")
 
     def __init__(self, state: State) -> None:
         self.state = state.copy()
         self.changed = 0
         self.emptied = 0
         self.relinked = 0
+        self.removed = 0
 
     def touched_by_links(self) -> int:
         """Return the mask of what is on the links that changed."""
@@ -98,6 +100,7 @@ class Draft:
         state.by_control[state.world.control_of[state.labels[slot]]] &= ~(1 << slot)
         state.labels[slot] = -1
         state.free |= 1 << slot
+        self.removed |= 1 << slot
 
     def remove_all(self, slot: int) -> None:
         """Take a node away with all that is in it and nowhere else."""

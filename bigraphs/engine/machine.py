@@ -132,6 +132,7 @@ class Machine:
                 results: dict[Key, Spot] = {}
                 for found in live:
                     target = spot.after(reaction.apply(spot.state, found)[0])
+                    target.lost |= spot.lost
                     results.setdefault(self.labelling.canonical(target.state), target)
                 if len(results) == 1:
                     return next(iter(results.values()))

@@ -18,9 +18,14 @@ class Spot:
     have a touched node, and only those are searched that have one. A node is touched if its places or links
     changed; for a rule that wants it to hold certain nodes and no others, also if what is in it changed; for a rule
     with edges, also if something else on one of its links changed.
+
+    Attributes:
+        state: The state.
+        found: For each rule its occurrences, if they were asked for.
+        lost: The slots whose nodes are not the same ones as before the last step.
     """
 
-    __slots__ = ("_around", "_before", "_changed", "_emptied", "_linked", "found", "state")
+    __slots__ = ("_around", "_before", "_changed", "_emptied", "_linked", "found", "lost", "state")
 
     def __init__(self, state: State, rules: int) -> None:
         self.state = state
@@ -28,6 +33,7 @@ class Spot:
         self._before: Sequence[list[Occurrence] | None] = self.found
         self._changed = self._emptied = self._linked = 0
         self._around: Surroundings | None = None
+        self.lost = 0
 
     def after(self, draft: Draft) -> Spot:
         """Return the state that a rewrite of this one has made."""
@@ -35,6 +41,7 @@ class Spot:
         spot._before = self.found
         spot._changed, spot._emptied = draft.changed, draft.emptied
         spot._linked = draft.touched_by_links()
+        spot.lost = draft.removed
         return spot
 
     def occurrences(self, reaction: Reaction) -> list[Occurrence]:
