@@ -14,7 +14,9 @@ from bigraphs.errors import NotationError
 MAX_BYTES: Final = 1_000_000
 MAX_NESTING: Final = 200
 MAX_TOKEN: Final = 10_000
+MAX_WORDS: Final = 60_000
 
+_WORD: Final = re.compile(r"\w+|[^\w\s]")
 _STEPS: Final = re.compile(r"[()]|\.|\|\|?|-->|->|[;,=]|[^\W\d]\w*|/")
 _RESETS: Final = frozenset({"|", "||", "->", "-->", ";", ",", "="})
 
@@ -32,12 +34,14 @@ def read(parser: Lark, text: str, words: Mapping[str, str], start: str) -> Any:
 
 
 def check_bounds(text: str) -> None:
-    """Refuse a text over a megabyte, a word over ten kilobytes, and nesting over 200, in linear time."""
+    """Refuse what is too long (in all, a word, in words) or nests deeper than 200, in linear time."""
     if len(text) > MAX_BYTES or len(text.encode("utf-8", "surrogatepass")) > MAX_BYTES:
         hint = "split it, or write it as relations (from_relations)"
         raise NotationError("too-long", "the text is longer than 1 MB", text, 0, hint=hint)
     for word in re.finditer(rf"[^\s.|(){{}}\[\],;/]{{{MAX_TOKEN + 1},}}", text):
         raise NotationError("too-long", "a word is longer than 10 kB", text, word.start())
+    if sum(1 for _ in _WORD.finditer(text)) > MAX_WORDS:
+        raise NotationError("too-long", f"the text has more than {MAX_WORDS} words and symbols", text, 0)
     _check_nesting(text)
 
 

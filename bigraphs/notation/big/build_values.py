@@ -17,7 +17,7 @@ from bigraphs.system import Value
 
 LARGEST: Final = 2**62
 """Whole numbers are smaller than this, as they are in BigraphER."""
-MAX_DEPTH: Final = 200
+MAX_DEPTH: Final = 50
 """How deep signs and powers of numbers nest."""
 
 

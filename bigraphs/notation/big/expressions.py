@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 from bigraphs import algebra
@@ -33,17 +33,10 @@ from bigraphs.notation.big.syntax import (
 from bigraphs.signature import Control, Signature
 from bigraphs.system import Value
 
-MAX_WORK: Final = 3_000_000
+MAX_WORK: Final = 1_000_000
 """How many parts of bigraphs are made, all steps together, before a file is refused."""
 MAX_DEPTH: Final = 220
 """How deep expressions nest, those of the bigraphs that they name included."""
-
-_OPERATORS: Final[Mapping[str, Callable[[Bigraph, Bigraph], Bigraph]]] = {
-    "|": algebra.merge_product,
-    "||": algebra.parallel,
-    "+": algebra.tensor,
-    "*": algebra.compose,
-}
 
 
 class Evaluation:
@@ -188,7 +181,7 @@ class Evaluation:
             run = [found, *known[start + 1 : end + 1]]
             if not self._joinable(operators[start], run, written[start : end + 1], frame):
                 return None
-            found = _halved(_OPERATORS[operators[start]], run)
+            found = _joined(operators[start], run)
             start = end
         return found
 
@@ -252,7 +245,7 @@ class Evaluation:
         run = [algebra.identity(Interface()), *[body] * times]
         if not self._joinable(repeat.operator, run[:3], [repeat.body] * 3, frame):
             return None
-        return _halved(_OPERATORS[repeat.operator], run)
+        return _joined(repeat.operator, run) if times else run[0]
 
 
 def _misfit(context: Bigraph, content: Bigraph) -> tuple[str, str] | None:
@@ -266,10 +259,20 @@ def _named_twice(which: str, names: set[str]) -> str:
     return f"the {which} name '{min(names)}' is on both sides"
 
 
-def _halved(operator: Callable[[Bigraph, Bigraph], Bigraph], operands: list[Bigraph]) -> Bigraph:
+def _joined(operator: str, operands: list[Bigraph]) -> Bigraph:
+    """Join operands by one operator: all of them are associative."""
+    if operator == "*":
+        return _halved(operands)
+    found = algebra.parallel(*operands)
+    return algebra.merged(found) if operator == "|" else found
+
+
+def _halved(operands: list[Bigraph]) -> Bigraph:
+    """Compose neighbours with each other, so that long runs are not built up step by step."""
     while len(operands) > 1:
         pairs = zip(operands[::2], operands[1::2], strict=False)
-        operands = [*(operator(left, right) for left, right in pairs), *operands[len(operands) // 2 * 2 :]]
+        composed = [algebra.compose(left, right) for left, right in pairs]
+        operands = [*composed, *operands[len(operands) // 2 * 2 :]]
     return operands[0]
 
 
@@ -294,7 +297,7 @@ def _element(expression: Expression) -> Bigraph:
         case Substitute(outer, inner):
             return algebra.substitution(outer, inner)
         case NewNames(names):
-            return _halved(algebra.parallel, [algebra.substitution(name, ()) for name in names])
+            return algebra.parallel(*(algebra.substitution(name, ()) for name in names))
         case _:
             hint = "write 0 for nothing, 1 for an empty region"
             raise BigraphError("syntax", "a number is no bigraph", hint)

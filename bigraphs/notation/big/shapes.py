@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import combinations
 
 from bigraphs.algebra import lean
-from bigraphs.bigraph import Bigraph, assemble, points
+from bigraphs.bigraph import Bigraph, assemble, points, sites_in
 
 
 def faults(redex: Bigraph) -> Iterator[tuple[str, str]]:
@@ -33,9 +32,10 @@ def _faults_of_sites(redex: Bigraph) -> Iterator[tuple[str, str]]:
         if any(parent < 0 for parent in parents):
             hint = "leave it out: what is beside the redex stays as it is"
             yield f"site {site} of the redex is in no node", hint
-    for (one, places), (other, others) in combinations(enumerate(redex.sites), 2):
-        if set(places) & set(others):
-            yield f"sites {one} and {other} of the redex are in one place", "one site holds all there is"
+    for place, sites in sorted(sites_in(redex).items()):
+        if place >= 0 and len(sites) > 1:
+            found = f"sites {sites[0]} and {sites[1]} of the redex are in one place"
+            yield found, "one site holds all there is"
 
 
 def _faults_of_sharing(redex: Bigraph) -> Iterator[tuple[str, str]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import product
@@ -167,11 +168,7 @@ class _Systems:
         return PriorityClass(tuple(rules), term.instantaneous)
 
     def check_distinct(self, labels: list[str], calls: tuple[Call, ...]) -> None:
-        again = (
-            sorted({label for label in labels if labels.count(label) > 1})
-            if len(set(labels)) < len(labels)
-            else []
-        )
+        again = sorted(label for label, times in Counter(labels).items() if times > 1)
         if again:
             at = next((call.span for call in calls[::-1] if again[0].startswith(call.name)), _ONE)
             self.findings.add("name", f"'{again[0]}' is listed twice", at, "it would count twice")
