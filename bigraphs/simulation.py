@@ -43,9 +43,9 @@ class Bounds:
 def simulate(system: System, seed: int, bounds: Bounds) -> Iterator[Stage]:
     """Yield the states of one run, the same for the same seed, however terms are written.
 
-    In a BRS each occurrence is as likely as any other; in a PBRS by its weight; in an SBRS by its rate, after a delay that
-    is exponentially distributed (Gillespie's direct method); in an NBRS first an action is drawn, then an occurrence
-    by its weight. The run ends where nothing can happen, or at its bounds.
+    In a BRS each occurrence is as likely as any other; in a PBRS by its weight; in an SBRS by its rate, after a
+    delay that is exponentially distributed (Gillespie's direct method); in an NBRS first an action is drawn, then
+    an occurrence by its weight. The run ends where nothing can happen, or at its bounds.
     """
     machine, chance = Machine(system), random.Random(seed)
     spot, _ = machine.start()

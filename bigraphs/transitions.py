@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterator
-from dataclasses import dataclass
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from bigraphs.bigraph import Bigraph
@@ -107,6 +108,37 @@ class TransitionSystem:
         while path[-1]:
             path.append(self.found_from[path[-1]])
         return path[::-1]
+
+    def rules_between(self, source: int, target: int) -> tuple[str, ...]:
+        """Return the labels of the rules that lead from one state to another, sorted."""
+        first = bisect_left(self.starts, source)
+        found: set[str] = set()
+        for number in range(first, bisect_right(self.starts, source)):
+            if self.targets[number] == target:
+                found.update(self.rule_sets[self.rules[number]])
+        return tuple(sorted(found))
+
+    def rules_never_used(self) -> tuple[str, ...]:
+        """Return the labels of the ordinary rules that make no transition, in the order written."""
+        used = {label for rules in self.rule_sets for label in rules}
+        ordinary = (rule for each in self.system.classes if not each.instantaneous for rule in each.rules)
+        return tuple(rule.label for rule in ordinary if rule.label not in used)
+
+    def restricted(self, states: int, kept: Sequence[int]) -> TransitionSystem:
+        """Return the first states, and these transitions, which lie between them."""
+        return replace(
+            self,
+            keys=self.keys[:states],
+            labels=tuple(holds[:states] for holds in self.labels),
+            starts=array("I", (self.starts[each] for each in kept)),
+            targets=array("I", (self.targets[each] for each in kept)),
+            weights=array("d", (self.weights[each] for each in kept)),
+            actions=array("i", (self.actions[each] for each in kept)),
+            rules=array("I", (self.rules[each] for each in kept)),
+            counts=array("I", (self.counts[each] for each in kept)),
+            found_from=self.found_from[:states],
+            expanded=min(self.expanded, states),
+        )
 
     def to_networkx(self) -> nx.MultiDiGraph[int]:
         """Return a graph of states (`labels`) and transitions (`rules`, `weight`, `occurrences`, `action`)."""

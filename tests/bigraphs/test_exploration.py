@@ -90,8 +90,8 @@ end
 
 def test_two_robots_walk_through_three_rooms():
     found = run(WALK)
-    # Positions of two equal robots in a row of rooms that may be turned around: both at an end, one at an end and one in the
-    # middle, one at each end, both in the middle. From the second each of the others is reached, and back.
+    # Two equal robots in a row of rooms that may be turned round: both at one end, one there and one in the middle,
+    # one at each end, both in the middle. From the second each of the others is reached, and back.
     assert (len(found), len(found.starts), found.complete) == (4, 6, True)
     assert sorted(found.labels_of(state) for state in range(4)) == [
         (),
