@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph, Place, assemble, moved
 from bigraphs.engine.patterns import Pattern, compile_pattern
@@ -14,10 +12,11 @@ from bigraphs.system import Condition, Where
 
 
 class Surroundings:
-    """What is above the places of one state, looked up once."""
+    """What is above the places of one state, looked up once; `passive` says whether to care for passive controls."""
 
-    def __init__(self, state: State) -> None:
+    def __init__(self, state: State, *, passive: bool) -> None:
         self.state = state
+        self.passive = passive
         self._above: dict[int, int] = {}
 
     def above(self, place: int) -> int:
@@ -34,24 +33,18 @@ class Surroundings:
 
     def admits(self, pattern: Pattern, occurrence: Occurrence) -> bool:
         """Say whether all regions are in active places, none of them inside of what is matched."""
-        return all(
-            not above & occurrence.mask and self.is_active(above)
-            for above in self.around(pattern, occurrence)
-        )
-
-    def around(self, pattern: Pattern, occurrence: Occurrence) -> Iterator[int]:
-        """Yield for each place that a region is in the mask of all that it is in."""
-        for node, homes in enumerate(pattern.homes):
-            if homes:
-                for place in self.state.parents[occurrence.nodes[node]]:
-                    if place < 0 or not occurrence.mask >> place & 1:
-                        yield self.above(place)
+        parents, nodes, used = self.state.parents, occurrence.nodes, occurrence.mask
+        for node in pattern.roots:
+            for place in parents[nodes[node]]:
+                if place >= 0 and not used >> place & 1:
+                    above = self.above(place)
+                    if above & used or (self.passive and not self.is_active(above)):
+                        return False
+        return True
 
     def is_active(self, above: int) -> bool:
         """Say whether rules act inside of all these nodes."""
         world = self.state.world
-        if not world.passive:
-            return True
         return all(world.active[world.control_of[self.state.labels[slot]]] for slot in bits(above))
 
 
@@ -79,12 +72,8 @@ def occurs(matcher: Matcher, state: State, allowed: int = -1) -> bool:
     """Say whether a pattern is anywhere among the allowed slots, in active places or not."""
     if not matcher.pattern.wide():
         return bool(matcher.find(state, allowed, once=True))
-    return any(_apart(matcher.pattern, state, found) for found in matcher.find(state, allowed))
-
-
-def _apart(pattern: Pattern, state: State, occurrence: Occurrence) -> bool:
-    """Say whether no region is inside of what is matched."""
-    return not any(above & occurrence.mask for above in Surroundings(state).around(pattern, occurrence))
+    around = Surroundings(state, passive=False)
+    return any(around.admits(matcher.pattern, found) for found in matcher.find(state, allowed))
 
 
 def below(state: State, slots: int) -> int:

@@ -32,7 +32,9 @@ class Profile(NamedTuple):
     kids: tuple[int, ...]
 
 
-_SHIFT = 32
+_SHIFT = (
+    20  # a label above a vertex is one small integer, as long as there are not more than a million vertices
+)
 _IN, _HOLDS, _EDGE = 0 << _SHIFT, 1 << _SHIFT, 2
 
 
@@ -189,7 +191,7 @@ def _refine(around: list[Around], colours: list[int]) -> list[int]:
         ]
         rank = {key: place for place, key in enumerate(sorted(set(keys)))}
         colours = [rank[key] for key in keys]
-        if len(rank) == count:
+        if len(rank) == count or len(rank) == len(around):
             return colours
         count = len(rank)
 

@@ -65,7 +65,7 @@ class Spot:
         """Return the occurrences where the rule may act and its conditions hold."""
         found = self.occurrences(reaction)
         if reaction.wide and found:
-            around = self._around = self._around or Surroundings(self.state)
+            around = self._around = self._around or Surroundings(self.state, passive=self.state.world.passive)
             found = [each for each in found if around.admits(reaction.pattern, each)]
         for condition in reaction.conditions:
             found = [each for each in found if condition.holds(self.state, each)]

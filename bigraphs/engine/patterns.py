@@ -24,6 +24,7 @@ class Pattern:
         on: The nodes on each link.
         names: How many of the links are names; the others are edges.
         sites: The nodes that each site is in.
+        roots: The nodes that are in a region.
         twins: Groups of nodes that are interchangeable, whatever the rest of a rule says.
     """
 
@@ -38,6 +39,7 @@ class Pattern:
     names: int
     regions: int
     sites: tuple[tuple[int, ...], ...]
+    roots: tuple[int, ...]
     twins: tuple[tuple[int, ...], ...]
 
     @property
@@ -51,8 +53,9 @@ class Pattern:
         return range(self.names, len(self.on))
 
     def wide(self) -> bool:
-        """Say whether it falls into several parts, one of which might lie inside what another holds."""
-        return len(self.components()) > 1 or any(len(around) > 1 for around in self.parents)
+        """Say whether a part of it might lie inside what another one holds."""
+        parts = len(self.components()) > 1 or any(len(around) > 1 for around in self.parents)
+        return parts and any(self.sited)
 
     def components(self) -> list[set[int]]:
         """Return the sets of nodes that places connect."""
@@ -97,6 +100,7 @@ def compile_pattern(world: World, bigraph: Bigraph) -> Pattern:
         fixed,
         bigraph.regions,
         tuple(tuple(place for place in parents if place >= 0) for parents in bigraph.sites),
+        tuple(number for number, node in enumerate(bigraph.nodes) if min(node.parents) < 0),
         _twins(bigraph, ports, inside, sited),
     )
 

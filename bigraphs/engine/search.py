@@ -277,7 +277,7 @@ def _fitting(world: World, pattern: Pattern) -> Callable[[State, int, int], bool
 
 def _end(world: World, pattern: Pattern) -> Step:
     """Return the step that checks what only whole occurrences show, and keeps them."""
-    roots = tuple(node for node in range(pattern.size) if pattern.homes[node])
+    roots = pattern.roots
     closed = [(link, pattern.on[link]) for link in pattern.closed if pattern.on[link]]
     above = [len(pattern.parents[node]) for node in range(pattern.size)]
     sharing = world.sharing

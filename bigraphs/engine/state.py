@@ -7,7 +7,7 @@ A node has a *slot*, which it keeps for as long as it lives; slot `n` is bit `n`
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterator
+from functools import lru_cache
 from typing import TypeAlias
 
 from bigraphs.bigraph import Bigraph
@@ -97,9 +97,10 @@ class State:
         """Compute the code of a node after those of what is in it; return what is still to do."""
         inside = self.kids[slot]
         stale &= ~(1 << slot)
-        for kid in bits(inside & stale):
-            if stale >> kid & 1:
-                stale = self._recode(kid, stale)
+        if inside & stale:
+            for kid in bits(inside & stale):
+                if stale >> kid & 1:
+                    stale = self._recode(kid, stale)
         codes = self.codes
         if self.world.sharing:
             kids = tuple(sorted([self.kid_code(kid) for kid in bits(inside)]))
@@ -113,12 +114,15 @@ class State:
         return stale
 
 
-def bits(mask: int) -> Iterator[int]:
-    """Yield the numbers of the bits that are set, from the least."""
+@lru_cache(maxsize=1 << 17)
+def bits(mask: int) -> tuple[int, ...]:
+    """Return the numbers of the bits that are set, from the least; the same masks are asked for again and again."""
+    found = []
     while mask:
         low = mask & -mask
         mask ^= low
-        yield low.bit_length() - 1
+        found.append(low.bit_length() - 1)
+    return tuple(found)
 
 
 def make_state(world: World, bigraph: Bigraph) -> State:

@@ -24,7 +24,7 @@ def results(rule, target):
     """Return what the engine makes of a target, canonical."""
     world = World(SIGNATURE, target.outer_names, target.regions, sharing=False)
     reaction, state = Reaction(world, rule, 0), make_state(world, target)
-    around = Surroundings(state)
+    around = Surroundings(state, passive=True)
     return {
         canonical(to_bigraph(reaction.apply(state, found)[0].finish()))
         for found in reaction.matcher.find(state)

@@ -68,7 +68,8 @@ import sys, stormpy
 folder, formula = sys.argv[1:]
 from pathlib import Path
 rewards = {"state_rewards": ".srew", "transition_rewards": ".trew"}
-given = {name: f"{folder}/model{suffix}" for name, suffix in rewards.items() if Path(f"{folder}/model{suffix}").exists()}
+files = {name: f"{folder}/model{suffix}" for name, suffix in rewards.items()}
+given = {name: file for name, file in files.items() if Path(file).exists()}
 model = stormpy.build_model_from_explicit(f"{folder}/model.tra", f"{folder}/model.lab", **given)
 (wanted,) = stormpy.parse_properties(formula)
 print(model.model_type, stormpy.model_checking(model, wanted).get_value(model.initial_states[0]))
