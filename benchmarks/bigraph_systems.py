@@ -1,8 +1,8 @@
 """Explore the UAV family beside BigraphER: states and transitions are asserted, then time and memory are printed.
 
-Usage: `python benchmarks/bigraph_systems.py [--bigrapher PATH] [--growth] [--output FILE]`. Where BigraphER is not found, its
-seconds are those measured once on another machine, and marked *quoted*. Seconds are of processor time, so that two
-programs on a busy machine can be compared.
+Usage: `python benchmarks/bigraph_systems.py [--bigrapher PATH] [--growth] [--output FILE]`. Where BigraphER is not
+found, its seconds are those measured once on another machine, and marked *quoted*. Seconds are of processor time, so
+that two programs on a busy machine can be compared.
 """
 
 import argparse

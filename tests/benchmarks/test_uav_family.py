@@ -9,7 +9,7 @@ from bigraphs.exploration import explore
 from bigraphs.notation import read_system
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-from uav_family import Case, counts, text  # noqa: E402 - the folder is no package
+from uav_family import Case, counts, text
 
 
 @pytest.mark.parametrize(
