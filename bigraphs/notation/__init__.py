@@ -1,5 +1,6 @@
 """Texts of bigraphs, read and written: BigraphER's, BigMC's and the paper's notation. This room alone knows lark."""
 
+from bigraphs.notation.bgm.systems import read_bgm
 from bigraphs.notation.big.expression_of import write_big
 from bigraphs.notation.big.parser import parse_expression, parse_model
 from bigraphs.notation.big.printer import format_expression, format_model
@@ -34,6 +35,7 @@ __all__ = [
     "parse_model",
     "parse_regions",
     "parse_rule",
+    "read_bgm",
     "read_big",
     "read_bigraph",
     "read_rule",

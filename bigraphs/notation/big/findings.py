@@ -30,10 +30,10 @@ class Findings:
             length = span.end - span.start
             self._found[key] = NotationError(code, message, self.text, span.start, length=length, hint=hint)
 
-    def unknown(self, what: str, name: str, span: Span, known: Iterable[str]) -> None:
-        """Note a name that is not declared, with the declared one that it resembles."""
+    def unknown(self, what: str, name: str, span: Span, known: Iterable[str], how: str = "") -> None:
+        """Note a name that is not declared, with the declared one that it resembles, or how it is declared."""
         close = get_close_matches(name, sorted(known), n=1, cutoff=0.6)
-        hint = f"did you mean '{close[0]}'?" if close else f"declare it with {_KEYWORD[what]}"
+        hint = f"did you mean '{close[0]}'?" if close else f"declare it with {how or _KEYWORD[what]}"
         self.add("name", f"unknown {what} '{name}'", span, hint)
 
     def raise_any(self) -> None:
