@@ -7,7 +7,10 @@ from typing import Final
 from bigactors.arguments.parser import Command, Parser
 from bigactors.arguments.values import at_least_one, at_least_zero, named, seconds
 
-FILE: Final = "a system of bigraphs, in BigraphER's language (.big)"
+FILE: Final = (
+    "a system of bigraphs: .big (BigraphER's language), .bgm (BigMC's), or the name of one that ships, such as "
+    "mobile_ambients"
+)
 
 TASKS: Final = {
     "full": "every state that can be reached, written for people and for other programs",
@@ -156,7 +159,7 @@ COMMAND = Command(
     "Work with bigraphical reactive systems as such, without missions: all states that rules can reach, runs,\n"
     "predicates, Markov models for PRISM and Storm, pictures. A search that was cut off is incomplete, exit code 3.",
     (
-        "bigactors big full network.big --html network.html",
+        "bigactors big full sensor_network --html network.html",
         "bigactors big full --storm network --max-states 100000 network.big",
         "bigactors big sim --seed 7 --until 20 network.big",
         "bigactors big check --never collision network.big",

@@ -14,9 +14,10 @@ from bigactors.progress import Watch, watching
 from bigactors.terminal import is_terminal, paint, say, say_text, tell
 from bigraphs import BigraphError, NotationError, draw_text, save_bigraph
 from bigraphs.engine.machine import Machine
+from bigraphs.examples import example_names, example_text
 from bigraphs.exploration import Progress, explore
 from bigraphs.exports.json import bigraph_json
-from bigraphs.notation import read_system, write_big
+from bigraphs.notation import read_bgm, read_system, write_big
 from bigraphs.simulation import Bounds, Stage, simulate
 from bigraphs.system import System, SystemKind
 from bigraphs.transitions import TransitionSystem
@@ -49,17 +50,23 @@ def run(options: Namespace) -> Exit:
 
 
 def read_file(options: Namespace) -> System:
-    """Return the system in a file."""
-    data = read_bytes(options.file, MOST_BYTES)
-    if len(data) > MOST_BYTES:
-        raise Mistake(
-            f"the file is longer than {MOST_BYTES:,} bytes", "is it a system of bigraphs?", options.file
-        )
-    try:
-        text = data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise Mistake(f"byte {error.start} is no UTF-8", "save the file as UTF-8", options.file) from error
+    """Return the system in a file, or of an example that ships."""
+    text = _text(options.file)
+    if options.file.lower().endswith(".bgm"):
+        return read_bgm(text)
     return read_system(text, constants=dict(options.const))
+
+
+def _text(file: str) -> str:
+    if file in example_names() and not Path(file).exists():
+        return example_text(file)
+    data = read_bytes(file, MOST_BYTES)
+    if len(data) > MOST_BYTES:
+        raise Mistake(f"the file is longer than {MOST_BYTES:,} bytes", "is it a system of bigraphs?", file)
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise Mistake(f"byte {error.start} is no UTF-8", "save the file as UTF-8", file) from error
 
 
 def explored(options: Namespace, system: System) -> TransitionSystem:
