@@ -17,6 +17,8 @@ from bigraphs.transitions import TransitionSystem
 
 MOST_REMEMBERED: Final = 200_000
 """How many numberings of states are remembered, to save finding their canonical keys once more."""
+LOOK_EVERY: Final = 0.2
+"""After how many seconds whoever watches is told."""
 
 
 class Progress(NamedTuple):
@@ -69,6 +71,7 @@ class _Search:
         watch: Callable[[Progress], None],
     ) -> None:
         self.begun = time.monotonic()
+        self.next_look = self.begun + LOOK_EVERY
         self.end = None if max_time is None else self.begun + max_time
         self.max_states, self.max_time, self.watch = max_states, max_time, watch
         self.machine = Machine(system, self.check_time)
@@ -98,8 +101,9 @@ class _Search:
                 state, spot = self.waiting.popleft()
                 if not self.expand(state, spot):
                     return f"the limit of {self.max_states:,} states was reached"
-                if self.expanded % 500 == 0:
+                if time.monotonic() >= self.next_look:
                     self.watch(self.progress())
+                    self.next_look = time.monotonic() + LOOK_EVERY
         except OutOfTime:
             return f"the limit of {self.max_time:g} seconds was reached"
         except KeyboardInterrupt:

@@ -213,6 +213,7 @@ class _Search:
 
     def visit(self, colours: list[int], path: list[int]) -> int:
         """Search below one node of the tree; return the depth at which the search is to go on."""
+        self.graph.labelling.world.pause()
         cell = _first_tie(colours)
         if not cell:
             return self.leaf(colours, path)

@@ -57,6 +57,7 @@ class Machine:
             sharing=any(map(has_sharing, [initial, *sides])),
             edges=any(side.edges for side in [initial, *(rule.reactum for rule in rules)]),
         )
+        self.world.pause = pause
         self.labelling = Labelling(self.world)
         self.reactions = [Reaction(self.world, rule, number) for number, rule in enumerate(rules)]
         self.classes = self._classes()

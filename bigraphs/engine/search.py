@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator
-from typing import NamedTuple, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 from bigraphs.engine.patterns import Pattern
 from bigraphs.engine.sharing import shared_places_fit
@@ -34,16 +34,20 @@ class Occurrence(NamedTuple):
 class Run:
     """One search: the state, what is placed so far, and what was found."""
 
-    __slots__ = ("allowed", "found", "links", "nodes", "once", "state")
+    __slots__ = ("allowed", "found", "links", "nodes", "once", "state", "steps")
 
     def __init__(self, state: State, pattern: Pattern, allowed: int, *, once: bool) -> None:
         self.state = state
         self.allowed = allowed
         self.once = once
+        self.steps = 0
         self.nodes = [-1] * pattern.size
         self.links = [-1] * len(pattern.on)
         self.found: list[Occurrence] = []
 
+
+_OFTEN: Final = 0x3FF
+"""After how many steps, less one, a search pauses."""
 
 Step: TypeAlias = Callable[[Run, int], bool]
 """Places what is left of a pattern beside the slots in a mask; says whether the search is over."""
@@ -137,6 +141,9 @@ def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing
     ]
 
     def step(run: Run, used: int) -> bool:
+        run.steps += 1
+        if run.steps & _OFTEN == 0:
+            run.state.world.pause()
         state, nodes = run.state, run.nodes
         mask = state.by_control[control] & run.allowed & ~used
         for parent in above:

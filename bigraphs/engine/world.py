@@ -8,6 +8,7 @@ state is told by the codes of the nodes in its regions.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TypeAlias
 
 from bigraphs.bigraph import Bigraph
@@ -31,6 +32,7 @@ class World:
         named: Whether nodes may have names.
         rows: What each code stands for.
         bare: For each code whether no edge and no shared node is in it.
+        pause: What long searches call now and then; it may raise an exception to end them.
     """
 
     def __init__(
@@ -41,6 +43,7 @@ class World:
         self.regions = regions
         self.sharing = sharing
         self.plain = not sharing and not edges
+        self.pause: Callable[[], None] = lambda: None
         self.named = False
         self.controls = {control.name: number for number, control in enumerate(signature.controls)}
         self.ordered = tuple(control.ordered for control in signature.controls)

@@ -279,3 +279,34 @@ def test_classes_without_rules_are_passed_over():
     one = read_system(WALK)
     empty = replace(one, classes=(PriorityClass(()), *one.classes))
     assert len(explore(empty)) == 4
+
+
+def test_a_limit_of_time_ends_a_search_within_one_state():
+    text = """
+    atomic ctrl A = 0; atomic ctrl B = 0;
+    big start = %s;
+    react some = %s --> B;
+    begin brs init start; rules = [ {some} ]; end
+    """
+    # There are 14,307,150 ways to choose 9 of 30.
+    late = run(text % (" | ".join(["A"] * 30), " | ".join(["A"] * 9)), max_time=0.3)
+    assert (len(late), late.complete, late.reason) == (1, False, "the limit of 0.3 seconds was reached")
+    assert late.seconds < 5
+
+
+def test_whoever_watches_is_told_how_far_it_has_come(monkeypatch):
+    monkeypatch.setattr("bigraphs.exploration.LOOK_EVERY", 0.0)
+    told = []
+    run(WALK, watch=told.append)
+    assert [progress.states for progress in told][-1] == 4
+
+
+def test_an_interruption_leaves_what_was_found():
+    def interrupt(_):
+        raise KeyboardInterrupt
+
+    growing = (
+        "ctrl A = 0; big start = A.1; react grow = A --> A.A; begin brs init start; rules = [ {grow} ]; end"
+    )
+    found = run(growing, watch=interrupt, max_states=3000)
+    assert (found.complete, found.reason) == (False, "it was interrupted")
