@@ -11,6 +11,7 @@ import multiprocessing
 import os
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -98,7 +99,7 @@ def _traced(system: System) -> int:
     return tracemalloc.get_traced_memory()[1]
 
 
-def beside(case: Case, program: str | None, limit: float) -> Peer | None:
+def beside(case: Case, program: str | None, limit: int) -> Peer | None:
     """Run BigraphER on a case, or quote what it took; None where neither is known."""
     if program is None:
         return Peer(*QUOTED[case], "quoted") if case in QUOTED else None
@@ -108,15 +109,18 @@ def beside(case: Case, program: str | None, limit: float) -> Peer | None:
         path = Path(folder) / "case.big"
         path.write_text(text(case), encoding="utf-8")
         before = os.times()
-        try:
-            done = subprocess.run(
-                [program, "full", "-M", "1000000", str(path)],
-                capture_output=True, text=True, check=True, timeout=limit,
-            )  # fmt: skip
-        except subprocess.TimeoutExpired:
-            return Peer(_children(before), ended=False, source="measured")
-    _check_peer(case, done.stdout)
-    return Peer(_children(before), ended=True, source="measured")
+        done = subprocess.run(
+            ["sh", "-c", f'ulimit -t {limit}; exec "$@"', "sh", program, "full", "-M", "1000000", str(path)],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    ended = done.returncode == 0
+    if ended:
+        _check_peer(case, done.stdout)
+    elif done.returncode not in (-signal.SIGXCPU, -signal.SIGKILL):
+        raise SystemExit(f"{case}: BigraphER ended with {done.returncode}:\n{done.stderr}")
+    return Peer(_children(before), ended, "measured")
 
 
 def _children(before: os.times_result) -> float:
@@ -147,9 +151,7 @@ HEAD = """\
 """
 
 
-def table(
-    cases: Sequence[Case], program: str | None, limit: float
-) -> Iterator[tuple[str, dict[str, object]]]:
+def table(cases: Sequence[Case], program: str | None, limit: int) -> Iterator[tuple[str, dict[str, object]]]:
     """Yield for each case its line, and the same as data."""
     for case in cases:
         ours, peer = measure(case), beside(case, program, limit)
@@ -164,7 +166,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--bigrapher", default=shutil.which("bigrapher"), help="the program to measure beside"
     )
     parser.add_argument(
-        "--limit", type=float, default=600.0, help="seconds that BigraphER is given (default 600)"
+        "--limit",
+        type=int,
+        default=600,
+        help="seconds of processor time that BigraphER is given (default 600)",
     )
     parser.add_argument("--growth", action="store_true", help="larger cases, too, up to 100,000 states")
     parser.add_argument("--output", type=Path, default=RESULTS, help="where the figures are kept")
