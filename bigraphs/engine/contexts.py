@@ -25,9 +25,13 @@ class Surroundings:
             return 0
         found = self._above.get(place)
         if found is None:
-            found = 1 << place
-            for parent in self.state.parents[place]:
-                found |= self.above(parent)
+            found = pending = 1 << place
+            while pending:
+                low = pending & -pending
+                pending ^= low
+                around = _mask(self.state.parents[low.bit_length() - 1]) & ~found
+                found |= around
+                pending |= around
             self._above[place] = found
         return found
 
@@ -46,6 +50,14 @@ class Surroundings:
         """Say whether rules act inside of all these nodes."""
         world = self.state.world
         return all(world.active[world.control_of[self.state.labels[slot]]] for slot in bits(above))
+
+
+def _mask(places: tuple[int, ...]) -> int:
+    found = 0
+    for place in places:
+        if place >= 0:
+            found |= 1 << place
+    return found
 
 
 class ConditionCheck:

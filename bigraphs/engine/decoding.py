@@ -63,16 +63,18 @@ class _Builder:
             self.put(code, ~region)
 
     def put(self, code: int, place: int) -> None:
-        label, ports, kids, itself = self.world.rows[code]
-        if label == REFERENCE:
-            self.homes.setdefault(ports[0], []).append(place)
-            return
-        slot = len(self.labels)
-        self.labels.append(label)
-        self.ports.append(ports)
-        self.parents.append([place] if itself == 0 else self.homes.setdefault(itself, []))
-        for kid in kids:
-            self.put(kid, slot)
+        waiting = [(code, place)]
+        while waiting:
+            code, place = waiting.pop()
+            label, ports, kids, itself = self.world.rows[code]
+            if label == REFERENCE:
+                self.homes.setdefault(ports[0], []).append(place)
+                continue
+            slot = len(self.labels)
+            self.labels.append(label)
+            self.ports.append(ports)
+            self.parents.append([place] if itself == 0 else self.homes.setdefault(itself, []))
+            waiting += [(kid, slot) for kid in reversed(kids)]
 
     def shared(self, codes: list[int]) -> None:
         for code in codes:

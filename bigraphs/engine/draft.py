@@ -104,30 +104,36 @@ class Draft:
 
     def remove_all(self, slot: int) -> None:
         """Take a node away with all that is in it and nowhere else."""
-        state = self.state
-        for kid in bits(state.kids[slot]):
-            rest = tuple(place for place in state.parents[kid] if place != slot)
-            if rest:
-                self.move(kid, rest)
-            else:
-                self.remove_all(kid)
-        self.remove(slot)
+        state, waiting = self.state, [slot]
+        while waiting:
+            gone = waiting.pop()
+            for kid in bits(state.kids[gone]):
+                rest = tuple(place for place in state.parents[kid] if place != gone)
+                if rest:
+                    self.move(kid, rest)
+                else:
+                    waiting.append(kid)
+            self.remove(gone)
 
     def copy_all(self, slot: int, places: tuple[int, ...]) -> None:
         """Put a copy of a node, with all that is in it, into other places; links are shared by the copies."""
-        state = self.state
-        kind = state.world.signature.controls[state.world.control_of[state.labels[slot]]].name
-        name = state.world.name_of[state.labels[slot]]
+        state, waiting = self.state, [(slot, places)]
+        while waiting:
+            copied, places = waiting.pop()
+            self._check_copied(copied, shared=copied != slot and len(state.parents[copied]) > 1)
+            twin = self.new_slot(state.labels[copied])
+            self.move(twin, places)
+            self.relink(twin, state.ports[copied])
+            waiting += [(kid, (twin,)) for kid in bits(state.kids[copied])]
+
+    def _check_copied(self, slot: int, *, shared: bool) -> None:
+        world, label = self.state.world, self.state.labels[slot]
+        name, kind = world.name_of[label], world.signature.controls[world.control_of[label]].name
         if name is not None:
             message = f"the rule would copy {name}:{kind}"
             raise BigraphError("copy", message, "a name is one node; copy anonymous ones")
-        twin = self.new_slot(state.labels[slot])
-        self.move(twin, places)
-        self.relink(twin, state.ports[slot])
-        for kid in list(bits(state.kids[slot])):
-            if len(state.parents[kid]) > 1:
-                raise BigraphError("copy", "the rule would copy a node that other places share")
-            self.copy_all(kid, (twin,))
+        if shared:
+            raise BigraphError("copy", "the rule would copy a node that other places share")
 
     def finish(self) -> State:
         """Return the state with its codes."""

@@ -124,27 +124,34 @@ class _Graph:
     def add_region(self, region: int, codes: list[int]) -> None:
         bare, incidences, inside = self.labelling.sort_kids(tuple(codes))
         label = self.labelling.number(("region", region, tuple(sorted(bare))))
-        self._add(Profile(label, incidences, tuple(sorted(inside))), -1, 0)
+        self._add(Profile(label, incidences, tuple(sorted(inside))), -1)
 
-    def add(self, code: int, parent: int, twin: int = 0) -> None:
-        self._add(self.labelling.profile(code), parent, twin)
+    def add(self, code: int, parent: int) -> None:
+        self._add(self.labelling.profile(code), parent)
 
-    def _add(self, profile: Profile, parent: int, twin: int) -> None:
-        vertex = self._vertex(profile.label, twin)
-        if parent >= 0:
-            self.around[vertex].append((_IN, parent))
-            self.around[parent].append((_HOLDS, vertex))
-        for label, link in profile.incidences:
+    def _add(self, profile: Profile, parent: int) -> None:
+        """Add a node, and all in it that has an edge."""
+        waiting = [(profile, parent, 0)]
+        while waiting:
+            profile, parent, twin = waiting.pop()
+            vertex = self._vertex(profile.label, twin)
+            if parent >= 0:
+                self.around[vertex].append((_IN, parent))
+                self.around[parent].append((_HOLDS, vertex))
+            self._join(vertex, profile.incidences)
+            before, rank = -1, 0
+            for code in profile.kids:  # sorted, so twins are neighbours
+                rank = rank + 1 if code == before else 0
+                before = code
+                waiting.append((self.labelling.profile(code), vertex, rank))
+
+    def _join(self, vertex: int, incidences: tuple[Incidence, ...]) -> None:
+        for label, link in incidences:
             edge = self.edges.get(link)
             if edge is None:
                 edge = self.edges[link] = self._vertex(_EDGE, 0)
             self.around[vertex].append((label << _SHIFT, edge))
             self.around[edge].append((label << _SHIFT, vertex))
-        before, rank = -1, 0
-        for code in profile.kids:  # sorted, so twins are neighbours
-            rank = rank + 1 if code == before else 0
-            before = code
-            self.add(code, vertex, rank)
 
     def _vertex(self, label: int, twin: int) -> int:
         self.labels.append((label, twin))

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Final
 
 from bigraphs.bigraph import Bigraph, children
 from bigraphs.engine.world import World
 from bigraphs.errors import BigraphError
+
+MOST_NODES: Final = 150
+"""How many nodes a pattern may have: a search goes as deep as that, some frames for each."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +77,10 @@ class Pattern:
 
 
 def compile_pattern(world: World, bigraph: Bigraph) -> Pattern:
-    """Return a pattern; where only occurrence matters, what imposes nothing may be left out before."""
+    """Return a pattern; raises BigraphError if it is too large."""
+    if len(bigraph.nodes) > MOST_NODES:
+        message = f"a pattern of {len(bigraph.nodes)} nodes; {MOST_NODES} are the most"
+        raise BigraphError("too-large", message, "look for a part of it")
     number: dict[int | str, int] = {name: link for link, name in enumerate(bigraph.outer_names)}
     fixed, inside = len(bigraph.outer_names), children(bigraph)
     labels = [world.label(node.control, node.name) for node in bigraph.nodes]

@@ -133,12 +133,11 @@ def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing
     below = tuple(kid for kid in pattern.kids[node] if kid in bound)
     beside = next((other for other in sorted(bound) if _beside(pattern, node, other)), -1)
     along = tuple({link for link in pattern.ports[node] if bound & frozenset(pattern.on[link])})
-    before = [
-        twin for group in pattern.twins if node in group for twin in group if twin < node and twin in bound
-    ]
-    after = [
-        twin for group in pattern.twins if node in group for twin in group if twin > node and twin in bound
-    ]
+    group = next((group for group in pattern.twins if node in group), ())
+    before = [twin for twin in group if twin < node and twin in bound]
+    after = [twin for twin in group if twin > node and twin in bound]
+    between = [twin for twin in group if node < twin < min(after, default=pattern.size)]
+    reserve = len(between)  # twins that are still to be placed above this one
 
     def step(run: Run, used: int) -> bool:
         run.steps += 1
@@ -161,6 +160,8 @@ def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing
         while mask:
             low = mask & -mask
             mask ^= low
+            if reserve and mask.bit_count() < reserve:
+                return False
             if placing(run, used, low.bit_length() - 1):
                 return True
         return False

@@ -91,17 +91,18 @@ class State:
                 stale |= 1 << around[0]
                 pending |= 1 << around[0]
         while stale:
-            stale = self._recode(stale.bit_length() - 1, stale)
+            path = [stale.bit_length() - 1]
+            while path:
+                inside = self.kids[path[-1]] & stale & ~(1 << path[-1])
+                if inside:
+                    path.append(inside.bit_length() - 1)
+                else:
+                    stale &= ~(1 << path[-1])
+                    self._recode(path.pop())
 
-    def _recode(self, slot: int, stale: int) -> int:
-        """Compute the code of a node after those of what is in it; return what is still to do."""
-        inside = self.kids[slot]
-        stale &= ~(1 << slot)
-        if inside & stale:
-            for kid in bits(inside & stale):
-                if stale >> kid & 1:
-                    stale = self._recode(kid, stale)
-        codes = self.codes
+    def _recode(self, slot: int) -> None:
+        """Compute the code of a node from those of what is in it."""
+        inside, codes = self.kids[slot], self.codes
         if self.world.sharing:
             kids = tuple(sorted([self.kid_code(kid) for kid in bits(inside)]))
             itself = ~slot if len(self.parents[slot]) > 1 else 0
@@ -111,7 +112,6 @@ class State:
         row = (self.labels[slot], self.ports[slot], kids, itself)
         found = self.world.codes.get(row)
         codes[slot] = self.world.code(row) if found is None else found
-        return stale
 
 
 @lru_cache(maxsize=1 << 17)

@@ -310,3 +310,19 @@ def test_an_interruption_leaves_what_was_found():
     )
     found = run(growing, watch=interrupt, max_states=3000)
     assert (found.complete, found.reason) == (False, "it was interrupted")
+
+
+def test_states_may_be_nested_as_deep_as_they_grow():
+    growing = "ctrl A = 0; big start = A.1; react grow = A.1 --> A.A.1; begin brs init start; rules = [ {grow} ]; end"
+    found = run(growing, max_states=1100)
+    assert (len(found), found.expanded) == (1100, 1099)
+    assert len(found.state(1099).nodes) == 1100
+
+
+def test_a_pattern_that_is_too_large_is_refused():
+    large = " | ".join(["A"] * 151)
+    text = f"atomic ctrl A = 0; big start = A; react r = {large} --> A; begin brs init start; rules = [ {{r}} ]; end"
+    with pytest.raises(BigraphError, match="a pattern of 151 nodes; 150 are the most"):
+        run(text)
+    fits = text.replace(large, " | ".join(["A"] * 150)).replace("big start = A;", f"big start = {large};")
+    assert len(run(fits, max_states=3)) == 2
