@@ -7,6 +7,7 @@ from bigraphs.notation.big.printer import format_expression, format_model
 from bigraphs.notation.big.systems import read_system
 from bigraphs.notation.big.theory import Theory, read_big, read_theory
 from bigraphs.notation.big.writer import write_system
+from bigraphs.notation.files import load_system
 from bigraphs.notation.paper import (
     NodeTerm,
     RegionTerm,
@@ -31,6 +32,7 @@ __all__ = [
     "format_model",
     "format_regions",
     "format_term",
+    "load_system",
     "parse_expression",
     "parse_model",
     "parse_regions",

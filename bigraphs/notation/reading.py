@@ -14,7 +14,7 @@ from bigraphs.errors import NotationError
 MAX_BYTES: Final = 1_000_000
 MAX_NESTING: Final = 200
 MAX_TOKEN: Final = 10_000
-MAX_WORDS: Final = 60_000
+MAX_WORDS: Final = 200_000
 
 _WORD: Final = re.compile(r"\w+|[^\w\s]")
 _STEPS: Final = re.compile(r"[()]|\.|\|\|?|-->|->|[;,=]|[^\W\d]\w*|/")
@@ -46,16 +46,18 @@ def check_bounds(text: str) -> None:
 
 
 def _check_nesting(text: str) -> None:
-    depth, outer = 0, [0]
+    depth, base, before = 0, [0], [0]
     for step in _STEPS.finditer(text):
         symbol = step.group()
         if symbol == "(":
+            before.append(depth)
             depth += 1
-            outer.append(depth)
+            base.append(depth)
         elif symbol == ")":
-            depth = outer.pop() if len(outer) > 1 else 0
+            depth = before.pop() if len(before) > 1 else 0
+            del base[len(before) :]
         elif symbol in _RESETS:
-            depth = outer[-1]
+            depth = base[-1]
         elif symbol in "./":
             depth += 1
         if depth > MAX_NESTING:

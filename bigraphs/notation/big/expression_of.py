@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Final
 
 from bigraphs.bigraph import Bigraph, Link, Node, Place, children, sites_in
 from bigraphs.errors import BigraphError
@@ -27,9 +28,12 @@ from bigraphs.notation.big.syntax import (
 )
 from bigraphs.system import Value
 
+DEEPEST: Final = 90
+"""How deep places nest that are written: each may need a dot and a parenthesis, and sharing two of these."""
+
 
 def write_big(bigraph: Bigraph) -> str:
-    """Write a bigraph of anonymous nodes; raises BigraphError for a named node, which this notation cannot say.
+    """Write a bigraph of anonymous nodes; raises BigraphError for a named node, and for places that nest too deeply.
 
     >>> from bigraphs.relations import from_relations
     >>> from dataclasses import replace
@@ -47,12 +51,26 @@ def expression_of(bigraph: Bigraph) -> Expression:
             raise BigraphError(
                 "notation", f"this notation cannot name a node, as {node}", "use the paper's notation"
             )
+    if _depth(bigraph) > DEEPEST:
+        hint = "the texts that are read nest no deeper"
+        raise BigraphError("too-deep", f"places nest deeper than {DEEPEST}", hint)
     edges = _edge_names(bigraph)
     shared = any(len(parents) > 1 for parents in [*(node.parents for node in bigraph.nodes), *bigraph.sites])
     places = _layers(bigraph, edges) if shared else _nested(bigraph, edges)
     parts = [*places, *_wires(bigraph, edges)]
     body = _chain("||", parts) if parts else Number(0)
     return Wired(tuple(Close((name,)) for name in edges), body) if edges else body
+
+
+def _depth(bigraph: Bigraph) -> int:
+    """Count how many nodes are in each other, layer by layer."""
+    inside = children(bigraph)
+    layer: set[Place] = set(range(-bigraph.regions, 0))
+    depth = 0
+    while layer and depth <= DEEPEST:
+        layer = {child for place in layer for child in inside[place]}
+        depth += bool(layer)
+    return depth
 
 
 def _edge_names(bigraph: Bigraph) -> list[str]:
@@ -128,27 +146,71 @@ def _nested(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
 
 
 def _layers(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
-    """Return shared places layer by layer: each layer's nodes are put into slots that the layers before left open."""
+    """Return shared places layer by layer: each layer's nodes are put into slots that the layers before left open.
+
+    What is in a node and nowhere else, and has no site, is written where the node is.
+    """
+    inside = children(bigraph)
+    closed = {number: inside[number] for number in _closed(bigraph)}
     slots: list[Place] = [~region for region in range(bigraph.regions)]
     found: Expression = Identity(len(slots))
-    waiting = list(range(len(bigraph.nodes)))
+    within = {child for content in closed.values() for child in content}
+    waiting = [number for number in range(len(bigraph.nodes)) if number not in within]
     while waiting:
         layer = [number for number in waiting if set(bigraph.nodes[number].parents) <= set(slots)]
-        found = _layer(bigraph, edges, layer, slots, found)
-        open_ = [n for n in layer if bigraph.signature[bigraph.nodes[n].control].status != "atomic"]
-        slots = [*open_, *slots]
         waiting = [number for number in waiting if number not in layer]
+        kept = [place for place in slots if place in _needed(bigraph, waiting)]
+        whats = [_content(bigraph, edges, number, closed) for number in layer]
+        found = _shared(whats, [bigraph.nodes[number].parents for number in layer], kept, slots, found)
+        slots = [*(number for number in layer if number not in closed), *kept]
     rank = {place: slot for slot, place in enumerate(slots)}
     sites = Placed(tuple(tuple(rank[place] for place in parents) for parents in bigraph.sites), len(slots))
-    return [Chain(found, (("*", sites),))]
+    in_order = sites == Placed(tuple((slot,) for slot in range(len(slots))), len(slots))
+    return [found if in_order else Chain(found, (("*", sites),))]
 
 
-def _layer(
-    bigraph: Bigraph, edges: Sequence[str], layer: Sequence[int], slots: Sequence[Place], where: Expression
+def _closed(bigraph: Bigraph) -> set[int]:
+    """Return the nodes whose content is nowhere else and has no site, atomic ones among them."""
+    inside, sited = children(bigraph), sites_in(bigraph)
+    known: dict[int, bool] = {}
+
+    def closed(number: int) -> bool:
+        if number not in known:
+            known[number] = number not in sited and all(
+                len(bigraph.nodes[child].parents) == 1 and closed(child) for child in inside[number]
+            )
+        return known[number]
+
+    return {number for number in range(len(bigraph.nodes)) if closed(number)}
+
+
+def _needed(bigraph: Bigraph, waiting: Sequence[int]) -> set[Place]:
+    """Return the places that nodes which are not written yet, or sites, are in."""
+    later = (place for number in waiting for place in bigraph.nodes[number].parents)
+    return {*later, *(place for parents in bigraph.sites for place in parents)}
+
+
+def _content(
+    bigraph: Bigraph, edges: Sequence[str], number: int, closed: Mapping[int, Sequence[int]]
+) -> Expression:
+    """Return a node, with what is in it if that is nowhere else; `closed` has the nodes in those where it is."""
+    ion = _ion(bigraph.nodes[number], edges)
+    if number not in closed or bigraph.signature[bigraph.nodes[number].control].status == "atomic":
+        return ion
+    inside = [_content(bigraph, edges, child, closed) for child in closed[number]]
+    return Nest(ion, _chain("|", inside) if inside else Number(1))
+
+
+def _shared(
+    whats: Sequence[Expression],
+    parents: Sequence[Sequence[Place]],
+    kept: Sequence[Place],
+    slots: Sequence[Place],
+    where: Expression,
 ) -> Expression:
     rank = {place: slot for slot, place in enumerate(slots)}
-    ions: list[Expression] = [_ion(bigraph.nodes[number], edges) for number in layer]
-    parents = [tuple(rank[place] for place in bigraph.nodes[number].parents) for number in layer]
-    passing = [(slot,) for slot in range(len(slots))]
-    what = _chain("||", [*ions, Identity(len(slots))])
-    return Share(what, Placed((*parents, *passing), len(slots)), where)
+    placed = [*parents, *((place,) for place in kept)]
+    what = _chain("||", [*whats, *([Identity(len(kept))] if kept else [])])
+    return Share(
+        what, Placed(tuple(tuple(rank[place] for place in each) for each in placed), len(slots)), where
+    )

@@ -31,7 +31,7 @@ from bigraphs.notation.big.syntax import (
     Wired,
 )
 from bigraphs.signature import Control, Signature
-from bigraphs.system import Value
+from bigraphs.system import Value, call
 
 MAX_WORK: Final = 1_000_000
 """How many parts of bigraphs are made, all steps together, before a file is refused."""
@@ -45,43 +45,35 @@ class Evaluation:
     def __init__(self, scope: Scope, known: Mapping[str, Bigraph] | None = None) -> None:
         self.scope = scope
         self.controls: dict[str, Control] = {}
-        self._known: dict[tuple[str, tuple[Value, ...]], Bigraph | None] = {
-            (name, ()): bigraph for name, bigraph in (known or {}).items()
-        }
+        self._known: dict[str, Bigraph | None] = dict(known or {})
+        self._under_way: set[str] = set()
         self._work = 0
         self._depth = 0
 
     def named(self, name: str, given: tuple[Value, ...], span: Span, frame: Frame) -> Bigraph | None:
         """Return a declared bigraph for some arguments."""
-        key = (name, given)
-        if key not in self._known:
-            declaration = self._declaration(name, given, span, frame)
-            if declaration is None:
-                return None
-            if frame.depth >= NESTED:
-                self.scope.add("too-deep", f"bigraphs use each other more than {NESTED} deep", span, frame)
-                return None
-            self._known[key] = None  # a bigraph that uses itself is none
-            parameters = declaration.parameters
-            if parameters and not self.scope.fits(name, parameters, given, span, frame):
-                return None
+        declaration = self._declaration(name, given, span)
+        if declaration is None:
+            return None
+        parameters = declaration.parameters
+        if parameters and not self.scope.fits(name, parameters, given, span, frame):
+            return None
+        key = call(name, given)
+        if key in self._under_way:
+            self.scope.add("cycle", f"'{name}' is made of itself", span, frame)
+        elif key not in self._known and frame.depth >= NESTED:
+            self.scope.add("too-deep", f"bigraphs use each other more than {NESTED} deep", span, frame)
+        elif key not in self._known:
+            self._under_way.add(key)
             inner = frame.inside(name, parameters, given if parameters else ())
             self._known[key] = self.value(declaration.body, inner)
-        elif self._known[key] is None and not len(self.scope.findings):
-            self.scope.add("cycle", f"'{name}' is made of itself", span, frame)
-        return self._known[key]
+            self._under_way.discard(key)
+        return self._known.get(key)
 
-    def _declaration(
-        self, name: str, given: tuple[Value, ...], span: Span, frame: Frame
-    ) -> BigDeclaration | None:
-        names = self.scope.names
-        found = names.bigs.get(name)
+    def _declaration(self, name: str, given: tuple[Value, ...], span: Span) -> BigDeclaration | None:
+        found = self.scope.names.bigs.get(name)
         if found is not None and found.arguments:
-            choices = names.given_bigs[name]
-            chosen = [each for each in choices if self.scope.arguments(each.arguments, Frame()) == given]
-            if not chosen:
-                self.scope.add("name", f"'{name}' is not given for these arguments", span, frame)
-            return chosen[0] if chosen else None
+            return self.scope.instance(self.scope.names.given_bigs[name], given, span)
         return found if found is not None and len(found.parameters) == len(given) else None
 
     def value(self, expression: Expression, frame: Frame) -> Bigraph | None:

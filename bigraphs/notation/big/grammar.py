@@ -55,8 +55,9 @@ values: value ("," value)*
 ?expression: sums (PRODUCT sums)* -> chain
 ?sums: compositions (PLUS compositions)* -> chain
 ?compositions: operand (STAR operand)* -> chain
-?operand: simple | wire+ wired_body -> wired | "share" simple "by" simple "in" simple -> share
-?wired_body: "(" expression ")" | ion | nest | ref
+?operand: simple | wire+ wired_body -> wired | share
+?wired_body: "(" expression ")" | ion | nest | ref | share
+share: "share" simple "by" simple "in" simple
 ?simple: "(" expression ")" | "(" expression ")" "(" expression ")" -> applied
     | ion | nest | ref | wire | identity | merge | split | placing | new_names | repeat
     | INT -> number

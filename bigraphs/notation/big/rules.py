@@ -11,7 +11,7 @@ from bigraphs.notation.big.expressions import Evaluation
 from bigraphs.notation.big.scope import Frame
 from bigraphs.notation.big.shapes import faults, pattern_of
 from bigraphs.notation.big.syntax import Expression, Span, ValueExpression
-from bigraphs.system import Condition, Position, Rule, SystemKind, Value, Where
+from bigraphs.system import Condition, Position, Rule, SystemKind, Value, Where, call
 
 
 class Rules:
@@ -21,31 +21,29 @@ class Rules:
         self.evaluation = evaluation
         self.scope = evaluation.scope
         self.kind = kind
-        self._known: dict[tuple[str, tuple[Value, ...]], Rule | None] = {}
+        self._known: dict[str, Rule | None] = {}
 
     def named(self, name: str, given: tuple[Value, ...], span: Span) -> Rule | None:
         """Return a declared rule for some arguments, or None where a mistake has been noted."""
-        key = (name, given)
+        declaration = self._declaration(name, given, span)
+        if declaration is None:
+            return None
+        parameters = declaration.parameters
+        if parameters and not self.scope.fits(name, parameters, given, span, Frame()):
+            return None
+        key = call(name, given)
         if key not in self._known:
-            declaration = self._declaration(name, given, span)
-            self._known[key] = None if declaration is None else self.rule(declaration, given, span)
+            self._known[key] = self.rule(declaration, given)
         return self._known[key]
 
     def _declaration(self, name: str, given: tuple[Value, ...], span: Span) -> ReactDeclaration | None:
-        names = self.scope.names
-        found = names.reacts.get(name)
+        found = self.scope.names.reacts.get(name)
         if found is not None and found.arguments:
-            choices = names.given_reacts[name]
-            chosen = [each for each in choices if self.scope.arguments(each.arguments, Frame()) == given]
-            if not chosen:
-                self.scope.add("name", f"'{name}' is not given for these arguments", span, Frame())
-            return chosen[0] if chosen else None
+            return self.scope.instance(self.scope.names.given_reacts[name], given, span)
         return found if found is not None and len(found.parameters) == len(given) else None
 
-    def rule(self, react: ReactDeclaration, given: tuple[Value, ...], span: Span) -> Rule | None:
+    def rule(self, react: ReactDeclaration, given: tuple[Value, ...]) -> Rule | None:
         """Return the rule of a declaration for some arguments."""
-        if react.parameters and not self.scope.fits(react.name, react.parameters, given, span, Frame()):
-            return None
         frame = Frame().inside(react.name, react.parameters, given if react.parameters else ())
         redex = self.evaluation.value(react.redex, frame)
         reactum = self.evaluation.value(react.reactum, frame)

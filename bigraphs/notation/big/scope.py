@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Any, Final, TypeVar
 
 from bigraphs.notation.big import values
-from bigraphs.notation.big.declarations import ControlDeclaration
+from bigraphs.notation.big.declarations import BigDeclaration, ControlDeclaration, ReactDeclaration
 from bigraphs.notation.big.findings import Findings
 from bigraphs.notation.big.names import Names
 from bigraphs.notation.big.syntax import Ion, Span, ValueExpression, Variable
@@ -16,6 +16,9 @@ from bigraphs.system import Value, call
 
 NESTED: Final = 100
 """How deep constants, and calls of bigraphs, may use each other."""
+
+
+_Given = TypeVar("_Given", BigDeclaration, ReactDeclaration)
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +43,8 @@ class Scope:
         self.findings = findings
         self.constants: dict[str, Value | None] = dict(given)
         self._types: dict[tuple[str, str], tuple[str, int]] = {}
+        self._under_way: set[str] = set()
+        self._instances: dict[tuple[type, str], dict[str, Any]] = {}
         self._depth = 0
 
     def add(self, code: str, message: str, span: Span, frame: Frame, hint: str = "") -> None:
@@ -66,13 +71,15 @@ class Scope:
         """Return what a constant is; constants may use each other in any order."""
         if name not in self.constants and name in self.names.constants:
             declaration = self.names.constants[name]
-            self.constants[name] = None  # a constant that uses itself has no value
+            self.constants[name] = None  # while it is under way
             if self._depth >= NESTED:
                 message = f"constants use each other more than {NESTED} deep"
                 self.findings.add("too-deep", message, declaration.span)
                 return None
             self._depth += 1
+            self._under_way.add(name)
             found = values.evaluate(declaration.value, self._inner(declaration.name), self.findings)
+            self._under_way.discard(name)
             self._depth -= 1
             if found is not None:
                 self.constants[name] = values.typed(
@@ -82,12 +89,10 @@ class Scope:
 
     def _inner(self, of: str) -> values.Lookup:
         def lookup(variable: Variable) -> Value | None:
-            under_way = variable.name in self.constants and self.constants[variable.name] is None
-            found = self.constant(variable.name)
-            if found is None and under_way and not len(self.findings):
+            if variable.name in self._under_way:
                 message = f"'{of}' needs '{variable.name}', which is not known before it"
                 self.findings.add("cycle", message, variable.span)
-            return found
+            return self.constant(variable.name)
 
         return lookup
 
@@ -102,6 +107,26 @@ class Scope:
         if declaration.arity not in (None, len(ion.links)):
             return None
         return control_of(declaration, given)
+
+    def instance(self, choices: Sequence[_Given], given: tuple[Value, ...], span: Span) -> _Given | None:
+        """Return what is declared for these very arguments, as `big b(1) = ...` is; note if nothing is."""
+        name = choices[0].name
+        if (type(choices[0]), name) not in self._instances:
+            self._instances[type(choices[0]), name] = self._by_call(choices)
+        found = self._instances[type(choices[0]), name].get(call(name, given))
+        if found is None:
+            self.findings.add("name", f"'{name}' is not given for these arguments", span)
+        return found
+
+    def _by_call(self, choices: Sequence[_Given]) -> dict[str, Any]:
+        table: dict[str, Any] = {}
+        for each in choices:
+            values_ = self.arguments(each.arguments, Frame())
+            written = "" if values_ is None else call(each.name, values_)
+            if written in table:
+                self.findings.add("name", f"'{written}' is declared twice", each.span)
+            table[written] = each
+        return table
 
     def fits(
         self, name: str, parameters: Sequence[str], given: Sequence[Value], span: Span, frame: Frame

@@ -35,11 +35,14 @@ from bigraphs.notation.big.syntax import (
 
 def survey(model: Model, names: Names, findings: Findings, given: Iterable[str] = ()) -> None:
     """Note every name that is not declared, and every wrong number of links or arguments; `given` are constants."""
-    look = Survey(names, findings, frozenset(given) | names.constants.keys())
+    constants = frozenset(given) | names.constants.keys()
+    look = Survey(names, findings, constants)
     for declaration in model.declarations:
         look.declaration(declaration)
     if model.system is not None:
         look.system(model.system)
+    for name in sorted(set(given) - names.constants.keys() - look.seen):
+        findings.add("name", f"no constant '{name}' is in the file", Span(0, 1), "leave it out")
 
 
 class Survey:
@@ -49,6 +52,7 @@ class Survey:
         self.names = names
         self.findings = findings
         self.variables = self.constants = constants
+        self.seen: set[str] = set()
 
     def declaration(self, declaration: Declaration) -> None:
         """Look at one declaration, in which its parameters are known."""
@@ -172,6 +176,7 @@ class Survey:
         """Look at a value."""
         match value:
             case Variable(name):
+                self.seen.add(name)
                 if name not in self.variables:
                     self.findings.unknown("value", name, value.span, self.variables)
             case Negated(operand):

@@ -51,11 +51,20 @@ class _Systems:
         self.findings = findings
         self.names = index(model, findings)
         survey(model, self.names, findings, constants)
-        self.scope = Scope(self.names, findings, constants)
+        self.scope = Scope(self.names, findings, self.given(constants))
         self.evaluation = Evaluation(self.scope)
         kind = SystemKind(model.system.kind) if model.system is not None else None
         self.rules = Rules(self.evaluation, kind)
         self.ranges: dict[str, tuple[Value, ...]] = {}
+
+    def given(self, constants: Mapping[str, Value]) -> dict[str, Value]:
+        """Return constants as values of the types that they are declared with."""
+        found = dict(constants)
+        for name, value in constants.items():
+            declared = self.names.constants.get(name)
+            typed = values.typed(declared.type, value, declared.span, self.findings) if declared else value
+            found[name] = value if typed is None else typed
+        return found
 
     def system(self) -> System | None:
         """Return the system, if all is well; what is declared and not used is looked at, too."""

@@ -37,6 +37,7 @@ def test_operators_bind_as_in_bigrapher():
     assert parse_expression("merge(2) + split") == parse_expression("([{0}, {0}], 1) + ([{0, 1}], 2)")
     assert parse_expression("share a by b in c | d") == parse_expression("(share a by b in c) | d")
     assert parse_expression("(a)(b)") == parse_expression("a * b")
+    assert parse_expression("/x share a by b in c") == parse_expression("/x (share a by b in c)")
 
 
 def test_signs_and_powers_of_numbers_bind_as_in_bigrapher():

@@ -72,3 +72,16 @@ def test_two_rules_of_one_name_are_refused():
     same = replace(other, parameters=one.parameters)
     with pytest.raises(BigraphError, match=r"two different 'r\(2\)'"):
         write_system(replace(system, classes=(replace(system.classes[0], rules=(one, same)),)))
+
+
+def test_places_that_nest_too_deeply_to_be_read_are_not_written():
+    text = "ctrl A = 0; big s = " + "A * " * 500 + "1; begin brs init s; rules = []; end"
+    with pytest.raises(BigraphError, match="places nest deeper than 90"):
+        write_system(read_system(text))
+
+
+def test_the_deepest_places_that_are_written_are_read():
+    for inside in ("1", "(share (A || A) by ([{0}, {0, 1}], 2) in (A | A)) * (1 || 1)"):
+        text = f"ctrl A = 0; big s = {'A * ' * 80}({inside}); begin brs init s; rules = []; end"
+        system = read_system(text)
+        assert canonical_system(read_system(write_system(system))) == canonical_system(system)
