@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from bigactors.big_output import check_outputs, write_outputs
 from bigactors.exits import Exit, worst
-from bigactors.files import json_text, read_bytes, write_json
+from bigactors.files import json_text, write_json
 from bigactors.mistakes import Mistake
 from bigactors.progress import Watch, watching
 from bigactors.terminal import is_terminal, paint, say, say_text, tell
@@ -17,7 +17,7 @@ from bigraphs.engine.machine import Machine
 from bigraphs.examples import example_names, example_text
 from bigraphs.exploration import Progress, explore
 from bigraphs.exports.json import bigraph_json
-from bigraphs.notation import read_bgm, read_system, write_big
+from bigraphs.notation import load_system, read_system, write_big
 from bigraphs.simulation import Bounds, Stage, simulate
 from bigraphs.system import System, SystemKind
 from bigraphs.transitions import TransitionSystem
@@ -29,8 +29,6 @@ from bigraphs.verdicts import (
     predicate_verdict,
     property_verdict,
 )
-
-MOST_BYTES: Final = 1_000_000
 
 MARKS: Final = {
     Outcome.HOLDS: ("✓", "green", Exit.HOLDS),
@@ -51,22 +49,9 @@ def run(options: Namespace) -> Exit:
 
 def read_file(options: Namespace) -> System:
     """Return the system in a file, or of an example that ships."""
-    text = _text(options.file)
-    if options.file.lower().endswith(".bgm"):
-        return read_bgm(text)
-    return read_system(text, constants=dict(options.const))
-
-
-def _text(file: str) -> str:
-    if file in example_names() and not Path(file).exists():
-        return example_text(file)
-    data = read_bytes(file, MOST_BYTES)
-    if len(data) > MOST_BYTES:
-        raise Mistake(f"the file is longer than {MOST_BYTES:,} bytes", "is it a system of bigraphs?", file)
-    try:
-        return data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise Mistake(f"byte {error.start} is no UTF-8", "save the file as UTF-8", file) from error
+    if options.file in example_names() and not Path(options.file).exists():
+        return read_system(example_text(options.file), constants=dict(options.const))
+    return load_system(options.file, constants=dict(options.const))
 
 
 def explored(options: Namespace, system: System) -> TransitionSystem:

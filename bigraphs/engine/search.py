@@ -10,50 +10,17 @@ being touched.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Iterator
-from typing import Final, NamedTuple, TypeAlias
+from typing import Final
 
+from bigraphs.engine.bindings import binding
 from bigraphs.engine.patterns import Pattern
+from bigraphs.engine.runs import Occurrence, Placing, Run, Step
 from bigraphs.engine.sharing import shared_places_fit
 from bigraphs.engine.state import State, bits
 from bigraphs.engine.world import World
 
-
-class Occurrence(NamedTuple):
-    """Where a pattern is: the slot of each of its nodes, the link of each of its links, the mask of the slots.
-
-    A link of the pattern that is on no node has -1.
-    """
-
-    nodes: tuple[int, ...]
-    links: tuple[int, ...]
-    mask: int
-
-
-class Run:
-    """One search: the state, what is placed so far, and what was found."""
-
-    __slots__ = ("allowed", "found", "links", "nodes", "once", "state", "steps")
-
-    def __init__(self, state: State, pattern: Pattern, allowed: int, *, once: bool) -> None:
-        self.state = state
-        self.allowed = allowed
-        self.once = once
-        self.steps = 0
-        self.nodes = [-1] * pattern.size
-        self.links = [-1] * len(pattern.on)
-        self.found: list[Occurrence] = []
-
-
 _OFTEN: Final = 0x3FF
 """After how many steps, less one, a search pauses."""
-
-Step: TypeAlias = Callable[[Run, int], bool]
-"""Places what is left of a pattern beside the slots in a mask; says whether the search is over."""
-
-Placing: TypeAlias = Callable[[Run, int, int], bool]
-"""Places one node at a slot, and then what is left."""
 
 
 class Matcher:
@@ -189,7 +156,7 @@ def _placing(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
     above, rooted = len(pattern.parents[node]), bool(pattern.homes[node])
     alone = rooted and not above
     label = pattern.labels[node]
-    bind = _binding(world, pattern, node, then)
+    bind = binding(world, pattern, node, then)
 
     def place(run: Run, used: int, slot: int) -> bool:
         state = run.state
@@ -208,79 +175,6 @@ def _placing(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
         return bind(run, used | 1 << slot, slot)
 
     return place
-
-
-def _binding(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
-    """Return what binds the links of a node in each way that fits."""
-    ports = pattern.ports[node]
-    if not ports:
-        return lambda run, used, _: then(run, used)
-    if len(ports) == 1 or world.ordered[pattern.controls[node]]:
-        return _in_order(world, pattern, ports, then)
-    return _in_any_order(world, pattern, ports, then)
-
-
-def _in_order(world: World, pattern: Pattern, ports: tuple[int, ...], then: Step) -> Placing:
-    fits = _fitting(world, pattern)
-
-    def bind(run: Run, used: int, slot: int) -> bool:
-        targets, links, fresh = run.state.ports[slot], run.links, []
-        over = False
-        if len(targets) == len(ports):
-            for link, target in zip(ports, targets, strict=True):
-                known = links[link]
-                if known < 0 and fits(run.state, link, target):
-                    links[link] = target
-                    fresh.append(link)
-                elif known != target:
-                    break
-            else:
-                over = then(run, used)
-        for link in fresh:
-            links[link] = -1
-        return over
-
-    return bind
-
-
-def _in_any_order(world: World, pattern: Pattern, ports: tuple[int, ...], then: Step) -> Placing:
-    """Give each link of a node one of the slot's links that it has as often."""
-    fits = _fitting(world, pattern)
-    wanted = sorted(Counter(ports).items())
-
-    def bind(run: Run, used: int, slot: int) -> bool:
-        targets = run.state.ports[slot]
-        if len(targets) != len(ports):
-            return False
-        return any(then(run, used) for _ in ways(run, Counter(targets), 0))
-
-    def ways(run: Run, left: Counter[int], place: int) -> Iterator[None]:
-        if place == len(wanted):
-            yield
-            return
-        link, times = wanted[place]
-        known = run.links[link]
-        for target in [target for target in left if left[target] >= times]:
-            if target != known and (known >= 0 or not fits(run.state, link, target)):
-                continue
-            left[target] -= times
-            run.links[link] = target
-            yield from ways(run, left, place + 1)
-            run.links[link] = known
-            left[target] += times
-
-    return bind
-
-
-def _fitting(world: World, pattern: Pattern) -> Callable[[State, int, int], bool]:
-    """Return what says whether a link of the pattern may be a link of the state: an edge needs an edge as large."""
-    names, fixed = pattern.names, len(world.names)
-    sizes = [len(nodes) for nodes in pattern.on]
-
-    def fits(state: State, link: int, target: int) -> bool:
-        return link < names or (target >= fixed and state.points[target].bit_count() == sizes[link])
-
-    return fits
 
 
 def _end(world: World, pattern: Pattern) -> Step:
