@@ -67,8 +67,9 @@ class Representatives:
 
 def symmetries(rule: Rule, pattern: Pattern) -> tuple[Symmetry, ...]:
     """Return the symmetries of a rule up to exchanging twins, without the identity."""
-    closed = _with_markers(rule.redex, range(len(rule.redex.sites)))
-    result = _with_markers(rule.reactum, rule.instantiation)
+    width = len(rule.redex.sites)
+    closed = _with_markers(rule.redex, range(width), width)
+    result = _with_markers(rule.reactum, rule.instantiation, width)
     found = []
     for occurrence in _self_matches(closed):
         nodes = occurrence.nodes[: pattern.size]
@@ -80,9 +81,9 @@ def symmetries(rule: Rule, pattern: Pattern) -> tuple[Symmetry, ...]:
     return tuple(found)
 
 
-def _with_markers(bigraph: Bigraph, sites: Sequence[int]) -> Bigraph:
+def _with_markers(bigraph: Bigraph, sites: Sequence[int], width: int) -> Bigraph:
     """Return a ground bigraph with a node for each site, whose control tells which site of the redex it is."""
-    kinds = [Control(f"${site}", 0) for site in sorted(set(sites))]
+    kinds = [Control(f"${site}", 0) for site in range(width)]
     markers = [
         Node(f"${site}", None, (), parents) for site, parents in zip(sites, bigraph.sites, strict=True)
     ]
