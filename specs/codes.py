@@ -437,6 +437,14 @@ class Code(Enum):
         """A hundred mistakes are shown at the most; the others are counted.""",
     )
 
+    WRONG_LOGIC = (
+        "LS611",
+        "operator of another logic",
+        """`invariant` and `reachable` are about configurations one by one. `ltl` is about every run: `[]`, `<>`, X,
+        U, R and W in any combination, `taken`, no A and no E. `ctl` is about the tree of runs: each operator of
+        paths stands directly behind A or E. `env` and `say` are nobody's rules.""",
+    )
+
     @property
     def range(self) -> str:
         """What the first digit of the number says it is about."""

@@ -9,7 +9,7 @@ from bigactors.files import read_json
 from bigactors.missions import digest_of, open_mission, shipped_missions, variation_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
-from checker import ReplayError, Trace, print_trace, replay
+from checker import ReplayError, Trace, print_loop, print_trace, replay
 from semantics.monitor import monitored
 from semantics.printing import print_configuration
 from specs.elaboration import ElaboratedMission, Variation
@@ -25,7 +25,8 @@ def run(options: Namespace) -> Exit:
     for line in print_trace(trace):
         say(line)
     say(f"c{len(trace)} = {print_configuration(trace.configurations[-1])}")
-    say(f"{options.trace}: {len(trace)} steps replayed on {mission.name}")
+    again = f", and {print_loop(trace)}" if trace.loop is not None else ""
+    say(f"{options.trace}: {len(trace)} steps replayed on {mission.name}{again}")
     return Exit.HOLDS
 
 
