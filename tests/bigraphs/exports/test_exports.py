@@ -153,3 +153,22 @@ def test_a_page_holds_everything_and_asks_nobody():
     assert len(data["states"]) == 4
     assert data["paths"] == [0, 0, 0, 1]
     assert set(re.findall(r"https?://[\w./]+", page)) == {"http://www.w3.org/2000/svg"}
+
+
+def test_of_a_large_system_a_page_shows_the_first_states_and_says_so(monkeypatch):
+    monkeypatch.setattr("bigraphs.exports.html.MOST_STATES", 3)
+    page = to_html(gambler(), "gambler")
+    assert "4 states, 4 transitions, complete, the first 3 states are shown" in page
+    data = json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1].replace("<\\/", "</"))
+    assert [move[:2] for move in data["moves"]] == [[0, 1], [0, 2], [1, 0]]
+
+
+def test_the_transition_system_is_a_networkx_graph():
+    graph = gambler().to_networkx()
+    assert graph.nodes[3] == {"labels": ("rich",)}
+    assert sorted((a, b, data["rules"], data["occurrences"]) for a, b, data in graph.edges(data=True)) == [
+        (0, 1, ("win",), 2),
+        (0, 2, ("lose",), 2),
+        (1, 0, ("lose",), 2),
+        (1, 3, ("win",), 2),
+    ]
