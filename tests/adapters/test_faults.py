@@ -37,7 +37,7 @@ def here(vehicle):
 def test_it_arrives_though_a_third_is_lost_and_the_rest_comes_late_twice_and_in_disorder(kind, seed):
     async def main():
         fence = box((37.05, -8.55), (36.95, -8.65))
-        async with flight(kind, BAD, Craft("uav0", fence=fence), seed=seed) as f:
+        async with flight(kind, BAD, craft=Craft("uav0", fence=fence), seed=seed) as f:
             await f.plugin.command(GoTo("r1", "uav0", AREA))
             end = await f.ended("r1")
             assert isinstance(end, Arrived), end
