@@ -55,6 +55,7 @@ class MissionResult(IntEnum):
     ACCEPTED = 0
     ERROR = 1
     NO_SPACE = 4
+    INVALID = 5
     INVALID_SEQUENCE = 13
     DENIED = 14
     CANCELLED = 15

@@ -92,7 +92,7 @@ def _heartbeat(vehicle: Vehicle) -> Message:
 def _status(vehicle: Vehicle) -> Message:
     sensors = {
         "onboard_control_sensors_present": PREARM_HEALTHY | GEOFENCE,
-        "onboard_control_sensors_enabled": PREARM_HEALTHY | (GEOFENCE if vehicle.fenced else 0),
+        "onboard_control_sensors_enabled": PREARM_HEALTHY | (GEOFENCE if vehicle.fence else 0),
         "onboard_control_sensors_health": PREARM_HEALTHY if vehicle.ready else 0,
     }
     rest = dict.fromkeys(

@@ -42,7 +42,7 @@ def test_it_arrives_though_a_third_is_lost_and_the_rest_comes_late_twice_and_in_
             end = await f.ended("r1")
             assert isinstance(end, Arrived), end
             assert contains(AREA, here(f.vehicle))
-            assert f.vehicle.fenced
+            assert f.vehicle.fence is not None
 
     run(main())
 

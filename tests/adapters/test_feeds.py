@@ -6,7 +6,7 @@ import os
 import pty
 import socket
 
-import aiohttp
+import aiohttp.web
 import pytest
 from worlds import DATA, World, running, until
 

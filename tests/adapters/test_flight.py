@@ -175,7 +175,7 @@ def test_the_fence_is_on_board_and_kept_before_the_vehicle_is_armed():
                 await f.plugin.command(GoTo("r0", "uav0", circle((38, -8.6), 900)))
             await f.plugin.command(GoTo("r1", "uav0", AREA))
             await until(lambda: f.vehicle.armed)
-            assert f.vehicle.fenced
+            assert f.vehicle.fence is not None
             assert len(f.vehicle.store.items[MissionType.FENCE]) == 4
             assert isinstance(await f.ended("r1"), Arrived)
 
