@@ -27,7 +27,7 @@ from adapters.transport import Port, Remote, open_port
 from adapters.troubles import Troubles
 from physical import PhysicalError
 
-TICK: Final = 0.1
+TICK: Final = 0.2
 HEARTBEAT: Final = 1.0
 SAVE: Final = 30.0
 """Seconds between two writings of the signing state: half of what runs ahead on disk."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -65,7 +66,7 @@ class Progress:
     task: Task
     sent: tuple[Message, ...] = ()
     report: Report | None = None
-    on_board: tuple[MissionType, Items] | None = None
+    on_board: Mapping[MissionType, Items] | None = None
 
 
 def hear(task: Task, message: Message, now: float) -> Progress:
@@ -109,12 +110,15 @@ def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
         )
     asked = task.step.message.fields if isinstance(task.step, Tell) else {}
     begins = asked.get("command") == Cmd.SET_MISSION_CURRENT and known.current == asked.get("param1")
-    return replace(task, begun=task.begun or begins, was_armed=task.was_armed or known.armed is True)
+    begun, was_armed = task.begun or begins, task.was_armed or known.armed is True
+    unchanged = (begun, was_armed) == (task.begun, task.was_armed)
+    return task if unchanged else replace(task, begun=begun, was_armed=was_armed)
 
 
 def _underway(task: Task, step: Underway, now: float) -> Progress:
     request, entity = task.command.request, task.command.entity
-    task = replace(task, strange=None, step=step, doing=None)
+    if (task.strange, task.step, task.doing) != (None, step, None):
+        task = replace(task, strange=None, step=step, doing=None)
     if step.done and not task.over:
         return Progress(replace(task, accepted=True, over=True), report=Arrived(request, entity, now))
     if not task.accepted:
@@ -157,7 +161,7 @@ def _pursued(task: Task, now: float) -> Progress:
         return Progress(replace(task, doing=told), sent)
     if isinstance(task.doing, syncing.Sync):
         sync, sent = syncing.tick(task.doing, now)
-        done = (sync.kind, sync.items) if sync.confirmed else None
+        done = {sync.kind: sync.items} if sync.confirmed else None
         return Progress(replace(task, doing=sync), sent, on_board=done)
     return Progress(task)
 
