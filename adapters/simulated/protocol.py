@@ -17,6 +17,8 @@ from physical import PhysicalError, polygon
 
 Answer = list[Message]
 
+_NAMES: Final[Mapping[float, str]] = MappingProxyType({number: name for name, (number, _) in STREAMS.items()})
+
 FARTHEST: Final = 50_000.0
 """Metres from home beyond which no target is taken."""
 
@@ -167,9 +169,23 @@ def _set_current(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Res
     return Result.ACCEPTED
 
 
+def _start_mission(vehicle: Vehicle, _reporter: Reporter, _message: Message) -> Result:
+    if not vehicle.store.items.get(MissionType.MISSION):
+        return Result.FAILED
+    vehicle.mode = vehicle.kind.profile.auto
+    return Result.ACCEPTED
+
+
+def _request_message(_vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
+    name = _NAMES.get(message["param1"])
+    if name is None:
+        return Result.FAILED
+    reporter.once(name)
+    return Result.ACCEPTED
+
+
 def _set_interval(_vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
-    names = {number: name for name, (number, _) in STREAMS.items()}
-    name = names.get(message["param1"])
+    name = _NAMES.get(message["param1"])
     if name is None or not 0 <= message["param2"] <= LONGEST:
         return Result.FAILED
     reporter.every(name, message["param2"] / 1e6)
@@ -181,7 +197,9 @@ _COMMANDS: Final[Mapping[Cmd, Callable[[Vehicle, Reporter, Message], Result]]] =
         Cmd.ARM_DISARM: _arm,
         Cmd.DO_SET_MODE: _set_mode,
         Cmd.FENCE_ENABLE: _keep_fence,
+        Cmd.MISSION_START: _start_mission,
         Cmd.REPOSITION: _reposition,
+        Cmd.REQUEST_MESSAGE: _request_message,
         Cmd.SET_MESSAGE_INTERVAL: _set_interval,
         Cmd.SET_MISSION_CURRENT: _set_current,
         Cmd.TAKEOFF: _take_off,
