@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from adapters.mavlink import pilot
+from adapters.mavlink import Autopilot, pilot
 from adapters.mavlink.fleet import Craft, Stations
 from adapters.mavlink.message import Message, say
 from adapters.mavlink.numbers import Cmd, Result
@@ -238,3 +238,18 @@ def test_a_message_of_another_component_changes_nothing():
     state = begun()
     camera = Message("HEARTBEAT", {"type": 30, "autopilot": 8}, 1, 100)
     assert pilot.hear(state, camera, 5.0).pilot.known == state.known
+
+
+@pytest.mark.parametrize(
+    "crafts",
+    [
+        [Craft("uav0", system=255)],
+        [Craft("uav0", system=0)],
+        [Craft("uav0", system=1), Craft("uav1", system=1)],
+        [Craft("uav0"), Craft("uav1")],
+        [Craft("uav0", system=1), Craft("uav0", system=2)],
+    ],
+)
+def test_vehicles_that_cannot_be_told_apart_are_the_users_mistake(crafts):
+    with pytest.raises(PhysicalError):
+        Autopilot("autopilot", "udp:0", crafts)
