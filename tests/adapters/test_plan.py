@@ -13,7 +13,7 @@ from adapters.mavlink.plan import Load, Tell, Underway, Vehicle, Wait, next_step
 from adapters.mavlink.profiles import BOAT, COPTER, PLANE, ROVER, profile_of
 from adapters.mavlink.task import PATIENCE, STRANGE
 from adapters.mavlink.telemetry import Position, Telemetry
-from adapters.plugin import Accepted, Arrived, GoTo, HandOver, Hold, Refused, Rejected, Return
+from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Hold, Refused, Rejected, Return
 from physical import PhysicalError, box, point
 
 AREA = box((37.015, -8.61), (37.005, -8.625))
@@ -216,6 +216,24 @@ def test_everything_is_said_by_the_station_that_has_the_authority():
 def test_what_cannot_be_is_refused_at_once(command, why):
     with pytest.raises(Refused, match=why):
         begun(command)
+
+
+def test_a_circle_that_leaves_the_fence_is_refused_although_its_centre_does_not():
+    fence = box((37.0055, -8.61), (36.9, -8.7))
+    state = replace(begun(), craft=Craft("uav0", fence=fence))
+    path = (point(37.0, -8.62), point(37.005, -8.62))
+    for command in (GoTo("r", "uav0", path[1]), Follow("r", "uav0", path)):
+        with pytest.raises(Refused, match=r"a circle of 80 m around point\(37\.005, .*\) leaves the fence"):
+            pilot.command(state, command, 1.0)
+    with pytest.raises(Refused, match="outside the fence"):
+        pilot.command(state, GoTo("r", "uav0", point(37.1, -8.62)), 1.0)
+    pilot.command(state, GoTo("r", "uav0", point(37.0, -8.62)), 1.0)
+
+
+@pytest.mark.parametrize("count", [0, 501])
+def test_a_path_has_points_and_not_too_many(count):
+    with pytest.raises(Refused, match=f"this one {count}"):
+        begun(Follow("r", "uav0", (point(37.0, -8.62),) * count))
 
 
 def test_at_a_point_it_is_there_when_it_circles_it():
