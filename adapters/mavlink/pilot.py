@@ -102,6 +102,7 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     reason = objection(told, pilot.craft, pilot.stations, pilot.known)
     if reason:
         raise Refused(reason)
+    _check_not_rejected(pilot.moving, told)
     checked = pilot.known.profile is not None
     if isinstance(told, HandOver):
         station = pilot.stations.ids[told.join.removeprefix(CONTROL)]
@@ -110,6 +111,12 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
         )
     task = Task(told, since=now, boots=pilot.known.boots, checked=checked)
     return Outcome(replace(pilot, moving=_continued(pilot.moving, task)))
+
+
+def _check_not_rejected(before: Task | None, told: Command) -> None:
+    """Refuse a request that was rejected: a place that moves on must not take a vehicle back from its pilot."""
+    if before is not None and before.rejection and before.command.request == told.request:
+        raise Refused(f"the request was rejected: {before.rejection}", "ask anew")
 
 
 def _continued(before: Task | None, task: Task) -> Task:

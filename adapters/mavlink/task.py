@@ -37,6 +37,7 @@ class Task:
         doing: The exchange that this takes.
         accepted: Whether the state has shown that the vehicle does it.
         over: Whether it has arrived or was rejected.
+        rejection: Why it was rejected, if it was.
         begun: Whether the mission was seen at its first item.
         was_armed: Whether it was armed since the command.
         strange: Since when the state contradicts what it was.
@@ -52,6 +53,7 @@ class Task:
     doing: telling.Telling | syncing.Sync | None = None
     accepted: bool = False
     over: bool = False
+    rejection: str | None = None
     begun: bool = False
     was_armed: bool = False
     strange: float | None = None
@@ -98,7 +100,8 @@ def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float)
 def rejected(task: Task, reason: str, now: float) -> Progress:
     """End a task without success."""
     command = task.command
-    return Progress(replace(task, over=True), report=Rejected(command.request, command.entity, now, reason))
+    report = Rejected(command.request, command.entity, now, reason)
+    return Progress(replace(task, over=True, rejection=reason), report=report)
 
 
 def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:

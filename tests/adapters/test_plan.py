@@ -196,6 +196,13 @@ def test_a_state_that_stays_otherwise_is_someone_elses_doing_and_not_fought():
     assert of(sent, Cmd.DO_SET_MODE) == of(sent, Cmd.REPOSITION) == []
 
 
+def test_a_place_that_moves_on_does_not_take_a_vehicle_back_from_who_took_it_over():
+    state, _, _ = ticked(replace(under_way(), known=replace(under_way().known, mode=5)), 1, 20)
+    with pytest.raises(Refused, match="the request was rejected: it does not do so any more"):
+        pilot.command(state, replace(THERE, place=box((37.02, -8.61), (37.01, -8.625))), 20.0)
+    assert pilot.command(state, replace(THERE, request="r2"), 20.0).pilot.moving.command.request == "r2"
+
+
 def test_everything_is_said_by_the_station_that_has_the_authority():
     stations = Stations({"gcs0": 255, "gcs1": 254}, ("gcs0", "gcs1"))
     state = replace(begun(), stations=stations)
