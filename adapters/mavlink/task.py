@@ -87,7 +87,7 @@ def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float)
     if isinstance(step, Underway):
         return _underway(task, step, now)
     if task.accepted or (task.was_armed and vehicle.known.armed is False):
-        return _contradicted(task, vehicle, now)
+        return _contradicted(task, step, vehicle, now)
     if step != task.step:
         task = replace(task, step=step, since=now, doing=_exchange(step, vehicle))
     if lost:
@@ -129,7 +129,7 @@ def _underway(task: Task, step: Underway, now: float) -> Progress:
     return Progress(task)
 
 
-def _contradicted(task: Task, vehicle: Vehicle, now: float) -> Progress:
+def _contradicted(task: Task, step: Step, vehicle: Vehicle, now: float) -> Progress:
     """See whether someone else, or the vehicle itself, has undone it: then nobody here fights for it."""
     if task.strange is None or now - task.strange <= STRANGE:
         return Progress(task if task.strange is not None else replace(task, strange=now))
@@ -137,9 +137,9 @@ def _contradicted(task: Task, vehicle: Vehicle, now: float) -> Progress:
     if task.was_armed and known.armed is False:
         return rejected(task, "it was disarmed, and is not armed again without a new command", now)
     mode = vehicle.profile.mode_name(known.mode)
-    return rejected(
-        task, f"it does not do so any more (it is in {mode}): by itself, or told by someone else", now
-    )
+    missing = f", and would have to be told {step.why}" if isinstance(step, Tell) else ""
+    reason = f"it does not do so any more, by itself or told by someone else: it is in {mode}{missing}"
+    return rejected(task, reason, now)
 
 
 def _exchange(step: Step, vehicle: Vehicle) -> telling.Telling | syncing.Sync | None:
