@@ -1,0 +1,268 @@
+"""The plugin's interface: subscribe mobility commands, publish physical properties (paper §3.2.1).
+
+A plugin stands for what is out there: an autopilot, a receiver, a file of places. It is given a `World` to tell what
+it learns, and is told what its vehicles shall do. It decides nothing: what follows for the logical model is the rules'.
+
+Time is the world's: `World.now()` stamps, and whoever waits does so by `asyncio.sleep`, so that an event loop with
+another clock (`adapters.simulated.clock`) runs every plugin faster.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+from physical import Band, Geometry, PhysicalProperty
+
+# --- what a plugin publishes ------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Gone:
+    """An entity is known to be no more: a place taken out of its file, a detection withdrawn.
+
+    What merely ceases to be heard of isn't gone: it grows older than its time to live (see `Aged`).
+    """
+
+    entity: str
+    time: float
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class Aged:
+    """A physical property that holds for a while only.
+
+    Attributes:
+        property: What was observed; its `time` is set.
+        time_to_live: For how many seconds from its `time` on it may stand in P, if nothing newer comes.
+    """
+
+    property: PhysicalProperty
+    time_to_live: float
+
+
+Published = PhysicalProperty | Aged | Gone
+"""A bare property stands until another or `Gone` replaces it; all of an entity's property is said each time."""
+
+# --- what a plugin is told --------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class GoTo:
+    """Go into a place, and stay there.
+
+    The same request with another geometry means that the place has moved on: go to where it is now.
+
+    Attributes:
+        request: Names the request in reports; unique in a run.
+        entity: Who shall go.
+        place: The polygon (or point) as it is now; the waypoint is `physical.waypoint(place)`.
+        altitude: The band to be in, in metres above sea level; the vehicle's own choice if None.
+        name: The place's name, for messages.
+    """
+
+    request: str
+    entity: str
+    place: Geometry
+    altitude: Band | None = None
+    name: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Follow:
+    """Fly a path of points in their order, then stay at the last.
+
+    `altitude` is the band to be in, in metres above sea level; the vehicle's own choice if None.
+    """
+
+    request: str
+    entity: str
+    path: tuple[Geometry, ...]
+    altitude: Band | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class HandOver:
+    """Give the control authority over a vehicle from one station's channel to another's.
+
+    `leave` and `join` are channels as missions write them: `control:gcs0`, `control:gcs1`.
+    """
+
+    request: str
+    entity: str
+    leave: str
+    join: str
+
+
+@dataclass(frozen=True, slots=True)
+class Hold:
+    """Stay where you are, as well as you can: a plane circles."""
+
+    request: str
+    entity: str
+
+
+@dataclass(frozen=True, slots=True)
+class Return:
+    """Go home, as the vehicle understands it."""
+
+    request: str
+    entity: str
+
+
+Command = GoTo | Follow | HandOver | Hold | Return
+"""What a vehicle can be told. A new one for the same entity ends what it was told before, HandOver excepted."""
+
+
+class Refused(Exception):  # an answer, not an error
+    """The command cannot be carried out, and nothing was done towards it; `reason` is in the operator's words."""
+
+    def __init__(self, reason: str, hint: str = "") -> None:
+        super().__init__(reason)
+        self.reason = reason
+        self.hint = hint
+
+
+# --- what a plugin reports --------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Accepted:
+    """The vehicle's own state shows that it does what the request asks: mode, armed, target or mission compared."""
+
+    request: str
+    entity: str
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
+class Arrived:
+    """The vehicle's position, or for a hand-over its authority, shows that the request is done.
+
+    Whether it is done in logical space is decided by the rules, from what is published, not from this.
+    """
+
+    request: str
+    entity: str
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
+class Rejected:
+    """A request that was taken on turned out not to be possible: the vehicle refuses, or answers no more."""
+
+    request: str
+    entity: str
+    time: float
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class LinkLost:
+    """Nothing was heard from the vehicle for a while; `since` is when it was last heard."""
+
+    entity: str
+    time: float
+    since: float
+
+
+@dataclass(frozen=True, slots=True)
+class LinkRestored:
+    """The vehicle is heard again; `rebooted` if its clock began anew meanwhile."""
+
+    entity: str
+    time: float
+    rebooted: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Trouble:
+    """Something that an operator should know: input that cannot be used, a forged packet, a second commander.
+
+    Attributes:
+        source: The plugin's name.
+        time: When it was noticed.
+        what: A short word by which equal troubles are counted, such as `bad checksum`.
+        detail: One line more, with the remedy where there is one.
+        count: How often since the last report of the same; plugins collect them, so a flood is one report a second.
+    """
+
+    source: str
+    time: float
+    what: str
+    detail: str = ""
+    count: int = 1
+
+
+Report = Accepted | Arrived | Rejected | LinkLost | LinkRestored | Trouble
+
+# --- who talks to whom ------------------------------------------------------------------------------
+
+
+class World(Protocol):
+    """What a plugin is given. None of the three blocks, and all are called in the event loop's thread."""
+
+    def publish(self, published: Published) -> None:
+        """Take what is known of an entity now."""
+        ...
+
+    def now(self) -> float:
+        """Return the time in seconds since 1970 UTC; it never goes back."""
+        ...
+
+    def report(self, report: Report) -> None:
+        """Take what happened to a request, to a link or to the input."""
+        ...
+
+
+@runtime_checkable
+class Plugin(Protocol):
+    """A vehicle, a feed, or a service.
+
+    `run` opens what has to be opened (an OSError or `PhysicalError` there says what is wrong with it), serves until
+    it is cancelled, and then closes everything. `command` may be called from then on, also before the vehicle is
+    heard; it returns as soon as the command is taken on, and raises Refused if it never can be. What becomes of it
+    is reported: any number of Accepted, then one Arrived or Rejected, unless another command takes its place. A request
+    that was rejected is refused from then on: who wants it all the same asks anew.
+    """
+
+    @property
+    def name(self) -> str:
+        """What reports call it; unique in a run."""
+        ...
+
+    async def run(self, world: World) -> None:
+        """Publish until cancelled."""
+        ...
+
+    async def command(self, command: Command) -> None:
+        """Take on a command for an entity that it owns; raises Refused."""
+        ...
+
+    def owns(self, entity: str) -> bool:
+        """Whether the entity takes commands from this plugin."""
+        ...
+
+
+__all__ = [
+    "Accepted",
+    "Aged",
+    "Arrived",
+    "Command",
+    "Follow",
+    "GoTo",
+    "Gone",
+    "HandOver",
+    "Hold",
+    "LinkLost",
+    "LinkRestored",
+    "Plugin",
+    "Published",
+    "Refused",
+    "Rejected",
+    "Report",
+    "Return",
+    "Trouble",
+    "World",
+]
