@@ -8,10 +8,14 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import TYPE_CHECKING
 
 from checker.edges import Edges
 from semantics.configuration import Configuration, Transition
 from semantics.successors import Expansion, expand
+
+if TYPE_CHECKING:
+    from checker.fast.survey import Survey
 
 MOST_PENDING = 64
 """Requests of one agent, or messages in one mailbox, beyond which a configuration is not explored further."""
@@ -73,7 +77,8 @@ class Exploration:
         bounds: The limits that were met; empty where the exploration is complete.
         seconds: How long it took.
         rule_runs: How often an actor's rules were run in Python, where they were learned.
-        edges: Every transition, where they were asked for.
+        edges: Every transition, where they were asked for and the reference explorer kept them.
+        survey: What the fast explorer can be asked; None of the reference explorer.
     """
 
     configurations: Sequence[Configuration]
@@ -86,6 +91,7 @@ class Exploration:
     seconds: float = 0.0
     rule_runs: int | None = None
     edges: Edges | None = None
+    survey: "Survey | None" = None
 
     @property
     def complete(self) -> bool:
@@ -123,9 +129,9 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
         report: Called about once in `every` seconds.
         every: Seconds.
         engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
-        edges: Whether every transition is kept, as temporal properties need: by the reference explorer alone.
+        edges: Whether every transition is kept, as temporal properties need; the fast explorer finds them again.
     """
-    if engine is Engine.FAST and not edges:
+    if engine is Engine.FAST:
         from checker.fast.explorer import explore_fast  # noqa: PLC0415  # numba takes its time to load
 
         return explore_fast(initial, tuple(inspect), limits or Limits(), report, every)

@@ -10,6 +10,7 @@ from checker.inspections import is_unfair
 from semantics.configuration import Configuration, Label, Transition
 from semantics.monitor import monitored
 from semantics.printing import print_changes
+from semantics.requests import Received
 from semantics.successors import expand
 
 SCHEMA = "bigactors.trace/1"
@@ -63,7 +64,15 @@ class Trace:
 
 
 def step_of(source: Configuration, label: Label, target: Configuration) -> Step:
-    """Return the step between two configurations; labels that print alike are alike, as `replay` knows no more."""
+    """Return the step between two configurations; labels that print alike are alike, as `replay` knows no more.
+
+    What an observation is received without is looked up.
+    """
+    if isinstance(label.about, Received):
+        same = (
+            t.label for t in candidates(source) if t.target == target and isinstance(t.label.about, Received)
+        )
+        label = next(found for found in same if found.agent == label.agent)
     word = str(label)
     alike = [transition.target for transition in candidates(source) if str(transition.label) == word]
     return Step(label, alike.index(target), target)

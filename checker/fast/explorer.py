@@ -95,7 +95,8 @@ class _Explorer:
         except KeyboardInterrupt:
             self.bounds.append(INTERRUPTION)
         space, configurations = self.space, Configurations(self.space)
-        inspect_fast(Survey(space), inspect)
+        survey = Survey(space)
+        inspect_fast(survey, inspect)
         rules = space.rules()
         return Exploration(
             configurations,
@@ -107,6 +108,7 @@ class _Explorer:
             sorted(self.bounds + self.met()),
             time.monotonic() - started,
             self.learner.runs,
+            survey=survey,
         )
 
     def met(self) -> list[str]:

@@ -10,27 +10,54 @@ from checker.temporal.components import Conditions
 from checker.temporal.fairness import EACH_RULE_AND_REQUEST, classes, conditions_of, optional
 from checker.temporal.lassos import Lasso
 from checker.temporal.linear import counterexample
-from checker.temporal.progress import Progress, Starved, pending_requests
-from checker.temporal.truth import Truth, valuation
+from checker.temporal.progress import Pending, Progress, Starved, owed, pending_requests
+from checker.temporal.truth import Truth, Valuation, valuation
 from checker.temporal.words import is_true_on
 from checker.traces import Trace, replay, step_of, to_json
 from checker.verdicts import Outcome, Verdict, Violation
-from semantics.propositions import Property
+from semantics.propositions import Property, Proposition
 from semantics.temporal import Denied, Either, Fairness, Globally, Now, Temporal, atoms
+
+
+def kept_graph(found: Exploration) -> Graph:
+    """Return the graph of an exploration."""
+    if found.survey is not None:
+        from checker.fast.graph import graph_of_space  # noqa: PLC0415  # numba is loaded already
+
+        return graph_of_space(found.survey)
+    assert found.edges is not None
+    return graph_of(found.edges, len(found.configurations))
+
+
+def where_true(found: Exploration, propositions: list[Proposition]) -> Valuation:
+    """Return where propositions are true."""
+    if found.survey is not None:
+        from checker.fast.graph import valuation_of_space  # noqa: PLC0415  # numba is loaded already
+
+        return valuation_of_space(found.survey, propositions)
+    return valuation(found.configurations, propositions)
+
+
+def where_pending(found: Exploration) -> Pending:
+    """Return where each request is pending."""
+    if found.survey is not None:
+        from checker.fast.graph import pending_in_space  # noqa: PLC0415  # numba is loaded already
+
+        return pending_in_space(found.survey)
+    return pending_requests(found.configurations)
 
 
 class Decider:
     """Decides the temporal properties of one exploration; what they share is computed once."""
 
     def __init__(self, found: Exploration, properties: Iterable[Property]) -> None:
-        assert found.edges is not None
         self.found = found
         self.setting = found.configurations[0].setting
-        kept = graph_of(found.edges, len(found.configurations))
+        kept = kept_graph(found)
         self.graph: Graph = kept.total(optional(kept.labels, self.setting.arriving))
         asked = (atom for each in properties if each.temporal is not None for atom in atoms(each.temporal))
         propositions = [atom.proposition for atom in asked if isinstance(atom, Now)]
-        self.truth = Truth(self.graph, valuation(found.configurations, propositions))
+        self.truth = Truth(self.graph, where_true(found, propositions))
 
     def decide(self, asked: Property) -> Verdict:
         """Return the verdict on a property; what is not violated holds only where everything was explored."""
@@ -95,7 +122,7 @@ class Decider:
     def progress(self, asked: Property) -> Verdict:
         """Return the verdict on whether every request is served."""
         arriving = self.setting.arriving
-        pending = pending_requests(self.found.configurations, arriving)
+        pending = owed(where_pending(self.found), arriving)
         fairness = self.conditions((*EACH_RULE_AND_REQUEST, *asked.fairness))
         starved, count = Progress(self.graph, pending, fairness, arriving).starved()
         note = self.note(asked.fairness, "weak fairness of each rule and request")

@@ -1,11 +1,11 @@
 """Progress: is every pending request eventually served, on every fair run?"""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from checker.graph import Bools, Graph
+from checker.graph import Bools, Graph, Numbers
 from checker.temporal.arrows import shortest
 from checker.temporal.components import Conditions, fair_components
 from checker.temporal.fairness import arrives
@@ -15,17 +15,22 @@ from semantics.requests import FLY, READY, Request
 from semantics.signature import Name
 from semantics.temporal import SERVES
 
-Pending = Mapping[Request, list[int]]
-"""For each request that is to be served, the configurations in which it is pending."""
+Pending = Mapping[Request, Sequence[int] | Numbers]
+"""For each request, the configurations in which it is pending."""
 
 
-def pending_requests(configurations: Iterable[Configuration], arriving: Collection[Name]) -> Pending:
-    """Return what is to be served: all but observations that wait to be received, and flights that need never end."""
+def pending_requests(configurations: Iterable[Configuration]) -> Pending:
+    """Return where each request is pending."""
     found: dict[Request, list[int]] = {}
     for number, c in enumerate(configurations):
         for request in dict.fromkeys(each.request for each in c.eta.all()):
             found.setdefault(request, []).append(number)
-    return {request: numbers for request, numbers in found.items() if _is_owed(request, arriving)}
+    return found
+
+
+def owed(pending: Pending, arriving: Collection[Name]) -> Pending:
+    """Return what is to be served: all but observations that wait to be received, and flights that need never end."""
+    return {request: numbers for request, numbers in pending.items() if _is_owed(request, arriving)}
 
 
 def _is_owed(request: Request, arriving: Collection[Name]) -> bool:

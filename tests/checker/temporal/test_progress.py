@@ -12,7 +12,7 @@ from checker import Limits, explore
 from checker.temporal.decide import Decider
 from checker.temporal.fairness import EACH_RULE_AND_REQUEST
 from checker.temporal.linear import counterexample
-from checker.temporal.progress import Progress, pending_requests
+from checker.temporal.progress import Progress, owed, pending_requests
 from checker.temporal.truth import Truth
 from semantics.propositions import Known
 from semantics.strategies import initial_configurations
@@ -34,7 +34,7 @@ def test_a_request_is_starved_where_linear_time_says_so(c, extra):
     assume(found.complete)
     decider = Decider(found, [])
     arriving = decider.setting.arriving
-    pending = pending_requests(found.configurations, arriving)
+    pending = owed(pending_requests(found.configurations), arriving)
     fairness = decider.conditions((*EACH_RULE_AND_REQUEST, *extra))
     progress = Progress(decider.graph, pending, fairness, arriving)
     for request, numbers in pending.items():
