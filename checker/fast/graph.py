@@ -21,14 +21,13 @@ def graph_of_space(survey: Survey) -> Graph:
     A `rcv_obs` is labelled without what it receives: that is known only where somebody looks.
     """
     space, size = survey.space, survey.space.size
+    found = [(np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int64))]
+    found += space.edges(range(survey.size))
+    origins, steps, targets = (np.concatenate(each) for each in zip(*found, strict=True))
     numbers: dict[Label, int] = {}
     action_of = np.zeros(len(space.learner.leaves.rule), np.int32)
     for step, label in space.learner.steps.items():
         action_of[step] = numbers.setdefault(_general(label), len(numbers))
-    found = [(np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int64))]
-    for origins, steps, targets in space.edges(range(survey.size)):
-        found.append((origins, action_of[steps], targets))
-    origins, actions, targets = (np.concatenate(each) for each in zip(*found, strict=True))
     there = targets >= 0
     partial_rows = np.arange(size) >= survey.size
     partial_rows[origins[~there]] = True
@@ -38,7 +37,7 @@ def graph_of_space(survey: Survey) -> Graph:
     return Graph(
         starts.astype(np.int64),
         targets[there].astype(np.int32),
-        actions[there],
+        action_of[steps[there]],
         tuple(numbers),
         partial_rows if partial_rows.any() else None,
     )

@@ -5,7 +5,8 @@ import pytest
 from checked_missions import start
 
 from checker import Engine, Limits, explore
-from checker.graph import STUTTER, graph_of
+from checker.graph import STUTTER
+from checker.temporal.decide import kept_graph
 from semantics.successors import expand
 
 TEXT = """
@@ -20,7 +21,7 @@ BigActor b hosted_at gcs0 with_behavior { }
 
 def kept(text, **options):
     found = explore(start(text), edges=True, **options)
-    return found, graph_of(found.edges, len(found.configurations))
+    return found, kept_graph(found)
 
 
 def edges_of(graph):
