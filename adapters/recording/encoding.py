@@ -1,0 +1,125 @@
+"""What is recorded as plain data: arrivals, steps, commands, reports; and arrivals read back."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+from adapters.live.state import Finding, Heard, LiveStep
+from adapters.plugin import Aged, Command, Gone, Published, Report
+from physical import Band, Geometry, PhysicalProperty, Velocity
+from semantics.canonical import digest, written
+from semantics.plain import geometry_of, sight_json
+from semantics.printing import print_changes
+
+
+def arrival_json(heard: Heard) -> dict[str, Any]:
+    """Return what a plugin published as plain data."""
+    published = heard.published
+    if isinstance(published, Gone):
+        said = {"entity": published.entity, "time": published.time, "gone": True, "source": published.source}
+        return {"plugin": heard.plugin, **said}
+    if isinstance(published, Aged):
+        return {**_property(heard.plugin, published.property), "time_to_live": published.time_to_live}
+    return _property(heard.plugin, published)
+
+
+def _property(plugin: str, said: PhysicalProperty) -> dict[str, Any]:
+    data: dict[str, Any] = {
+        "plugin": plugin,
+        "entity": said.entity,
+        "kind": said.kind,
+        "ring": said.geometry.ring,
+    }
+    if said.altitude is not None:
+        data["altitude"] = [said.altitude.low, said.altitude.high]
+    if said.channels:
+        data["channels"] = said.channels
+    if said.carried_by is not None:
+        data["carried_by"] = said.carried_by
+    if said.time is not None:
+        data["time"] = said.time
+    if said.velocity is not None:
+        data["velocity"] = [said.velocity.speed, said.velocity.course]
+    return data
+
+
+def arrival_of(data: Any) -> Heard:
+    """Read what a plugin published; raises ValueError for what is no arrival."""
+    match data:
+        case {"plugin": str(plugin), "entity": str(entity), "gone": True}:
+            return Heard(plugin, Gone(entity, _number(data.get("time")), plugin))
+        case {"plugin": str(plugin), "entity": str(entity), "kind": str(kind), "ring": ring}:
+            return Heard(plugin, _aged(_said(entity, kind, geometry_of({"ring": ring}), data), data))
+    raise ValueError(f"{data!r:.80} is no arrival")
+
+
+def _said(entity: str, kind: str, geometry: Geometry, data: dict[str, Any]) -> PhysicalProperty:
+    altitude, velocity, by = data.get("altitude"), data.get("velocity"), data.get("carried_by")
+    return PhysicalProperty(
+        entity,
+        kind,
+        geometry,
+        None if altitude is None else Band(*map(_number, altitude)),
+        tuple(map(str, data.get("channels", ()))),
+        None if by is None else str(by),
+        _number(data["time"]) if "time" in data else None,
+        data["plugin"],
+        None if velocity is None else Velocity(*map(_number, velocity)),
+    )
+
+
+def _aged(said: PhysicalProperty, data: dict[str, Any]) -> Published:
+    return Aged(said, _number(data["time_to_live"])) if "time_to_live" in data else said
+
+
+def _number(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError(f"{value!r:.40} is not a number")
+    return float(value)
+
+
+def step_json(step: LiveStep) -> dict[str, Any]:
+    """Return a step as plain data: as traces have it, with its number and the digest of what it wrote."""
+    transition = step.transition
+    data: dict[str, Any] = {"number": step.number, "label": str(transition.label), "choice": step.choice}
+    if step.sight is not None:
+        data["observed"] = sight_json(step.sight)
+    if transition.shown:
+        data["shown"] = transition.shown
+    data["changes"] = print_changes(step.source, transition.target)
+    return {**data, "digest": digest(written(step.source, transition.target))}
+
+
+def command_json(command: Command) -> dict[str, Any]:
+    """Return what a vehicle is told as plain data."""
+    return {"command": type(command).__name__, **_fields(command)}
+
+
+def report_json(report: Report) -> dict[str, Any]:
+    """Return what a plugin reported as plain data."""
+    return {"report": type(report).__name__, **_fields(report)}
+
+
+def finding_json(finding: Finding, verdicts: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Return what the operator was told as plain data."""
+    return {**_fields(finding), **({"verdicts": verdicts} if verdicts else {})}
+
+
+def _fields(value: Any) -> dict[str, Any]:
+    return {
+        ("ring" if each.name == "place" else each.name): _plain(getattr(value, each.name))
+        for each in fields(value)
+    }
+
+
+def _plain(value: Any) -> Any:
+    match value:
+        case Geometry():
+            return value.ring
+        case Band():
+            return [value.low, value.high]
+        case tuple():
+            return [_plain(each) for each in value]
+        case _:
+            return value
