@@ -29,7 +29,9 @@ LIBRARIES = {
     "numpy": ("checker/",),
     "numba": ("checker/",),
     "pyais": ("physical/ais_decode.py",),
-    "pymavlink": ("adapters/mavlink.py",),
+    "pymavlink": ("adapters/mavlink/codec.py",),
+    "aiohttp": ("adapters/web.py",),
+    "serial_asyncio_fast": ("adapters/transport.py",),
     "zenoh": ("adapters/",),
     "mcap": ("adapters/",),
     "nicegui": ("adapters/",),
@@ -38,7 +40,7 @@ LIBRARIES = {
 }
 
 # Libraries that take long to load or are extras: imported in the functions that need them, never with the module.
-LAZY = {"matplotlib", "pyais", "pymavlink", "zenoh", "mcap", "nicegui"}
+LAZY = {"aiohttp", "matplotlib", "pyais", "pymavlink", "serial_asyncio_fast", "zenoh", "mcap", "nicegui"}
 
 
 class Import(NamedTuple):

@@ -1,0 +1,11 @@
+"""Autopilots over MAVLink: state, links and control authority out; places, paths, hand-overs in.
+
+`pilot` is the whole behaviour towards one vehicle, as a pure state machine made of smaller ones (`telemetry`, `plan`,
+`task`, `sync`, `upload`, `download`, `command`, `streams`, `link`, `signing`); `autopilot` is the plugin that
+gives it a socket and a clock. What a vehicle does is confirmed by its state, never by an answer alone.
+"""
+
+from adapters.mavlink.autopilot import Autopilot
+from adapters.mavlink.fleet import Craft, Stations
+
+__all__ = ["Autopilot", "Craft", "Stations"]

@@ -1,0 +1,257 @@
+"""The autopilot plugin: one MAVLink link with the vehicles on it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+from adapters.addresses import parse_address
+from adapters.mavlink import pilot as piloting
+from adapters.mavlink import signing
+from adapters.mavlink.codec import Decoder, Encoder, Garbage
+from adapters.mavlink.fleet import Craft, Stations
+from adapters.mavlink.message import Message, say
+from adapters.mavlink.numbers import (
+    AUTOPILOT_COMPONENT,
+    GROUND_COMPONENT,
+    GROUND_STATION,
+    NO_AUTOPILOT,
+)
+from adapters.mavlink.pilot import Outcome, Pilot
+from adapters.plugin import Command, Refused, World
+from adapters.transport import Port, Remote, open_port
+from adapters.troubles import Troubles
+from physical import PhysicalError
+
+TICK: Final = 0.1
+HEARTBEAT: Final = 1.0
+SAVE: Final = 30.0
+"""Seconds between two writings of the signing state: half of what runs ahead on disk."""
+
+MAX_REMOTES: Final = 64
+"""Remote addresses with a parser each; the one unheard the longest gives way."""
+
+Tap = Callable[[float, bytes], None]
+"""Who wants every frame heard and said, with its time: a tlog."""
+
+
+class Autopilot:
+    """A plugin for the vehicles on one address.
+
+    Arguments:
+        name: What reports call it.
+        address: Where they are heard, such as `udp:127.0.0.1:14550`.
+        crafts: The vehicles that are expected there.
+        stations: Who may command them.
+        key_file: Where the signing key stands (see `signing.save`); unsigned packets are not believed then.
+        tap: Is told every frame.
+
+    Raises PhysicalError where two vehicles cannot be told apart.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        address: str,
+        crafts: Sequence[Craft],
+        stations: Stations | None = None,
+        key_file: Path | None = None,
+        tap: Tap | None = None,
+    ) -> None:
+        _check_crafts(crafts)
+        self._name = name
+        self._address = parse_address(address)
+        self._stations = stations or Stations()
+        self._pilots = {craft.entity: Pilot(craft, self._stations, craft.system or 0) for craft in crafts}
+        self._key_file = key_file
+        self._signing = signing.load(key_file) if key_file else None
+        self._tap = tap
+        self._decoders: OrderedDict[Remote, Decoder] = OrderedDict()
+        self._encoders: dict[int, Encoder] = {}
+        self._routes: dict[int, Remote] = {}
+        self._troubles = Troubles(name)
+        self._world: World | None = None
+        self._port: Port | None = None
+
+    @property
+    def name(self) -> str:
+        """What reports call it."""
+        return self._name
+
+    def owns(self, entity: str) -> bool:
+        """Whether the vehicle is expected on this link."""
+        return entity in self._pilots
+
+    def pilot(self, entity: str) -> Pilot:
+        """Return what is known of a vehicle."""
+        return self._pilots[entity]
+
+    @property
+    def local(self) -> Remote | None:
+        """Where it listens, once it does."""
+        return self._port.local if self._port else None
+
+    async def command(self, command: Command) -> None:
+        """Take on a command; raises Refused."""
+        if self._world is None or not self.owns(command.entity):
+            raise Refused(f"{command.entity} takes no commands from {self._name}", "start the plugin first")
+        self._take(command.entity, piloting.command(self._pilots[command.entity], command, self._world.now()))
+
+    async def run(self, world: World) -> None:
+        """Serve the link until cancelled."""
+        self._world = world
+        try:
+            async with open_port(self._address, self._receive) as self._port:
+                await asyncio.gather(self._ticking(world), self._beating(), self._saving())
+        finally:
+            self._save()
+            self._troubles.report(world, now=True)
+            self._world = self._port = None
+
+    # --- what arrives -----------------------------------------------------------------------------
+
+    def _receive(self, remote: Remote, data: bytes) -> None:
+        for found in self._decoder(remote).feed(data):
+            if isinstance(found, Garbage):
+                self._troubles.note(found.reason, f"from {remote[0]}:{remote[1]}")
+            elif self._believed(found):
+                self._hear(remote, found)
+
+    def _decoder(self, remote: Remote) -> Decoder:
+        decoder = self._decoders.get(remote)
+        if decoder is None:
+            decoder = self._decoders[remote] = Decoder()
+        self._decoders.move_to_end(remote)
+        if len(self._decoders) > MAX_REMOTES:
+            self._decoders.popitem(last=False)
+        return decoder
+
+    def _believed(self, message: Message) -> bool:
+        if self._signing is None:
+            return True
+        self._signing, verdict = signing.check(self._signing, message)
+        if verdict is not signing.Verdict.GOOD:
+            self._troubles.note(verdict.value, f"{message.name} of system {message.system}")
+        return verdict is signing.Verdict.GOOD
+
+    def _hear(self, remote: Remote, message: Message) -> None:
+        assert self._world is not None
+        now = self._world.now()
+        if self._tap:
+            self._tap(now, message.raw)
+        if message.system in self._stations.ids.values() or message.fields.get("type") == GROUND_STATION:
+            self._overheard(message)
+            return
+        pilot = self._pilot_of(message)
+        if pilot is None or not self._is_for_us(message):
+            return
+        self._routes[message.system] = remote
+        self._take(pilot.craft.entity, piloting.hear(pilot, message, now))
+
+    def _overheard(self, message: Message) -> None:
+        """Note that another ground station speaks to a vehicle of ours; what it says is not obeyed here."""
+        ours = {self._stations.ids[name] for name in self._stations.own}
+        if message.system not in ours and message.target in {pilot.system for pilot in self._pilots.values()}:
+            self._troubles.note("second ground station", f"system {message.system} says {message.name}")
+
+    def _is_for_us(self, message: Message) -> bool:
+        return message.target in (0, *(self._stations.ids[name] for name in self._stations.own))
+
+    def _pilot_of(self, message: Message) -> Pilot | None:
+        if message.system == 0 or message.component != AUTOPILOT_COMPONENT:
+            return None
+        known = next((pilot for pilot in self._pilots.values() if pilot.system == message.system), None)
+        if known is not None or message.name != "HEARTBEAT" or message["autopilot"] == NO_AUTOPILOT:
+            return known
+        unbound = next((pilot for pilot in self._pilots.values() if pilot.system == 0), None)
+        if unbound is None:
+            detail = f"system {message.system} is no vehicle of the mission; add it, or keep it off this link"
+            self._troubles.note("unknown vehicle", detail)
+            return None
+        return replace(unbound, system=message.system)
+
+    # --- what is said -----------------------------------------------------------------------------
+
+    def _take(self, entity: str, outcome: Outcome) -> None:
+        assert self._world is not None
+        self._pilots[entity] = outcome.pilot
+        for published in outcome.published:
+            self._world.publish(published)
+        for report in outcome.reports:
+            self._world.report(report)
+        for message in outcome.sent:
+            self._send(message, self._routes.get(outcome.pilot.system))
+
+    def _send(self, message: Message, remote: Remote | None) -> None:
+        assert self._world is not None
+        if self._port is None:
+            return
+        now = self._world.now()
+        if self._signing is not None:
+            self._signing = signing.stamp(self._signing, now)
+        frame = self._encoder(message.system).pack(message, self._signing.timestamp if self._signing else 0)
+        self._port.send(frame, remote)
+        if self._tap:
+            self._tap(now, frame)
+
+    def _encoder(self, system: int) -> Encoder:
+        if system not in self._encoders:
+            key = self._signing.key if self._signing else None
+            self._encoders[system] = Encoder(system, GROUND_COMPONENT, key)
+        return self._encoders[system]
+
+    async def _ticking(self, world: World) -> None:
+        while True:
+            await asyncio.sleep(TICK)
+            for entity, pilot in self._pilots.items():
+                self._take(entity, piloting.tick(pilot, world.now()))
+            self._troubles.report(world)
+
+    async def _beating(self) -> None:
+        """Say that we are there: who connects does so at once, others once they were heard."""
+        while True:
+            for name in self._stations.own:
+                beat = replace(_heartbeat(), system=self._stations.ids[name])
+                for remote in dict.fromkeys(self._routes.values()) or [None]:
+                    self._send(beat, remote)
+            await asyncio.sleep(HEARTBEAT)
+
+    async def _saving(self) -> None:
+        while True:
+            self._save()
+            await asyncio.sleep(SAVE)
+
+    def _save(self) -> None:
+        if self._signing is not None and self._key_file is not None:
+            signing.save(self._signing, self._key_file)
+
+
+def _heartbeat() -> Message:
+    return say(
+        "HEARTBEAT",
+        type=GROUND_STATION,
+        autopilot=NO_AUTOPILOT,
+        base_mode=0,
+        custom_mode=0,
+        system_status=4,
+        mavlink_version=3,
+    )
+
+
+def _check_crafts(crafts: Sequence[Craft]) -> None:
+    systems = [craft.system for craft in crafts]
+    names = [craft.entity for craft in crafts]
+    if len(set(names)) < len(names) or len(set(systems)) < len(systems):
+        raise PhysicalError(
+            "vehicles",
+            "two vehicles on one link have the same name or system id, or more than one has none",
+            "give each a system id of its own",
+        )
+    if any(system is not None and not 0 < system < 256 for system in systems):
+        raise PhysicalError(
+            "vehicles", "a system id is not from 1 to 255", "take the vehicle's own (SYSID_THISMAV)"
+        )

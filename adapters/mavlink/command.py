@@ -1,0 +1,124 @@
+"""Tell a vehicle something until its state shows that it does it: the command protocol, a pure state machine.
+
+An ACK can be lost, come twice, or belong to an earlier attempt; accepted is not done. So a command is sent again until
+whoever sends it sees what it was for, or a final no.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+from adapters.mavlink.message import Message, say
+from adapters.mavlink.numbers import Cmd, Result
+
+AGAIN: Final = 1.5
+"""Seconds before a command is sent again."""
+
+IN_PROGRESS: Final = 5.0
+"""Seconds before a command is sent again that the vehicle says it is busy with."""
+
+_FINAL: Final = {Result.DENIED, Result.UNSUPPORTED}
+
+
+@dataclass(frozen=True, slots=True)
+class Telling:
+    """A message told again and again; `answer` is the vehicle's last."""
+
+    message: Message
+    sent: float | None = None
+    attempts: int = 0
+    answer: int | None = None
+
+    @property
+    def refusal(self) -> str | None:
+        """The vehicle's final no, if it said no."""
+        if self.answer not in _FINAL:
+            return None
+        return f"the vehicle refuses {self.what}: {Result(self.answer).name.lower()}"
+
+    @property
+    def what(self) -> str:
+        """What is told, for people."""
+        number = self.message.fields.get("command")
+        return self.message.name if number is None else Cmd(number).name
+
+
+def tick(telling: Telling, now: float) -> tuple[Telling, tuple[Message, ...]]:
+    """Tell it if it was not told for a while."""
+    patience = IN_PROGRESS if telling.answer == Result.IN_PROGRESS else AGAIN
+    if telling.sent is not None and now - telling.sent < patience:
+        return telling, ()
+    message = telling.message
+    if "confirmation" in message.fields:
+        message = replace(message, fields={**message.fields, "confirmation": min(telling.attempts, 255)})
+    return replace(telling, sent=now, attempts=telling.attempts + 1), (message,)
+
+
+def hear(telling: Telling, message: Message) -> Telling:
+    """Take an answer of the vehicle that is meant for us."""
+    asked = telling.message.fields.get("command")
+    if message.name != "COMMAND_ACK" or asked is None or message["command"] != asked or not telling.attempts:
+        return telling
+    return replace(telling, answer=message["result"])
+
+
+def long(command: Cmd, system: int, *parameters: float) -> Message:
+    """Return a COMMAND_LONG with its parameters; those not given are 0."""
+    padded = (*parameters, *(0.0,) * (7 - len(parameters)))
+    numbered: dict[str, Any] = {f"param{i}": float(value) for i, value in enumerate(padded, 1)}
+    return say(
+        "COMMAND_LONG",
+        target_system=system,
+        target_component=1,
+        command=int(command),
+        confirmation=0,
+        **numbered,
+    )
+
+
+NAN: Final = float("nan")
+"""One object: two would differ, and so would two equal messages."""
+
+
+def reposition(system: int, x: int, y: int, height: float, circle: float) -> Message:
+    """Return the command to go to a point (1e-7 degree, metres above home), in guided mode, and circle there."""
+    return say(
+        "COMMAND_INT",
+        target_system=system,
+        target_component=1,
+        frame=3,
+        command=int(Cmd.REPOSITION),
+        current=0,
+        autocontinue=0,
+        param1=-1.0,  # the vehicle's own speed
+        param2=1.0,  # change the mode as well
+        param3=circle,
+        param4=NAN,  # the vehicle's own heading
+        x=x,
+        y=y,
+        z=height,
+    )
+
+
+def set_parameter(system: int, name: str, value: float) -> Message:
+    """Return the message that sets a parameter; the PARAM_VALUE that it leads to is the state."""
+    return say(
+        "PARAM_SET",
+        target_system=system,
+        target_component=1,
+        param_id=name.encode("ascii"),
+        param_value=float(value),
+        param_type=9,
+    )
+
+
+def read_parameter(system: int, name: str) -> Message:
+    """Return the message that asks for a parameter."""
+    return say(
+        "PARAM_REQUEST_READ",
+        target_system=system,
+        target_component=1,
+        param_id=name.encode("ascii"),
+        param_index=-1,
+    )

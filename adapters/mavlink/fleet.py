@@ -1,0 +1,78 @@
+"""What a mission's author says of vehicles and stations: names, MAVLink ids, fence."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+from adapters.mavlink.profiles import Profile
+from physical import Geometry, PhysicalError
+
+CONTROL: Final = "control:"
+"""The kind of channel that control authority is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Craft:
+    """A vehicle that is expected on a link.
+
+    Attributes:
+        entity: Its name in the mission.
+        kind: What it is there.
+        system: Its MAVLink system id; None where the first vehicle heard is meant.
+        channels: The channels it is on as long as it is heard, beside its control authority.
+        fence: The polygon that it must stay in; uploaded before it is armed.
+        circle: The radius in metres that it needs to stay somewhere; its kind's if None.
+        height: Metres above home at which it travels if nothing else is said; its kind's if None.
+        time_to_live: Seconds for which a position of it counts.
+    """
+
+    entity: str
+    kind: str = "UAV"
+    system: int | None = None
+    channels: tuple[str, ...] = ()
+    fence: Geometry | None = None
+    circle: float | None = None
+    height: float | None = None
+    time_to_live: float = 30.0
+
+    def circle_of(self, profile: Profile) -> float:
+        """Return the radius that it needs to stay somewhere."""
+        return profile.circle if self.circle is None else self.circle
+
+    def height_of(self, profile: Profile) -> float:
+        """Return the height at which it travels."""
+        return profile.altitude if self.height is None else self.height
+
+
+@dataclass(frozen=True, slots=True)
+class Stations:
+    """The ground stations: their names in the mission and their MAVLink system ids; `own` are those we speak for."""
+
+    ids: Mapping[str, int] = field(default_factory=lambda: {"gcs0": 255})
+    own: tuple[str, ...] = ("gcs0",)
+
+    def __post_init__(self) -> None:
+        if len(set(self.ids.values())) < len(self.ids) or not all(
+            0 < number < 256 for number in self.ids.values()
+        ):
+            raise PhysicalError(
+                "stations", "two stations share a system id, or one is not from 1 to 255", "give each its own"
+            )
+        if not self.own or not set(self.own) <= set(self.ids):
+            raise PhysicalError("stations", "we speak for a station that has no system id", "give it one")
+
+    def name_of(self, system: int | None) -> str | None:
+        """Return the station that has a system id."""
+        return next((name for name, number in self.ids.items() if number == system), None)
+
+    def speaker(self, authority: int | None) -> int:
+        """Return the system id to speak with to a vehicle: its authority's, if that is ours."""
+        name = self.name_of(authority)
+        return self.ids[name if name in self.own else self.own[0]]
+
+    def station_of(self, channel: str) -> str | None:
+        """Return the station whose control channel it is."""
+        name = channel.removeprefix(CONTROL)
+        return name if channel.startswith(CONTROL) and name in self.ids else None

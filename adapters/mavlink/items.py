@@ -1,0 +1,107 @@
+"""Mission items: what is uploaded, and when two are the same on board and here."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+from adapters.mavlink.message import Message, say
+from adapters.mavlink.numbers import Cmd, Frame, MissionType
+from physical import Geometry
+
+TAKEOFF_PITCH: Final = 15.0
+HEIGHT_TOLERANCE: Final = 0.02
+"""Metres: the autopilot keeps centimetres."""
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """One item: x and y are latitude and longitude in 1e-7 degree, z metres in the frame."""
+
+    command: int
+    x: int
+    y: int
+    z: float = 0.0
+    frame: int = Frame.HOME
+    parameters: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+
+
+Items = tuple[Item, ...]
+
+
+def e7(at: Geometry) -> tuple[int, int]:
+    """Return the latitude and longitude of a point in 1e-7 degree."""
+    ((latitude, longitude),) = at.vertices
+    return round(latitude * 1e7), round(longitude * 1e7)
+
+
+def route(path: Sequence[Geometry], height: float, *, takeoff: bool) -> Items:
+    """Return the mission that visits points at a height above home and stays at the last.
+
+    Item 0 stands for home, which the vehicle overwrites.
+    """
+    ways = [Item(Cmd.WAYPOINT, *e7(at), height) for at in path[:-1]]
+    stay = Item(Cmd.LOITER_UNLIMITED, *e7(path[-1]), height)
+    first = (
+        [Item(Cmd.TAKEOFF, *e7(path[0]), height, parameters=(TAKEOFF_PITCH, 0.0, 0.0, 0.0))]
+        if takeoff
+        else []
+    )
+    return (Item(Cmd.WAYPOINT, *e7(path[0]), 0.0, Frame.SEA_LEVEL), *first, *ways, stay)
+
+
+def fence(polygon: Geometry) -> Items:
+    """Return the fence that keeps a vehicle within a polygon."""
+    count = float(len(polygon.vertices))
+    return tuple(
+        Item(
+            Cmd.FENCE_VERTEX_INCLUSION,
+            round(latitude * 1e7),
+            round(longitude * 1e7),
+            0.0,
+            Frame.SEA_LEVEL,
+            (count, 0.0, 0.0, 0.0),
+        )
+        for latitude, longitude in polygon.vertices
+    )
+
+
+def same(ours: Items, theirs: Items, kind: MissionType) -> bool:
+    """Whether what is on board is what was to be: all of a fence, all but home of a mission."""
+    first = 1 if kind is MissionType.MISSION else 0
+    return len(ours) == len(theirs) and all(map(_alike, ours[first:], theirs[first:]))
+
+
+def _alike(a: Item, b: Item) -> bool:
+    return (a.command, a.frame, a.x, a.y) == (b.command, b.frame, b.x, b.y) and abs(
+        a.z - b.z
+    ) <= HEIGHT_TOLERANCE
+
+
+def item_message(item: Item, index: int, kind: int, system: int, component: int = 1) -> Message:
+    """Return the message that carries an item."""
+    return say(
+        "MISSION_ITEM_INT",
+        target_system=system,
+        target_component=component,
+        seq=index,
+        frame=int(item.frame),
+        command=int(item.command),
+        current=0,
+        autocontinue=1,
+        param1=item.parameters[0],
+        param2=item.parameters[1],
+        param3=item.parameters[2],
+        param4=item.parameters[3],
+        x=item.x,
+        y=item.y,
+        z=item.z,
+        mission_type=int(kind),
+    )
+
+
+def item_of(said: Mapping[str, Any]) -> Item:
+    """Read an item from the fields of its message."""
+    parameters = (said["param1"], said["param2"], said["param3"], said["param4"])
+    return Item(said["command"], said["x"], said["y"], said["z"], said["frame"], parameters)

@@ -1,0 +1,36 @@
+"""Whether a vehicle is heard: lost after a silence, restored when it speaks again, or booted anew meanwhile."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+from adapters.mavlink.telemetry import Telemetry
+from adapters.plugin import LinkLost, LinkRestored
+
+SILENCE: Final = 5.0
+"""Seconds: five heartbeats, and many positions."""
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """What was last said of a vehicle's link: whether it is lost, and how often the vehicle had booted."""
+
+    lost: bool = False
+    boots: int = 0
+
+
+def watch(
+    link: Link, entity: str, known: Telemetry, now: float
+) -> tuple[Link, LinkLost | LinkRestored | None]:
+    """Return the link as it is now, and what is to be reported of it."""
+    if known.heard is None:
+        return link, None
+    silent = now - known.heard > SILENCE
+    if silent and not link.lost:
+        return replace(link, lost=True), LinkLost(entity, now, known.heard)
+    if known.boots != link.boots:
+        return Link(boots=known.boots), LinkRestored(entity, now, rebooted=True)
+    if link.lost and not silent:
+        return replace(link, lost=False), LinkRestored(entity, now)
+    return link, None

@@ -1,0 +1,44 @@
+"""A MAVLink message as a plain value: what the state machines hear and say, whoever encodes it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """One message.
+
+    Attributes:
+        name: As MAVLink calls it, such as `HEARTBEAT`.
+        fields: All of its fields.
+        system: Who says it; 0 in what is to be sent: the sender is chosen then.
+        component: Which part of that system.
+        raw: The frame that it came in; empty in what is to be sent.
+    """
+
+    name: str
+    fields: Mapping[str, Any]
+    system: int = 0
+    component: int = 0
+    raw: bytes = field(default=b"", compare=False, repr=False)
+
+    def __getitem__(self, name: str) -> Any:
+        return self.fields[name]
+
+    @property
+    def target(self) -> int:
+        """The system that it is meant for; 0 is everybody."""
+        return int(self.fields.get("target_system", 0))
+
+
+def say(name: str, **fields: Any) -> Message:
+    """Return a message to be sent."""
+    return Message(name, fields)
+
+
+def is_for(message: Message, system: int) -> bool:
+    """Whether a message is meant for a system: its own, or everybody's."""
+    return message.target in (0, system)

@@ -1,0 +1,98 @@
+"""The numbers of MAVLink that we use, by their names there."""
+
+from enum import IntEnum, IntFlag
+from typing import Final
+
+AUTOPILOT_COMPONENT: Final = 1
+GROUND_STATION: Final = 6
+"""MAV_TYPE_GCS."""
+
+GROUND_COMPONENT: Final = 190
+"""MAV_COMP_ID_MISSIONPLANNER: what ground stations call themselves."""
+
+ARDUPILOT: Final = 3
+"""MAV_AUTOPILOT_ARDUPILOTMEGA."""
+
+NO_AUTOPILOT: Final = 8
+ACTIVE: Final = 4
+"""MAV_STATE_ACTIVE: in the air, for what flies."""
+
+PREARM_HEALTHY: Final = 0x10000000
+"""The bit of SYS_STATUS that is set when the vehicle could be armed, and takes missions."""
+
+GEOFENCE: Final = 0x100000
+"""The bit of SYS_STATUS that says that a fence is kept."""
+
+FIX_3D: Final = 3
+AUTHORITY_PARAMETER: Final = "SYSID_MYGCS"
+"""ArduPilot's parameter that says which ground station it obeys."""
+
+
+class ModeFlag(IntFlag):
+    """MAV_MODE_FLAG, as far as we use it."""
+
+    CUSTOM_MODE = 1
+    ARMED = 128
+
+
+class Frame(IntEnum):
+    """MAV_FRAME: what an altitude is above."""
+
+    SEA_LEVEL = 0
+    HOME = 3
+
+
+class MissionType(IntEnum):
+    """MAV_MISSION_TYPE."""
+
+    MISSION = 0
+    FENCE = 1
+
+
+class MissionResult(IntEnum):
+    """MAV_MISSION_RESULT, as far as we use it."""
+
+    ACCEPTED = 0
+    ERROR = 1
+    NO_SPACE = 4
+    INVALID_SEQUENCE = 13
+    DENIED = 14
+    CANCELLED = 15
+
+
+class Result(IntEnum):
+    """MAV_RESULT: the answer to a command."""
+
+    ACCEPTED = 0
+    TEMPORARILY_REJECTED = 1
+    DENIED = 2
+    UNSUPPORTED = 3
+    FAILED = 4
+    IN_PROGRESS = 5
+    CANCELLED = 6
+
+
+class Cmd(IntEnum):
+    """MAV_CMD, as far as we use it."""
+
+    WAYPOINT = 16
+    LOITER_UNLIMITED = 17
+    TAKEOFF = 22
+    DO_SET_MODE = 176
+    REPOSITION = 192
+    FENCE_ENABLE = 207
+    SET_MISSION_CURRENT = 224
+    ARM_DISARM = 400
+    SET_MESSAGE_INTERVAL = 511
+    FENCE_VERTEX_INCLUSION = 5001
+
+
+STREAMS: Final = {
+    "GLOBAL_POSITION_INT": (33, 0.2),
+    "SYS_STATUS": (1, 1.0),
+    "GPS_RAW_INT": (24, 1.0),
+    "MISSION_CURRENT": (42, 1.0),
+    "POSITION_TARGET_GLOBAL_INT": (87, 1.0),
+    "HOME_POSITION": (242, 5.0),
+}
+"""The messages that a vehicle is asked to send regularly: number, and every how many seconds."""

@@ -1,0 +1,70 @@
+"""Why a vehicle can't do what it is told: what is known before anything is sent."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from adapters.mavlink.fleet import Craft, Stations
+from adapters.mavlink.profiles import Profile
+from adapters.mavlink.telemetry import Telemetry
+from adapters.plugin import Command, Follow, GoTo, HandOver
+from physical import Geometry, circle, contains, waypoint
+
+MAX_PATH = 500
+"""Points of a path: fewer than the items that every autopilot holds."""
+
+
+def objection(command: Command, craft: Craft, stations: Stations, known: Telemetry) -> str | None:
+    """Return why not, in the operator's words; None if nothing is against it as far as is known."""
+    return next(_objections(command, craft, stations, known), None)
+
+
+def _objections(command: Command, craft: Craft, stations: Stations, known: Telemetry) -> Iterator[str]:
+    yield from _of_authority(stations, known)
+    if isinstance(command, HandOver):
+        yield from _of_hand_over(command, stations, known)
+    if isinstance(command, Follow) and not 0 < len(command.path) <= MAX_PATH:
+        yield f"a path has 1 to {MAX_PATH} points, this one {len(command.path)}"
+    yield from _of_fence(command, craft)
+    if isinstance(command, GoTo) and known.profile is not None:
+        yield from _of_size(command, craft, known.profile)
+
+
+def _of_authority(stations: Stations, known: Telemetry) -> Iterator[str]:
+    name = stations.name_of(known.authority)
+    if known.authority is not None and name not in stations.own:
+        yield f"it obeys {name or f'system {known.authority}'}, not {' or '.join(stations.own)}"
+
+
+def _of_hand_over(command: HandOver, stations: Stations, known: Telemetry) -> Iterator[str]:
+    if stations.station_of(command.join) is None:
+        yield f"{command.join} is no control channel of a known station"
+    leaves = stations.station_of(command.leave)
+    if leaves is None or (known.authority is not None and stations.name_of(known.authority) != leaves):
+        yield f"it is not on {command.leave}"
+
+
+def _of_fence(command: Command, craft: Craft) -> Iterator[str]:
+    points: tuple[Geometry, ...] = ()
+    if isinstance(command, GoTo):
+        points = (waypoint(command.place),)
+    elif isinstance(command, Follow):
+        points = command.path
+    outside = [at for at in points if craft.fence is not None and not contains(craft.fence, at)]
+    if outside:
+        yield f"{outside[0]!r} lies outside the fence"
+
+
+def _of_size(command: GoTo, craft: Craft, profile: Profile) -> Iterator[str]:
+    radius = craft.circle_of(profile)
+    if not holds_circle(command.place, radius):
+        name = command.name or "the place"
+        yield f"{name} is too small: the {profile.kind} needs a circle of {radius:g} m around its centre to stay"
+
+
+def holds_circle(place: Geometry, radius: float) -> bool:
+    """Whether a circle around the waypoint of a place fits in it; at a point it is the best that can be done."""
+    if place.is_point:
+        return True
+    ((latitude, longitude),) = waypoint(place).vertices
+    return contains(place, circle((latitude, longitude), radius))

@@ -1,0 +1,263 @@
+"""One vehicle, as its ground station sees it: messages and time in, messages, properties and reports out.
+
+A pure state machine: no socket, no clock, no randomness.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from adapters.mavlink import plan, streams
+from adapters.mavlink import task as tasks
+from adapters.mavlink.command import read_parameter
+from adapters.mavlink.fleet import CONTROL, Craft, Stations
+from adapters.mavlink.items import Items
+from adapters.mavlink.link import Link, watch
+from adapters.mavlink.message import Message
+from adapters.mavlink.numbers import AUTHORITY_PARAMETER, MissionType
+from adapters.mavlink.objections import objection
+from adapters.mavlink.streams import Streams
+from adapters.mavlink.task import Progress, Task
+from adapters.mavlink.telemetry import Position, Telemetry, absorb
+from adapters.plugin import (
+    Aged,
+    Command,
+    Follow,
+    GoTo,
+    HandOver,
+    Published,
+    Refused,
+    Report,
+    Trouble,
+)
+from physical import Band, PhysicalProperty, Velocity, point
+
+AUTHORITY_UNKNOWN: Final = 10.0
+"""Seconds after which a vehicle is published although it does not tell whom it obeys."""
+
+ASK_AUTHORITY: Final = 1.0
+CHECK_AUTHORITY: Final = 5.0
+
+Shown = tuple[Position | None, int | None, bool]
+"""What the last publication rested on: position, authority, whether the link was lost."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pilot:
+    """What a ground station knows of one vehicle and is doing with it.
+
+    Attributes:
+        craft: What the mission says of it.
+        stations: Who may command it.
+        system: Its MAVLink system id.
+        known: What its messages show.
+        link: Whether it is heard.
+        streams: What it was asked to send.
+        on_board: The missions and fences that were read back since it booted.
+        moving: The command that it carries out.
+        handing: The hand-over under way.
+        asked: When its authority was asked for.
+        since: Since when it has a position.
+        shown: What was published last.
+    """
+
+    craft: Craft
+    stations: Stations
+    system: int
+    known: Telemetry = field(default_factory=Telemetry)
+    link: Link = field(default_factory=Link)
+    streams: Streams = field(default_factory=Streams)
+    on_board: frozenset[tuple[MissionType, Items]] = frozenset()
+    moving: Task | None = None
+    handing: Task | None = None
+    asked: float | None = None
+    since: float | None = None
+    shown: Shown = (None, None, False)
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What one input led to."""
+
+    pilot: Pilot
+    sent: tuple[Message, ...] = ()
+    reports: tuple[Report, ...] = ()
+    published: tuple[Published, ...] = ()
+
+
+def command(pilot: Pilot, told: Command, now: float) -> Outcome:
+    """Take on a command; raises Refused where it is known not to be possible."""
+    reason = objection(told, pilot.craft, pilot.stations, pilot.known)
+    if reason:
+        raise Refused(reason)
+    checked = pilot.known.profile is not None
+    if isinstance(told, HandOver):
+        station = pilot.stations.ids[told.join.removeprefix(CONTROL)]
+        return Outcome(
+            replace(pilot, handing=Task(told, station, since=now, boots=pilot.known.boots, checked=checked))
+        )
+    task = Task(told, since=now, boots=pilot.known.boots, checked=checked)
+    return Outcome(replace(pilot, moving=_continued(pilot.moving, task)))
+
+
+def _continued(before: Task | None, task: Task) -> Task:
+    """Keep of a task whose place has moved on that it had armed and begun."""
+    if before is None or before.over or before.command.request != task.command.request:
+        return task
+    return replace(
+        task, height=before.height, begun=before.begun, was_armed=before.was_armed, boots=before.boots
+    )
+
+
+def hear(pilot: Pilot, message: Message, now: float) -> Outcome:
+    """Take a message of the vehicle that is meant for us, or for everybody."""
+    known = absorb(pilot.known, message, now)
+    on_board = pilot.on_board if known.boots == pilot.known.boots else frozenset()
+    pilot = replace(pilot, known=known, on_board=on_board, streams=streams.hear(pilot.streams, message, now))
+    sent: list[Message] = []
+    if pilot.moving is not None and not pilot.moving.over:
+        heard = tasks.hear(pilot.moving, message, now)
+        pilot = replace(pilot, moving=heard.task)
+        sent += heard.sent
+    outcome = _advance(pilot, now)
+    return replace(outcome, sent=_spoken(pilot, (*sent, *outcome.sent)))
+
+
+def tick(pilot: Pilot, now: float) -> Outcome:
+    """Let time pass."""
+    link, change = watch(pilot.link, pilot.craft.entity, pilot.known, now)
+    pilot = replace(pilot, link=link)
+    questions: tuple[Message, ...] = ()
+    if pilot.known.heard is not None and not link.lost:
+        pilot, questions = _asked(pilot, now)
+    outcome = _advance(pilot, now)
+    reports = outcome.reports if change is None else (change, *outcome.reports)
+    return replace(outcome, sent=_spoken(pilot, (*questions, *outcome.sent)), reports=reports)
+
+
+def _asked(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
+    """Ask for the messages that are missing, and whom the vehicle obeys."""
+    flow, missing = streams.tick(pilot.streams, pilot.system, now)
+    pilot = replace(pilot, streams=flow)
+    every = ASK_AUTHORITY if pilot.known.authority is None else CHECK_AUTHORITY
+    if pilot.asked is not None and now - pilot.asked < every:
+        return pilot, missing
+    return replace(pilot, asked=now), (*missing, read_parameter(pilot.system, AUTHORITY_PARAMETER))
+
+
+def _spoken(pilot: Pilot, sent: tuple[Message, ...]) -> tuple[Message, ...]:
+    speaker = pilot.stations.speaker(pilot.known.authority)
+    return tuple(replace(message, system=speaker) for message in sent)
+
+
+def _advance(pilot: Pilot, now: float) -> Outcome:
+    """Take the tasks onwards, and publish what has changed."""
+    sent: list[Message] = []
+    reports: list[Report] = []
+    for slot in ("handing", "moving"):
+        task: Task | None = getattr(pilot, slot)
+        if task is None or task.over:
+            continue
+        progress = _progress(pilot, task, now)
+        found = frozenset() if progress.on_board is None else frozenset({progress.on_board})
+        pilot = replace(pilot, on_board=_kept(pilot.on_board, found), **{slot: progress.task})  # type: ignore[arg-type]  # the slot's name is one of two
+        sent += progress.sent
+        reports += [progress.report] if progress.report else []
+    pilot, published, trouble = _publication(pilot, now)
+    return Outcome(pilot, tuple(sent), (*reports, *trouble), published)
+
+
+def _kept(
+    before: frozenset[tuple[MissionType, Items]], found: frozenset[tuple[MissionType, Items]]
+) -> frozenset[tuple[MissionType, Items]]:
+    """Replace what is on board by what was found there, kind by kind."""
+    kinds = {kind for kind, _ in found}
+    return frozenset(entry for entry in before if entry[0] not in kinds) | found
+
+
+def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
+    profile = pilot.known.profile
+    if profile is None:  # not heard yet, or something that nobody here can command
+        return _unknown(pilot, task, now)
+    if not task.checked:
+        reason = objection(task.command, pilot.craft, pilot.stations, pilot.known)
+        if reason:
+            return tasks.rejected(task, reason, now)
+        task = replace(task, checked=True)
+    task = _with_height(pilot, task)
+    vehicle = plan.Vehicle(
+        system=pilot.system,
+        known=pilot.known,
+        profile=profile,
+        on_board=pilot.on_board,
+        fence=pilot.craft.fence,
+        circle=pilot.craft.circle_of(profile),
+        height=task.height or 0.0,
+        begun=task.begun,
+    )
+    step = plan.next_step(task.command, task.station, vehicle)
+    return tasks.advance(task, step, vehicle, lost=pilot.link.lost, now=now)
+
+
+def _unknown(pilot: Pilot, task: Task, now: float) -> Progress:
+    if pilot.known.mode is None or now - task.since <= tasks.STRANGE:
+        return Progress(task)
+    return tasks.rejected(task, "it is no vehicle with ArduPilot, and only those are known here", now)
+
+
+def _with_height(pilot: Pilot, task: Task) -> Task:
+    """Fix the height of a task as soon as the vehicle's own position allows."""
+    profile, position = pilot.known.profile, pilot.known.position
+    if task.height is not None or profile is None or position is None:
+        return task
+    band = task.command.altitude if isinstance(task.command, GoTo | Follow) else None
+    return replace(task, height=plan.height_of(band, profile, position, pilot.craft.height_of(profile)))
+
+
+def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Published, ...], tuple[Report, ...]]:
+    """Publish the vehicle where anything that is shown of it has changed."""
+    position, authority = pilot.known.position, pilot.known.authority
+    if position is None:
+        return replace(pilot, since=None), (), ()
+    pilot = replace(pilot, since=now if pilot.since is None else pilot.since)
+    shown = (position, authority, pilot.link.lost)
+    untold = authority is None and not pilot.link.lost
+    if shown == pilot.shown or (untold and now - (pilot.since or now) < AUTHORITY_UNKNOWN):
+        return pilot, (), ()
+    changed = pilot.shown[1:] != shown[1:]
+    trouble = _authority_trouble(pilot, now) if changed and not pilot.link.lost else ()
+    published = Aged(_property(pilot, position), pilot.craft.time_to_live)
+    return replace(pilot, shown=shown), (published,), trouble
+
+
+def _property(pilot: Pilot, at: Position) -> PhysicalProperty:
+    return PhysicalProperty(
+        pilot.craft.entity,
+        pilot.craft.kind,
+        point(at.latitude, at.longitude),
+        Band(at.altitude, at.altitude),
+        _channels(pilot),
+        time=at.time,
+        source="mavlink",
+        velocity=Velocity(at.speed, at.course),
+    )
+
+
+def _channels(pilot: Pilot) -> tuple[str, ...]:
+    """Return the channels that it is on: none while it is not heard."""
+    if pilot.link.lost:
+        return ()
+    station = pilot.stations.name_of(pilot.known.authority)
+    return (*pilot.craft.channels, *([] if station is None else [CONTROL + station]))
+
+
+def _authority_trouble(pilot: Pilot, now: float) -> tuple[Report, ...]:
+    authority = pilot.known.authority
+    if pilot.stations.name_of(authority) is not None:
+        return ()
+    entity = pilot.craft.entity
+    if authority is None:
+        return (Trouble(entity, now, "authority not told", f"{entity} does not tell which station it obeys"),)
+    detail = f"{entity} obeys system {authority}, which is no station of the mission; add it to the stations"
+    return (Trouble(entity, now, "unknown authority", detail),)

@@ -1,0 +1,254 @@
+"""What to do next towards a command: a pure function of what the vehicle's state shows.
+
+Hardly anything is remembered but what is known to be on board, so that lost packets, answers that came twice and a
+vehicle that booted anew need no cases of their own: the first thing that is not yet so is done next.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from adapters.mavlink import command as to
+from adapters.mavlink.items import Items, e7, fence, route
+from adapters.mavlink.message import Message
+from adapters.mavlink.numbers import AUTHORITY_PARAMETER, Cmd, MissionType
+from adapters.mavlink.profiles import Profile, TakeOff
+from adapters.mavlink.telemetry import Position, Telemetry
+from adapters.plugin import Command, Follow, GoTo, HandOver, Hold, Return
+from physical import Band, Geometry, contains, distance, point, waypoint
+
+TARGET_METRES = 5.0
+"""How near the target that the vehicle tells must be to the one it was told."""
+
+TAKEOFF_HEIGHT = 10.0
+"""Metres to which a copter takes off before it is sent anywhere."""
+
+CLIMBING = 0.2
+"""Metres a second."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """Nothing to be done: the vehicle has to come to it by itself. `limited`: not for long."""
+
+    why: str
+    limited: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Tell:
+    """A message, until the state shows what it was for."""
+
+    why: str
+    message: Message
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """A mission or fence that has to be on board."""
+
+    items: Items
+    kind: MissionType
+
+
+@dataclass(frozen=True, slots=True)
+class Underway:
+    """The state shows that the vehicle does what it was told; `done` that it has done it."""
+
+    done: bool
+
+
+Step = Wait | Tell | Load | Underway
+
+
+@dataclass(frozen=True, slots=True)
+class Vehicle:
+    """What plans rest on.
+
+    Attributes:
+        system: Its MAVLink system id.
+        known: What its messages show.
+        profile: What kind it is.
+        on_board: The missions and fences that were read back since it booted.
+        fence: The polygon that it is to be kept within.
+        circle: The radius in metres that it needs to stay somewhere.
+        height: Metres above home at which the command is carried out.
+        begun: Whether its mission was seen at its first item since the command.
+    """
+
+    system: int
+    known: Telemetry
+    profile: Profile
+    on_board: frozenset[tuple[MissionType, Items]]
+    fence: Geometry | None
+    circle: float
+    height: float
+    begun: bool
+
+
+def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
+    """Return the first thing that is not yet so; `station` is the system id that a HandOver gives authority to."""
+    match command:
+        case GoTo():
+            return _prepared(vehicle) or _go(command, vehicle)
+        case Follow():
+            return _prepared(vehicle) or _follow(command, vehicle)
+        case HandOver():
+            return _hand_over(station, vehicle)
+        case Hold():
+            return _in_mode(vehicle, vehicle.profile.hold) or Underway(done=True)
+        case Return():
+            return _in_mode(vehicle, vehicle.profile.home) or Underway(done=_is_home(vehicle))
+
+
+def _prepared(vehicle: Vehicle) -> Step | None:
+    """See that the vehicle knows where it is, takes missions, and has its fence."""
+    if vehicle.known.position is None:
+        return Wait("it has no position yet")
+    if not vehicle.known.armed and vehicle.known.healthy is not True:
+        return Wait("it is not ready to be armed yet")
+    if vehicle.fence is None:
+        return None
+    load = _loaded(vehicle, fence(vehicle.fence), MissionType.FENCE)
+    if load is None and not vehicle.known.fenced:
+        return Tell("to keep within its fence", to.long(Cmd.FENCE_ENABLE, vehicle.system, 1))
+    return load
+
+
+def _loaded(vehicle: Vehicle, items: Items, kind: MissionType) -> Load | None:
+    return None if (kind, items) in vehicle.on_board else Load(items, kind)
+
+
+def _go(command: GoTo, vehicle: Vehicle) -> Step:
+    at = waypoint(command.place)
+    return (
+        _off_the_ground(vehicle, at)
+        or _sent(vehicle, at)
+        or Underway(done=_reached(command.place, at, vehicle))
+    )
+
+
+def _off_the_ground(vehicle: Vehicle, at: Geometry) -> Step | None:
+    """Get ready to go: a plane by a mission that begins with a take-off, the others in guided mode."""
+    if vehicle.profile.takeoff is TakeOff.MISSION:
+        return _mission_takeoff(vehicle, at)
+    ready = None if vehicle.known.flying else _in_mode(vehicle, vehicle.profile.guided) or _armed(vehicle)
+    if ready or vehicle.profile.takeoff is TakeOff.NONE:
+        return ready
+    return _copter_takeoff(vehicle)
+
+
+def _copter_takeoff(vehicle: Vehicle) -> Step | None:
+    if not vehicle.known.flying:
+        command = to.long(Cmd.TAKEOFF, vehicle.system, 0, 0, 0, 0, 0, 0, TAKEOFF_HEIGHT)
+        return Tell("to take off", command)
+    position = _position(vehicle)
+    low = position.height < 0.8 * TAKEOFF_HEIGHT
+    return Wait("it climbs") if low and position.climb > CLIMBING else None
+
+
+def _mission_takeoff(vehicle: Vehicle, at: Geometry) -> Step | None:
+    known, auto = vehicle.known, vehicle.profile.auto
+    if known.flying:
+        climbing = known.mode == auto and (known.current or 0) <= 1 and _has_takeoff(vehicle)
+        return Wait("it climbs") if climbing else None
+    return (
+        _loaded(vehicle, route((at,), vehicle.height, takeoff=True), MissionType.MISSION)
+        or _begun(vehicle, 1)
+        or _in_mode(vehicle, auto)
+        or _armed(vehicle)
+        or Wait("it takes off")
+    )
+
+
+def _has_takeoff(vehicle: Vehicle) -> bool:
+    missions = (items for kind, items in vehicle.on_board if kind is MissionType.MISSION)
+    return any(len(items) > 1 and items[1].command == Cmd.TAKEOFF for items in missions)
+
+
+def _sent(vehicle: Vehicle, at: Geometry) -> Step | None:
+    """See that it is in guided mode and tells the target as its own."""
+    known, (x, y) = vehicle.known, e7(at)
+    if known.mode == vehicle.profile.guided and _targets(known, at):
+        return None
+    return Tell("to go there", to.reposition(vehicle.system, x, y, vehicle.height, vehicle.circle))
+
+
+def _targets(known: Telemetry, at: Geometry) -> bool:
+    return known.target is not None and distance(point(*known.target), at) <= TARGET_METRES
+
+
+def _follow(command: Follow, vehicle: Vehicle) -> Step:
+    profile = vehicle.profile
+    items = route(command.path, vehicle.height, takeoff=profile.takeoff is not TakeOff.NONE)
+    # What flies need not take off again: it begins with the point behind the take-off.
+    first = 2 if profile.takeoff is not TakeOff.NONE and vehicle.known.flying else 1
+    return (
+        _loaded(vehicle, items, MissionType.MISSION)
+        or (_off_the_ground(vehicle, command.path[0]) if profile.takeoff is TakeOff.COMMAND else None)
+        or _begun(vehicle, first)
+        or _in_mode(vehicle, profile.auto)
+        or _armed(vehicle)
+        or Underway(done=_at_the_end(command, items, vehicle))
+    )
+
+
+def _begun(vehicle: Vehicle, first: int) -> Step | None:
+    """See that a mission does not begin where an earlier one had come to."""
+    if vehicle.begun:
+        return None
+    return Tell("to begin its mission", to.long(Cmd.SET_MISSION_CURRENT, vehicle.system, first))
+
+
+def _at_the_end(command: Follow, items: Items, vehicle: Vehicle) -> bool:
+    near = distance(_spot(vehicle), command.path[-1]) <= vehicle.profile.reach
+    return vehicle.known.current == len(items) - 1 and near
+
+
+def _hand_over(station: int, vehicle: Vehicle) -> Step:
+    if vehicle.known.authority == station:
+        return Underway(done=True)
+    return Tell("to obey the other station", to.set_parameter(vehicle.system, AUTHORITY_PARAMETER, station))
+
+
+def _in_mode(vehicle: Vehicle, mode: int) -> Step | None:
+    if vehicle.known.mode == mode:
+        return None
+    why = f"to change to {vehicle.profile.mode_name(mode)}"
+    return Tell(why, to.long(Cmd.DO_SET_MODE, vehicle.system, 1, mode))
+
+
+def _armed(vehicle: Vehicle) -> Step | None:
+    return None if vehicle.known.armed else Tell("to arm", to.long(Cmd.ARM_DISARM, vehicle.system, 1))
+
+
+def _is_home(vehicle: Vehicle) -> bool:
+    home, position = vehicle.known.home, vehicle.known.position
+    if home is None or position is None:
+        return vehicle.known.armed is False
+    near = distance(_spot(vehicle), point(*home)) <= vehicle.circle + vehicle.profile.reach
+    return near or vehicle.known.armed is False
+
+
+def _reached(place: Geometry, at: Geometry, vehicle: Vehicle) -> bool:
+    spot = _spot(vehicle)
+    if place.is_point:
+        return distance(spot, at) <= max(vehicle.profile.reach, 1.2 * vehicle.circle)
+    return contains(place, spot)
+
+
+def height_of(band: Band | None, profile: Profile, position: Position, otherwise: float) -> float:
+    """Return the height above home of the middle of a band; the vehicle's own if there is none."""
+    if band is None or profile.takeoff is TakeOff.NONE:
+        return otherwise
+    return round((band.low + band.high) / 2 - (position.altitude - position.height), 2)
+
+
+def _position(vehicle: Vehicle) -> Position:
+    assert vehicle.known.position is not None, "plans begin with a position"
+    return vehicle.known.position
+
+
+def _spot(vehicle: Vehicle) -> Geometry:
+    position = _position(vehicle)
+    return point(position.latitude, position.longitude)

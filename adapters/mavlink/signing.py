@@ -1,0 +1,132 @@
+"""MAVLink 2 signing: which packets are believed, and what stands on disk between two runs.
+
+A pure state machine. A signature's time stamp is in units of 10 µs since 2015; for each stream (link, system,
+component) it must grow, and a new stream may be at most a minute behind. A stream is remembered only after its
+signature has been checked, so a stranger can neither silence a vehicle nor fill the memory.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from pathlib import Path
+from typing import Final
+
+from adapters.mavlink.message import Message, say
+from physical import PhysicalError
+
+EPOCH: Final = 1_420_070_400
+"""2015-01-01 in seconds since 1970: where time stamps count from."""
+
+UNITS: Final = 100_000
+"""Units of a time stamp in a second."""
+
+NEW_STREAM: Final = 60 * UNITS
+RESERVE: Final = 60 * UNITS
+"""How far the time stamp on disk runs ahead, so that a crash reuses none."""
+
+KEY_BYTES: Final = 32
+_BLOCK: Final = 13  # link id, time stamp, signature
+_SIGNED: Final = 1
+_V2: Final = 0xFD
+
+
+class Verdict(StrEnum):
+    """What a packet's signature says."""
+
+    GOOD = "signed"
+    UNSIGNED = "unsigned packet"
+    FORGED = "forged signature"
+    REPLAYED = "replayed packet"
+
+
+Stream = tuple[int, int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Signing:
+    """A key, the newest time stamp sent or seen, and the newest of every stream that was heard."""
+
+    key: bytes
+    timestamp: int = 0
+    streams: Mapping[Stream, int] = field(default_factory=dict)
+
+
+def new_key(passphrase: str) -> bytes:
+    """Make a key of a passphrase as ground stations do: its SHA-256."""
+    return hashlib.sha256(passphrase.encode()).digest()
+
+
+def check(signing: Signing, message: Message) -> tuple[Signing, Verdict]:
+    """Judge one packet by its frame."""
+    raw = message.raw
+    if len(raw) < _BLOCK + 12 or raw[0] != _V2 or not raw[2] & _SIGNED:
+        return signing, Verdict.UNSIGNED
+    expected = hashlib.sha256(signing.key + raw[:-6]).digest()[:6]
+    if not hmac.compare_digest(expected, raw[-6:]):
+        return signing, Verdict.FORGED
+    stream = (raw[-_BLOCK], message.system, message.component)
+    time = int.from_bytes(raw[-12:-6], "little")
+    if time <= signing.streams.get(stream, signing.timestamp - NEW_STREAM):
+        return signing, Verdict.REPLAYED
+    streams = {**signing.streams, stream: time}
+    return replace(signing, timestamp=max(signing.timestamp, time), streams=streams), Verdict.GOOD
+
+
+def stamp(signing: Signing, now: float) -> Signing:
+    """Take the next time stamp to send with: the clock's, and larger than any before."""
+    return replace(signing, timestamp=max(signing.timestamp + 1, int((now - EPOCH) * UNITS)))
+
+
+def setup_signing(key: bytes, now: float, system: int, component: int = 1) -> Message:
+    """Return the message that gives a vehicle its key, in clear: send it by cable only."""
+    return say(
+        "SETUP_SIGNING",
+        target_system=system,
+        target_component=component,
+        secret_key=list(key),
+        initial_timestamp=max(0, int((now - EPOCH) * UNITS)),
+    )
+
+
+def load(path: Path) -> Signing:
+    """Read the state of an earlier run.
+
+    Raises PhysicalError where the file is no such state.
+    """
+    hint = "write it by adapters.mavlink.signing.save, or give the vehicle a new key"
+    try:
+        data = json.loads(path.read_text(encoding="ascii"))
+        key, timestamp = bytes.fromhex(data["key"]), int(data["timestamp"])
+        streams = {_stream(name): int(time) for name, time in data["streams"].items()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as problem:
+        raise PhysicalError(
+            "signing-file", f"cannot read the signing key: {problem}", hint, str(path)
+        ) from None
+    if len(key) != KEY_BYTES:
+        raise PhysicalError("signing-file", f"the key has {len(key)} bytes, not {KEY_BYTES}", hint, str(path))
+    return Signing(key, timestamp, streams)
+
+
+def save(signing: Signing, path: Path) -> None:
+    """Write the state for a later run, readable by its owner only, whole or not at all."""
+    data = {
+        "key": signing.key.hex(),
+        "timestamp": signing.timestamp + RESERVE,
+        "streams": {".".join(map(str, stream)): time for stream, time in sorted(signing.streams.items())},
+    }
+    beside = path.with_name(f"{path.name}.new")
+    handle = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+    with os.fdopen(handle, "w", encoding="ascii") as file:
+        json.dump(data, file)
+    beside.replace(path)
+
+
+def _stream(name: str) -> Stream:
+    link, system, component = map(int, name.split("."))
+    return link, system, component

@@ -1,0 +1,45 @@
+"""Ask a vehicle for the messages that we need, as long as they do not come."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from adapters.mavlink.command import long
+from adapters.mavlink.message import Message
+from adapters.mavlink.numbers import STREAMS, Cmd
+
+MISSED: Final = 5.0
+"""Seconds, or periods, without a message after which it is asked for."""
+
+ASK_EVERY: Final = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Streams:
+    """When each message came last, and when they were last asked for."""
+
+    came: dict[str, float] = field(default_factory=dict)
+    asked: float | None = None
+
+
+def hear(streams: Streams, message: Message, now: float) -> Streams:
+    """Note that a message came."""
+    return replace(streams, came={**streams.came, message.name: now}) if message.name in STREAMS else streams
+
+
+def tick(streams: Streams, system: int, now: float) -> tuple[Streams, tuple[Message, ...]]:
+    """Ask for all that was not heard for a while."""
+    if streams.asked is not None and now - streams.asked < ASK_EVERY:
+        return streams, ()
+    missing = [name for name, (_, period) in STREAMS.items() if _missed(streams.came.get(name), period, now)]
+    return replace(streams, asked=now), tuple(_question(name, system) for name in missing)
+
+
+def _missed(came: float | None, period: float, now: float) -> bool:
+    return came is None or now - came > max(MISSED, MISSED * period)
+
+
+def _question(name: str, system: int) -> Message:
+    number, period = STREAMS[name]
+    return long(Cmd.SET_MESSAGE_INTERVAL, system, number, period * 1e6)

@@ -1,0 +1,77 @@
+"""Make sure that a mission or fence is on board: upload, read back, compare, again until they are the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+from adapters.mavlink import download as reading
+from adapters.mavlink import upload as writing
+from adapters.mavlink.items import Items, same
+from adapters.mavlink.message import Message
+from adapters.mavlink.numbers import MissionType
+
+ROUNDS: Final = 5
+"""How often a difference is tolerated before the vehicle is said to refuse."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sync:
+    """A mission on its way on board; `rounds` counts how often what was read back differed."""
+
+    items: Items
+    kind: MissionType
+    system: int
+    doing: writing.Upload | reading.Download
+    rounds: int = 0
+    confirmed: bool = False
+
+    @property
+    def refusal(self) -> str | None:
+        """Why it will never be on board, if so."""
+        if isinstance(self.doing, writing.Upload) and self.doing.refusal is not None:
+            return (
+                f"the vehicle refuses the {self.kind.name.lower()} (MAV_MISSION_RESULT {self.doing.refusal})"
+            )
+        if self.rounds >= ROUNDS:
+            return f"what is on board differs from the {self.kind.name.lower()} after {ROUNDS} uploads"
+        return None
+
+
+Step = tuple[Sync, tuple[Message, ...]]
+
+
+def begin(items: Items, kind: MissionType, system: int) -> Sync:
+    """Begin with an upload."""
+    return Sync(items, kind, system, writing.Upload(items, kind, system))
+
+
+def tick(sync: Sync, now: float) -> Step:
+    """Let time pass."""
+    if isinstance(sync.doing, writing.Upload):
+        upload, sent = writing.tick(sync.doing, now)
+        return _onwards(replace(sync, doing=upload), sent, now)
+    download, sent = reading.tick(sync.doing, now)
+    return _onwards(replace(sync, doing=download), sent, now)
+
+
+def hear(sync: Sync, message: Message, now: float) -> Step:
+    """Take a message of the vehicle that is meant for us."""
+    if isinstance(sync.doing, writing.Upload):
+        upload, sent = writing.hear(sync.doing, message, now)
+        return _onwards(replace(sync, doing=upload), sent, now)
+    download, sent = reading.hear(sync.doing, message, now)
+    return _onwards(replace(sync, doing=download), sent, now)
+
+
+def _onwards(sync: Sync, sent: tuple[Message, ...], now: float) -> Step:
+    """Go from the upload to the download, and from a difference to the next upload."""
+    if sync.confirmed or not sync.doing.over or sync.refusal:
+        return sync, sent
+    if isinstance(sync.doing, writing.Upload):
+        download, asked = reading.tick(reading.Download(sync.kind, sync.system), now)
+        return replace(sync, doing=download), (*sent, *asked)
+    if same(sync.items, sync.doing.items, sync.kind):
+        return replace(sync, confirmed=True), sent
+    again = replace(begin(sync.items, sync.kind, sync.system), rounds=sync.rounds + 1)
+    return again, sent

@@ -1,0 +1,174 @@
+"""One command on its way: the step it is at, how it is going, and how it ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+from adapters.mavlink import command as telling
+from adapters.mavlink import sync as syncing
+from adapters.mavlink.items import Items
+from adapters.mavlink.message import Message
+from adapters.mavlink.numbers import Cmd, MissionType
+from adapters.mavlink.plan import Load, Step, Tell, Underway, Vehicle, Wait
+from adapters.plugin import Accepted, Arrived, Command, Rejected, Report
+
+PATIENCE: Final = 45.0
+"""Seconds, while the vehicle is heard, that one step may take."""
+
+BOOT_PATIENCE: Final = 120.0
+"""Seconds that a vehicle may take to be ready: its filters settle, its receiver finds satellites."""
+
+STRANGE: Final = 3.0
+"""Seconds for which a state must differ from what it was before it counts: a heartbeat can come late."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A command and how far it is.
+
+    Attributes:
+        command: What was asked.
+        station: Of a HandOver, the system id of the station that gets the authority.
+        height: Metres above home at which it is carried out, once known.
+        step: What is being done.
+        since: Since when it was, or since when the vehicle could be heard.
+        doing: The exchange that this takes.
+        accepted: Whether the state has shown that the vehicle does it.
+        over: Whether it has arrived or was rejected.
+        begun: Whether the mission was seen at its first item.
+        was_armed: Whether it was armed since the command.
+        strange: Since when the state contradicts what it was.
+        boots: The vehicle's boots that all this is about.
+        checked: Whether it was seen to be possible for this kind of vehicle.
+    """
+
+    command: Command
+    station: int = 0
+    height: float | None = None
+    step: Step | None = None
+    since: float = 0.0
+    doing: telling.Telling | syncing.Sync | None = None
+    accepted: bool = False
+    over: bool = False
+    begun: bool = False
+    was_armed: bool = False
+    strange: float | None = None
+    boots: int = 0
+    checked: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """What became of a task: what to send, what to report, and what is now known to be on board."""
+
+    task: Task
+    sent: tuple[Message, ...] = ()
+    report: Report | None = None
+    on_board: tuple[MissionType, Items] | None = None
+
+
+def hear(task: Task, message: Message, now: float) -> Progress:
+    """Let the exchange under way take a message of the vehicle that is meant for us."""
+    if isinstance(task.doing, telling.Telling):
+        return Progress(replace(task, doing=telling.hear(task.doing, message)))
+    if isinstance(task.doing, syncing.Sync):
+        sync, sent = syncing.hear(task.doing, message, now)
+        return Progress(replace(task, doing=sync), sent)
+    return Progress(task)
+
+
+def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float) -> Progress:
+    """Do what is next: `step` is the first thing that is not yet so."""
+    task = _followed(task, vehicle, now)
+    if isinstance(step, Underway):
+        return _underway(task, step, now)
+    if task.accepted or (task.was_armed and vehicle.known.armed is False):
+        return _contradicted(task, vehicle, now)
+    if step != task.step:
+        task = replace(task, step=step, since=now, doing=_exchange(step, vehicle))
+    if lost:
+        return Progress(replace(task, since=now))
+    if now - task.since > _patience(step):
+        return rejected(task, _failure(step, task, vehicle), now)
+    return _pursued(task, now)
+
+
+def rejected(task: Task, reason: str, now: float) -> Progress:
+    """End a task without success."""
+    command = task.command
+    return Progress(replace(task, over=True), report=Rejected(command.request, command.entity, now, reason))
+
+
+def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
+    """Bring what is remembered up to date with what the vehicle shows."""
+    known = vehicle.known
+    if known.boots != task.boots:  # all but that it was armed is void
+        task = replace(
+            task, boots=known.boots, step=None, since=now, accepted=False, begun=False, strange=None
+        )
+    asked = task.step.message.fields if isinstance(task.step, Tell) else {}
+    begins = asked.get("command") == Cmd.SET_MISSION_CURRENT and known.current == asked.get("param1")
+    return replace(task, begun=task.begun or begins, was_armed=task.was_armed or known.armed is True)
+
+
+def _underway(task: Task, step: Underway, now: float) -> Progress:
+    request, entity = task.command.request, task.command.entity
+    task = replace(task, strange=None, step=step, doing=None)
+    if step.done and not task.over:
+        return Progress(replace(task, accepted=True, over=True), report=Arrived(request, entity, now))
+    if not task.accepted:
+        return Progress(replace(task, accepted=True), report=Accepted(request, entity, now))
+    return Progress(task)
+
+
+def _contradicted(task: Task, vehicle: Vehicle, now: float) -> Progress:
+    """See whether someone else, or the vehicle itself, has undone it: then nobody here fights for it."""
+    if task.strange is None or now - task.strange <= STRANGE:
+        return Progress(task if task.strange is not None else replace(task, strange=now))
+    known = vehicle.known
+    if task.was_armed and known.armed is False:
+        return rejected(task, "it was disarmed, and is not armed again without a new command", now)
+    mode = vehicle.profile.mode_name(known.mode)
+    return rejected(
+        task, f"it does not do so any more (it is in {mode}): by itself, or told by someone else", now
+    )
+
+
+def _exchange(step: Step, vehicle: Vehicle) -> telling.Telling | syncing.Sync | None:
+    match step:
+        case Tell():
+            return telling.Telling(step.message)
+        case Load():
+            return syncing.begin(step.items, step.kind, vehicle.system)
+    return None
+
+
+def _patience(step: Step) -> float:
+    return BOOT_PATIENCE if isinstance(step, Wait) else PATIENCE
+
+
+def _pursued(task: Task, now: float) -> Progress:
+    refusal = task.doing.refusal if task.doing is not None else None
+    if refusal:
+        return rejected(task, refusal, now)
+    if isinstance(task.doing, telling.Telling):
+        told, sent = telling.tick(task.doing, now)
+        return Progress(replace(task, doing=told), sent)
+    if isinstance(task.doing, syncing.Sync):
+        sync, sent = syncing.tick(task.doing, now)
+        done = (sync.kind, sync.items) if sync.confirmed else None
+        return Progress(replace(task, doing=sync), sent, on_board=done)
+    return Progress(task)
+
+
+def _failure(step: Step, task: Task, vehicle: Vehicle) -> str:
+    said = f"; its last words: {vehicle.known.said!r:.80}" if vehicle.known.said else ""
+    match step:
+        case Wait():
+            return f"{step.why}, for {_patience(step):.0f} s{said}"
+        case Tell():
+            return f"it was told {step.why}, and did not in {PATIENCE:.0f} s{said}"
+        case Load():
+            return f"the {step.kind.name.lower()} could not be confirmed on board in {PATIENCE:.0f} s{said}"
+    raise AssertionError(task)

@@ -1,0 +1,195 @@
+"""What a vehicle's messages show of it: a fold, without a clock of its own.
+
+Everything is stamped by our clock when it arrives; of the vehicle's own clock, which may run at any speed and be wrong,
+only the order of its messages and a reboot are told.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Any, Final
+
+from adapters.mavlink.message import Message
+from adapters.mavlink.numbers import (
+    ACTIVE,
+    AUTHORITY_PARAMETER,
+    AUTOPILOT_COMPONENT,
+    FIX_3D,
+    GEOFENCE,
+    PREARM_HEALTHY,
+    ModeFlag,
+)
+from adapters.mavlink.profiles import Profile, profile_of
+
+FIX_SECONDS: Final = 10.0
+"""How long a fix is believed: GPS_RAW_INT comes once a second, and may be lost."""
+
+BACKWARDS: Final = 5_000
+"""Milliseconds by which the vehicle's clock must go back to mean a reboot: less is a late packet."""
+
+NOWHERE: Final = 0.01
+"""Degrees around (0, 0) in which nobody is: what an autopilot says before its filter has settled."""
+
+
+@dataclass(frozen=True, slots=True)
+class Position:
+    """Where a vehicle is: degrees, metres above sea level and above home, m/s (over ground, upwards), our time."""
+
+    latitude: float
+    longitude: float
+    altitude: float
+    height: float
+    speed: float
+    course: float
+    climb: float
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
+class Telemetry:
+    """What is known of a vehicle by its own messages; None is *not told yet*.
+
+    Attributes:
+        heard: When anything was heard from it.
+        profile: What kind of vehicle it is.
+        mode: Its mode's number.
+        armed: Whether its motors may turn.
+        active: Whether it says that it flies (or drives).
+        position: Where it is, if it has a fix.
+        fix_time: When it last said that it has one.
+        healthy: Whether it could be armed, and takes missions.
+        current: The number of the mission item that it pursues.
+        target: Where it is going: degrees.
+        home: Where it returns to: degrees.
+        fenced: Whether it keeps within its fence.
+        authority: The system id of the station that it obeys.
+        clock: Its own milliseconds since boot.
+        boots: How often it was seen to boot anew.
+        said: The last text that it said.
+    """
+
+    heard: float | None = None
+    profile: Profile | None = None
+    mode: int | None = None
+    armed: bool | None = None
+    active: bool | None = None
+    position: Position | None = None
+    fix_time: float | None = None
+    healthy: bool | None = None
+    current: int | None = None
+    target: tuple[float, float] | None = None
+    home: tuple[float, float] | None = None
+    fenced: bool | None = None
+    authority: int | None = None
+    clock: int | None = None
+    boots: int = 0
+    said: str = ""
+    suspect: int | None = None
+
+    @property
+    def flying(self) -> bool:
+        """Whether it is off the ground, as it says."""
+        return bool(self.armed and self.active)
+
+
+def absorb(known: Telemetry, message: Message, now: float) -> Telemetry:
+    """Return what is known after one more message from the vehicle's autopilot."""
+    if message.component != AUTOPILOT_COMPONENT:
+        return known
+    known = _clocked(replace(known, heard=now), message.fields.get("time_boot_ms"), now)
+    reader = _READERS.get(message.name)
+    return known if reader is None else reader(known, message.fields, now)
+
+
+def _clocked(known: Telemetry, clock: int | None, now: float) -> Telemetry:
+    """Follow the vehicle's clock; two messages in a row that are far behind mean that it booted anew."""
+    if not clock:  # messages without, and those from before its clock began
+        return known
+    if known.clock is None or clock > known.clock - BACKWARDS:
+        return replace(known, clock=max(clock, known.clock or 0), suspect=None)
+    if known.suspect is None or not 0 <= clock - known.suspect <= BACKWARDS:
+        return replace(known, suspect=clock)
+    return Telemetry(heard=now, profile=known.profile, clock=clock, boots=known.boots + 1)
+
+
+def _heartbeat(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
+    profile = profile_of(said["type"], said["autopilot"])
+    mode = said["custom_mode"] if said["base_mode"] & ModeFlag.CUSTOM_MODE else None
+    armed = bool(said["base_mode"] & ModeFlag.ARMED)
+    return replace(known, profile=profile, mode=mode, armed=armed, active=said["system_status"] >= ACTIVE)
+
+
+def _fix(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
+    return replace(known, fix_time=now if said["fix_type"] >= FIX_3D else None)
+
+
+def _position(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
+    late = known.clock is not None and said["time_boot_ms"] < known.clock
+    fixed = known.fix_time is not None and now - known.fix_time <= FIX_SECONDS
+    if late or not fixed or not _somewhere(said["lat"] / 1e7, said["lon"] / 1e7):
+        return known
+    north, east = said["vx"] / 100, said["vy"] / 100
+    position = Position(
+        said["lat"] / 1e7,
+        said["lon"] / 1e7,
+        said["alt"] / 1000,
+        said["relative_alt"] / 1000,
+        math.hypot(north, east),
+        math.degrees(math.atan2(east, north)) % 360,
+        -said["vz"] / 100,
+        now,
+    )
+    return replace(known, position=position)
+
+
+def _somewhere(latitude: float, longitude: float) -> bool:
+    on_earth = abs(latitude) <= 90 and abs(longitude) <= 180
+    return on_earth and not (abs(latitude) < NOWHERE and abs(longitude) < NOWHERE)
+
+
+def _status(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
+    healthy = bool(said["onboard_control_sensors_health"] & PREARM_HEALTHY)
+    return replace(known, healthy=healthy, fenced=bool(said["onboard_control_sensors_enabled"] & GEOFENCE))
+
+
+def _home(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
+    at = said["latitude"] / 1e7, said["longitude"] / 1e7
+    return replace(known, home=at) if _somewhere(*at) else known
+
+
+def _current(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
+    return replace(known, current=said["seq"])
+
+
+def _target(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
+    if known.clock is not None and said["time_boot_ms"] < known.clock - 1000:
+        return known
+    return replace(known, target=(said["lat_int"] / 1e7, said["lon_int"] / 1e7))
+
+
+def _parameter(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
+    if said["param_id"] != AUTHORITY_PARAMETER or not 0 < said["param_value"] < 256:
+        return known
+    return replace(known, authority=round(said["param_value"]))
+
+
+def _text(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
+    return replace(known, said="".join(filter(str.isprintable, said["text"])))
+
+
+_READERS: Final[Mapping[str, Callable[[Telemetry, Mapping[str, Any], float], Telemetry]]] = MappingProxyType(
+    {
+        "HEARTBEAT": _heartbeat,
+        "GPS_RAW_INT": _fix,
+        "GLOBAL_POSITION_INT": _position,
+        "SYS_STATUS": _status,
+        "HOME_POSITION": _home,
+        "MISSION_CURRENT": _current,
+        "POSITION_TARGET_GLOBAL_INT": _target,
+        "PARAM_VALUE": _parameter,
+        "STATUSTEXT": _text,
+    }
+)

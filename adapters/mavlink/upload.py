@@ -1,0 +1,104 @@
+"""Give a vehicle its mission or fence: the ground's side of the upload, a pure state machine.
+
+The vehicle asks for item after item, again after a second, and gives up after eight; so only the count is ever sent by
+timer. ArduPlane asks with MISSION_REQUEST, others with MISSION_REQUEST_INT: both get MISSION_ITEM_INT. What an ACK
+says is not believed: `adapters.mavlink.sync` reads back what is on board.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+from adapters.mavlink.items import Items, item_message
+from adapters.mavlink.message import Message, say
+from adapters.mavlink.numbers import MissionResult, MissionType
+
+COUNT_AGAIN: Final = 2.0
+"""Seconds without a request before the count is sent again."""
+
+GIVEN_UP: Final = 9.0
+"""Seconds of silence amid an upload after which the vehicle has given it up, too."""
+
+ACK_LOST: Final = 3.0
+"""Seconds of silence after the last item, after which its ACK must have been lost."""
+
+_NOT_FINAL: Final = {MissionResult.INVALID_SEQUENCE, MissionResult.NO_SPACE, MissionResult.CANCELLED}
+
+
+@dataclass(frozen=True, slots=True)
+class Upload:
+    """An upload under way.
+
+    Attributes:
+        items: What is uploaded.
+        kind: Mission or fence.
+        system: To whom.
+        counted: When the count was sent last.
+        asked: When an item was asked for last; None before the first.
+        wanted: The items asked for so far.
+        over: Whether it has ended, one way or the other.
+        refusal: The vehicle's final no, if it said no.
+    """
+
+    items: Items
+    kind: MissionType
+    system: int
+    counted: float | None = None
+    asked: float | None = None
+    wanted: frozenset[int] = frozenset()
+    over: bool = False
+    refusal: int | None = None
+
+
+Step = tuple[Upload, tuple[Message, ...]]
+
+
+def tick(upload: Upload, now: float) -> Step:
+    """Let time pass: send the count, again where it seems lost, or see that the ACK is."""
+    if upload.over:
+        return upload, ()
+    if upload.counted is None:
+        return _count(upload, now)
+    if upload.asked is None:
+        return _count(upload, now) if now - upload.counted >= COUNT_AGAIN else (upload, ())
+    if len(upload.wanted) == len(upload.items) and now - upload.asked >= ACK_LOST:
+        return replace(upload, over=True), ()
+    return _count(upload, now) if now - upload.asked >= GIVEN_UP else (upload, ())
+
+
+def hear(upload: Upload, message: Message, now: float) -> Step:
+    """Take a message of the vehicle that is meant for us."""
+    if upload.over or message.fields.get("mission_type") != upload.kind:
+        return upload, ()
+    if message.name in ("MISSION_REQUEST", "MISSION_REQUEST_INT"):
+        return _give(upload, message["seq"], now)
+    if message.name == "MISSION_ACK" and upload.counted is not None:
+        return _answered(upload, message["type"]), ()
+    return upload, ()
+
+
+def _count(upload: Upload, now: float) -> Step:
+    count = say(
+        "MISSION_COUNT",
+        target_system=upload.system,
+        target_component=1,
+        count=len(upload.items),
+        mission_type=int(upload.kind),
+    )
+    return replace(upload, counted=now, asked=None, wanted=frozenset()), (count,)
+
+
+def _give(upload: Upload, index: int, now: float) -> Step:
+    if not 0 <= index < len(upload.items):
+        return upload, ()
+    item = item_message(upload.items[index], index, upload.kind, upload.system)
+    return replace(upload, asked=now, wanted=upload.wanted | {index}), (item,)
+
+
+def _answered(upload: Upload, result: int) -> Upload:
+    if result == MissionResult.ACCEPTED:
+        return replace(upload, over=len(upload.wanted) == len(upload.items))
+    if result in _NOT_FINAL:  # booting, or out of step with lost items: the count comes again by timer
+        return upload if result == MissionResult.INVALID_SEQUENCE else replace(upload, asked=None)
+    return replace(upload, over=True, refusal=result)
