@@ -10,6 +10,7 @@ from adapters.live.limits import check_limits
 from adapters.live.state import Batch, LiveState, Plan, Turn
 from adapters.live.turning import Turning
 from adapters.live.watching import hear, note, say_to
+from semantics.requests import READY
 
 MOST_STEPS = 400
 """How many steps one turn takes before the loop looks at what has come in meanwhile."""
@@ -26,6 +27,22 @@ def advance(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turn:
     turning.go_on(MOST_STEPS)
     check_limits(turning)
     return turning.turn()
+
+
+def watch(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turn:
+    """Return what a turn comes to in which the world is taken in, and nobody goes on: before a run begins."""
+    turning = Turning(plan, state, now)
+    hear(turning, batch.heard)
+    for report in batch.reports:
+        note(turning, report)
+    return turning.turn()
+
+
+def is_over(state: LiveState) -> bool:
+    """Tell whether nothing will happen any more: all agents have ended, and nothing they asked for is pending."""
+    c = state.configuration
+    pending = (each.request for each in c.eta.all())
+    return not any(map(c.alpha.code, c.alpha.names())) and all(isinstance(each, READY) for each in pending)
 
 
 def started(plan: Plan) -> LiveState:

@@ -107,10 +107,10 @@ def finding_json(finding: Finding, verdicts: tuple[str, ...] = ()) -> dict[str, 
 
 
 def _fields(value: Any) -> dict[str, Any]:
-    return {
-        ("ring" if each.name == "place" else each.name): _plain(getattr(value, each.name))
-        for each in fields(value)
-    }
+    named = (
+        ("ring" if each.name == "place" else each.name, getattr(value, each.name)) for each in fields(value)
+    )
+    return {name: _plain(part) for name, part in named if part is not None}
 
 
 def _plain(value: Any) -> Any:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import struct
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -53,10 +52,6 @@ class McapWriter:
     def flush(self) -> None:
         """Hand what was written to the system: a killed process loses none of it."""
         self._file.flush()
-
-    def sync(self) -> None:
-        """Wait until what was flushed is on the disk: a machine without power loses none of it."""
-        os.fsync(self._file.fileno())
 
     def close(self) -> None:
         """End the file with its index."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,12 +21,13 @@ class Recorder:
         self._file.write("run", now, {"schema": RUN["properties"]["schema"]["const"], **run})
         self._file.flush()
 
-    def arrivals(self, heard: Iterable[Heard], reports: Iterable[Report], now: float) -> None:
-        """Write what came in."""
-        for each in heard:
-            self._file.write("arrivals", now, arrival_json(each))
-        for report in reports:
-            self._file.write("reports", now, report_json(report))
+    def arrival(self, heard: Heard, now: float) -> None:
+        """Write what a plugin published."""
+        self._file.write("arrivals", now, arrival_json(heard))
+
+    def report(self, report: Report, now: float) -> None:
+        """Write what a plugin reported."""
+        self._file.write("reports", now, report_json(report))
 
     def turn(self, turn: Turn, now: float, verdicts: Callable[[Finding], tuple[str, ...]]) -> None:
         """Write what a turn came to, and hand it to the system if there is anything that must not be lost."""
@@ -40,10 +41,6 @@ class Recorder:
             self._file.write("sayings", now, _saying_json(answer))
         if turn.steps or turn.commands or turn.findings or turn.answers:
             self._file.flush()
-
-    def sync(self) -> None:
-        """Wait until what was written is on the disk."""
-        self._file.sync()
 
     def flush(self) -> None:
         """Hand what was written to the system."""

@@ -50,7 +50,9 @@ def fly(recorder):
         [seen("uav0", EAST, 2.0)],
     )
     for now, heard in enumerate(arrivals):
-        recorder.arrivals(heard, [Accepted("a-1", "uav0", float(now))], float(now))
+        for each in heard:
+            recorder.arrival(each, float(now))
+        recorder.report(Accepted("a-1", "uav0", float(now)), float(now))
         recorder.turn(run.turn(float(now), *heard), float(now), lambda _finding: ("deadlock_freedom",))
     return run
 
