@@ -1,0 +1,69 @@
+"""The arguments of `bigactors check`."""
+
+from bigactors.arguments.common import EXITS, MISSION, varying
+from bigactors.arguments.parser import Command, Parser
+from bigactors.arguments.values import FORMATS, at_least_one, named, output, seconds
+
+
+def fill(parser: Parser) -> None:
+    """Add the arguments of `bigactors check`."""
+    parser.add_argument("files", nargs="+", metavar="FILE", help=MISSION)
+    parser.add_argument(
+        "--json",
+        metavar="FILE",
+        type=named,
+        help="write the report as JSON (docs/json.md); - for standard output, alone",
+    )
+    parser.add_argument(
+        "--output",
+        metavar="FORMAT:FILE",
+        action="append",
+        default=[],
+        type=output,
+        help=f"write the report for other programs (docs/output.md): {', '.join(FORMATS)}; - as FILE for standard "
+        "output, alone; may be repeated",
+    )
+    parser.add_argument(
+        "--max-configurations",
+        metavar="N",
+        type=at_least_one,
+        default=2_000_000,
+        help="visit no more than N configurations (default 2,000,000)",
+    )
+    parser.add_argument(
+        "--max-time",
+        metavar="SECONDS",
+        type=seconds,
+        help="explore no longer than SECONDS (default: no limit)",
+    )
+    parser.add_argument(
+        "--trace",
+        metavar="DIR",
+        type=named,
+        help="write the trace of each violation and witness into DIR: as text, as JSON and as pictures",
+    )
+    parser.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
+    parser.add_argument(
+        "--engine",
+        choices=("learned", "reference"),
+        default="learned",
+        help="how it explores; verdicts are the same",
+    )
+    varying(parser)
+
+
+COMMAND = Command(
+    "check",
+    "decide the properties of missions",
+    "Explore every interleaving of a mission and decide its properties, with a shortest trace for each that\n"
+    "fails and a witness for each that holds. Ctrl-C ends the exploration with what was found so far.\n\n"
+    + EXITS,
+    (
+        "bigactors check oil_spill.mission",
+        "bigactors check --no-traces specs/missions/*.mission",
+        "bigactors check --json - oil_spill.mission | jq '.properties[] | [.name, .verdict]'",
+        "bigactors check --trace traces --max-time 60 handover.mission",
+        "bigactors check --output junit:report.xml --output sarif:report.sarif specs/missions/*.mission",
+    ),
+    fill,
+)

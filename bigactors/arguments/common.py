@@ -1,0 +1,35 @@
+"""What several commands share: what a mission is, how it may vary, and what the exit codes say."""
+
+from typing import Final
+
+from bigactors.arguments.parser import Parser
+from bigactors.arguments.values import substitute
+
+EXITS: Final = """\
+exit codes:
+  0  every property holds
+  1  a property is violated; a trace does not replay; a file would be formatted
+  2  a mistake in the input
+  3  incomplete: a bound was reached, nothing is decided beyond it
+  4  a bug of bigactors
+
+Of several missions the gravest counts: 4, then 2, 1, 3, 0."""
+
+MISSION: Final = "a mission file, or the name of a mission that ships with bigactors, such as oil_spill"
+
+
+def varying(parser: Parser) -> None:
+    """Add the options that put something else in the place of what a mission says."""
+    group = parser.add_argument_group("the mission, but for what it says of")
+    group.add_argument(
+        "--scheduler", choices=("program_order", "unordered", "fcfs"), help="which request is served next"
+    )
+    group.add_argument("--control", choices=("atomic", "timed"), help="whether control takes time")
+    group.add_argument(
+        "--source",
+        metavar="NAME=FILE",
+        action="append",
+        default=[],
+        type=substitute,
+        help='read FILE where the mission says from "NAME"; may be repeated',
+    )

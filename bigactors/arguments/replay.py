@@ -1,0 +1,37 @@
+"""The arguments of `bigactors replay`."""
+
+from typing import Final
+
+from bigactors.arguments.common import varying
+from bigactors.arguments.parser import Command, Parser
+from bigactors.arguments.values import named
+
+DESCRIPTION: Final = """\
+Run a trace again through the rules, step by step. A step that they do not allow ends it with exit code 1,
+and what was enabled instead is shown."""
+
+
+def fill(parser: Parser) -> None:
+    """Add the arguments of `bigactors replay`."""
+    parser.add_argument(
+        "trace", metavar="TRACE", help="a trace in JSON, as check --trace and simulate write it"
+    )
+    parser.add_argument(
+        "--mission",
+        metavar="FILE",
+        type=named,
+        help="replay it on this mission (default: the one that it names)",
+    )
+    varying(parser)
+
+
+COMMAND = Command(
+    "replay",
+    "run a trace again",
+    DESCRIPTION,
+    (
+        "bigactors replay traces/oil_spill/over_the_spill-witness/trace.json",
+        "bigactors replay run.json --mission changed.mission",
+    ),
+    fill,
+)

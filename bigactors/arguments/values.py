@@ -1,0 +1,105 @@
+"""The values of arguments and options: each function reads one word, and says what is wrong with it."""
+
+import argparse
+import math
+import re
+from datetime import UTC, datetime
+from typing import Final
+
+from bigactors.mistakes import suggestion
+
+FORMATS: Final = ("json", "junit", "sarif", "github")
+"""What `check --output` writes; `github` are the annotations of GitHub Actions."""
+
+
+def named(text: str) -> str:
+    """Return the name of a file or folder, which is not empty."""
+    if not text:
+        raise argparse.ArgumentTypeError("the name of a file is missing")
+    return text
+
+
+def output(word: str) -> tuple[str, str]:
+    """Read FORMAT:FILE.
+
+    >>> output("sarif:report.sarif")
+    ('sarif', 'report.sarif')
+    """
+    name, _, file = word.partition(":")
+    if name not in FORMATS:
+        near = suggestion(name, FORMATS)
+        message = f"unknown format '{name:.40}': {near or 'the formats are ' + ', '.join(FORMATS)}"
+        raise argparse.ArgumentTypeError(message)
+    if not file:
+        raise argparse.ArgumentTypeError(f"'{word:.60}' is not FORMAT:FILE, such as {name}:report")
+    return name, file
+
+
+def at_least_zero(text: str) -> int:
+    """Return a whole number from 0."""
+    if not re.fullmatch(r"[0-9]{1,12}", text):
+        raise argparse.ArgumentTypeError(f"'{text:.40}' is not a whole number from 0")
+    return int(text)
+
+
+def substitute(word: str) -> tuple[str, str]:
+    """Read NAME=FILE."""
+    name, equals, file = word.partition("=")
+    if not (name and equals and file):
+        raise argparse.ArgumentTypeError(
+            f"'{word:.60}' is not NAME=FILE, such as harbour_watch.nmea=marina.nmea"
+        )
+    return name, file
+
+
+def at_least_one(text: str) -> int:
+    """Return a whole number from 1; commas may divide its thousands."""
+    plain = text.replace(",", "").replace("_", "")
+    if not re.fullmatch(r"[0-9]{1,12}", plain) or not int(plain):
+        raise argparse.ArgumentTypeError(f"'{text:.40}' is not a whole number from 1")
+    return int(plain)
+
+
+def seconds(text: str) -> float:
+    """Return a number of seconds above 0."""
+    value = _number(text)
+    if value is None or value <= 0:
+        raise argparse.ArgumentTypeError(f"'{text:.40}' is not a number of seconds above 0")
+    return value
+
+
+def time_of(text: str) -> float:
+    """Return a time in seconds since 1970; without a zone it is UTC.
+
+    >>> time_of("2020-04-07T21:42:00Z")
+    1586295720.0
+    """
+    value = _number(text)
+    if value is not None:
+        return value
+    try:
+        time = datetime.fromisoformat(text)
+        return (time if time.tzinfo else time.replace(tzinfo=UTC)).timestamp()
+    except (ValueError, OverflowError):
+        message = f"'{text:.40}' is no time: write it as 2020-04-07T21:42:00Z, or in seconds since 1970"
+        raise argparse.ArgumentTypeError(message) from None
+
+
+def corners(text: str) -> tuple[float, float, float, float]:
+    """Return the south, west, north and east of a box."""
+    found = [value for part in text.split(",") if (value := _number(part)) is not None]
+    if len(found) != 4 or text.count(",") != 3:
+        message = (
+            f"'{text:.60}' is no box: write SOUTH,WEST,NORTH,EAST in degrees, such as 52.83,5.66,52.87,5.72"
+        )
+        raise argparse.ArgumentTypeError(message)
+    south, west, north, east = found
+    return south, west, north, east
+
+
+def _number(text: str) -> float | None:
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None

@@ -1,0 +1,44 @@
+"""The arguments of `bigactors world`."""
+
+from typing import Final
+
+from bigactors.arguments.parser import Command, Parser
+from bigactors.arguments.values import corners, named, time_of
+
+DESCRIPTION: Final = """\
+Read what is where from GeoJSON files and AIS recordings together, print the bigraph A(P) that it makes,
+and what of the recordings could not be used."""
+
+
+def fill(parser: Parser) -> None:
+    """Add the arguments of `bigactors world`."""
+    parser.add_argument(
+        "files", nargs="+", metavar="FILE", help="GeoJSON (.geojson, .json), or an AIS recording (NMEA)"
+    )
+    parser.add_argument(
+        "--at",
+        metavar="TIME",
+        type=time_of,
+        help="as of a time of the recording, such as 2020-04-07T21:42:00Z",
+    )
+    parser.add_argument(
+        "--within",
+        metavar="SOUTH,WEST,NORTH,EAST",
+        type=corners,
+        help="only what is inside this box, in degrees",
+    )
+    parser.add_argument("--kinds", metavar="KIND,...", help="only entities of these kinds")
+    parser.add_argument("--output", metavar="FILE", type=named, help="draw it too: a picture, .svg or .png")
+
+
+COMMAND = Command(
+    "world",
+    "print and draw the bigraph of a GeoJSON or AIS world",
+    DESCRIPTION,
+    (
+        "bigactors world harbour.geojson --output harbour.svg",
+        "bigactors world harbour.geojson vessels.nmea --at 2020-04-07T21:42:00Z --kinds Vessel,Harbour",
+        "bigactors world vessels.nmea --within 52.83,5.66,52.87,5.72",
+    ),
+    fill,
+)
