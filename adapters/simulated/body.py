@@ -1,0 +1,81 @@
+"""How a simulated vehicle moves: a point with course, speed and climb, on the earth, near where it is.
+
+A plane turns no faster than its bank allows and circles where the others stop. The figures of a plane are those of the
+recording that `tests/adapters/test_recording.py` holds it against.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Final
+
+METRES_PER_DEGREE: Final = 111_194.9
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What a kind of vehicle can do: m/s, degrees a second, m/s up and down, seconds to gain speed."""
+
+    speed: float
+    turn: float
+    climb: float
+    sink: float
+    acceleration: float
+    must_move: bool
+
+
+PLANE: Final = Limits(22.2, 20.0, 9.3, 3.0, 6.0, must_move=True)
+COPTER: Final = Limits(10.0, 90.0, 2.5, 1.5, 2.5, must_move=False)
+ROVER: Final = Limits(5.0, 60.0, 0.0, 0.0, 2.0, must_move=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """Where it is and how it moves: degrees, metres above home, m/s, degrees true."""
+
+    latitude: float
+    longitude: float
+    height: float = 0.0
+    course: float = 0.0
+    speed: float = 0.0
+    climb: float = 0.0
+
+
+def metres_to(body: Body, latitude: float, longitude: float) -> tuple[float, float]:
+    """Return distance and bearing to a point, as on a plane."""
+    north = (latitude - body.latitude) * METRES_PER_DEGREE
+    east = (longitude - body.longitude) * METRES_PER_DEGREE * math.cos(math.radians(body.latitude))
+    return math.hypot(north, east), math.degrees(math.atan2(east, north)) % 360
+
+
+def towards(body: Body, latitude: float, longitude: float, circle: float) -> float:
+    """Return the course that leads to a point or, where there is a circle, clockwise onto it."""
+    distance, bearing = metres_to(body, latitude, longitude)
+    if not circle:
+        return bearing
+    # Seen from the centre, the way on is a right angle ahead on the circle, and inwards far outside of it.
+    return (bearing - 90 + math.degrees(math.atan2(distance - circle, circle / 2))) % 360
+
+
+def moved(body: Body, limits: Limits, course: float, speed: float, height: float, seconds: float) -> Body:
+    """Return the body after a while of turning to a course, a speed and a height, as fast as it can."""
+    turn = _bounded((course - body.course + 180) % 360 - 180, limits.turn * seconds)
+    speed = body.speed + _bounded(speed - body.speed, limits.acceleration * seconds)
+    rise = max(-limits.sink * seconds, min(limits.climb * seconds, height - body.height))
+    turned = (body.course + turn) % 360
+    north = speed * seconds * math.cos(math.radians(turned))
+    east = speed * seconds * math.sin(math.radians(turned))
+    return replace(
+        body,
+        latitude=body.latitude + north / METRES_PER_DEGREE,
+        longitude=body.longitude + east / METRES_PER_DEGREE / math.cos(math.radians(body.latitude)),
+        height=body.height + rise,
+        course=turned,
+        speed=speed,
+        climb=rise / seconds,
+    )
+
+
+def _bounded(value: float, limit: float) -> float:
+    return max(-limit, min(limit, value))

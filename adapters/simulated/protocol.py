@@ -1,0 +1,180 @@
+"""What a simulated vehicle answers: commands, parameters, missions, signing; and whom it obeys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Final
+
+from adapters.mavlink.message import Message, is_for, say
+from adapters.mavlink.numbers import AUTHORITY_PARAMETER, STREAMS, Cmd, MissionType, Result
+from adapters.mavlink.profiles import TakeOff
+from adapters.mavlink.signing import EPOCH, UNITS, Signing, Verdict, check
+from adapters.simulated.body import metres_to
+from adapters.simulated.reporting import Reporter, parameter_value
+from adapters.simulated.vehicle import Target, Vehicle
+
+Answer = list[Message]
+
+FARTHEST: Final = 50_000.0
+"""Metres from home beyond which no target is taken."""
+
+
+def hear(vehicle: Vehicle, reporter: Reporter, message: Message, now: float) -> Answer:
+    """Answer a message, if it is believed, meant for this vehicle and said by whom it obeys."""
+    if not _believed(vehicle, message) or not is_for(message, vehicle.system):
+        return []
+    stranger = vehicle.enforce and message.system != round(vehicle.parameters[AUTHORITY_PARAMETER])
+    if stranger:
+        return []
+    if message.name.startswith("MISSION_"):
+        return vehicle.store.hear(message, ready=vehicle.ready, now=now)
+    answer = _ANSWERS.get(message.name)
+    return [] if answer is None else answer(vehicle, reporter, message)
+
+
+def _believed(vehicle: Vehicle, message: Message) -> bool:
+    if vehicle.signing is None:
+        return True
+    vehicle.signing, verdict = check(vehicle.signing, message)
+    return verdict is Verdict.GOOD or (verdict is Verdict.UNSIGNED and vehicle.accept_unsigned)
+
+
+# --- messages ---------------------------------------------------------------------------------------
+
+
+def _setup_signing(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Answer:
+    vehicle.signing = Signing(bytes(message["secret_key"]), message["initial_timestamp"])
+    return []
+
+
+def _read_parameter(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Answer:
+    return (
+        [parameter_value(vehicle, message["param_id"])] if message["param_id"] in vehicle.parameters else []
+    )
+
+
+def _set_parameter(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Answer:
+    name = message["param_id"]
+    if name not in vehicle.parameters:
+        return []
+    vehicle.parameters[name] = message["param_value"]
+    return [parameter_value(vehicle, name)]
+
+
+def _command(vehicle: Vehicle, reporter: Reporter, message: Message) -> Answer:
+    try:
+        carry_out = _COMMANDS[Cmd(message["command"])]
+    except (ValueError, KeyError):
+        return [_ack(message, Result.UNSUPPORTED)]
+    result = carry_out(vehicle, reporter, message)
+    return [_ack(message, result)]
+
+
+def _ack(message: Message, result: Result) -> Message:
+    return say(
+        "COMMAND_ACK",
+        command=message["command"],
+        result=int(result),
+        target_system=message.system,
+        target_component=message.component,
+    )
+
+
+_ANSWERS: Final[Mapping[str, Callable[[Vehicle, Reporter, Message], Answer]]] = MappingProxyType(
+    {
+        "COMMAND_INT": _command,
+        "COMMAND_LONG": _command,
+        "PARAM_REQUEST_READ": _read_parameter,
+        "PARAM_SET": _set_parameter,
+        "SETUP_SIGNING": _setup_signing,
+    }
+)
+
+# --- commands ---------------------------------------------------------------------------------------
+
+
+def _set_mode(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
+    mode = int(message["param2"])
+    if mode not in vehicle.kind.profile.modes:
+        return Result.FAILED
+    vehicle.mode = mode
+    if mode == vehicle.kind.profile.guided and vehicle.armed:
+        here = vehicle.body
+        vehicle.target = Target(here.latitude, here.longitude, here.height, vehicle.kind.profile.circle)
+    return Result.ACCEPTED
+
+
+def _arm(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
+    if message["param1"] < 0.5:
+        vehicle.armed = vehicle.flies and vehicle.kind.profile.takeoff is not TakeOff.NONE
+        return Result.FAILED if vehicle.armed else Result.ACCEPTED
+    if not vehicle.ready:
+        reporter.text("PreArm: not ready")
+        return Result.FAILED
+    vehicle.armed = True
+    return Result.ACCEPTED
+
+
+def _take_off(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
+    profile = vehicle.kind.profile
+    if profile.takeoff is not TakeOff.COMMAND:
+        return Result.UNSUPPORTED
+    if not vehicle.armed or vehicle.mode != profile.guided or vehicle.flies:
+        return Result.FAILED
+    vehicle.target = Target(vehicle.body.latitude, vehicle.body.longitude, message["param7"], profile.circle)
+    return Result.ACCEPTED
+
+
+def _reposition(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
+    profile = vehicle.kind.profile
+    if message.name != "COMMAND_INT" or not vehicle.armed:
+        return Result.DENIED
+    latitude, longitude = message["x"] / 1e7, message["y"] / 1e7
+    if not metres_to(vehicle.body, latitude, longitude)[0] <= FARTHEST:
+        return Result.DENIED
+    vehicle.mode = profile.guided
+    vehicle.target = Target(latitude, longitude, message["z"], message["param3"] or profile.circle)
+    return Result.ACCEPTED
+
+
+def _keep_fence(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
+    if not vehicle.store.items.get(MissionType.FENCE):
+        return Result.FAILED
+    vehicle.fenced = message["param1"] > 0.5
+    return Result.ACCEPTED
+
+
+def _set_current(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
+    count = len(vehicle.store.items.get(MissionType.MISSION, ()))
+    if not 0 <= message["param1"] < count:
+        return Result.FAILED
+    vehicle.current = int(message["param1"])
+    return Result.ACCEPTED
+
+
+def _set_interval(_vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
+    names = {number: name for name, (number, _) in STREAMS.items()}
+    name = names.get(int(message["param1"]))
+    if name is None:
+        return Result.FAILED
+    reporter.every(name, message["param2"] / 1e6)
+    return Result.ACCEPTED
+
+
+_COMMANDS: Final[Mapping[Cmd, Callable[[Vehicle, Reporter, Message], Result]]] = MappingProxyType(
+    {
+        Cmd.ARM_DISARM: _arm,
+        Cmd.DO_SET_MODE: _set_mode,
+        Cmd.FENCE_ENABLE: _keep_fence,
+        Cmd.REPOSITION: _reposition,
+        Cmd.SET_MESSAGE_INTERVAL: _set_interval,
+        Cmd.SET_MISSION_CURRENT: _set_current,
+        Cmd.TAKEOFF: _take_off,
+    }
+)
+
+
+def timestamp(now: float) -> int:
+    """Return a signature's time stamp for a time in seconds since 1970."""
+    return int((now - EPOCH) * UNITS)

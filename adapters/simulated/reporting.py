@@ -1,0 +1,201 @@
+"""What a simulated vehicle says by itself: heartbeats, positions, states, each at its own interval."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any, Final
+
+from adapters.mavlink.message import Message, say
+from adapters.mavlink.numbers import ARDUPILOT, GEOFENCE, PREARM_HEALTHY, MissionType, ModeFlag
+from adapters.simulated.vehicle import Vehicle
+
+DEFAULT: Final = {
+    "HEARTBEAT": 1.0,
+    "SYS_STATUS": 1.0,
+    "GPS_RAW_INT": 1.0,
+    "SYSTEM_TIME": 1.0,
+    "MISSION_CURRENT": 1.0,
+}
+"""Seconds between two of a kind, before anybody asks for others."""
+
+SHORTEST: Final = 0.05
+
+
+class Reporter:
+    """The intervals of a vehicle's messages, and what it has to say once."""
+
+    def __init__(self) -> None:
+        self._every = dict(DEFAULT)
+        self._said: dict[str, float] = {}
+        self._texts: list[str] = []
+
+    def every(self, name: str, seconds: float) -> None:
+        """Say a message at another interval; none if it isn't positive."""
+        self._every.pop(name, None)
+        if seconds > 0:
+            self._every[name] = max(SHORTEST, seconds)
+
+    def text(self, text: str) -> None:
+        """Say a text once."""
+        self._texts = [*self._texts, text][-8:]
+
+    def reset(self) -> None:
+        """Forget what was asked for, as a reboot does."""
+        self.__init__()  # type: ignore[misc]
+
+    def due(self, vehicle: Vehicle) -> list[Message]:
+        """Return what is to be said now, by the vehicle's own clock."""
+        names = [name for name, period in self._every.items() if self._is_due(name, period, vehicle.uptime)]
+        texts = [say("STATUSTEXT", severity=6, text=text.encode()[:50]) for text in self._texts]
+        reached = [say("MISSION_ITEM_REACHED", seq=index) for index in vehicle.reached]
+        self._texts.clear()
+        vehicle.reached.clear()
+        return [*(_MESSAGES[name](vehicle) for name in names), *texts, *reached]
+
+    def _is_due(self, name: str, period: float, uptime: float) -> bool:
+        last = self._said.get(name)
+        if last is not None and uptime - last < period - 1e-6:
+            return False
+        # Keeps to the grid, so that intervals don't drift by the length of a step.
+        self._said[name] = uptime if last is None or uptime - last > 2 * period else last + period
+        return True
+
+
+def parameter_value(vehicle: Vehicle, name: str) -> Message:
+    """Return the message that tells a parameter."""
+    names = list(vehicle.parameters)
+    return say(
+        "PARAM_VALUE",
+        param_id=name.encode(),
+        param_value=float(vehicle.parameters[name]),
+        param_type=9,
+        param_count=len(names),
+        param_index=names.index(name),
+    )
+
+
+def _heartbeat(vehicle: Vehicle) -> Message:
+    flags = ModeFlag.CUSTOM_MODE | 80 | (ModeFlag.ARMED if vehicle.armed else 0)
+    return say(
+        "HEARTBEAT",
+        type=vehicle.kind.value[0],
+        autopilot=ARDUPILOT,
+        base_mode=int(flags),
+        custom_mode=vehicle.mode,
+        system_status=4 if vehicle.flies else 3,
+        mavlink_version=3,
+    )
+
+
+def _status(vehicle: Vehicle) -> Message:
+    sensors = {
+        "onboard_control_sensors_present": PREARM_HEALTHY | GEOFENCE,
+        "onboard_control_sensors_enabled": PREARM_HEALTHY | (GEOFENCE if vehicle.fenced else 0),
+        "onboard_control_sensors_health": PREARM_HEALTHY if vehicle.ready else 0,
+    }
+    rest = dict.fromkeys(
+        ["load", "current_battery", "drop_rate_comm", "errors_comm"]
+        + [f"errors_count{number}" for number in range(1, 5)],
+        0,
+    )
+    return say("SYS_STATUS", **sensors, voltage_battery=12_600, battery_remaining=90, **rest)
+
+
+def _gps(vehicle: Vehicle) -> Message:
+    fix = vehicle.has_fix
+    return say(
+        "GPS_RAW_INT",
+        time_usec=int(vehicle.uptime * 1e6),
+        fix_type=6 if fix else int(vehicle.uptime > 6),
+        lat=_e7(vehicle.body.latitude) if fix else 0,
+        lon=_e7(vehicle.body.longitude) if fix else 0,
+        alt=_altitude(vehicle) if fix else 0,
+        eph=120 if fix else 65_535,
+        epv=200 if fix else 65_535,
+        vel=round(vehicle.body.speed * 100),
+        cog=round(vehicle.body.course * 100) % 36_000,
+        satellites_visible=10 if fix else 0,
+    )
+
+
+def _position(vehicle: Vehicle) -> Message:
+    where, fix = vehicle.body, vehicle.has_fix
+    course = math.radians(where.course)
+    return say(
+        "GLOBAL_POSITION_INT",
+        time_boot_ms=_milliseconds(vehicle),
+        lat=_e7(where.latitude) if fix else 2_900,  # as the recorded vehicle said before its fix
+        lon=_e7(where.longitude) if fix else 80,
+        alt=_altitude(vehicle) if fix else 100,
+        relative_alt=round(where.height * 1000),
+        vx=round(where.speed * 100 * math.cos(course)),
+        vy=round(where.speed * 100 * math.sin(course)),
+        vz=round(-where.climb * 100),
+        hdg=round(where.course * 100) % 36_000,
+    )
+
+
+def _time(vehicle: Vehicle) -> Message:
+    return say("SYSTEM_TIME", time_unix_usec=0, time_boot_ms=_milliseconds(vehicle))
+
+
+def _current(vehicle: Vehicle) -> Message:
+    total = max(0, len(vehicle.store.items.get(MissionType.MISSION, ())) - 1)
+    return say("MISSION_CURRENT", seq=vehicle.current, total=total)
+
+
+def _target(vehicle: Vehicle) -> Message:
+    at = vehicle.target
+    nothing: dict[str, Any] = dict.fromkeys(["vx", "vy", "vz", "afx", "afy", "afz", "yaw", "yaw_rate"], 0.0)
+    return say(
+        "POSITION_TARGET_GLOBAL_INT",
+        time_boot_ms=_milliseconds(vehicle),
+        coordinate_frame=0,
+        type_mask=65_016,
+        lat_int=_e7(at.latitude) if at else 0,
+        lon_int=_e7(at.longitude) if at else 0,
+        alt=at.height if at else 0.0,
+        **nothing,
+    )
+
+
+def _home(vehicle: Vehicle) -> Message:
+    latitude, longitude, altitude = vehicle.home
+    known = vehicle.has_fix
+    nothing: dict[str, Any] = dict.fromkeys(["x", "y", "z", "approach_x", "approach_y", "approach_z"], 0.0)
+    return say(
+        "HOME_POSITION",
+        latitude=_e7(latitude) if known else 0,
+        longitude=_e7(longitude) if known else 0,
+        altitude=round(altitude * 1000),
+        q=[1.0, 0.0, 0.0, 0.0],
+        **nothing,
+    )
+
+
+def _e7(degrees: float) -> int:
+    return round(degrees * 1e7)
+
+
+def _altitude(vehicle: Vehicle) -> int:
+    return round((vehicle.home[2] + vehicle.body.height) * 1000)
+
+
+def _milliseconds(vehicle: Vehicle) -> int:
+    return int(vehicle.uptime * 1000) % 2**32
+
+
+_MESSAGES: Final[Mapping[str, Callable[[Vehicle], Message]]] = MappingProxyType(
+    {
+        "HEARTBEAT": _heartbeat,
+        "SYS_STATUS": _status,
+        "GPS_RAW_INT": _gps,
+        "GLOBAL_POSITION_INT": _position,
+        "SYSTEM_TIME": _time,
+        "MISSION_CURRENT": _current,
+        "POSITION_TARGET_GLOBAL_INT": _target,
+        "HOME_POSITION": _home,
+    }
+)

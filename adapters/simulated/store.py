@@ -1,0 +1,125 @@
+"""The vehicle's side of mission upload and download, with the habits of ArduPilot.
+
+It asks for item after item, again after a second, and gives up after eight; answers an item that it did not ask for by
+INVALID_SEQUENCE; overwrites item 0 by home; and serves one ground station at a time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from adapters.mavlink.items import Item, Items, item_message, item_of
+from adapters.mavlink.message import Message, say
+from adapters.mavlink.numbers import Cmd, Frame, MissionResult, MissionType
+
+ASK_AGAIN: Final = 1.0
+GIVE_UP: Final = 8.0
+MAX_ITEMS: Final = 700
+
+
+@dataclass(frozen=True, slots=True)
+class Receiving:
+    """An upload under way: from whom, what, how much of it."""
+
+    station: int
+    component: int
+    kind: MissionType
+    count: int
+    items: Items = ()
+    asked: float = 0.0
+    heard: float = 0.0
+
+
+@dataclass(slots=True)
+class Store:
+    """What is on board, by kind, and the upload under way.
+
+    `request` is how it asks for items: planes with MISSION_REQUEST.
+    """
+
+    request: str = "MISSION_REQUEST"
+    home: tuple[int, int, float] = (0, 0, 0.0)
+    items: dict[MissionType, Items] = field(default_factory=dict)
+    receiving: Receiving | None = None
+
+    def hear(self, message: Message, *, ready: bool, now: float) -> list[Message]:
+        """Answer a message of the mission protocol."""
+        kind = _kind(message)
+        match message.name:
+            case "MISSION_COUNT" if kind is not None:
+                return self._count(message, kind, ready=ready, now=now)
+            case "MISSION_ITEM_INT" if self.receiving is not None and kind is self.receiving.kind:
+                return self._item(self.receiving, message, now)
+            case "MISSION_REQUEST_LIST" if kind is not None:
+                count = {"count": len(self._all(kind)), "mission_type": int(kind)}
+                return [say("MISSION_COUNT", **_back(message), **count)]
+            case "MISSION_REQUEST_INT" if kind is not None:
+                return self._asked(message, kind)
+        return []
+
+    def tick(self, now: float) -> list[Message]:
+        """Ask again for an item that does not come, or give up."""
+        going = self.receiving
+        if going is None:
+            return []
+        if now - going.heard >= GIVE_UP:
+            self.receiving = None
+            return [_ack(going, MissionResult.CANCELLED)]
+        return self._ask(going, now) if now - going.asked >= ASK_AGAIN else []
+
+    def _count(self, message: Message, kind: MissionType, *, ready: bool, now: float) -> list[Message]:
+        going = Receiving(message.system, message.component, kind, message["count"], heard=now)
+        busy = self.receiving is not None and self.receiving.station != message.system
+        if not ready or going.count > MAX_ITEMS:
+            return [_ack(going, MissionResult.NO_SPACE)]
+        if busy:
+            return [_ack(going, MissionResult.DENIED)]
+        return self._ask(going, now) if going.count else self._complete(going)
+
+    def _item(self, going: Receiving, message: Message, now: float) -> list[Message]:
+        if message.system != going.station:
+            return []
+        if message["seq"] != len(going.items):
+            return [_ack(going, MissionResult.INVALID_SEQUENCE)]
+        going = replace(going, items=(*going.items, item_of(message.fields)), heard=now)
+        return self._complete(going) if len(going.items) == going.count else self._ask(going, now)
+
+    def _ask(self, going: Receiving, now: float) -> list[Message]:
+        self.receiving = replace(going, asked=now)
+        seq = {"seq": len(going.items), "mission_type": int(going.kind)}
+        return [say(self.request, target_system=going.station, target_component=going.component, **seq)]
+
+    def _complete(self, going: Receiving) -> list[Message]:
+        self.receiving = None
+        self.items[going.kind] = going.items
+        return [_ack(going, MissionResult.ACCEPTED)]
+
+    def _all(self, kind: MissionType) -> Items:
+        items = self.items.get(kind, ())
+        if kind is not MissionType.MISSION or not items:
+            return items
+        x, y, z = self.home
+        return (Item(Cmd.WAYPOINT, x, y, z, Frame.SEA_LEVEL), *items[1:])
+
+    def _asked(self, message: Message, kind: MissionType) -> list[Message]:
+        items, index = self._all(kind), message["seq"]
+        if not 0 <= index < len(items):
+            return []
+        return [item_message(items[index], index, kind, message.system, message.component)]
+
+
+def _kind(message: Message) -> MissionType | None:
+    try:
+        return MissionType(message.fields.get("mission_type", 0))
+    except ValueError:
+        return None
+
+
+def _back(message: Message) -> dict[str, int]:
+    return {"target_system": message.system, "target_component": message.component}
+
+
+def _ack(going: Receiving, result: MissionResult) -> Message:
+    whom = {"target_system": going.station, "target_component": going.component}
+    return say("MISSION_ACK", type=int(result), mission_type=int(going.kind), **whom)

@@ -1,0 +1,204 @@
+"""A simulated vehicle: what it is, where it goes in each mode, and how it boots.
+
+Commands and messages are `protocol`'s and `reporting`'s business, packets `serving`'s.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Final
+
+from adapters.mavlink.items import Item
+from adapters.mavlink.numbers import AUTHORITY_PARAMETER, Cmd, MissionType
+from adapters.mavlink.profiles import BOAT, COPTER, PLANE, ROVER, Profile, TakeOff
+from adapters.mavlink.signing import Signing
+from adapters.simulated import body as bodies
+from adapters.simulated.body import Body, Limits, metres_to, moved, towards
+from adapters.simulated.store import Store
+from physical import contains, point, polygon
+
+WAYPOINT_RADIUS: Final = 50.0
+"""Metres from a waypoint at which a plane takes the next."""
+
+FIX_AFTER: Final = 10.0
+READY_AFTER: Final = 19.0
+"""Seconds after boot at which it has a fix, and could be armed; before, it says that it is near (0, 0)."""
+
+PARAMETERS: Final = {AUTHORITY_PARAMETER: 255.0, "WP_RADIUS": WAYPOINT_RADIUS}
+
+
+class Kind(Enum):
+    """A kind of vehicle: MAV_TYPE, profile, limits, radius around a waypoint, how it asks for mission items."""
+
+    PLANE = (1, PLANE, bodies.PLANE, WAYPOINT_RADIUS, "MISSION_REQUEST")
+    COPTER = (2, COPTER, bodies.COPTER, 2.0, "MISSION_REQUEST_INT")
+    ROVER = (10, ROVER, bodies.ROVER, 2.0, "MISSION_REQUEST_INT")
+    BOAT = (11, BOAT, bodies.ROVER, 4.0, "MISSION_REQUEST_INT")
+
+    @property
+    def profile(self) -> Profile:
+        """Its modes, and how it takes off."""
+        return self.value[1]
+
+    @property
+    def limits(self) -> Limits:
+        """What it can do."""
+        return self.value[2]
+
+    @property
+    def radius(self) -> float:
+        """Metres from a waypoint at which it takes the next."""
+        return self.value[3]
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """Where a guided vehicle goes: degrees, metres above home, the circle's radius."""
+
+    latitude: float
+    longitude: float
+    height: float
+    circle: float
+
+
+@dataclass(slots=True)
+class Vehicle:
+    """The state of a simulated vehicle.
+
+    Attributes:
+        kind: What it is.
+        home: Degrees, metres above sea level.
+        system: Its MAVLink system id.
+        speedup: How much faster than ours its clock says that time passes.
+        enforce: Whether it obeys only the station that has the authority (SYSID_ENFORCE).
+        accept_unsigned: Whether unsigned packets are obeyed although it has a key, as on ArduPilot's first link.
+        fixed: Whether its receiver has satellites.
+    """
+
+    kind: Kind
+    home: tuple[float, float, float]
+    system: int = 1
+    speedup: float = 1.0
+    enforce: bool = True
+    accept_unsigned: bool = False
+    fixed: bool = True
+    booted: float = 0.0
+    time: float = 0.0
+    armed: bool = False
+    mode: int = 0
+    current: int = 0
+    target: Target | None = None
+    fenced: bool = False
+    parameters: dict[str, float] = field(default_factory=lambda: dict(PARAMETERS))
+    signing: Signing | None = None
+    body: Body = field(init=False)
+    store: Store = field(init=False)
+    reached: list[int] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        latitude, longitude, altitude = self.home
+        self.body = Body(latitude, longitude)
+        self.store = Store(self.kind.value[4], (round(latitude * 1e7), round(longitude * 1e7), altitude))
+
+    @property
+    def flies(self) -> bool:
+        """Whether it is off the ground; for what does not fly, whether it is armed."""
+        return self.armed and (self.kind.profile.takeoff is TakeOff.NONE or self.body.height > 1.0)
+
+    @property
+    def uptime(self) -> float:
+        """Seconds since it booted, by its own clock."""
+        return (self.time - self.booted) * self.speedup
+
+    @property
+    def has_fix(self) -> bool:
+        """Whether it knows where it is."""
+        return self.fixed and self.uptime >= FIX_AFTER
+
+    @property
+    def ready(self) -> bool:
+        """Whether it could be armed, and takes missions."""
+        return self.uptime >= READY_AFTER
+
+    def reboot(self, *, armed: bool = False) -> None:
+        """Boot anew, in the air too; what is in its permanent memory stays. A watchdog's reboot keeps it armed."""
+        self.booted = self.time
+        self.armed = armed and self.armed
+        self.current, self.target = 0, None
+        self.mode = self.mode if self.armed else 0
+        self.store.receiving = None
+
+    # --- moving -----------------------------------------------------------------------------------
+
+    def move(self, now: float) -> None:
+        """Move on to a time."""
+        seconds, self.time = now - self.time, now
+        if not self.armed or seconds <= 0:
+            return
+        self._keep_fence()
+        profile = self.kind.profile
+        if self.mode == profile.auto:
+            self._follow(seconds)
+        elif self.mode == profile.guided and self.target:
+            self._go(self.target, seconds)
+        elif self.mode == profile.home:
+            self._go(Target(*self.home[:2], profile.altitude, profile.circle), seconds)
+        else:
+            self._idle(seconds)
+
+    def _keep_fence(self) -> None:
+        corners = self.store.items.get(MissionType.FENCE, ())
+        if not self.fenced or len(corners) < 3 or self.mode == self.kind.profile.home:
+            return
+        inside = polygon([(corner.x / 1e7, corner.y / 1e7) for corner in corners])
+        if not contains(inside, point(self.body.latitude, self.body.longitude)):
+            self.mode = self.kind.profile.home
+
+    def _follow(self, seconds: float) -> None:
+        items = self.store.items.get(MissionType.MISSION, ())
+        if len(items) < 2:
+            return
+        self.current = max(1, min(self.current, len(items) - 1))
+        item = items[self.current]
+        if item.command == Cmd.TAKEOFF:
+            self._take_off(item.z, seconds)
+        else:
+            stays = item.command == Cmd.LOITER_UNLIMITED
+            circle = self.kind.profile.circle if stays and self.kind.limits.must_move else 0.0
+            self._go(Target(item.x / 1e7, item.y / 1e7, item.z, circle), seconds)
+        if self._done(item) and self.current < len(items) - 1:
+            self.reached.append(self.current)
+            self.current += 1
+
+    def _done(self, item: Item) -> bool:
+        if item.command == Cmd.TAKEOFF:
+            return self.body.height >= item.z - 1.0
+        distance, _ = metres_to(self.body, item.x / 1e7, item.y / 1e7)
+        return item.command == Cmd.WAYPOINT and distance <= self.kind.radius
+
+    def _take_off(self, height: float, seconds: float) -> None:
+        limits = self.kind.limits
+        speed = limits.speed if limits.must_move else 0.0
+        rising = height if not limits.must_move or self.body.speed > 0.6 * speed else self.body.height
+        self.body = moved(self.body, limits, self.body.course, speed, rising, seconds)
+
+    def _go(self, target: Target, seconds: float) -> None:
+        limits = self.kind.limits
+        if limits.must_move:
+            course = towards(self.body, target.latitude, target.longitude, target.circle)
+            self.body = moved(self.body, limits, course, limits.speed, target.height, seconds)
+            return
+        distance, course = metres_to(self.body, target.latitude, target.longitude)
+        speed = min(limits.speed, distance)  # slows down over the last second
+        height = target.height if limits.climb else 0.0
+        self.body = moved(self.body, limits, course, speed, height, seconds)
+
+    def _idle(self, seconds: float) -> None:
+        """Circle where it is, if it must move; else stop, at the height that it was told to take off to."""
+        limits = self.kind.limits
+        if limits.must_move and self.flies:
+            circling = self.body.course + limits.turn * seconds * 0.5
+            self.body = moved(self.body, limits, circling, limits.speed, self.body.height, seconds)
+        elif not limits.must_move:
+            self.body = moved(self.body, limits, self.body.course, 0.0, self.body.height, seconds)
