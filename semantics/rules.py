@@ -158,13 +158,12 @@ def command(c: Configuration, a: Name) -> Iterator[Transition]:
 def commit(c: Configuration, a: Name, reach: Reach | None = None) -> Iterator[Transition]:
     """Arrive (`control timed`): with the place where it is now, and R as it still holds.
 
-    Live, `reach` says where the vehicle was observed, and P′ is that.
-
     FLY(a, m, R′) ∈ η, in line      R still matches, but for where the moved node is now
     its unmoved part is consistent      drive(P, m(R′)) = P′
     ──────────────────────────────────────────────────────────────────────────────  ⟨commit : FLY(a, m, R′)⟩
     ⟨α | (L, P, β, γ) | η⟩  →  ⟨α | (L[m(R) ↦ m(R′)], P′, β, γ) | η − FLY(a, m, R′)⟩
     """
+    # Live, `reach` places the vehicle where it was observed: P′ is what is, not what is computed.
     for pending in c.eta.in_line(a):
         if not isinstance(pending.request, FLY):  # premise: FLY(a, m, R′) ∈ η, in line
             continue

@@ -12,7 +12,7 @@ RANGES: Final = {
     "LS3": "world and geometry",
     "LS4": "behaviour",
     "LS5": "reaction rules",
-    "LS6": "environment and checks",
+    "LS6": "environment, checks and live runs",
 }
 
 
@@ -410,8 +410,8 @@ class Code(Enum):
     REPEATED_SETTING = (
         "LS606",
         "said twice",
-        """`scheduler` and `control` are said once, and each property, channel drop and departure is named
-        once.""",
+        """`scheduler` and `control` are said once, and each property, channel drop, departure and
+        precaution is named once.""",
     )
     FORMULA_TOO_LARGE = (
         "LS607",
@@ -435,6 +435,12 @@ class Code(Enum):
         "LS610",
         "more mistakes",
         """A hundred mistakes are shown at the most; the others are counted.""",
+    )
+
+    BAD_TIME_LIMIT = (
+        "LS611",
+        "time limit out of bounds",
+        """In the `live` section a request has more than no time, and a week at the most.""",
     )
 
     @property

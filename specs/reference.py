@@ -101,6 +101,7 @@ NODES: Final[dict[str, tuple[type[s.Node], ...]]] = {
     ),
     "Scheduler and control": (s.Scheduler, s.ControlMode),
     "Checks": (s.Check, s.StandardProperty, s.Invariant, s.Reachable),
+    "Live runs": (s.Live, s.OnBroken, s.TimeLimit, s.Duration),
     "Formulas": (
         s.Inside,
         s.LinkedTo,
@@ -191,6 +192,13 @@ environment {
   tanker0 appears at point (37, -8.7) linked ais
   says "handover" to a at most 3 times
   uav0 arrives
+}
+""",
+    "Live runs": """\
+live {
+  on broken assumption: return
+  FLY a within 10 min: return
+  anyone within 1 min: continue
 }
 """,
     "Checks": """\

@@ -23,6 +23,7 @@ FRAMES = {
     "Signature": "signature {{ {} }}",
     "Environment": "environment {{ {} }}",
     "Checks": "check {{ {} }}",
+    "Live runs": "live {{ {} }}",
 }
 SPECIAL = {
     s.AltitudeBand: "world {{ a: B = point (1, 2) {} }}",
@@ -34,7 +35,7 @@ SPECIAL = {
     s.Case: "def f() = {{ react {{ {} }} }}",
     s.Alternative: "def f() = {{ choose {{ {} }} }}",
 }
-SECTIONS = {s.Signature, s.World, s.Believes, s.Environment, s.Check, s.Mission}
+SECTIONS = {s.Signature, s.World, s.Believes, s.Environment, s.Check, s.Live, s.Mission}
 
 
 def concrete(form):
