@@ -7,9 +7,11 @@ the loop call the same.
 from __future__ import annotations
 
 from adapters.live.limits import check_limits
+from adapters.live.serving import in_turn
 from adapters.live.state import Batch, LiveState, Plan, Turn
 from adapters.live.turning import Turning
 from adapters.live.watching import hear, note, say_to
+from semantics.configuration import Configuration
 from semantics.requests import READY
 
 MOST_STEPS = 400
@@ -43,6 +45,15 @@ def is_over(state: LiveState) -> bool:
     c = state.configuration
     pending = (each.request for each in c.eta.all())
     return not any(map(c.alpha.code, c.alpha.names())) and all(isinstance(each, READY) for each in pending)
+
+
+def resumed(plan: Plan, c: Configuration, steps: int, orders: int, now: float) -> LiveState:
+    """Return the state of a run that goes on where another was killed: what it had asked of vehicles is outstanding."""
+    state = LiveState(c, number=steps, told=orders)
+    turning = Turning(plan, state, now)
+    for pending in in_turn(c):
+        turning.remember(pending.request)
+    return turning.turn().state
 
 
 def started(plan: Plan) -> LiveState:

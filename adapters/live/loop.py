@@ -205,6 +205,10 @@ class LiveRun:
             if broken and not forced:
                 raise NotAsAssumed(broken)
             self._take(turn)
+        for order in (*self.state.orders.values(), *self.state.handing.values()):
+            self._orders.put_nowait(
+                order.command
+            )  # of a run that is resumed: its vehicles have been compared
 
     def _refuse(self, answers: list[asyncio.Future[Answer]]) -> None:
         for answer in answers:

@@ -12,13 +12,13 @@ from adapters.live.sightings import holders, placement_seen
 from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Pace, Plan, Turn
 from adapters.plugin import Command, HandOver, Hold, Return
 from semantics.configuration import Transition
-from semantics.control import Realisation, obstacle, realisations
+from semantics.control import Realisation, commits, obstacle, realisations
 from semantics.eta import Pending
 from semantics.expressions import Fault
 from semantics.observed import Sight, arriving
 from semantics.physical_model import Carried, Placed, Placement, placement_cell
 from semantics.precautions import Fallback
-from semantics.requests import CTR, FLY, SND
+from semantics.requests import CTR, FLY, SND, Request
 from semantics.signature import Name
 
 
@@ -275,6 +275,22 @@ class Turning:
         if command is not None:
             self.orders[entity] = replace(order, command=command)
             self.commands.append(command)
+
+    def remember(self, request: Request) -> None:
+        """Take up what vehicles were told for a request in another run; who confirms it is not told again."""
+        if isinstance(request, FLY):
+            found = commits(self.c, request)
+            for node, place in found.flying if found else ():
+                going = (
+                    destination(self.c, found, node, place, self._request(request.agent)) if found else None
+                )
+                if going is not None:
+                    self.orders[node] = Order(going, request.agent, self.now)
+        elif isinstance(request, CTR):
+            ways = list(realisations(self.c, request))
+            for told in hand_overs(self.c, request, ways[0], frozenset(self.plan.vehicles)) if ways else ():
+                command = replace(told, request=self._request(request.agent))
+                self.handing[told.entity] = Order(command, request.agent, self.now)
 
     # --- falling back
 

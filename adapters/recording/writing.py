@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
 from adapters.live.state import Answer, Finding, Heard, Turn
 from adapters.plugin import Report
 from adapters.recording.encoding import arrival_json, command_json, finding_json, report_json, step_json
-from adapters.recording.mcap_files import McapWriter
+from adapters.recording.mcap_files import McapWriter, Message
 from adapters.recording.schemas import RUN, SCHEMAS
 
 
@@ -41,6 +41,12 @@ class Recorder:
             self._file.write("sayings", now, _saying_json(answer))
         if turn.steps or turn.commands or turn.findings or turn.answers:
             self._file.flush()
+
+    def copy(self, messages: Iterable[Message]) -> None:
+        """Write the messages of another recording: this one stands by itself."""
+        for message in messages:
+            self._file.write(message.topic, message.time, message.data)
+        self._file.flush()
 
     def flush(self) -> None:
         """Hand what was written to the system."""

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from bigactors import __version__
-from bigactors.arguments import check, demo, explain, fmt, replay, show, simulate, world
+from bigactors.arguments import check, demo, explain, fmt, replay, run, say, show, simulate, world
 from bigactors.arguments.common import EXITS
 from bigactors.arguments.parser import Command, Parser
 from bigactors.arguments.values import FORMATS
@@ -19,7 +19,8 @@ from bigactors.mistakes import Mistake, suggestion
 __all__ = ["COMMANDS", "FORMATS", "Command", "Parser", "make_parser", "parse_arguments"]
 
 COMMANDS: Final[dict[str, Command]] = {
-    each.COMMAND.name: each.COMMAND for each in (check, show, simulate, replay, world, explain, fmt, demo)
+    each.COMMAND.name: each.COMMAND
+    for each in (check, show, simulate, run, say, replay, world, explain, fmt, demo)
 }
 """The commands by name, in the order of the help."""
 

@@ -42,6 +42,12 @@ def fill(parser: Parser) -> None:
         type=named,
         help="write the trace of each violation and witness into DIR: as text, as JSON and as pictures",
     )
+    parser.add_argument(
+        "--verdict",
+        metavar="FILE",
+        type=named,
+        help="write the verdict that `run` asks for (docs/verdict.md); of one mission, with --control timed",
+    )
     parser.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
     parser.add_argument(
         "--engine",

@@ -1,14 +1,19 @@
-"""`bigactors replay`: a trace run again through the rules."""
+"""`bigactors replay`: a trace or a recording run again through the rules."""
 
+import sys
+import time
 from argparse import Namespace
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from adapters.recording.reading import Recording, is_recording
 from bigactors.exits import Exit
 from bigactors.files import read_json
 from bigactors.missions import digest_of, open_mission, shipped_missions, variation_of
 from bigactors.mistakes import Mistake
-from bigactors.terminal import say, tell
+from bigactors.recordings import mission_of, open_recording, trace_of
+from bigactors.terminal import is_terminal, paint, say, tell
 from checker import ReplayError, Trace, print_trace, replay
 from semantics.monitor import monitored
 from semantics.printing import print_configuration
@@ -22,7 +27,10 @@ def run(options: Namespace) -> Exit:
     except ReplayError as error:
         tell(f"{options.trace}: {error}")
         return Exit.VIOLATED
-    for line in print_trace(trace):
+    recording = open_recording(options.trace) if is_recording(options.trace) else None
+    if recording is not None:
+        _introduce(recording)
+    for line in paced(trace, recording, options.speed, stepwise=options.step):
         say(line)
     say(f"c{len(trace)} = {print_configuration(trace.configurations[-1])}")
     say(f"{options.trace}: {len(trace)} steps replayed on {mission.name}")
@@ -30,12 +38,14 @@ def run(options: Namespace) -> Exit:
 
 
 def read_trace(path: str, mission_file: str | None, variation: Variation) -> tuple[ElaboratedMission, Trace]:
-    """Return the mission of a trace and the trace, replayed; warn where it was written of another mission.
+    """Return the mission of a trace or recording and the trace, replayed; warn where it was written of another mission.
 
     Raises:
         Mistake: The file holds no trace, or its mission cannot be read.
         ReplayError: The mission does not allow it.
     """
+    if is_recording(path):
+        return _read_recording(path, mission_file, variation)
     data = read_json(path)
     named = data.get("mission") if isinstance(data, dict) else None
     if mission_file is None and not isinstance(named, str):
@@ -47,6 +57,36 @@ def read_trace(path: str, mission_file: str | None, variation: Variation) -> tup
         return mission, replay(start, data)
     except ValueError as error:
         raise Mistake(str(error), place=path) from error
+
+
+def _read_recording(
+    path: str, mission_file: str | None, variation: Variation
+) -> tuple[ElaboratedMission, Trace]:
+    recording = open_recording(path)
+    mission = mission_of(recording) if mission_file is None else open_mission(mission_file, variation)
+    _warn_of_another(path, recording.run, mission, mission_file or str(recording.run["mission"]))
+    return mission, trace_of(recording, mission)
+
+
+def _introduce(recording: Recording) -> None:
+    if recording.run.get("verified") is not True:
+        tell(paint("nothing was verified of this run", "red", sys.stderr), "!")
+    if recording.torn:
+        tell("the recording has no end: the run was killed")
+
+
+def paced(trace: Trace, recording: Recording | None, speed: float | None, *, stepwise: bool) -> Iterator[str]:
+    """Yield the lines of a trace: at once, at a multiple of the speed it was recorded at, or step by step."""
+    times = [] if recording is None else [message.time for message in recording.of("steps")]
+    step = -1
+    for line in print_trace(trace):
+        if line.startswith("c"):
+            step += 1
+            if stepwise and is_terminal(sys.stdin):
+                sys.stdin.readline()
+            elif speed is not None and 0 < step < len(times):
+                time.sleep(max(0.0, (times[step] - times[step - 1]) / speed))
+        yield line
 
 
 def _beside(trace: str, mission: str) -> str:

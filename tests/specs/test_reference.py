@@ -28,6 +28,7 @@ FRAMES = {
 SPECIAL = {
     s.AltitudeBand: "world {{ a: B = point (1, 2) {} }}",
     s.Length: "world {{ a: B = circle (1, 2) radius {} }}",
+    s.Duration: "live {{ a within {}: hold }}",
     s.Coordinate: "world {{ a: B = point {} }}",
     s.Keep: 'world {{ from "x" keep {} }}',
     s.Parameter: "rule r({}) {{ a -> b }}",

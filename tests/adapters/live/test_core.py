@@ -1,6 +1,7 @@
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
-from adapters.live.state import Heard, Saying
+from adapters.live.core import resumed, watch
+from adapters.live.state import Batch, Heard, Saying
 from adapters.plugin import GoTo, HandOver, Hold, LinkLost, LinkRestored, Rejected, Return
 from physical import PhysicalProperty, polygon
 from semantics.physical_model import InTransit, Placed
@@ -260,3 +261,41 @@ def test_an_agent_that_never_waits_does_not_keep_others_from_going_on():
     assert 0.0 < run.again < 0.1
     run.turn(0.01)
     assert len(run.steps) <= taken + 3
+
+
+# --- resuming -------------------------------------------------------------------------------------------
+
+
+def after_a_crash(run):
+    resumed_run = Run(run.plan)
+    resumed_run.state = resumed(run.plan, run.state.configuration, run.state.number, run.state.told, 100.0)
+    return resumed_run
+
+
+def test_a_flight_that_ended_while_nobody_looked_is_committed_and_not_told_again():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    again = after_a_crash(run)
+    turn = watch(again.plan, again.state, Batch((seen("uav0", EAST, 101.0),)), 101.0)
+    assert [step.transition.label.rule for step in turn.steps] == ["commit"]
+    assert turn.state.orders == {}
+    assert turn.commands == ()
+
+
+def test_a_flight_that_goes_on_is_still_ordered_after_a_crash():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    again = after_a_crash(run)
+    assert again.state.orders["uav0"].command.place == run.state.orders["uav0"].command.place
+    again.turn(101.0, seen("uav0", BETWEEN, 101.0))
+    assert again.commands == []
+
+
+def test_a_hand_over_that_was_done_while_nobody_looked_is_no_broken_assumption():
+    run = Run(plan_of(HAND))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    again = after_a_crash(run)
+    again.turn(101.0, seen("uav0", WEST, 101.0, channels=("control:gcs1",)))
+    assert again.findings == []
+    assert "actuate" in again.rules
+    assert again.commands == []
