@@ -1,4 +1,4 @@
-"""Where running missions listen for what is said to them: one socket each, in a folder that only their user may enter."""
+"""Where running missions listen for what is said to them: sockets in a folder that is their user's alone."""
 
 from __future__ import annotations
 
