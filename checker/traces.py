@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 from checker.exploration import Exploration
-from semantics.canonical import digest, written
+from semantics.canonical import digest_of_step
 from semantics.configuration import Configuration, Label, Transition
 from semantics.monitor import monitored
 from semantics.observed import Sight, steps_seen
@@ -143,7 +143,7 @@ def replay(initial: Configuration, data: Any) -> Trace:
             enabled = sorted({str(transition.label) for transition in found})
             raise ReplayError(number, label, enabled, _cause(len(alike)))
         before, at = at, alike[choice].target
-        if wrote is not None and digest(written(before, at)) != wrote:
+        if wrote is not None and digest_of_step(before, at) != wrote:
             raise ReplayError(number, label, print_changes(before, at), "it leads to another configuration here")
         trace.append(Step(alike[choice].label, choice, at, sight))
     return Trace(initial, tuple(trace))

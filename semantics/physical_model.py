@@ -169,7 +169,12 @@ class PhysicalModel:
 
     def children(self, place: Name) -> tuple[Name, ...]:
         """Return the children of a place, or of the region, in A(P), sorted."""
-        return tuple(name for name in self.entities() if self.abstract_parent(name) == place)
+        inside = (name for name in self.entities() if self._may_be_child(place, name))
+        return tuple(name for name in inside if self.abstract_parent(name) == place)
+
+    def _may_be_child(self, place: Name, name: Name) -> bool:
+        """Tell whether a place carries or contains an entity: no other can be its parent."""
+        return place == REGION or self.carrier(name) == place or self.contains(place, name)
 
     def links(self, entity: Name) -> tuple[Name, ...]:
         """Return the links of an entity in A(P), sorted."""

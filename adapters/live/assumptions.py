@@ -6,7 +6,7 @@ is contained by, the same as in one of the placements that the mission lists, in
 
 from __future__ import annotations
 
-from adapters.live.sightings import contents, holders
+from adapters.live.sightings import Fences, contents
 from adapters.live.state import Plan
 from semantics.configuration import Configuration
 from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Vanishes
@@ -60,7 +60,8 @@ def _broken_by_appearing(plan: Plan, c: Configuration, entity: Name, now: Relati
 def relations(c: Configuration, entity: Name, placement: Placement) -> Relations:
     """Return what contains an entity that stands so, and what it contains, in the world as it is."""
     physical = c.structure.physical
-    return holders(physical, entity, c.setting.kind(entity), placement), contents(physical, entity, placement)
+    around = Fences(c).holders(entity, c.setting.kind(entity), placement)
+    return around, contents(physical, entity, placement)
 
 
 def _clause(plan: Plan, sort: type[Clause], entity: Name) -> Clause | None:

@@ -15,10 +15,10 @@ from semantics.configuration import Configuration
 from semantics.requests import READY
 
 MOST_STEPS = 400
-"""How many steps one turn takes before the loop looks at what has come in meanwhile."""
+"""How many steps one turn takes at the most."""
 
 
-def advance(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turn:
+def advance(plan: Plan, state: LiveState, batch: Batch, now: float, most: int = MOST_STEPS) -> Turn:
     """Return what one turn comes to: the world is taken in, then agents go on until nothing more can be done now."""
     turning = Turning(plan, state, now)
     hear(turning, batch.heard)
@@ -26,7 +26,7 @@ def advance(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turn:
         note(turning, report)
     for saying in batch.sayings:
         say_to(turning, saying)
-    turning.go_on(MOST_STEPS)
+    turning.go_on(most)
     check_limits(turning)
     return turning.turn()
 

@@ -18,6 +18,9 @@ from adapters.plugin import Aged, Command, Plugin, Published, Refused, Rejected,
 GATHER = 0.004
 """Seconds for which arrivals are gathered before the next turn."""
 
+SLICE = 12
+"""How many steps are taken before the loop looks at what has come in meanwhile."""
+
 IDLE = 0.5
 """Seconds after which there is a turn though nothing has come in: what is too old leaves P."""
 
@@ -235,7 +238,7 @@ class LiveRun:
 
     def _turn(self) -> Turn:
         batch, answers = self.inbox.take()
-        turn = advance(self.plan, self.state, batch, self.clock())
+        turn = advance(self.plan, self.state, batch, self.clock(), SLICE)
         self._take(turn)
         for answer, said in zip(turn.answers, answers, strict=True):
             if not said.done():  # who asked may have gone
@@ -253,6 +256,7 @@ class LiveRun:
     async def _next(self, patience: float) -> None:
         """Wait until something comes in, and a moment longer for what comes with it."""
         self._check_plugins()
+        await asyncio.sleep(0)
         try:
             await asyncio.wait_for(self.inbox.awake.wait(), patience)
         except TimeoutError:

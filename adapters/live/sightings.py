@@ -87,19 +87,43 @@ def bounds(geometry: Geometry) -> Bounds | None:
     return None if wide else (min(norths), max(norths), min(easts), max(easts))
 
 
-def holders(physical: PhysicalModel, entity: Name, kind: str, placement: Placement | None) -> frozenset[Name]:
-    """Return all that contains or carries an entity that stands so: what A(P) knows of where it is."""
-    if placement is None:
-        return frozenset()
-    if isinstance(placement, Carried):
-        return frozenset({placement.by})
-    assert isinstance(placement, Placed)
-    found = []
-    for place in places_for(physical.setting, kind):
-        position = physical.placement(place)
-        if isinstance(position, Placed) and place != entity and _may_hold(position, placement):
-            found += [place] if encloses(position, placement) else []
-    return frozenset(found)
+Fence = tuple[Name, Placed, Bounds | None]
+"""A place that stands somewhere, with its bounds."""
+
+
+class Fences:
+    """The places of one configuration: what contains an entity that stands somewhere."""
+
+    def __init__(self, c: Configuration) -> None:
+        self.c = c
+        self._of: dict[str, list[Fence]] = {}
+
+    def holders(self, entity: Name, kind: str, placement: Placement | None) -> frozenset[Name]:
+        """Return all that contains or carries an entity that stands so: what A(P) knows of where it is."""
+        if placement is None:
+            return frozenset()
+        if isinstance(placement, Carried):
+            return frozenset({placement.by})
+        assert isinstance(placement, Placed)
+        north, east = placement.geometry.ring[0]
+        found = []
+        for place, position, limits in self._fences(kind):
+            if limits and not (limits[0] < north < limits[1] and limits[2] < east < limits[3]):
+                continue  # most places are passed over here
+            if place != entity and encloses(position, placement):
+                found.append(place)
+        return frozenset(found)
+
+    def _fences(self, kind: str) -> list[Fence]:
+        if kind not in self._of:
+            physical = self.c.structure.physical
+            placed = ((name, physical.placement(name)) for name in places_for(self.c.setting, kind))
+            self._of[kind] = [
+                (name, at, bounds(at.geometry))
+                for name, at in placed
+                if isinstance(at, Placed) and not at.geometry.is_point
+            ]
+        return self._of[kind]
 
 
 @lru_cache(maxsize=1 << 10)
@@ -107,17 +131,6 @@ def places_for(setting: Setting, kind: str) -> tuple[Name, ...]:
     """Return the names of all that may contain an entity of a kind, of one that the mission has no entity of too."""
     signature = setting.signature
     return tuple(sorted(name for name, of in setting.kinds.items() if kind in signature[of].contains))
-
-
-def _may_hold(outer: Placed, inner: Placed) -> bool:
-    """Tell whether a place's bounds hold the first corner of what may be in it: most pairs are decided here."""
-    if outer.geometry.is_point:
-        return False
-    limits = bounds(outer.geometry)
-    if limits is None:
-        return True
-    north, east = inner.geometry.ring[0]
-    return limits[0] < north < limits[1] and limits[2] < east < limits[3]
 
 
 def contents(physical: PhysicalModel, place: Name, placement: Placement | None) -> frozenset[Name]:

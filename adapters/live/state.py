@@ -92,6 +92,7 @@ class LiveState:
         grounded: Agents of which no control is served any more: a request of theirs took too long.
         failed: Agents whose computation failed.
         reported: What was reported already, and is not again.
+        last: The agent that went on last: the next turn begins with the one after it.
         number: How many steps were taken.
         told: How many orders were given.
     """
@@ -110,6 +111,7 @@ class LiveState:
     grounded: frozenset[Name] = frozenset()
     failed: frozenset[Name] = frozenset()
     reported: frozenset[str] = frozenset()
+    last: Name = ""
     number: int = 0
     told: int = 0
 

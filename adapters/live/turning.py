@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import replace
 
 from adapters.live.orders import destination, hand_overs, is_done, renewed
 from adapters.live.serving import STEPS_PER_SECOND, in_turn, own_steps, refilled, served
-from adapters.live.sightings import holders, placement_seen
+from adapters.live.sightings import Fences, placement_seen
 from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Pace, Plan, Turn
 from adapters.plugin import Command, HandOver, Hold, Return
 from semantics.configuration import Transition
@@ -44,6 +45,8 @@ class Turning:
         self.reported = set(state.reported)
         self.told = state.told
         self.quiet = state.quiet
+        self.last = state.last
+        self.fences = Fences(self.c)
         self.steps: list[LiveStep] = []
         self.commands: list[Command] = []
         self.findings: list[Finding] = []
@@ -69,6 +72,7 @@ class Turning:
             frozenset(self.grounded),
             frozenset(self.failed),
             frozenset(self.reported),
+            self.last,
             self.before.number + len(self.steps),
             self.told,
         )
@@ -120,12 +124,24 @@ class Turning:
         """Let every agent take a step in turn and serve one request, until nothing more can be done now."""
         left = most
         while left > 0:
-            going = [a for a in self.c.alpha.names() if a not in self.idle and a not in self.failed]
-            taken = sum(self.own_step(a) for a in going) + self.serve()
+            taken = self._own_steps(left)
+            taken += self.serve()
             if not taken:
                 return
             left -= taken
         self.wake(self.now)
+
+    def _own_steps(self, most: int) -> int:
+        """Let agents take one step each, those first who come after the last that took one."""
+        going = [a for a in self.c.alpha.names() if a not in self.idle and a not in self.failed]
+        first = bisect_right(going, self.last)
+        taken = 0
+        for a in going[first:] + going[:first]:
+            if taken >= most:
+                break
+            taken += self.own_step(a)
+            self.last = a
+        return taken
 
     def own_step(self, a: Name) -> bool:
         """Let an agent take one step of its own, if its pace allows one."""
@@ -173,8 +189,8 @@ class Turning:
         if not found:
             self._blocked(request)
             return (), False
-        ways = [way for way in realisations(self.c, request) if not (way.flying and way.waits(self.c))]
-        return self._controlled(request, ways[0], found)
+        way = next(way for way in realisations(self.c, request) if not (way.flying and way.waits(self.c)))
+        return self._controlled(request, way, found)
 
     def _blocked(self, request: CTR) -> None:
         reason = obstacle(self.c, request)
@@ -238,6 +254,12 @@ class Turning:
             return placement.shape
         return placement if isinstance(placement, Placed) else None
 
+    def around(self, entity: Name, kind: str, placement: Placement | None) -> frozenset[Name]:
+        """Return what contains an entity that stands somewhere, in the world as it is now."""
+        if self.fences.c is not self.c:
+            self.fences = Fences(self.c)
+        return self.fences.holders(entity, kind, placement)
+
     def where_seen(self, entity: Name) -> Placement | None:
         """Return where an entity was seen last, as P would have it."""
         sighting = self.seen.get(entity)
@@ -249,7 +271,7 @@ class Turning:
         at = self.where_seen(entity)
         if transit is None or order is None or at is None or order.agent in self.grounded:
             return False
-        if transit.to not in holders(self.c.structure.physical, entity, self.c.setting.kind(entity), at):
+        if transit.to not in self.around(entity, self.c.setting.kind(entity), at):
             return False
         sight = Sight(f"{entity} arrives", {placement_cell(entity): at})
         if not self.observe(sight, arriving(self.c, order.agent, sight)):

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from adapters.live.assumptions import broken_by_place, clause_of_leaving
 from adapters.live.orders import is_authority
-from adapters.live.sightings import Refusal, holders, placement_seen, sighting_of
+from adapters.live.sightings import Fences, Refusal, placement_seen, sighting_of
 from adapters.live.state import Answer, Heard, Saying, Sighting
 from adapters.live.turning import Turning
 from adapters.plugin import Accepted, Aged, Arrived, LinkLost, LinkRestored, Rejected, Report, Trouble
@@ -61,7 +61,7 @@ def _comes_in(turning: Turning, found: Sighting) -> bool:
     if kind not in c.setting.signature.kinds:
         return False
     at = placement_seen(c, None, found)
-    if not isinstance(at, Placed) or not holders(c.structure.physical, found.property.entity, kind, at):
+    if not isinstance(at, Placed) or not turning.around(found.property.entity, kind, at):
         return False
     known = len(c.setting.kinds) - len(turning.plan.first.setting.kinds)
     if known >= MOST_NEWCOMERS:
@@ -95,10 +95,8 @@ def _same_place(turning: Turning, entity: Name, here: Placement | None, seen: Pl
     """Tell whether two points are one to A(P): where exactly a point is, nothing rests on."""
     if not isinstance(here, Placed) or not isinstance(seen, Placed) or not seen.geometry.is_point:
         return False
-    physical, kind = turning.c.structure.physical, turning.c.setting.kind(entity)
-    return here.geometry.is_point and holders(physical, entity, kind, here) == holders(
-        physical, entity, kind, seen
-    )
+    kind = turning.c.setting.kind(entity)
+    return here.geometry.is_point and turning.around(entity, kind, here) == turning.around(entity, kind, seen)
 
 
 def _move(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> None:
@@ -109,7 +107,7 @@ def _move(turning: Turning, entity: Name, here: Placement | None, seen: Placemen
     writes: dict[Cell, object] = {placement_cell(entity): seen}
     if here is None:
         writes[channels_cell(entity)] = _channels_of_newcomer(turning, entity)
-    around = sorted(holders(there.structure.physical, entity, said.kind, seen))
+    around = sorted(Fences(there).holders(entity, said.kind, seen))
     verb = "appears in" if here is None else "is seen in"
     sight = Sight(f"{entity} {verb} {', '.join(around) or REGION}", writes, admits)
     if turning.observe(sight, happening(turning.c, sight)):

@@ -8,9 +8,8 @@ from typing import Any
 from adapters.live.state import Finding, Heard, LiveStep
 from adapters.plugin import Aged, Command, Gone, Published, Report
 from physical import Band, Geometry, PhysicalProperty, Velocity
-from semantics.canonical import digest, written
+from semantics.canonical import digest_of_step
 from semantics.plain import geometry_of, sight_json
-from semantics.printing import print_changes
 
 
 def arrival_json(heard: Heard) -> dict[str, Any]:
@@ -87,8 +86,7 @@ def step_json(step: LiveStep) -> dict[str, Any]:
         data["observed"] = sight_json(step.sight)
     if transition.shown:
         data["shown"] = transition.shown
-    data["changes"] = print_changes(step.source, transition.target)
-    return {**data, "digest": digest(written(step.source, transition.target))}
+    return {**data, "digest": digest_of_step(step.source, transition.target)}
 
 
 def command_json(command: Command) -> dict[str, Any]:

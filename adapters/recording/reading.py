@@ -33,7 +33,7 @@ class Recording:
 
     def trace(self, schema: str) -> dict[str, Any]:
         """Return the steps as a trace, in the step schema."""
-        steps = [{**message.data, "time": message.time} for message in self.of("steps")]
+        steps = [{**message.data, "changes": [], "time": message.time} for message in self.of("steps")]
         known = {"schema": schema, "mission": self.run["mission"], "digest": self.run["digest"]}
         return {**known, "monitored": False, "steps": steps}
 

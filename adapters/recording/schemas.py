@@ -78,13 +78,12 @@ ARRIVAL: Final = _object(
 
 STEP: Final = _object(
     "A transition, as the step of a trace (docs/trace.schema.json) has it.",
-    ("number", "label", "choice", "changes", "digest"),
+    ("number", "label", "choice", "digest"),
     number={"type": "integer", "minimum": 1},
     label={**_TEXT, "description": "The transition, such as ⟨sense : OBS(a, ALL)⟩."},
     choice={"type": "integer", "minimum": 0},
     observed=_OBSERVED,
     shown={**_TEXTS, "description": "What `display` showed."},
-    changes={**_TEXTS, "description": "What changed, as printed; not needed to replay."},
     digest={**_TEXT, "description": "Of the cells that it wrote, with their values."},
 )
 
