@@ -1,6 +1,6 @@
 """The physical model: geometry, altitude and channels of what is on the WGS 84 earth, and where it may move.
 
-It reads and writes GeoJSON and waypoint files. It knows nothing of bigraphs, agents or missions. AIS
+It reads and writes GeoJSON, waypoint files and plans. It knows nothing of bigraphs, agents or missions. AIS
 recordings are read by `physical.ais` and its neighbours, which need the extra `ais`.
 """
 
@@ -12,9 +12,10 @@ from physical.geojson import GeoJSONError, read_geojson, write_geojson
 from physical.measure import area, centroid, distance, interior_point, waypoint
 from physical.mobility import JoinChannel, LeaveChannel, MobilityCommand, Waypoint, go_to, rechannel
 from physical.placement import nearest_placement, translate_to
+from physical.plan import read_plan, write_plan
 from physical.property import PhysicalProperty, Velocity
 from physical.shape import Geometry, box, circle, contains, equal, overlaps, point, polygon
-from physical.waypoints import MissionItem, read_waypoints, waypoint_places, write_waypoints
+from physical.waypoints import MissionItem, read_waypoints, visited, waypoint_places, write_waypoints
 
 __all__ = [
     "Band",
@@ -52,11 +53,14 @@ __all__ = [
     "point",
     "polygon",
     "read_geojson",
+    "read_plan",
     "read_waypoints",
     "rechannel",
     "translate_to",
+    "visited",
     "waypoint",
     "waypoint_places",
     "write_geojson",
+    "write_plan",
     "write_waypoints",
 ]

@@ -6,13 +6,14 @@ numbers are those of MAVLink. Item 0 is the home position.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Final
 
 from physical.altitude import Band
 from physical.errors import PhysicalError
+from physical.mobility import MobilityCommand, Waypoint
 from physical.property import PhysicalProperty
 from physical.shape import Geometry, point
 
@@ -120,6 +121,13 @@ def write_waypoints(points: Sequence[Geometry], altitude: float, home: Geometry 
     lines = [HEADER, _line(0, AltitudeFrame.SEA_LEVEL, stops[0], 0.0)]
     lines += [_line(i, AltitudeFrame.HOME, stop, altitude) for i, stop in enumerate(stops[1:], 1)]
     return "".join(f"{line}\n" for line in lines)
+
+
+def visited(commands: Iterable[MobilityCommand], entity: str) -> tuple[Geometry, ...]:
+    """Return the points that a trace's mobility commands send an entity to, in order."""
+    return tuple(
+        command.point for command in commands if isinstance(command, Waypoint) and command.entity == entity
+    )
 
 
 def _line(index: int, frame: AltitudeFrame, at: Geometry, altitude: float) -> str:

@@ -19,7 +19,7 @@ from adapters.mavlink.numbers import AUTHORITY_PARAMETER, MissionType
 from adapters.mavlink.objections import objection
 from adapters.mavlink.streams import Streams
 from adapters.mavlink.task import Progress, Task
-from adapters.mavlink.telemetry import Position, Telemetry, absorb
+from adapters.mavlink.telemetry import Position, Telemetry, absorb, property_of
 from adapters.plugin import (
     Aged,
     Command,
@@ -31,7 +31,6 @@ from adapters.plugin import (
     Report,
     Trouble,
 )
-from physical import Band, PhysicalProperty, Velocity, point
 
 AUTHORITY_UNKNOWN: Final = 10.0
 """Seconds after which a vehicle is published although it does not tell whom it obeys."""
@@ -227,21 +226,8 @@ def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Published, ...]
         return pilot, (), ()
     changed = pilot.shown[1:] != shown[1:]
     trouble = _authority_trouble(pilot, now) if changed and not pilot.link.lost else ()
-    published = Aged(_property(pilot, position), pilot.craft.time_to_live)
+    published = Aged(property_of(pilot.craft, position, _channels(pilot)), pilot.craft.time_to_live)
     return replace(pilot, shown=shown), (published,), trouble
-
-
-def _property(pilot: Pilot, at: Position) -> PhysicalProperty:
-    return PhysicalProperty(
-        pilot.craft.entity,
-        pilot.craft.kind,
-        point(at.latitude, at.longitude),
-        Band(at.altitude, at.altitude),
-        _channels(pilot),
-        time=at.time,
-        source="mavlink",
-        velocity=Velocity(at.speed, at.course),
-    )
 
 
 def _channels(pilot: Pilot) -> tuple[str, ...]:

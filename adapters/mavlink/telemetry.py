@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Final
 
+from adapters.mavlink.fleet import Craft
 from adapters.mavlink.message import Message
 from adapters.mavlink.numbers import (
     ACTIVE,
@@ -23,6 +24,7 @@ from adapters.mavlink.numbers import (
     ModeFlag,
 )
 from adapters.mavlink.profiles import Profile, profile_of
+from physical import Band, PhysicalProperty, Velocity, point
 
 FIX_SECONDS: Final = 10.0
 """How long a fix is believed: GPS_RAW_INT comes once a second, and may be lost."""
@@ -67,6 +69,8 @@ class Telemetry:
         fenced: Whether it keeps within its fence.
         authority: The system id of the station that it obeys.
         clock: Its own milliseconds since boot.
+        suspect: What its clock said when it first seemed to have gone back.
+        placed: What its clock said of its position: of when it was measured, which is before other messages.
         boots: How often it was seen to boot anew.
         said: The last text that it said.
     """
@@ -88,6 +92,7 @@ class Telemetry:
     boots: int = 0
     said: str = ""
     suspect: int | None = None
+    placed: int | None = None
 
     @property
     def flying(self) -> bool:
@@ -102,6 +107,20 @@ def absorb(known: Telemetry, message: Message, now: float) -> Telemetry:
     known = _clocked(replace(known, heard=now), message.fields.get("time_boot_ms"), now)
     reader = _READERS.get(message.name)
     return known if reader is None else reader(known, message.fields, now)
+
+
+def property_of(craft: Craft, at: Position, channels: tuple[str, ...]) -> PhysicalProperty:
+    """Return the physical property of a vehicle at a position."""
+    return PhysicalProperty(
+        craft.entity,
+        craft.kind,
+        point(at.latitude, at.longitude),
+        Band(at.altitude, at.altitude),
+        channels,
+        time=at.time,
+        source="mavlink",
+        velocity=Velocity(at.speed, at.course),
+    )
 
 
 def _clocked(known: Telemetry, clock: int | None, now: float) -> Telemetry:
@@ -127,7 +146,7 @@ def _fix(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
 
 
 def _position(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
-    late = known.clock is not None and said["time_boot_ms"] < known.clock
+    late = known.placed is not None and said["time_boot_ms"] < known.placed
     fixed = known.fix_time is not None and now - known.fix_time <= FIX_SECONDS
     if late or not fixed or not _somewhere(said["lat"] / 1e7, said["lon"] / 1e7):
         return known
@@ -142,7 +161,7 @@ def _position(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetr
         -said["vz"] / 100,
         now,
     )
-    return replace(known, position=position)
+    return replace(known, position=position, placed=said["time_boot_ms"])
 
 
 def _somewhere(latitude: float, longitude: float) -> bool:

@@ -1,21 +1,222 @@
 """Simulated vehicles flown by the autopilot plugin over real sockets: what it says happened did happen."""
 
-from worlds import AREA, flight
+import asyncio
+from math import cos, radians
 
-from adapters.plugin import Accepted, Arrived, GoTo
-from adapters.simulated import run
-from physical import contains
+import pytest
+from worlds import AREA, FIELD, HOME, TINY, flight, until
+
+from adapters.mavlink import Craft, Stations
+from adapters.mavlink.numbers import MissionType
+from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Hold, Refused, Rejected, Return
+from adapters.simulated import Kind, run
+from physical import Band, box, circle, contains, distance, point, waypoint
+
+TWO = Stations({"gcs0": 255, "gcs1": 254}, ("gcs0", "gcs1"))
+PATH = (point(37.004, -8.604), point(37.008, -8.610), point(37.012, -8.602))
 
 
-def test_a_plane_takes_off_goes_to_a_place_and_is_published_inside_it():
+def here(vehicle):
+    return point(vehicle.body.latitude, vehicle.body.longitude)
+
+
+@pytest.mark.parametrize("kind", Kind)
+def test_every_kind_goes_to_a_place_and_is_published_inside_it(kind):
+    async def main():
+        async with flight(kind) as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            assert isinstance(await f.ended("r1"), Arrived)
+            assert len(f.world.of(Accepted, request="r1")) == 1
+            known = f.world.property("uav0")
+            assert contains(AREA, known.geometry)
+            assert known.channels == ("control:gcs0",)
+            assert (known.source, known.kind) == ("mavlink", "UAV")
+            assert f.vehicle.armed
+
+    run(main())
+
+
+@pytest.mark.parametrize("kind", [Kind.PLANE, Kind.COPTER, Kind.ROVER])
+def test_every_kind_follows_a_path_to_its_end(kind):
+    async def main():
+        async with flight(kind) as f:
+            await f.plugin.command(Follow("r1", "uav0", PATH))
+            assert isinstance(await f.ended("r1", 900), Arrived)
+            assert distance(here(f.vehicle), PATH[-1]) < 120
+            assert f.vehicle.mode == kind.profile.auto
+            await f.plugin.command(
+                Follow("r2", "uav0", PATH[::-1])
+            )  # in the air: it takes off no second time
+            assert isinstance(await f.ended("r2", 900), Arrived)
+            assert distance(here(f.vehicle), PATH[0]) < 120
+
+    run(main())
+
+
+def test_a_plane_stays_inside_the_place_where_it_circles():
+    async def main():
+        async with flight() as f:
+            await f.plugin.command(GoTo("r1", "uav0", circle((37.01, -8.61), 150)))
+            assert isinstance(await f.ended("r1"), Arrived)
+            await asyncio.sleep(30)
+            for _ in range(60):
+                await asyncio.sleep(1)
+                assert 75 < distance(here(f.vehicle), point(37.01, -8.61)) < 95
+
+    run(main())
+
+
+def test_a_place_that_moves_on_is_followed_under_the_same_request():
     async def main():
         async with flight() as f:
             await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await until(lambda: f.world.of(Accepted, request="r1"))
+            further = box((37.025, -8.63), (37.015, -8.645))
+            await f.plugin.command(GoTo("r1", "uav0", further))
+            assert isinstance(await f.ended("r1"), Arrived)
+            assert contains(further, f.world.property("uav0").geometry)
+            assert (f.vehicle.target.latitude, f.vehicle.target.longitude) == waypoint(further).vertices[0]
+
+    run(main())
+
+
+def test_the_altitude_of_a_place_is_above_sea_level():
+    async def main():
+        async with flight() as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA, Band(140, 160)))
+            assert isinstance(await f.ended("r1"), Arrived)
+            await asyncio.sleep(60)
+            assert f.world.property("uav0").altitude.low == pytest.approx(150, abs=2)
+            assert f.vehicle.body.height == pytest.approx(130, abs=2)
+
+    run(main())
+
+
+def test_hold_and_return():
+    async def main():
+        async with flight() as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await until(lambda: f.vehicle.flies)
+            await f.plugin.command(Hold("r2", "uav0"))
+            assert isinstance(await f.ended("r2"), Arrived)
+            assert f.vehicle.kind.profile.mode_name(f.vehicle.mode) == "LOITER"
+            await f.plugin.command(Return("r3", "uav0"))
+            assert isinstance(await f.ended("r3"), Arrived)
+            assert distance(here(f.vehicle), point(*HOME[:2])) < 200
+            assert not f.world.of(Arrived, request="r1")
+
+    run(main())
+
+
+def test_a_hand_over_is_done_when_the_vehicle_obeys_the_other_station():
+    async def main():
+        async with flight(stations=TWO) as f:
+            await until(lambda: f.world.property("uav0"))
+            await f.plugin.command(HandOver("r1", "uav0", "control:gcs0", "control:gcs1"))
+            assert isinstance(await f.ended("r1"), Arrived)
+            assert f.vehicle.parameters["SYSID_MYGCS"] == 254
+            await until(lambda: f.world.property("uav0").channels == ("control:gcs1",))
+            await f.plugin.command(GoTo("r2", "uav0", AREA))  # now said by gcs1: nobody else is obeyed
+            assert isinstance(await f.ended("r2"), Arrived)
+
+    run(main())
+
+
+def test_after_a_hand_over_to_someone_else_nothing_more_is_commanded():
+    async def main():
+        stations = Stations({"gcs0": 255, "gcs1": 254}, ("gcs0",))
+        async with flight(stations=stations) as f:
+            await until(lambda: f.world.property("uav0"))
+            await f.plugin.command(HandOver("r1", "uav0", "control:gcs0", "control:gcs1"))
+            assert isinstance(await f.ended("r1"), Arrived)
+            with pytest.raises(Refused, match="it obeys gcs1, not gcs0"):
+                await f.plugin.command(GoTo("r2", "uav0", AREA))
+
+    run(main())
+
+
+def test_a_place_too_small_for_the_circle_is_refused_before_take_off():
+    async def main():
+        async with flight() as f:
+            await until(lambda: f.world.property("uav0"))
+            with pytest.raises(Refused, match=r"the nest is too small: the plane needs a circle of 80 m"):
+                await f.plugin.command(GoTo("r1", "uav0", TINY, name="the nest"))
+            assert not f.vehicle.armed
+
+    run(main())
+
+
+def test_the_same_place_is_refused_when_the_kind_becomes_known_later():
+    async def main():
+        async with flight() as f:
+            await f.plugin.command(GoTo("r1", "uav0", TINY))
             end = await f.ended("r1")
-            assert isinstance(end, Arrived), end
-            assert len(f.world.of(Accepted, request="r1")) == 1
-            assert contains(AREA, f.world.property("uav0").geometry)
-            assert f.world.property("uav0").channels == ("control:gcs0",)
-            assert f.vehicle.flies
+            assert isinstance(end, Rejected)
+            assert "too small" in end.reason
+            assert not f.vehicle.armed
+
+    run(main())
+
+
+def test_a_copter_holds_the_place_that_is_too_small_for_a_plane():
+    async def main():
+        async with flight(Kind.COPTER) as f:
+            await f.plugin.command(GoTo("r1", "uav0", TINY))
+            assert isinstance(await f.ended("r1"), Arrived)
+
+    run(main())
+
+
+def test_the_fence_is_on_board_and_kept_before_the_vehicle_is_armed():
+    async def main():
+        fence = box((37.05, -8.55), (36.95, -8.65))
+        async with flight(craft=Craft("uav0", fence=fence)) as f:
+            with pytest.raises(Refused, match="outside the fence"):
+                await f.plugin.command(GoTo("r0", "uav0", circle((38, -8.6), 900)))
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await until(lambda: f.vehicle.armed)
+            assert f.vehicle.fenced
+            assert len(f.vehicle.store.items[MissionType.FENCE]) == 4
+            assert isinstance(await f.ended("r1"), Arrived)
+
+    run(main())
+
+
+def test_nothing_is_published_before_there_is_a_fix_though_positions_come():
+    async def main():
+        async with flight(fixed=False) as f:
+            await asyncio.sleep(60)
+            assert f.world.published == []
+            f.vehicle.fixed = True
+            await until(lambda: f.world.property("uav0"))
+            assert contains(FIELD, f.world.property("uav0").geometry)
+
+    run(main())
+
+
+def test_a_vehicle_whose_clock_runs_ten_times_faster_is_stamped_by_ours():
+    async def main():
+        async with flight(speedup=10.0) as f:
+            await until(lambda: f.world.property("uav0"))
+            await asyncio.sleep(20)
+            assert 0 <= f.world.now() - f.world.property("uav0").time < 1.0
+
+    run(main())
+
+
+def test_courses_and_speeds_are_published():
+    async def main():
+        async with flight() as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await until(lambda: f.vehicle.body.height > 90)
+            await asyncio.sleep(20)
+            velocity = f.world.property("uav0").velocity
+            assert velocity.speed == pytest.approx(22.2, abs=0.5)
+            north, east = (
+                37.01 - f.vehicle.body.latitude,
+                (-8.6175 - f.vehicle.body.longitude) * cos(radians(37)),
+            )
+            assert north > 0 > east
+            assert 270 < velocity.course < 360
 
     run(main())

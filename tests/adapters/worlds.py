@@ -14,6 +14,7 @@ from physical import box, circle
 
 ROOT = Path(__file__).parents[2]
 DATA = Path(os.environ.get("BIGACTORS_DATA", ROOT.parent / "shared" / "data"))
+NOTHING = Disturbance()
 EPOCH = 1_600_000_000.0
 
 HOME = (37.0, -8.6, 20.0)
@@ -42,7 +43,8 @@ class World:
         return [
             report
             for report in self.reports
-            if isinstance(report, kind) and all(getattr(report, name) == value for name, value in wanted.items())
+            if isinstance(report, kind)
+            and all(getattr(report, name) == value for name, value in wanted.items())
         ]
 
     def troubles(self):
@@ -101,15 +103,17 @@ class Flight:
 @asynccontextmanager
 async def flight(
     kind=Kind.PLANE,
-    disturbance: Disturbance = Disturbance(),
+    disturbance=NOTHING,
+    *,
     craft: Craft | None = None,
     stations: Stations | None = None,
     seed=0,
     key_file=None,
+    tap=None,
     **vehicle,
 ) -> AsyncIterator[Flight]:
     world = World()
-    plugin = Autopilot("autopilot", "udp:127.0.0.1:0", [craft or Craft("uav0")], stations, key_file)
+    plugin = Autopilot("autopilot", "udp:127.0.0.1:0", [craft or Craft("uav0")], stations, key_file, tap)
     async with running(plugin.run(world)):
         await until(lambda: plugin.local)
         flown = Vehicle(kind, HOME, **vehicle)

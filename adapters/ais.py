@@ -1,0 +1,204 @@
+"""The AIS plugin: vessels, base stations and buoys from a receiver or a recording, named by their MMSI.
+
+What a line means is `physical.ais`' business; here lines arrive, are filtered and stamped. Nothing that a transponder
+says of its time is believed beyond the receiver's clock.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import OrderedDict
+from collections.abc import Collection, Iterator
+from dataclasses import replace
+from typing import Final
+
+from adapters.addresses import parse_address
+from adapters.lines import Lines
+from adapters.naming import NamingService
+from adapters.plugin import Aged, Command, Refused, World
+from adapters.transport import Port, Remote, open_port
+from adapters.troubles import Troubles
+from physical import Geometry, PhysicalError, PhysicalProperty, contains
+from physical.ais import Ear, hear
+from physical.ais_reports import AisError, PositionReport
+from physical.ais_world import TIME_TO_LIVE, physical_property
+from physical.mmsi import KINDS, digits
+
+MAX_REMOTES: Final = 64
+FUTURE: Final = 1.0
+"""Seconds by which a receiver's clock may be ahead of ours."""
+
+PACE: Final = 100.0
+"""Lines a second from a recording whose lines have no times."""
+
+REPORT: Final = 1.0
+
+
+class AisFeed:
+    """A plugin that hears AIS.
+
+    Arguments:
+        name: What reports call it.
+        address: Where the receiver is, such as `udp:127.0.0.1:10110`, or `file:PATH` of a recording, which is
+            played at the pace of its times as if it were heard now.
+        naming: Which entities of the mission transponders are.
+        area: What lies outside is passed over.
+        kinds: Kinds of stations that count; all if None.
+        time_to_live: Seconds for which a position counts.
+
+    Raises AisError for an unknown kind.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        address: str,
+        naming: NamingService | None = None,
+        *,
+        area: Geometry | None = None,
+        kinds: Collection[str] | None = None,
+        time_to_live: float = TIME_TO_LIVE,
+    ) -> None:
+        unknown = sorted(set(kinds or ()) - set(KINDS))
+        if unknown:
+            raise AisError(
+                "ais-kind", f"no station is of kind {unknown[0]!r:.60}", f"the kinds are {', '.join(KINDS)}"
+            )
+        self._name = name
+        self._address = parse_address(address)
+        self._naming = naming or NamingService()
+        self._area = area
+        self._kinds = None if kinds is None else frozenset(kinds)
+        self._time_to_live = time_to_live
+        self._streams: OrderedDict[Remote, tuple[Lines, Ear]] = OrderedDict()
+        self._troubles = Troubles(name)
+        self._world: World | None = None
+        self._port: Port | None = None
+        self.played = asyncio.Event()
+        """Set when a recording has been played to its end."""
+
+    @property
+    def name(self) -> str:
+        """What reports call it."""
+        return self._name
+
+    @property
+    def local(self) -> Remote | None:
+        """Where it listens, once it does."""
+        return self._port.local if self._port else None
+
+    def owns(self, entity: str) -> bool:  # noqa: ARG002 - a plugin's interface
+        """Nobody takes commands over AIS."""
+        return False
+
+    async def command(self, command: Command) -> None:
+        """Refuse: nobody takes commands over AIS."""
+        raise Refused(f"{command.entity} takes no commands over AIS")
+
+    async def run(self, world: World) -> None:
+        """Hear until cancelled."""
+        self._world = world
+        hear(Ear(), b"")  # an extra that is missing is said at once
+        try:
+            if self._address.scheme == "file":
+                await asyncio.gather(self._play(world), self._reporting(world))
+            async with open_port(self._address, self._receive) as self._port:
+                await self._reporting(world)
+        finally:
+            self._troubles.report(world, now=True)
+            self._world = self._port = None
+
+    async def _reporting(self, world: World) -> None:
+        while True:
+            await asyncio.sleep(REPORT)
+            self._troubles.report(world)
+
+    # --- what arrives -----------------------------------------------------------------------------
+
+    def _receive(self, remote: Remote, data: bytes) -> None:
+        assert self._world is not None
+        lines, ear = self._stream(remote)
+        for line in lines.feed(data):
+            ear = self._line(ear, line, self._world.now())
+        self._streams[remote] = lines, ear
+
+    def _stream(self, remote: Remote) -> tuple[Lines, Ear]:
+        if remote not in self._streams:
+            self._streams[remote] = Lines(whole=self._address.scheme.startswith("udp")), Ear()
+        self._streams.move_to_end(remote)
+        if len(self._streams) > MAX_REMOTES:
+            self._streams.popitem(last=False)
+        return self._streams[remote]
+
+    def _line(self, ear: Ear, line: bytes, now: float, shift: float = 0.0) -> Ear:
+        """Hear one line; `shift` makes the times of a recording those of today."""
+        heard = hear(ear, line, None if shift else now)
+        for reason in heard.reasons:
+            self._troubles.note(reason.value, repr(line[:100]))
+        for report in heard.reports:
+            if isinstance(report, PositionReport):
+                self._position(replace(report, time=_shifted(report.time, shift, now)), now)
+        return heard.ear
+
+    def _position(self, report: PositionReport, now: float) -> None:
+        assert self._world is not None
+        assert report.time is not None
+        if report.time > now + FUTURE:
+            self._troubles.note(
+                "time stamp in the future", f"{digits(report.mmsi)}, {report.time - now:.0f} s ahead"
+            )
+        if report.time < now - self._time_to_live:
+            self._troubles.note(
+                "time stamp too old", f"{digits(report.mmsi)}, {now - report.time:.0f} s behind"
+            )
+            return
+        known = physical_property(replace(report, time=min(report.time, now)))
+        if self._wanted(known):
+            self._publish(report.mmsi, known)
+
+    def _publish(self, mmsi: int, known: PhysicalProperty) -> None:
+        assert self._world is not None
+        try:
+            entity = self._naming.name(f"mmsi:{digits(mmsi)}")
+        except PhysicalError as clash:
+            self._troubles.note(clash.code, clash.message)
+            return
+        self._world.publish(Aged(replace(known, entity=entity), self._time_to_live))
+
+    def _wanted(self, known: PhysicalProperty) -> bool:
+        of_kind = self._kinds is None or known.kind in self._kinds
+        return of_kind and (self._area is None or contains(self._area, known.geometry))
+
+    # --- recordings -------------------------------------------------------------------------------
+
+    async def _play(self, world: World) -> None:
+        """Hear a recording at the pace of its times."""
+        ear, shift = Ear(), 0.0
+        for line in self._recorded():
+            clock = _clock(ear, line)
+            if clock is None:
+                await asyncio.sleep(1 / PACE)
+            elif not shift:
+                shift = world.now() - clock
+            else:
+                await asyncio.sleep(max(0.0, clock + shift - world.now()))
+            ear = self._line(ear, line, world.now(), shift)
+        self.played.set()
+
+    def _recorded(self) -> Iterator[bytes]:
+        with open(self._address.path, "rb") as file:
+            lines = Lines()
+            while chunk := file.read(65_536):
+                yield from lines.feed(chunk)
+            yield from lines.end()
+
+
+def _shifted(time: float | None, shift: float, now: float) -> float:
+    return now if time is None else time + shift
+
+
+def _clock(ear: Ear, line: bytes) -> float | None:
+    """Return what a line says of the time: of its own reports, or of those to come."""
+    heard = hear(ear, line, None)
+    times = [report.time for report in heard.reports if report.time is not None]
+    return times[0] if times else (heard.ear.clock if heard.ear.clock != ear.clock else ear.clock)

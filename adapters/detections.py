@@ -1,0 +1,155 @@
+"""The plugin of detections: GeoJSON features that a vision system posts over HTTP, or puts into a folder.
+
+`POST /detections` takes a FeatureCollection; `DELETE /detections/NAME` withdraws one. A detection can't take the name
+of a vehicle, or be of a kind that nobody expects.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Collection
+from contextlib import AsyncExitStack
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+from urllib.parse import unquote
+
+from adapters.naming import NamingService
+from adapters.plugin import Aged, Command, Gone, Refused, World
+from adapters.troubles import Troubles
+from adapters.web import MAX_BODY, Listen, serve
+from physical import PhysicalError, PhysicalProperty, read_geojson
+
+EVERY: Final = 1.0
+MAX_FILES: Final = 1_000
+"""Files of a folder that are looked at: the newest."""
+
+PATH: Final = "/detections"
+
+
+class Detections:
+    """A plugin for what is detected.
+
+    Arguments:
+        name: What reports call it.
+        listen: Where to take posts; nowhere if None.
+        folder: Where files `*.geojson` are put; each is read again when it changes.
+        kinds: Kinds that may be detected; all if None.
+        naming: Whose names are taken already.
+        time_to_live: Seconds for which a detection counts.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        listen: Listen | None = None,
+        folder: Path | None = None,
+        kinds: Collection[str] | None = None,
+        naming: NamingService | None = None,
+        time_to_live: float = 600.0,
+    ) -> None:
+        self._name = name
+        self._listen = listen
+        self._folder = folder
+        self._kinds = None if kinds is None else frozenset(kinds)
+        self._naming = naming or NamingService()
+        self._time_to_live = time_to_live
+        self._seen: dict[Path, int] = {}
+        self._troubles = Troubles(name)
+        self._world: World | None = None
+        self.port: int | None = None
+        """Where it listens, once it does."""
+
+    @property
+    def name(self) -> str:
+        """What reports call it."""
+        return self._name
+
+    def owns(self, entity: str) -> bool:  # noqa: ARG002 - a plugin's interface
+        """What is detected takes no commands."""
+        return False
+
+    async def command(self, command: Command) -> None:
+        """Refuse: what is detected takes no commands."""
+        raise Refused(f"{command.entity} was detected, and takes no commands")
+
+    async def run(self, world: World) -> None:
+        """Take detections until cancelled."""
+        self._world = world
+        async with AsyncExitStack() as stack:
+            if self._listen is not None:
+                self.port = await stack.enter_async_context(serve(self._answer, self._listen))
+            while True:
+                self._look()
+                self._troubles.report(world)
+                await asyncio.sleep(EVERY)
+
+    # --- posts ------------------------------------------------------------------------------------
+
+    def _answer(self, method: str, path: str, body: bytes) -> tuple[int, str]:
+        if method == "POST" and path == PATH:
+            return self._posted(body)
+        if method == "DELETE" and path.startswith(f"{PATH}/"):
+            return self._withdrawn(unquote(path.removeprefix(f"{PATH}/")))
+        return 404, f"POST {PATH}, or DELETE {PATH}/NAME"
+
+    def _posted(self, body: bytes) -> tuple[int, str]:
+        try:
+            count = self._take(body)
+        except PhysicalError as problem:
+            self._troubles.note("detection refused", str(problem))
+            return 400, str(problem)
+        return 200, f"{count} taken"
+
+    def _withdrawn(self, entity: str) -> tuple[int, str]:
+        assert self._world is not None
+        if self._naming.identity(entity) != f"name:{entity}":
+            return 404, f"{entity!r:.60} was not detected"
+        self._world.publish(Gone(entity, self._world.now(), self._name))
+        return 200, "withdrawn"
+
+    def _take(self, body: bytes) -> int:
+        """Publish all features of a collection, or none."""
+        assert self._world is not None
+        found = read_geojson(body)
+        for feature in found:
+            self._check(feature)
+        for feature in found:
+            stamped = replace(feature, time=self._world.now(), source=self._name)
+            self._world.publish(Aged(stamped, self._time_to_live))
+        return len(found)
+
+    def _check(self, feature: PhysicalProperty) -> None:
+        if self._kinds is not None and feature.kind not in self._kinds:
+            expected = ", ".join(sorted(self._kinds))
+            raise PhysicalError(
+                "kind", f"nobody expects {feature.kind} to be detected", f"kinds are {expected}"
+            )
+        self._naming.name(f"name:{feature.entity}")
+
+    # --- a folder ---------------------------------------------------------------------------------
+
+    def _look(self) -> None:
+        if self._folder is None:
+            return
+        files = {path: _changed(path) for path in self._folder.glob("*.geojson")}
+        newest = sorted(files, key=lambda path: (files[path], path.name))[-MAX_FILES:]
+        for path in newest:
+            if self._seen.get(path) != files[path]:
+                self._read(path)
+        self._seen = {path: files[path] for path in newest}
+
+    def _read(self, path: Path) -> None:
+        try:
+            with path.open("rb") as file:
+                self._take(file.read(MAX_BODY + 1))
+        except (OSError, PhysicalError) as problem:
+            self._troubles.note("detection unreadable", f"{path.name}: {problem}")
+
+
+def _changed(path: Path) -> int:
+    try:
+        return path.stat().st_mtime_ns
+    except OSError:  # taken away between the listing and the look
+        return 0

@@ -1,0 +1,91 @@
+"""The plugin of static places: a GeoJSON file, read again when it changes."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+from typing import Final
+
+from adapters.plugin import Command, Gone, Refused, World
+from adapters.troubles import Troubles
+from physical import PhysicalError, PhysicalProperty, read_geojson
+
+EVERY: Final = 1.0
+"""Seconds between two looks at the file."""
+
+MAX_BYTES: Final = 10_000_000
+
+
+class StaticPlaces:
+    """A plugin for the places of a GeoJSON file.
+
+    A file that can't be read any more is reported, and what it said last stays.
+    """
+
+    def __init__(self, name: str, path: Path) -> None:
+        self._name = name
+        self._path = path
+        self._seen: tuple[int, int, int] | None = None
+        self._known: dict[str, PhysicalProperty] = {}
+        self._troubles = Troubles(name)
+
+    @property
+    def name(self) -> str:
+        """What reports call it."""
+        return self._name
+
+    def owns(self, entity: str) -> bool:  # noqa: ARG002 - a plugin's interface
+        """Places take no commands."""
+        return False
+
+    async def command(self, command: Command) -> None:
+        """Refuse: places take no commands."""
+        raise Refused(f"{command.entity} is a place, and takes no commands")
+
+    async def run(self, world: World) -> None:
+        """Publish the places, and again what changes.
+
+        Raises PhysicalError where the file can't be read at the start.
+        """
+        self._look(world)
+        while True:
+            await asyncio.sleep(EVERY)
+            try:
+                self._look(world)
+            except PhysicalError as problem:
+                self._troubles.note("places unreadable", str(problem))
+            self._troubles.report(world)
+
+    def _look(self, world: World) -> None:
+        stamp = _stamp(self._path)
+        if stamp == self._seen:
+            return
+        self._seen = stamp
+        places = {place.entity: place for place in read_geojson(_read(self._path))}
+        for name in sorted(self._known.keys() - places.keys()):
+            world.publish(Gone(name, world.now(), self._name))
+        for name, place in places.items():
+            if self._known.get(name) != place:
+                world.publish(place)
+        self._known = places
+
+
+def _stamp(path: Path) -> tuple[int, int, int]:
+    try:
+        found = path.stat()
+    except OSError as problem:
+        raise _unreadable(path, problem) from None
+    return found.st_mtime_ns, found.st_size, found.st_ino
+
+
+def _read(path: Path) -> bytes:
+    try:
+        with path.open("rb") as file:
+            return file.read(MAX_BYTES + 1)  # beyond the limit: for the reader to refuse
+    except OSError as problem:
+        raise _unreadable(path, problem) from None
+
+
+def _unreadable(path: Path, problem: OSError) -> PhysicalError:
+    message = f"cannot read the places: {problem.strerror or problem}"
+    return PhysicalError("places", message, "give the path of a GeoJSON file", str(path))

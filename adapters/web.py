@@ -1,0 +1,109 @@
+"""HTTP, by aiohttp: the only file that imports it, and only when called."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, Final
+
+from adapters.addresses import LOOPBACK
+from physical import PhysicalError
+
+MAX_BODY: Final = 1_000_000
+"""Bytes of a request or answer."""
+
+TIMEOUT: Final = 10.0
+JSON: Final = ("application/json", "application/geo+json")
+
+Handler = Callable[[str, str, bytes], tuple[int, str]]
+"""From method, path and body to status and text."""
+
+
+@dataclass(frozen=True, slots=True)
+class Listen:
+    """Where to listen: any free port if it is 0; on this machine only unless another address is written out.
+
+    With a token, only who knows it is heard (`Authorization: Bearer ...`).
+    """
+
+    port: int
+    host: str = LOOPBACK
+    token: str | None = None
+
+
+@asynccontextmanager
+async def serve(handler: Handler, where: Listen) -> AsyncIterator[int]:
+    """Serve HTTP until the context is left, and say at which port.
+
+    Only JSON is taken, so that no web page that is open in a browser here can post. Raises OSError where it can't
+    listen there.
+    """
+    web = _aiohttp().web
+
+    async def answer(request: Any) -> Any:
+        status, text = _refusal(request, where.token) or (0, "")
+        if not status:
+            status, text = handler(request.method, request.path, await request.read())
+        return web.Response(status=status, text=text + "\n")
+
+    application = web.Application(client_max_size=MAX_BODY)
+    application.router.add_route("*", "/{path:.*}", answer)
+    runner = web.AppRunner(application, access_log=None)
+    await runner.setup()
+    try:
+        site = web.TCPSite(runner, where.host, where.port)
+        await site.start()
+        yield runner.addresses[0][1]
+    finally:
+        await runner.cleanup()
+
+
+def _refusal(request: Any, token: str | None) -> tuple[int, str] | None:
+    if token is not None and request.headers.get("Authorization") != f"Bearer {token}":
+        return 401, "say who you are: Authorization: Bearer TOKEN"
+    if request.method == "POST" and request.content_type not in JSON:
+        return 415, f"send {' or '.join(JSON)}"
+    return None
+
+
+@asynccontextmanager
+async def fetching() -> AsyncIterator[Callable[[str], Awaitable[bytes]]]:
+    """Hand out a function that gets the answer at an address.
+
+    It raises OSError where there is none, or one that is too long or not 200.
+    """
+    aiohttp = _aiohttp()
+    async with aiohttp.ClientSession(timeout=aiohttp.ClientTimeout(total=TIMEOUT)) as session:
+
+        async def fetch(url: str) -> bytes:
+            try:
+                async with session.get(url) as answer:
+                    return await _body(answer)
+            except (aiohttp.ClientError, TimeoutError) as problem:
+                raise OSError(str(problem) or type(problem).__name__) from problem
+
+        yield fetch
+
+
+async def _body(answer: Any) -> bytes:
+    if answer.status != 200:
+        raise OSError(f"HTTP status {answer.status}")
+    body = bytearray()
+    async for chunk in answer.content.iter_chunked(65_536):
+        body += chunk
+        if len(body) > MAX_BODY:
+            raise OSError(f"the answer is over {MAX_BODY:,} bytes")
+    return bytes(body)
+
+
+@cache
+def _aiohttp() -> Any:
+    try:
+        import aiohttp  # noqa: PLC0415 - an extra
+        import aiohttp.web  # noqa: PLC0415 - an extra
+    except ImportError as missing:
+        hint = "install the extra: pip install 'bigactors[live]'"
+        raise PhysicalError("live-extra", "HTTP needs aiohttp, which is not installed", hint) from missing
+    return aiohttp

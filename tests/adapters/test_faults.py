@@ -1,0 +1,272 @@
+"""Faults and foes on the link: the flight ends well or is reported, and nothing is made up."""
+
+import asyncio
+import socket
+from dataclasses import replace
+
+import pytest
+from worlds import AREA, EPOCH, flight, until
+
+from adapters.mavlink import Craft, Stations
+from adapters.mavlink.codec import Encoder
+from adapters.mavlink.command import long
+from adapters.mavlink.message import say
+from adapters.mavlink.numbers import Cmd
+from adapters.plugin import Accepted, Arrived, GoTo, HandOver, LinkLost, LinkRestored, Rejected
+from adapters.simulated import Disturbance, Kind, run
+from physical import box, contains, point
+
+BAD = Disturbance(loss=0.3, duplication=0.1, delay=(0.0, 1.0))
+TWO = Stations({"gcs0": 255, "gcs1": 254}, ("gcs0", "gcs1"))
+
+
+async def send(f, encoder, *messages):
+    """Send to the plugin from an address of its own."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+        for message in messages:
+            link.sendto(encoder.pack(message), f.plugin.local)
+            await asyncio.sleep(0.05)
+
+
+def here(vehicle):
+    return point(vehicle.body.latitude, vehicle.body.longitude)
+
+
+@pytest.mark.parametrize("kind", [Kind.PLANE, Kind.COPTER])
+@pytest.mark.parametrize("seed", range(3))
+def test_it_arrives_though_a_third_is_lost_and_the_rest_comes_late_twice_and_in_disorder(kind, seed):
+    async def main():
+        fence = box((37.05, -8.55), (36.95, -8.65))
+        async with flight(kind, BAD, craft=Craft("uav0", fence=fence), seed=seed) as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            end = await f.ended("r1")
+            assert isinstance(end, Arrived), end
+            assert contains(AREA, here(f.vehicle))
+            assert f.vehicle.fenced
+
+    run(main())
+
+
+def test_a_hand_over_works_on_the_same_bad_link():
+    async def main():
+        async with flight(disturbance=BAD, stations=TWO) as f:
+            await f.plugin.command(HandOver("r1", "uav0", "control:gcs0", "control:gcs1"))
+            assert isinstance(await f.ended("r1"), Arrived)
+            assert f.vehicle.parameters["SYSID_MYGCS"] == 254
+
+    run(main())
+
+
+def test_a_blackout_is_reported_and_takes_the_channels_and_the_flight_goes_on():
+    async def main():
+        async with flight(
+            disturbance=Disturbance(blackouts=((60.0, 70.0),)), craft=Craft("uav0", channels=("wifi",))
+        ) as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            lost = (await until(lambda: f.world.of(LinkLost)))[0]
+            assert lost.since == pytest.approx(EPOCH + 60, abs=0.5)
+            assert f.world.property("uav0").channels == ()
+            assert isinstance(await f.ended("r1"), Arrived)
+            assert len(f.world.of(LinkRestored, rebooted=False)) == 1
+            assert f.world.property("uav0").channels == ("control:gcs0", "wifi")
+
+    run(main())
+
+
+def test_a_blackout_during_the_upload_delays_it_only():
+    async def main():
+        async with flight(disturbance=Disturbance(blackouts=((19.4, 31.0),))) as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            assert isinstance(await f.ended("r1"), Arrived)
+
+    run(main())
+
+
+def test_a_vehicle_that_never_comes_back_is_lost_and_never_said_to_have_arrived():
+    async def main():
+        async with flight(disturbance=Disturbance(blackouts=((60.0, 1e9),))) as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await asyncio.sleep(600)
+            assert f.world.of(LinkLost)
+            assert not f.world.of(Arrived)
+            assert contains(AREA, here(f.vehicle))  # it did arrive, but nobody could know
+
+    run(main())
+
+
+def test_a_watchdog_reboot_in_flight_is_reported_and_the_flight_goes_on():
+    async def main():
+        async with flight() as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await until(lambda: f.vehicle.body.height > 60)
+            f.simulator.reboot(1, armed=True)
+            await until(lambda: f.world.of(LinkRestored, rebooted=True))
+            assert isinstance(await f.ended("r1"), Arrived)
+            assert contains(AREA, here(f.vehicle))
+
+    run(main())
+
+
+def test_a_vehicle_that_comes_back_disarmed_is_not_armed_again():
+    async def main():
+        async with flight() as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await until(lambda: f.vehicle.body.height > 60)
+            f.simulator.reboot(1)
+            end = await f.ended("r1")
+            assert isinstance(end, Rejected)
+            assert "disarmed" in end.reason
+            await asyncio.sleep(60)
+            assert not f.vehicle.armed
+
+    run(main())
+
+
+def test_someone_elses_change_of_mode_is_reported_and_not_fought():
+    async def main():
+        async with flight() as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await until(lambda: f.world.of(Accepted, request="r1"))
+            f.vehicle.mode = 5  # a pilot takes over
+            end = await f.ended("r1")
+            assert isinstance(end, Rejected)
+            assert "FBWA" in end.reason
+            await asyncio.sleep(30)
+            assert f.vehicle.mode == 5
+
+    run(main())
+
+
+def test_a_second_ground_station_is_reported_and_changes_nothing():
+    async def main():
+        async with flight() as f:
+            encoder = Encoder(253, 190)
+            link = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            noise = (
+                say(
+                    "HEARTBEAT",
+                    type=6,
+                    autopilot=8,
+                    base_mode=0,
+                    custom_mode=0,
+                    system_status=4,
+                    mavlink_version=3,
+                ),
+                long(Cmd.DO_SET_MODE, 1, 1, 0),
+                say("MISSION_COUNT", target_system=1, target_component=1, count=0, mission_type=0),
+                say("MISSION_ACK", target_system=1, target_component=1, type=0, mission_type=0),
+            )
+
+            async def talk():
+                while True:
+                    for message in noise:
+                        link.sendto(encoder.pack(message), f.plugin.local)
+                    await asyncio.sleep(0.5)
+
+            talking = asyncio.ensure_future(talk())
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            assert isinstance(await f.ended("r1"), Arrived)
+            assert "second ground station" in f.world.troubles()
+            talking.cancel()
+            link.close()
+
+    run(main())
+
+
+def test_what_a_vehicle_tells_another_station_is_not_taken_for_an_answer():
+    async def main():
+        async with flight(craft=Craft("uav0", system=7)) as f:
+            for target, heard in ((253, False), (255, True)):
+                request = say(
+                    "MISSION_REQUEST", target_system=target, target_component=190, seq=0, mission_type=0
+                )
+                await send(f, Encoder(7, 1), request)
+                assert (f.plugin.pilot("uav0").known.heard is not None) == heard
+
+    run(main())
+
+
+def test_a_receiver_that_fails_in_flight_leaves_the_last_position_to_age():
+    async def main():
+        async with flight() as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await until(lambda: f.vehicle.body.height > 60)
+            f.vehicle.fixed = False  # says (0, 0) from now on
+            await asyncio.sleep(30)
+            last = f.world.published[-1]
+            assert f.world.now() - last.property.time > 20
+            assert all(published.property.geometry.vertices[0][0] > 36 for published in f.world.published)
+            assert last.time_to_live == 30.0
+
+    run(main())
+
+
+def test_positions_at_zero_are_refused_even_from_a_receiver_that_claims_a_fix():
+    async def main():
+        async with flight(craft=Craft("uav0", system=7)) as f:
+            encoder = Encoder(7, 1)
+            fields = {"alt": 0, "relative_alt": 0, "vx": 0, "vy": 0, "vz": 0, "hdg": 0}
+            rest = {"alt": 0, "eph": 0, "epv": 0, "vel": 0, "cog": 0, "satellites_visible": 9}
+            await send(f, encoder, say("GPS_RAW_INT", time_usec=0, fix_type=3, lat=0, lon=0, **rest))
+            for time, latitude in enumerate((2_900, 2_000_000_000, 370_000_000), 1):
+                assert f.plugin.pilot("uav0").known.position is None
+                await send(
+                    f, encoder, say("GLOBAL_POSITION_INT", time_boot_ms=time, lat=latitude, lon=80, **fields)
+                )
+            assert f.plugin.pilot("uav0").known.position.latitude == 37.0
+
+    run(main())
+
+
+@pytest.mark.parametrize("clock", [0, 1, 2**32 - 1])
+def test_a_vehicle_clock_in_the_past_or_the_future_does_not_reach_the_world(clock):
+    async def main():
+        async with flight() as f:
+            await until(lambda: f.world.property("uav0"))
+            encoder = Encoder(1, 1)
+            await send(f, encoder, say("SYSTEM_TIME", time_unix_usec=2**60, time_boot_ms=clock))
+            await asyncio.sleep(20)
+            assert 0 <= f.world.now() - f.world.property("uav0").time < 1.0
+
+    run(main())
+
+
+def test_a_vehicle_that_is_in_no_mission_is_reported():
+    async def main():
+        async with flight() as f:
+            await until(lambda: f.world.property("uav0"))
+            other = replace(f.vehicle, system=9)
+            encoder = Encoder(other.system, 1)
+            beat = say(
+                "HEARTBEAT",
+                type=1,
+                autopilot=3,
+                base_mode=0,
+                custom_mode=0,
+                system_status=3,
+                mavlink_version=3,
+            )
+            await send(f, encoder, beat)
+            await until(lambda: "unknown vehicle" in f.world.troubles())
+
+    run(main())
+
+
+def test_something_that_is_not_ardupilot_is_rejected_with_the_reason():
+    async def main():
+        async with flight(craft=Craft("uav0", system=7)) as f:
+            encoder = Encoder(7, 1)
+            beat = say(
+                "HEARTBEAT",
+                type=2,
+                autopilot=12,
+                base_mode=1,
+                custom_mode=0,
+                system_status=3,
+                mavlink_version=3,
+            )
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await send(f, encoder, *[beat] * 100)
+            assert "ArduPilot" in f.world.of(Rejected, request="r1")[0].reason
+
+    run(main())

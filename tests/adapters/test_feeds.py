@@ -1,0 +1,469 @@
+"""Feeds: AIS, static places, detections and a location service, over real sockets and files."""
+
+import asyncio
+import json
+import os
+import pty
+import socket
+
+import aiohttp
+import pytest
+from worlds import DATA, World, running, until
+
+from adapters.ais import AisFeed
+from adapters.detections import Detections
+from adapters.lines import MAX_LINE, Lines
+from adapters.location import LocationService
+from adapters.naming import NameClash, NamingService
+from adapters.places import StaticPlaces
+from adapters.plugin import Aged, Gone, Trouble
+from adapters.simulated import run
+from adapters.web import Listen
+from physical import PhysicalError, box, point, write_geojson
+from physical.geojson import read_geojson
+from physical.property import PhysicalProperty
+
+VESSEL = rb"!AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61"
+BAD = rb"!AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*62"
+PLACE = PhysicalProperty("searchArea0", "Location", box((37.04, -8.59), (36.94, -8.79)))
+SPILL = PhysicalProperty("oilSpill0", "OilSpill", box((37.0, -8.7), (36.99, -8.71)))
+
+
+def names(world):
+    return {published.property.entity for published in world.published if isinstance(published, Aged)}
+
+
+async def wait(seconds=0.05):
+    await asyncio.sleep(seconds)
+
+
+# --- AIS --------------------------------------------------------------------------------------------
+
+
+def test_ais_comes_by_udp_with_or_without_line_ends():
+    async def main():
+        world, feed = World(), AisFeed("ais", "udp:0")
+        async with running(feed.run(world)):
+            await until(lambda: feed.local)
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+                link.sendto(VESSEL, feed.local)
+                await wait()
+                assert names(world) == {"mmsi376427000"}
+                link.sendto(VESSEL + b"\r\n" + VESSEL + b"\n", feed.local)
+                await wait()
+            known = world.published[-1]
+            assert len(world.published) == 3
+            assert (known.property.source, known.property.kind) == ("ais", "Vessel")
+            assert known.property.time == pytest.approx(world.now(), abs=1)
+            assert known.time_to_live == 600.0
+            assert feed.local[0] == "127.0.0.1"
+
+    run(main())
+
+
+def test_ais_comes_by_tcp_in_pieces_and_the_connection_is_made_again():
+    async def main():
+        world = World()
+        connections = []
+
+        async def receiver(_reader, writer):
+            connections.append(writer)
+            for piece in (VESSEL[:20], VESSEL[20:], b"\r", b"\n"):
+                writer.write(piece)
+                await writer.drain()
+                await wait(0.01)
+            writer.close()
+
+        server = await asyncio.start_server(receiver, "127.0.0.1", 0)
+        port = server.sockets[0].getsockname()[1]
+        async with server, running(AisFeed("ais", f"tcp:127.0.0.1:{port}").run(world)):
+            await until(lambda: len(connections) == 3)
+            await wait()
+        assert len(world.published) == 3
+
+    run(main())
+
+
+def test_ais_comes_by_a_serial_line():
+    master, slave = pty.openpty()
+    try:
+
+        async def main():
+            world, feed = World(), AisFeed("ais", f"serial:{os.ttyname(slave)}:38400")
+            async with running(feed.run(world)):
+                await wait(0.1)
+                os.write(master, VESSEL + b"\r\n")
+                await until(lambda: names(world) == {"mmsi376427000"}, 5)
+
+        asyncio.run(main())
+    finally:
+        os.close(master)
+        os.close(slave)
+
+
+def test_a_recording_is_played_at_the_pace_of_its_times_as_if_heard_now(tmp_path):
+    path = tmp_path / "recording.nmea"
+    path.write_bytes(
+        b"\n".join(rb"\c:%d*%02X\%s" % (time, checksum(b"c:%d" % time), VESSEL) for time in (1000, 1030))
+    )
+
+    async def main():
+        world, feed = World(), AisFeed("ais", f"file:{path}")
+        async with running(feed.run(world)):
+            await feed.played.wait()
+            first, second = (published.property.time for published in world.published)
+            assert second - first == pytest.approx(30, abs=0.1)
+            assert second == pytest.approx(world.now(), abs=0.1)
+
+    run(main())
+
+
+def checksum(text):
+    total = 0
+    for byte in text:
+        total ^= byte
+    return total
+
+
+def test_a_recording_that_is_not_there_says_so():
+    async def main():
+        with pytest.raises(OSError, match="No such file"):
+            await AisFeed("ais", "file:/nowhere/at/all").run(World())
+
+    run(main())
+
+
+@pytest.mark.skipif(not DATA.exists(), reason=f"no recordings in {DATA}; set BIGACTORS_DATA")
+def test_a_real_recording_is_filtered_by_area_and_kind():
+    path = DATA / "ais" / "workum_2020.nmea"
+
+    async def heard(**filters):
+        world, feed = World(), AisFeed("ais", f"file:{path}", **filters)
+        async with running(feed.run(world)):
+            await feed.played.wait()
+        return world
+
+    async def main():
+        every = await heard()
+        vessels = await heard(kinds=["Vessel"])
+        marina = box((52.86, 5.72), (52.83, 5.69))
+        inside = await heard(area=marina)
+        assert len(names(every)) == 30
+        assert {published.property.kind for published in vessels.published} == {"Vessel"}
+        assert 0 < len(names(vessels)) <= 30
+        assert 0 < len(names(inside)) < 30
+
+    run(main())
+
+
+def test_a_kind_that_is_none_is_the_users_mistake():
+    with pytest.raises(PhysicalError, match="no station is of kind 'Submarine'"):
+        AisFeed("ais", "udp:0", kinds=["Submarine"])
+
+
+def test_what_cannot_be_heard_is_counted_and_reported_once_a_second():
+    async def main():
+        world, feed = World(), AisFeed("ais", "udp:0")
+        async with running(feed.run(world)):
+            await until(lambda: feed.local)
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+                for _ in range(100):
+                    link.sendto(BAD, feed.local)
+            await asyncio.sleep(3)
+            (trouble,) = world.of(Trouble)
+            assert (trouble.source, trouble.what, trouble.count) == ("ais", "checksum wrong", 100)
+
+    run(main())
+
+
+@pytest.mark.parametrize(
+    ("shift", "what"), [(3600, "time stamp in the future"), (-3600, "time stamp too old")]
+)
+def test_time_stamps_of_the_future_are_cut_and_those_of_long_ago_dropped(shift, what):
+    async def main():
+        world, feed = World(), AisFeed("ais", "udp:0")
+        async with running(feed.run(world)):
+            await until(lambda: feed.local)
+            stamp = b"c:%d" % int(world.now() + shift)
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+                link.sendto(rb"\%s*%02X\%s" % (stamp, checksum(stamp), VESSEL), feed.local)
+            await asyncio.sleep(3)
+            assert world.troubles() == {what}
+            times = [published.property.time for published in world.published]
+            assert len(times) == (shift > 0)
+            assert all(time <= world.now() for time in times)
+
+    run(main())
+
+
+def test_a_transponder_cannot_take_the_name_of_another_entity():
+    async def main():
+        naming = NamingService({"mavlink:1": "mmsi376427000"})
+        world, feed = World(), AisFeed("ais", "udp:0", naming)
+        async with running(feed.run(world)):
+            await until(lambda: feed.local)
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+                link.sendto(VESSEL, feed.local)
+            await asyncio.sleep(2)
+            assert world.published == []
+            assert world.troubles() == {"name-clash"}
+
+    run(main())
+
+
+def test_the_missions_table_names_a_transponder():
+    async def main():
+        world, feed = World(), AisFeed("ais", "udp:0", NamingService({"mmsi:376427000": "tanker0"}))
+        async with running(feed.run(world)):
+            await until(lambda: feed.local)
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+                link.sendto(VESSEL, feed.local)
+            await wait()
+            assert names(world) == {"tanker0"}
+
+    run(main())
+
+
+# --- lines ------------------------------------------------------------------------------------------
+
+
+def test_lines_come_whole_out_of_any_pieces():
+    text = b"one\r\ntwo\n\nthree\n"
+    for size in range(1, len(text)):
+        lines = Lines()
+        found = [line for at in range(0, len(text), size) for line in lines.feed(text[at : at + size])]
+        assert found == [b"one", b"two", b"three"]
+
+
+def test_a_line_without_end_is_handed_on_and_passed_over_to_its_end():
+    lines = Lines()
+    found = [line for _ in range(100) for line in lines.feed(b"x" * 100)]
+    assert lines.held <= MAX_LINE
+    assert sum(len(line) > MAX_LINE for line in found) == 1
+    assert lines.feed(b"rest\nnext\n") == [b"next"]
+
+
+# --- static places ----------------------------------------------------------------------------------
+
+
+def test_places_are_published_and_again_when_their_file_changes(tmp_path):
+    path = tmp_path / "places.geojson"
+    path.write_text(write_geojson([PLACE, SPILL]))
+
+    async def main():
+        world = World()
+        async with running(StaticPlaces("places", path).run(world)):
+            await wait()
+            assert [published.entity for published in world.published] == ["oilSpill0", "searchArea0"]
+            world.published.clear()
+            moved = SPILL.at(box((37.0, -8.6), (36.99, -8.61)))
+            path.write_text(write_geojson([moved]))
+            await asyncio.sleep(3)
+            assert [(type(item).__name__, item.entity) for item in world.published] == [
+                ("Gone", "searchArea0"),
+                ("PhysicalProperty", "oilSpill0"),
+            ]
+
+    run(main())
+
+
+def test_places_that_cannot_be_read_any_more_stay_and_are_reported(tmp_path):
+    path = tmp_path / "places.geojson"
+    path.write_text(write_geojson([PLACE]))
+
+    async def main():
+        world = World()
+        async with running(StaticPlaces("places", path).run(world)):
+            await wait()
+            path.write_text("{")
+            await asyncio.sleep(3)
+            path.unlink()
+            await asyncio.sleep(3)
+            assert world.published == list(read_geojson(write_geojson([PLACE])))
+            assert world.troubles() == {"places unreadable"}
+
+    run(main())
+
+
+def test_places_that_are_not_there_at_the_start_are_the_users_mistake(tmp_path):
+    async def main():
+        with pytest.raises(PhysicalError, match="cannot read the places"):
+            await StaticPlaces("places", tmp_path / "none.geojson").run(World())
+
+    run(main())
+
+
+# --- detections -------------------------------------------------------------------------------------
+
+
+def posting(plugin, path="/detections"):
+    return f"http://127.0.0.1:{plugin.port}{path}"
+
+
+def test_detections_are_posted_and_withdrawn():
+    async def main():
+        world, plugin = World(), Detections("camera", listen=Listen(0), kinds=["OilSpill"])
+        async with running(plugin.run(world)), aiohttp.ClientSession() as session:
+            await until(lambda: plugin.port)
+            async with session.post(posting(plugin), json=json.loads(write_geojson([SPILL]))) as answer:
+                assert (answer.status, await answer.text()) == (200, "1 taken\n")
+            (known,) = world.published
+            assert (known.property, known.property.source) == (SPILL, "camera")
+            async with session.delete(posting(plugin, "/detections/oilSpill0")) as answer:
+                assert answer.status == 200
+            assert isinstance(world.published[-1], Gone)
+            async with session.delete(posting(plugin, "/detections/uav0")) as answer:
+                assert answer.status == 404
+
+    run(main())
+
+
+@pytest.mark.parametrize(
+    ("body", "kind", "status"),
+    [
+        (b"{", "application/json", 400),
+        (write_geojson([PLACE]).encode(), "application/json", 400),  # of a kind that nobody expects
+        (write_geojson([SPILL]).encode(), "text/plain", 415),  # as a web page could
+        (b"[" * 500_000, "application/json", 400),
+        (b" " * 1_040_000, "application/json", 413),
+    ],
+)
+def test_what_is_no_detection_is_refused(body, kind, status):
+    async def main():
+        world, plugin = World(), Detections("camera", listen=Listen(0), kinds=["OilSpill"])
+        async with running(plugin.run(world)), aiohttp.ClientSession() as session:
+            await until(lambda: plugin.port)
+            async with session.post(posting(plugin), data=body, headers={"Content-Type": kind}) as answer:
+                assert answer.status == status
+            assert world.published == []
+
+    run(main())
+
+
+def test_a_detection_cannot_take_the_name_of_a_vehicle_and_a_token_is_asked_for():
+    async def main():
+        world, naming = World(), NamingService({"mavlink:1": "oilSpill0"})
+        plugin = Detections("camera", listen=Listen(0, token="secret"), naming=naming)
+        document = json.loads(write_geojson([SPILL]))
+        async with running(plugin.run(world)), aiohttp.ClientSession() as session:
+            await until(lambda: plugin.port)
+            async with session.post(posting(plugin), json=document) as answer:
+                assert answer.status == 401
+            headers = {"Authorization": "Bearer secret"}
+            async with session.post(posting(plugin), json=document, headers=headers) as answer:
+                assert answer.status == 400
+                assert "oilSpill0" in await answer.text()
+            assert world.published == []
+
+    run(main())
+
+
+def test_detections_are_read_from_a_folder_when_a_file_is_new_or_changed(tmp_path):
+    async def main():
+        world = World()
+        async with running(Detections("camera", folder=tmp_path).run(world)):
+            await wait()
+            (tmp_path / "one.geojson").write_text(write_geojson([SPILL]))
+            (tmp_path / "bad.geojson").write_text("{")
+            await asyncio.sleep(3)
+            assert names(world) == {"oilSpill0"}
+            assert len(world.published) == 1
+            assert world.troubles() == {"detection unreadable"}
+
+    run(main())
+
+
+# --- location service -------------------------------------------------------------------------------
+
+DRIFTER = {"name": "drifter0", "kind": "Drifter", "latitude": 37.0, "longitude": -8.7}
+
+
+async def located(document, status=200, **options):
+    """Ask a service that answers with a document, for three seconds."""
+
+    async def answer(_request):
+        body = document if isinstance(document, bytes) else json.dumps(document).encode()
+        return aiohttp.web.Response(body=body, status=status, content_type="application/json")
+
+    application = aiohttp.web.Application()
+    application.router.add_get("/", answer)
+    runner = aiohttp.web.AppRunner(application, access_log=None)
+    await runner.setup()
+    site = aiohttp.web.TCPSite(runner, "127.0.0.1", 0)
+    await site.start()
+    world = World()
+    plugin = LocationService("cloud", f"http://127.0.0.1:{runner.addresses[0][1]}/", **options)
+    async with running(plugin.run(world)):
+        await asyncio.sleep(3)
+    await runner.cleanup()
+    return world
+
+
+def test_a_location_service_is_asked_again_and_again():
+    async def main():
+        entity = DRIFTER | {"altitude": 0, "speed": 0.4, "course": 480, "channels": ["sat"]}
+        world = await located({"entities": [entity]})
+        assert len(world.published) >= 2
+        known = world.published[0].property
+        assert (known.entity, known.kind, known.geometry) == ("drifter0", "Drifter", point(37.0, -8.7))
+        assert (known.velocity.speed, known.velocity.course, known.channels) == (0.4, 120, ("sat",))
+
+    run(main())
+
+
+@pytest.mark.parametrize(
+    ("document", "what"),
+    [
+        (b"{", "answer unreadable"),
+        (b"[" * 100_000, "answer unreadable"),
+        ({"entities": 5}, "answer unreadable"),
+        ({"entities": [5]}, "entity refused"),
+        ({"entities": [DRIFTER | {"latitude": 91}]}, "entity refused"),
+        ({"entities": [DRIFTER | {"latitude": "37"}]}, "entity refused"),
+        ({"entities": [DRIFTER | {"altitude": 10**400}]}, "entity refused"),
+        ({"entities": [DRIFTER | {"name": "\x1b[31m"}]}, "entity refused"),
+        ({"entities": [DRIFTER | {"channels": 1}]}, "entity refused"),
+        ({"entities": [DRIFTER | {"time": 9e9}]}, "entity refused"),
+        ({"entities": [DRIFTER | {"time": 1}]}, "time stamp too old"),
+        (b"x" * 2_000_000, "no answer"),
+    ],
+)
+def test_an_answer_that_cannot_be_used_is_reported(document, what):
+    async def main():
+        world = await located(document)
+        assert world.published == []
+        assert world.troubles() == {what}
+
+    run(main())
+
+
+def test_a_service_that_is_not_there_or_fails_is_reported():
+    async def main():
+        world = await located({}, status=500)
+        assert world.troubles() == {"no answer"}
+        world = World()
+        async with running(LocationService("cloud", "http://127.0.0.1:1/").run(world)):
+            await asyncio.sleep(2)
+        assert world.troubles() == {"no answer"}
+
+    run(main())
+
+
+# --- naming -----------------------------------------------------------------------------------------
+
+
+def test_an_identity_keeps_its_name_and_two_cannot_have_one():
+    naming = NamingService({"mavlink:1": "uav0"})
+    assert naming.name("mavlink:1") == "uav0"
+    assert naming.name("mmsi:244660274") == naming.name("mmsi:244660274") == "mmsi244660274"
+    assert naming.identity("uav0") == "mavlink:1"
+    with pytest.raises(NameClash, match="name:uav0 would be called uav0, as mavlink:1 is"):
+        naming.name("name:uav0")
+
+
+@pytest.mark.parametrize(
+    "table", [{"mavlink:1": "uav0", "mmsi:244660274": "uav0"}, {"tail number": "uav0"}, {"mmsi:": "uav0"}]
+)
+def test_a_table_with_a_clash_or_without_identities_is_an_error(table):
+    with pytest.raises(PhysicalError):
+        NamingService(table)

@@ -1,0 +1,188 @@
+"""Upload and download as pure state machines: what real vehicles do, each fact without a socket."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from adapters.mavlink import sync, upload
+from adapters.mavlink.items import Item, fence, route, same
+from adapters.mavlink.message import say
+from adapters.mavlink.numbers import Cmd, MissionResult, MissionType
+from adapters.simulated.store import GIVE_UP, Store
+from physical import box, point
+
+PATH = (point(37.0, -8.6), point(37.01, -8.61), point(37.02, -8.62))
+ITEMS = route(PATH, 100.0, takeoff=True)
+FENCE = fence(box((37.05, -8.55), (36.95, -8.65)))
+KINDS = [(ITEMS, MissionType.MISSION), (FENCE, MissionType.FENCE)]
+
+
+def asked(seq, name="MISSION_REQUEST", kind=MissionType.MISSION):
+    return say(name, target_system=255, target_component=190, seq=seq, mission_type=int(kind))
+
+
+def ack(result, kind=MissionType.MISSION):
+    return say(
+        "MISSION_ACK", target_system=255, target_component=190, type=int(result), mission_type=int(kind)
+    )
+
+
+def begun():
+    return upload.tick(upload.Upload(ITEMS, MissionType.MISSION, 1), 0.0)[0]
+
+
+@pytest.mark.parametrize("name", ["MISSION_REQUEST", "MISSION_REQUEST_INT"])
+def test_both_ways_of_asking_get_an_integer_item(name):
+    _, (item,) = upload.hear(begun(), asked(2, name), 0.1)
+    assert (item.name, item["seq"], item["x"]) == ("MISSION_ITEM_INT", 2, ITEMS[2].x)
+
+
+def test_only_the_count_is_sent_by_timer():
+    state, sent = upload.Upload(ITEMS, MissionType.MISSION, 1), []
+    for tenth in range(400):
+        state, messages = upload.tick(state, tenth / 10)
+        sent += messages
+        if tenth == 100:
+            state, _ = upload.hear(state, asked(0), 10.0)
+    assert {message.name for message in sent} == {"MISSION_COUNT"}
+    assert 10 < len(sent) < 20
+
+
+def test_no_request_is_answered_beyond_the_last_item():
+    assert upload.hear(begun(), asked(len(ITEMS)), 0.1)[1] == ()
+
+
+def test_what_belongs_to_another_kind_of_mission_is_passed_over():
+    state = begun()
+    assert upload.hear(state, asked(0, kind=MissionType.FENCE), 0.1) == (state, ())
+    assert upload.hear(state, ack(MissionResult.ERROR, MissionType.FENCE), 0.1) == (state, ())
+
+
+def test_invalid_sequence_is_not_final():
+    state, _ = upload.hear(begun(), asked(0), 0.1)
+    state, _ = upload.hear(state, ack(MissionResult.INVALID_SEQUENCE), 0.2)
+    assert not state.over
+    assert upload.hear(state, asked(1), 0.3)[1]
+
+
+@pytest.mark.parametrize("result", [MissionResult.NO_SPACE, MissionResult.CANCELLED])
+def test_a_vehicle_that_boots_or_has_given_up_is_asked_again(result):
+    state, _ = upload.hear(begun(), ack(result), 0.1)
+    assert not state.over
+    _, sent = upload.tick(state, 3.0)
+    assert [message.name for message in sent] == ["MISSION_COUNT"]
+
+
+def test_a_final_no_ends_it():
+    state, _ = upload.hear(begun(), ack(MissionResult.DENIED), 0.1)
+    assert state.over
+    assert state.refusal == MissionResult.DENIED
+
+
+def test_an_acceptance_that_comes_too_early_is_not_believed():
+    state, _ = upload.hear(begun(), ack(MissionResult.ACCEPTED), 0.1)
+    assert not state.over
+
+
+def test_a_lost_ack_ends_the_upload_by_silence():
+    state = begun()
+    for index in range(len(ITEMS)):
+        state, _ = upload.hear(state, asked(index), 0.1)
+    assert not upload.tick(state, 2.0)[0].over
+    assert upload.tick(state, 4.0)[0].over
+
+
+def test_home_is_not_compared_and_all_of_a_fence_is():
+    other = (replace(ITEMS[0], x=0), *ITEMS[1:])
+    assert same(ITEMS, other, MissionType.MISSION)
+    assert not same(FENCE, (replace(FENCE[0], x=0), *FENCE[1:]), MissionType.FENCE)
+    assert not same(ITEMS, ITEMS[:-1], MissionType.MISSION)
+    assert not same(ITEMS, (*ITEMS[:-1], replace(ITEMS[-1], x=ITEMS[-1].x + 1)), MissionType.MISSION)
+
+
+class Line:
+    """A vehicle's store and our sync with a line between them, by a clock of their own."""
+
+    def __init__(self, items, kind, fates, store=None):
+        self.sync = sync.begin(items, kind, 1)
+        self.store = store or Store("MISSION_REQUEST")
+        self.fates = iter(fates)
+        self.now = 0.0
+
+    def through(self, messages, **who):
+        for message in messages:
+            for _ in range(next(self.fates, 1)):  # how many copies arrive
+                yield replace(message, **who)
+
+    def step(self, seconds=0.1):
+        self.now += seconds
+        self.sync, ours = sync.tick(self.sync, self.now)
+        theirs = self.store.tick(self.now)
+        for _ in range(40):
+            if not ours and not theirs:
+                return
+            answers = []
+            for message in self.through(ours, system=255, component=190):
+                answers += self.store.hear(message, ready=self.now > 3.0, now=self.now)
+            ours = []
+            for message in self.through([*theirs, *answers], system=1, component=1):
+                self.sync, sent = sync.hear(self.sync, message, self.now)
+                ours += sent
+            theirs = []
+
+
+@pytest.mark.parametrize(("items", "kind"), KINDS)
+def test_a_sync_is_confirmed_only_by_what_is_read_back(items, kind):
+    line = Line(items, kind, ())
+    while not line.sync.confirmed:
+        line.step()
+    assert same(items, line.store.items[kind], kind)
+    assert line.now < 6.0
+
+
+@given(st.lists(st.sampled_from([0, 0, 1, 1, 1, 2]), max_size=80), st.sampled_from(KINDS))
+def test_whatever_is_lost_or_doubled_it_is_on_board_when_confirmed(fates, which):
+    items, kind = which
+    line = Line(items, kind, fates)
+    while not line.sync.confirmed:
+        line.step()
+        assert line.now < 200.0
+        assert line.sync.refusal is None
+    assert same(items, line.store.items[kind], kind)
+
+
+def test_a_vehicle_that_keeps_something_else_is_found_out():
+    class Forgetful(Store):
+        def _complete(self, going):
+            return super()._complete(replace(going, items=(*going.items[:-1], Item(Cmd.WAYPOINT, 1, 1))))
+
+    line = Line(ITEMS, MissionType.MISSION, (), Forgetful("MISSION_REQUEST"))
+    while line.sync.refusal is None:
+        line.step()
+        assert line.now < 100.0
+    assert "differs" in line.sync.refusal
+    assert not line.sync.confirmed
+
+
+def test_a_vehicle_gives_up_after_eight_seconds_and_says_so():
+    store = Store("MISSION_REQUEST")
+    count = replace(say("MISSION_COUNT", target_system=1, count=3, mission_type=0), system=255, component=190)
+    (request,) = store.hear(count, ready=True, now=0.0)
+    said = [message for tenth in range(1, 100) for message in store.tick(tenth / 10)]
+    assert request["seq"] == 0
+    assert [message.name for message in said] == ["MISSION_REQUEST"] * 7 + ["MISSION_ACK"]
+    assert said[-1]["type"] == MissionResult.CANCELLED
+    assert GIVE_UP == 8.0
+
+
+def test_an_upload_for_another_station_is_not_consumed():
+    store = Store("MISSION_REQUEST")
+    count = say("MISSION_COUNT", target_system=1, count=2, mission_type=0)
+    store.hear(replace(count, system=255, component=190), ready=True, now=0.0)
+    answer = store.hear(replace(count, system=253, component=190), ready=True, now=0.1)
+    assert [(message.name, message["type"], message.target) for message in answer] == [
+        ("MISSION_ACK", MissionResult.DENIED, 253)
+    ]
+    assert store.receiving.station == 255

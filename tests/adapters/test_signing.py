@@ -1,0 +1,187 @@
+"""MAVLink 2 signing: forged, unsigned and replayed packets are neither obeyed by a vehicle nor believed of one."""
+
+import asyncio
+import socket
+
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega
+from worlds import AREA, EPOCH, flight, until
+
+from adapters.mavlink.codec import Decoder, Encoder
+from adapters.mavlink.command import long
+from adapters.mavlink.message import say
+from adapters.mavlink.numbers import Cmd
+from adapters.mavlink.signing import Signing, Verdict, check, load, new_key, save, setup_signing, stamp
+from adapters.plugin import Arrived, GoTo
+from adapters.simulated import Kind, Vehicle, protocol, run
+from adapters.simulated.reporting import Reporter
+from physical import PhysicalError
+
+KEY, WRONG = new_key("oil spill"), new_key("something else")
+NOW = EPOCH
+MANUAL_TO_RTL = long(Cmd.DO_SET_MODE, 1, 1, 11)
+
+
+def frame(key, time, system=255):
+    return Encoder(system, 190, key).pack(MANUAL_TO_RTL, protocol.timestamp(time))
+
+
+def heard(raw):
+    (message,) = Decoder().feed(raw)
+    return message
+
+
+def judged(state, raw):
+    return check(state, heard(raw))
+
+
+def test_a_signed_packet_is_good_once_and_a_replay_after_that():
+    state = stamp(Signing(KEY), NOW)
+    raw = frame(KEY, NOW + 1)
+    state, first = judged(state, raw)
+    state, second = judged(state, raw)
+    assert (first, second) == (Verdict.GOOD, Verdict.REPLAYED)
+
+
+def test_an_unsigned_and_a_forged_packet_are_told_apart():
+    state = stamp(Signing(KEY), NOW)
+    assert judged(state, frame(None, NOW))[1] is Verdict.UNSIGNED
+    assert judged(state, frame(WRONG, NOW))[1] is Verdict.FORGED
+
+
+def test_every_single_bit_that_changes_makes_a_packet_forged_or_garbage():
+    state, raw = stamp(Signing(KEY), NOW), frame(KEY, NOW + 1)
+    for bit in range(len(raw) * 8):
+        changed = bytearray(raw)
+        changed[bit // 8] ^= 1 << bit % 8
+        for message in Decoder().feed(bytes(changed)):
+            assert not hasattr(message, "name") or check(state, message)[1] is not Verdict.GOOD
+
+
+def test_a_forged_packet_from_the_future_does_not_silence_the_true_sender():
+    state = stamp(Signing(KEY), NOW)
+    state, _ = judged(state, frame(KEY, NOW + 1))
+    state, verdict = judged(state, frame(WRONG, NOW + 1e6))
+    assert verdict is Verdict.FORGED
+    assert judged(state, frame(KEY, NOW + 2))[1] is Verdict.GOOD
+
+
+def test_a_new_stream_may_be_a_minute_behind_and_no_more():
+    state = stamp(Signing(KEY), NOW)
+    assert judged(state, frame(KEY, NOW - 59))[1] is Verdict.GOOD
+    assert judged(state, frame(KEY, NOW - 61))[1] is Verdict.REPLAYED
+
+
+def test_time_stamps_grow_even_when_the_clock_stands_or_goes_back():
+    state = stamp(Signing(KEY), NOW)
+    assert stamp(state, NOW).timestamp == state.timestamp + 1
+    assert stamp(state, NOW - 100).timestamp == state.timestamp + 1
+
+
+def test_the_state_on_disk_refuses_replays_of_the_run_before(tmp_path):
+    path = tmp_path / "key.json"
+    state, raw = stamp(Signing(KEY), NOW), frame(KEY, NOW + 1)
+    state, _ = judged(state, raw)
+    save(state, path)
+    again = load(path)
+    assert judged(again, raw)[1] is Verdict.REPLAYED
+    assert stamp(again, NOW).timestamp > state.timestamp
+    assert path.stat().st_mode & 0o077 == 0
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{}", '{"key": "00", "timestamp": 0, "streams": {}}', "[1]", '{"key": 5}']
+)
+def test_a_key_file_that_is_none_is_the_users_mistake(tmp_path, text):
+    path = tmp_path / "key.json"
+    path.write_text(text)
+    with pytest.raises(PhysicalError, match="key"):
+        load(path)
+
+
+def test_pymavlink_accepts_what_we_sign_and_refuses_what_others_do():
+    reader = ardupilotmega.MAVLink(None)
+    reader.signing.secret_key, reader.signing.timestamp = KEY, protocol.timestamp(NOW)
+    reader.robust_parsing = True
+    (good,) = reader.parse_buffer(frame(KEY, NOW + 1))
+    (bad,) = reader.parse_buffer(frame(WRONG, NOW + 2))
+    assert (good.get_type(), good.get_signed(), bad.get_type()) == ("COMMAND_LONG", True, "BAD_DATA")
+
+
+def test_after_setup_signing_only_signed_commands_are_obeyed():
+    vehicle, reporter = Vehicle(Kind.PLANE, (37.0, -8.6, 20.0)), Reporter()
+    for raw, time in ((frame(None, NOW), NOW), (Encoder(255, 190).pack(setup_signing(KEY, NOW, 1)), NOW)):
+        protocol.hear(vehicle, reporter, heard(raw), time)
+    assert vehicle.mode == 11
+    vehicle.mode = 0
+    good = frame(KEY, NOW + 1)
+    for raw in (frame(None, NOW + 1), frame(WRONG, NOW + 1)):
+        assert protocol.hear(vehicle, reporter, heard(raw), NOW + 1) == []
+    assert vehicle.mode == 0
+    assert protocol.hear(vehicle, reporter, heard(good), NOW + 1)
+    assert vehicle.mode == 11
+    vehicle.mode = 0
+    assert protocol.hear(vehicle, reporter, heard(good), NOW + 2) == []  # replayed
+    assert vehicle.mode == 0
+
+
+def test_the_first_link_of_a_vehicle_obeys_unsigned_packets_too():
+    vehicle = Vehicle(Kind.PLANE, (37.0, -8.6, 20.0), signing=Signing(KEY), accept_unsigned=True)
+    protocol.hear(vehicle, Reporter(), heard(frame(None, NOW)), NOW)
+    assert vehicle.mode == 11
+
+
+def test_a_signed_flight_arrives_among_forged_unsigned_and_replayed_packets(tmp_path):
+    path = tmp_path / "key.json"
+    save(Signing(KEY), path)
+
+    async def main():
+        async with flight(key_file=path, signing=Signing(KEY)) as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await until(lambda: f.world.property("uav0"))
+            nowhere = {"alt": 0, "relative_alt": 0, "vx": 0, "vy": 0, "vz": 0, "hdg": 0}
+            lie = say("GLOBAL_POSITION_INT", time_boot_ms=10_000_000, lat=500_000_000, lon=80, **nowhere)
+            stamped = protocol.timestamp(f.world.now() + 100)
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+                for key in (None, WRONG):
+                    link.sendto(Encoder(1, 1, key).pack(lie, stamped), f.plugin.local)
+            assert isinstance(await f.ended("r1"), Arrived)
+            assert {"unsigned packet", "forged signature"} <= f.world.troubles()
+            assert all(published.property.geometry.vertices[0][0] < 38 for published in f.world.published)
+
+    run(main())
+    assert load(path).timestamp > 0
+
+
+def test_a_vehicle_that_does_not_sign_is_not_believed(tmp_path):
+    path = tmp_path / "key.json"
+    save(Signing(KEY), path)
+
+    async def main():
+        async with flight(key_file=path) as f:
+            await asyncio.sleep(30)
+            assert f.world.published == []
+            assert "unsigned packet" in f.world.troubles()
+
+    run(main())
+
+
+def test_the_recorded_packet_of_one_run_is_a_replay_in_the_next(tmp_path):
+    path = tmp_path / "key.json"
+    save(Signing(KEY), path)
+    frames = []
+
+    async def main():
+        async with flight(
+            key_file=path, signing=Signing(KEY), tap=lambda _time, raw: frames.append(raw)
+        ) as f:
+            await until(lambda: f.world.property("uav0"))
+
+    run(main())
+    state, verdicts = load(path), set()
+    for raw in frames:
+        message = heard(raw)
+        if message.system == 1:
+            state, verdict = check(state, message)
+            verdicts.add(verdict)
+    assert verdicts == {Verdict.REPLAYED}
