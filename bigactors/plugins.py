@@ -4,10 +4,18 @@ from __future__ import annotations
 
 from argparse import Namespace
 from collections.abc import Callable
+from pathlib import Path
 
-from adapters.mavlink.autopilot import Autopilot
+from adapters.addresses import parse_address
+from adapters.ais import AisFeed
+from adapters.detections import Detections
+from adapters.location import LocationService
+from adapters.mavlink.autopilot import Autopilot, Tap
 from adapters.mavlink.fleet import Craft, Stations
+from adapters.naming import NamingService
+from adapters.places import StaticPlaces
 from adapters.plugin import Plugin
+from adapters.web import Listen
 from bigactors.mistakes import Mistake, suggestion
 from physical import PhysicalError
 from semantics.reactions import CONTROL_AUTHORITY
@@ -16,25 +24,29 @@ from specs.elaboration import ElaboratedMission
 MOST_STATIONS = 254
 
 
-def plugins_of(options: Namespace, mission: ElaboratedMission) -> tuple[tuple[Plugin, ...], dict[str, str]]:
-    """Return the plugins of a run, and which of them owns each vehicle; raises Mistake."""
+def plugins_of(
+    options: Namespace, mission: ElaboratedMission, tap: Tap | None = None
+) -> tuple[tuple[Plugin, ...], dict[str, str]]:
+    """Return the plugins of a run, and which of them owns each vehicle; `tap` is told every frame; raises Mistake."""
     try:
-        vehicles = _vehicles(options, mission)
-        feeds = tuple(_feed(kind, address, number) for number, (kind, address) in enumerate(options.feed, 1))
+        vehicles = _vehicles(options, mission, tap)
+        naming = NamingService(dict(options.name))
+        feeds = tuple(_feed(kind, address, n, naming) for n, (kind, address) in enumerate(options.feed, 1))
     except PhysicalError as error:
         raise Mistake(error.message, error.hint) from error
     owners = {name: plugin.name for plugin in vehicles for name, _, _ in options.vehicle if plugin.owns(name)}
     return (*vehicles, *feeds), owners
 
 
-def _vehicles(options: Namespace, mission: ElaboratedMission) -> tuple[Plugin, ...]:
+def _vehicles(options: Namespace, mission: ElaboratedMission, tap: Tap | None) -> tuple[Plugin, ...]:
     links: dict[str, list[Craft]] = {}
     for name, system, address in options.vehicle:
         links.setdefault(address, []).append(_craft(name, system, mission))
     _check_all_driven(options, mission)
     stations = _stations(options, mission)
     return tuple(
-        Autopilot(f"autopilot {address}", address, crafts, stations) for address, crafts in links.items()
+        Autopilot(f"autopilot {address}", address, crafts, stations, tap=tap)
+        for address, crafts in links.items()
     )
 
 
@@ -89,13 +101,38 @@ def _is_authority(channel: str) -> bool:
     return channel.partition(":")[0] == CONTROL_AUTHORITY
 
 
-FEEDS: dict[str, Callable[[str, str], Plugin]] = {}
-"""For each kind of feed what makes its plugin from a name and an address."""
+def _ais(name: str, address: str, naming: NamingService) -> Plugin:
+    return AisFeed(name, address, naming)
 
 
-def _feed(kind: str, address: str, number: int) -> Plugin:
+def _places(name: str, address: str, _naming: NamingService) -> Plugin:
+    return StaticPlaces(name, Path(address.removeprefix("file:")))
+
+
+def _detections(name: str, address: str, naming: NamingService) -> Plugin:
+    scheme, _, rest = address.partition(":")
+    if scheme == "folder" and rest:
+        return Detections(name, folder=Path(rest), naming=naming)
+    listen = parse_address(address.replace("http:", "tcpin:", 1))
+    return Detections(name, listen=Listen(listen.port, listen.host), naming=naming)
+
+
+def _locations(name: str, address: str, naming: NamingService) -> Plugin:
+    return LocationService(name, address, naming=naming)
+
+
+FEEDS: dict[str, Callable[[str, str, NamingService], Plugin]] = {
+    "ais": _ais,
+    "detections": _detections,
+    "locations": _locations,
+    "places": _places,
+}
+"""For each kind of feed what makes its plugin from a name, an address and the names of the mission."""
+
+
+def _feed(kind: str, address: str, number: int, naming: NamingService) -> Plugin:
     make = FEEDS.get(kind)
     if make is None:
         hint = suggestion(kind, FEEDS) or f"the feeds are {', '.join(FEEDS) or 'none in this version'}"
         raise Mistake(f"there is no feed '{kind:.40}'", hint)
-    return make(f"{kind}{number}", address)
+    return make(f"{kind}{number}", address, naming)

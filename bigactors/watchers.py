@@ -5,8 +5,11 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import BinaryIO
 
 from adapters.live.state import Finding, Heard, Turn
+from adapters.mavlink.tlog import entry
 from adapters.plugin import Report
 from adapters.recording.writing import Recorder
 from bigactors.terminal import paint, say, tell
@@ -82,3 +85,17 @@ class Tape:
     def turned(self, turn: Turn, now: float) -> None:
         """Record a turn: its commands are on file before they are sent."""
         self.recorder.turn(turn, now, self.resting)
+
+
+class Log:
+    """A telemetry log: every frame heard and said, with its time, as other ground stations read it."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._file: BinaryIO | None = None
+
+    def __call__(self, time: float, frame: bytes) -> None:
+        """Write a frame at once: what was written survives the process."""
+        if self._file is None:
+            self._file = self._path.open("ab", buffering=0)
+        self._file.write(entry(time, frame))

@@ -107,7 +107,7 @@ def _move(turning: Turning, entity: Name, here: Placement | None, seen: Placemen
     writes: dict[Cell, object] = {placement_cell(entity): seen}
     if here is None:
         writes[channels_cell(entity)] = _channels_of_newcomer(turning, entity)
-    around = sorted(Fences(there).holders(entity, said.kind, seen))
+    around = sorted(Fences(there).holders(entity, there.setting.kind(entity), seen))
     verb = "appears in" if here is None else "is seen in"
     sight = Sight(f"{entity} {verb} {', '.join(around) or REGION}", writes, admits)
     if turning.observe(sight, happening(turning.c, sight)):

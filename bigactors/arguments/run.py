@@ -6,7 +6,7 @@ from typing import Final
 
 from bigactors.arguments.common import MISSION
 from bigactors.arguments.parser import Command, Parser
-from bigactors.arguments.values import named, seconds, substitute
+from bigactors.arguments.values import identity, named, seconds, substitute
 
 DESCRIPTION: Final = """\
 Fly a mission: the rules that were checked move one configuration, as telemetry and feeds let them. It begins only with
@@ -39,7 +39,8 @@ def fill(parser: Parser) -> None:
         action="append",
         default=[],
         type=feed,
-        help="positions come from ADDRESS, such as ais=udp:10110 or ais=file:harbour.nmea; may be repeated",
+        help="positions come from ADDRESS, such as ais=udp:10110 or ais=file:harbour.nmea; the kinds are ais, "
+        "places, detections and locations; may be repeated",
     )
     parser.add_argument(
         "--station",
@@ -49,7 +50,20 @@ def fill(parser: Parser) -> None:
         type=station,
         help="the MAVLink system id of a ground station (default: 255, 254, ... in the order of their names)",
     )
-    parser.add_argument("--record", metavar="FILE", type=named, help="record everything into FILE (MCAP)")
+    parser.add_argument(
+        "--name",
+        metavar="IDENTITY=NAME",
+        action="append",
+        default=[],
+        type=identity,
+        help="what the mission calls a transponder, such as mmsi:244660274=drifter0; may be repeated",
+    )
+    parser.add_argument(
+        "--record",
+        metavar="FILE",
+        type=named,
+        help="record everything into FILE (MCAP), and every MAVLink frame into a tlog beside it",
+    )
     parser.add_argument(
         "--resume",
         metavar="FILE",

@@ -3,18 +3,22 @@
 import sys
 import time
 from argparse import Namespace
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from textwrap import indent
 from typing import Any
 
 from adapters.recording.reading import Recording, is_recording
 from bigactors.exits import Exit
-from bigactors.files import read_json
+from bigactors.files import read_bytes, read_json
+from bigactors.foreign import watched
 from bigactors.missions import digest_of, open_mission, shipped_missions, variation_of
 from bigactors.mistakes import Mistake
 from bigactors.recordings import mission_of, open_recording, trace_of
 from bigactors.terminal import is_terminal, paint, say, tell
+from bigraphs import draw_text
 from checker import ReplayError, Trace, print_trace, replay
+from semantics.abstraction import as_it_is
 from semantics.monitor import monitored
 from semantics.printing import print_configuration
 from specs.elaboration import ElaboratedMission, Variation
@@ -22,6 +26,8 @@ from specs.elaboration import ElaboratedMission, Variation
 
 def run(options: Namespace) -> Exit:
     """Replay a trace and print it; a step that the rules do not allow ends it."""
+    if is_foreign(options.trace):
+        return show_foreign(options)
     try:
         mission, trace = read_trace(options.trace, options.mission, variation_of(options))
     except ReplayError as error:
@@ -30,10 +36,33 @@ def run(options: Namespace) -> Exit:
     recording = open_recording(options.trace) if is_recording(options.trace) else None
     if recording is not None:
         _introduce(recording)
-    for line in paced(trace, recording, options.speed, stepwise=options.step):
+    times = () if recording is None else tuple(message.time for message in recording.of("steps"))
+    for line in paced(trace, times, options.speed, stepwise=options.step):
         say(line)
     say(f"c{len(trace)} = {print_configuration(trace.configurations[-1])}")
     say(f"{options.trace}: {len(trace)} steps replayed on {mission.name}")
+    return Exit.HOLDS
+
+
+def is_foreign(path: str) -> bool:
+    """Tell whether a file is neither a trace nor a recording of ours: a telemetry log, or AIS."""
+    return not is_recording(path) and read_bytes(path, 64).lstrip()[:1] != b"{"
+
+
+def show_foreign(options: Namespace) -> Exit:
+    """Print what a recording of others shows of a mission's world, and the bigraph that it ends in."""
+    if options.mission is None:
+        hint = "say in which mission's places it is to be seen: --mission FILE"
+        raise Mistake("this is no trace of ours", hint, options.trace)
+    mission = open_mission(options.mission, variation_of(options))
+    shown = watched(options.trace, mission, dict(options.name))
+    for line in paced(shown.trace, shown.times, options.speed, stepwise=options.step):
+        say(line)
+    for finding in shown.findings:
+        tell(finding.message, "not as the mission says:")
+    say(f"c{len(shown.trace)} shows")
+    say(indent(draw_text(as_it_is(shown.trace.configurations[-1]).structure.logical.bigraph()), "  "))
+    say(f"{options.trace}: {shown.positions:,} positions, {len(shown.trace)} changes of the bigraph")
     return Exit.HOLDS
 
 
@@ -75,9 +104,8 @@ def _introduce(recording: Recording) -> None:
         tell("the recording has no end: the run was killed")
 
 
-def paced(trace: Trace, recording: Recording | None, speed: float | None, *, stepwise: bool) -> Iterator[str]:
+def paced(trace: Trace, times: Sequence[float], speed: float | None, *, stepwise: bool) -> Iterator[str]:
     """Yield the lines of a trace: at once, at a multiple of the speed it was recorded at, or step by step."""
-    times = [] if recording is None else [message.time for message in recording.of("steps")]
     step = -1
     for line in print_trace(trace):
         if line.startswith("c"):

@@ -28,7 +28,7 @@ from bigactors.recordings import Resumed, resume
 from bigactors.sockets import socket_of
 from bigactors.terminal import paint, say, tell
 from bigactors.verdict_files import Licence, find_verdict, licence_for
-from bigactors.watchers import Tape, Terminal
+from bigactors.watchers import Log, Tape, Terminal
 from semantics.setting import Control, Scheduler
 from specs.elaboration import ElaboratedMission, Variation
 
@@ -91,7 +91,8 @@ def prepare(options: Namespace) -> Flight:
     live = Variation(Scheduler.FCFS, Control.TIMED, sources)
     mission = open_mission(options.file, live)
     licence = _licence(options, live)
-    plugins, owners = plugins_of(options, mission)
+    log = None if options.record is None else Log(Path(options.record).with_suffix(".tlog"))
+    plugins, owners = plugins_of(options, mission, log)
     strict = licence is not None and licence.scheduler is Scheduler.FCFS
     plan = Plan(mission.initial, owners, mission.precautions, strict)
     before = None if options.resume is None else resume(options.resume, mission)
