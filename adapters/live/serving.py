@@ -23,10 +23,13 @@ SERVING: dict[type, tuple[Rule, ...]] = {
 }
 """What serves a request. A flight ends when it is seen to end, without a turn."""
 
-STEPS_PER_SECOND = 40.0
-"""How fast an agent may go on: one that loops without waiting for anything must not keep others from it."""
+STEPS_PER_SECOND = 8.0
+"""How fast an agent may go on: one that looks again and again looks about twice a second, and keeps nobody from it."""
 
-BURST = 120.0
+PATIENCE = 0.02
+"""Seconds for which an agent that is too fast waits at least."""
+
+BURST = 100.0
 """How many steps an agent may take at once."""
 
 

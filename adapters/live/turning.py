@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from adapters.live.orders import destination, hand_overs, is_done, renewed
-from adapters.live.serving import STEPS_PER_SECOND, in_turn, own_steps, refilled, served
+from adapters.live.serving import PATIENCE, STEPS_PER_SECOND, in_turn, own_steps, refilled, served
 from adapters.live.sightings import Fences, placement_seen
 from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Pace, Plan, Turn
 from adapters.plugin import Command, HandOver, Hold, Return
@@ -147,7 +147,7 @@ class Turning:
         """Let an agent take one step of its own, if its pace allows one."""
         pace = refilled(self.paces.get(a), self.now)
         if pace.tokens < 1:
-            self.wake(self.now + (1 - pace.tokens) / STEPS_PER_SECOND)
+            self.wake(self.now + max(PATIENCE, (1 - pace.tokens) / STEPS_PER_SECOND))
             return False
         try:
             found = own_steps(self.c, a)

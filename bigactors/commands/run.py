@@ -6,8 +6,8 @@ import asyncio
 import sys
 import time
 from argparse import Namespace
-from collections.abc import Sequence
-from contextlib import AsyncExitStack
+from collections.abc import Iterator, Sequence
+from contextlib import AsyncExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -65,20 +65,14 @@ def run(options: Namespace) -> Exit:
     """Fly a mission, if there is a verdict that everything holds."""
     flight = prepare(options)
     terminal = Terminal(flight.resting)
-    tape = _tape(flight)
-    reason = "interrupted"
     try:
-        ending = asyncio.run(fly(flight, (terminal, *([tape] if tape else []))))
-        reason = ending.reason
+        with record(flight) as tape:
+            ending = asyncio.run(fly(flight, (terminal, *([tape] if tape else []))))
     except (NotAsAssumed, NotHeard, PluginFailed) as error:
-        reason = str(error)
         return _not_begun(error)
     except KeyboardInterrupt:
         tell("interrupted: vehicles go on as they were told last")
         return Exit.INCOMPLETE
-    finally:
-        if tape is not None:
-            tape.recorder.close(reason, time.time())
     say(f"{ending.reason} after {ending.state.number} steps")
     if terminal.broken:
         return Exit.VIOLATED
@@ -113,6 +107,21 @@ def _licence(options: Namespace, live: Variation) -> Licence | None:
         hint = f"bigactors check --control timed --verdict {Path(name).stem}.verdict.json {name}, or --unverified"
         raise Mistake("there is no verdict that this mission holds", hint, name)
     return licence_for(name, path, live)
+
+
+@contextmanager
+def record(flight: Flight) -> Iterator[Tape | None]:
+    """Record what happens inside, and how it ended, if a recording is asked for."""
+    tape = _tape(flight)
+    reason = "the run has ended"
+    try:
+        yield tape
+    except BaseException as error:
+        reason = str(error) or type(error).__name__
+        raise
+    finally:
+        if tape is not None:
+            tape.recorder.close(reason, time.time())
 
 
 def _tape(flight: Flight) -> Tape | None:

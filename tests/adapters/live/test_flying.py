@@ -7,7 +7,7 @@ import pytest
 from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
-from bigactors.commands.run import _tape, fly, prepare
+from bigactors.commands.run import fly, prepare, record
 from bigactors.mistakes import Mistake
 from bigactors.recordings import open_recording, trace_of
 from bigactors.watchers import Terminal
@@ -50,19 +50,18 @@ async def flown(flight, tape, kind, home, disturbance):
 
 def test_the_oil_spill_mission_flies_is_recorded_and_replays_equal(verified):
     folder = verified("oil_spill")
-    record = folder / "run.mcap"
-    flight = prepare(options_of("oil_spill", folder, "--record", str(record), "--for", "3000"))
-    tape = _tape(flight)
-    ending, terminal, vehicle = run(flown(flight, tape, Kind.PLANE, AIRFIELD, Disturbance()))
-    tape.recorder.close(ending.reason, 0.0)
+    path = folder / "run.mcap"
+    flight = prepare(options_of("oil_spill", folder, "--record", str(path), "--for", "3000"))
+    with record(flight) as tape:
+        ending, terminal, vehicle = run(flown(flight, tape, Kind.PLANE, AIRFIELD, Disturbance()))
     assert ending.reason == "the mission has ended"
     assert not terminal.broken
     assert vehicle.flies
-    recording = open_recording(str(record))
+    recording = open_recording(str(path))
     trace = trace_of(recording, flight.mission)
     assert trace.configurations[-1] == ending.state.configuration
     assert ending.state.configuration.structure.logical.parent("uav0") == "oilSpill0"
-    assert main(["replay", str(record)]) == 0
+    assert main(["replay", str(path)]) == 0
 
 
 def test_changing_one_character_of_the_mission_makes_run_refuse_it(verified):
