@@ -72,7 +72,9 @@ def _telemetry(
     """Yield the positions of the vehicles that the table names by system id; of all as UAVs if it names none."""
     kinds = mission.setting.kinds
     systems = ((identity.partition(":"), name) for identity, name in names.items())
-    table = {int(number): name for (scheme, _, number), name in systems if scheme == "mavlink" and number.isdigit()}
+    table = {
+        int(number): name for (scheme, _, number), name in systems if scheme == "mavlink" and number.isdigit()
+    }
     crafts = {system: Craft(name, kinds.get(name, "UAV"), system) for system, name in table.items()}
     if not crafts:
         crafts = {system: Craft(f"mavlink{system}", "UAV", system) for system in range(1, 256)}

@@ -137,7 +137,7 @@ SCHEMAS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
     "arrivals": (f"bigactors.arrival/{VERSION}", ARRIVAL),
     "steps": (f"bigactors.step/{VERSION}", STEP),
     "commands": (f"bigactors.command/{VERSION}", COMMAND),
-    "reports": (f"bigactors.report/{VERSION}", REPORT),
+    "reports": (f"bigactors.plugin_report/{VERSION}", REPORT),
     "sayings": (f"bigactors.saying/{VERSION}", SAYING),
     "findings": (f"bigactors.finding/{VERSION}", FINDING),
     "end": (f"bigactors.end/{VERSION}", END),

@@ -136,7 +136,6 @@ COMMAND = Command(
     "fly a mission that was checked",
     DESCRIPTION,
     (
-        "bigactors check --control timed --verdict oil_spill.verdict.json oil_spill.mission",
         f"bigactors run oil_spill.mission --vehicle uav0={ADDRESS} --feed ais=udp:10110 --record run.mcap",
         f"bigactors run oil_spill.mission --vehicle uav0={ADDRESS} --resume run.mcap --record more.mcap",
     ),
