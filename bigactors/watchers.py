@@ -99,3 +99,8 @@ class Log:
         if self._file is None:
             self._file = self._path.open("ab", buffering=0)
         self._file.write(entry(time, frame))
+
+    def close(self) -> None:
+        """End the log."""
+        if self._file is not None:
+            self._file.close()

@@ -18,7 +18,7 @@ from adapters.plugin import Aged, Command, Plugin, Published, Refused, Rejected,
 GATHER = 0.004
 """Seconds for which arrivals are gathered before the next turn."""
 
-SLICE = 12
+SLICE = 6
 """How many steps are taken before the loop looks at what has come in meanwhile."""
 
 IDLE = 0.5
@@ -208,6 +208,10 @@ class LiveRun:
             if broken and not forced:
                 raise NotAsAssumed(broken)
             self._take(turn)
+        if forced:
+            self.state = self.state.with_(
+                suspended=False
+            )  # who flies unverified has been told what is otherwise
         for order in (*self.state.orders.values(), *self.state.handing.values()):
             self._orders.put_nowait(
                 order.command

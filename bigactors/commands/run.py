@@ -45,6 +45,7 @@ class Flight:
         state: Where it begins.
         plugins: Its vehicles and feeds.
         resumed: The run that it goes on from.
+        log: What takes every frame.
     """
 
     options: Namespace
@@ -54,6 +55,7 @@ class Flight:
     state: LiveState
     plugins: tuple[Plugin, ...]
     resumed: Resumed | None
+    log: Log | None = None
 
     def resting(self, finding: Finding) -> tuple[str, ...]:
         """Return the properties whose verdicts rest on a broken assumption: all that were decided by exploring."""
@@ -93,7 +95,7 @@ def prepare(options: Namespace) -> Flight:
     state = started(plan)
     if before is not None:
         state = resumed(plan, before.configuration, before.steps, before.orders, time.time())
-    return Flight(options, mission, licence, plan, state, plugins, before)
+    return Flight(options, mission, licence, plan, state, plugins, before, log)
 
 
 def _licence(options: Namespace, live: Variation) -> Licence | None:
@@ -122,6 +124,8 @@ def record(flight: Flight) -> Iterator[Tape | None]:
     finally:
         if tape is not None:
             tape.recorder.close(reason, time.time())
+        if flight.log is not None:
+            flight.log.close()
 
 
 def _tape(flight: Flight) -> Tape | None:
