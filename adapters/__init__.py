@@ -1,5 +1,5 @@
-"""Live vehicles and feeds: plugins that publish physical properties and subscribe mobility commands.
+"""Live vehicles and feeds: plugins that publish physical properties and subscribe mobility commands (paper §3.2.1).
 
-Nothing is here yet. What it will stand on is: `semantics` for the rules that run, `physical.ais` for the decoding, and
-`semantics.mobility` for what a vehicle is told.
+`plugin` is their interface, `mavlink` the autopilots, `ais`, `places`, `detections` and `location` the feeds, `naming`
+who is called what; `simulated` are vehicles for tests and demonstrations. Plugins know nothing of agents or missions.
 """

@@ -1,4 +1,4 @@
-"""The plugin of static places: a GeoJSON file, read again when it changes."""
+"""The plugin of static places: a GeoJSON file, a waypoint file or a plan, read again when it changes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Final
 
 from adapters.plugin import Command, Gone, Refused, World
 from adapters.troubles import Troubles
-from physical import PhysicalError, PhysicalProperty, read_geojson
+from physical import PhysicalError, PhysicalProperty, read_geojson, read_plan, read_waypoints, waypoint_places
 
 EVERY: Final = 1.0
 """Seconds between two looks at the file."""
@@ -17,7 +17,7 @@ MAX_BYTES: Final = 10_000_000
 
 
 class StaticPlaces:
-    """A plugin for the places of a GeoJSON file.
+    """A plugin for the places of a file: GeoJSON, or by its ending `.waypoints` or `.plan` (waypoint0, waypoint1, ...).
 
     A file that can't be read any more is reported, and what it said last stays.
     """
@@ -61,13 +61,25 @@ class StaticPlaces:
         if stamp == self._seen:
             return
         self._seen = stamp
-        places = {place.entity: place for place in read_geojson(_read(self._path))}
+        places = {place.entity: place for place in _places(self._path)}
         for name in sorted(self._known.keys() - places.keys()):
             world.publish(Gone(name, world.now(), self._name))
         for name, place in places.items():
             if self._known.get(name) != place:
                 world.publish(place)
         self._known = places
+
+
+def _places(path: Path) -> tuple[PhysicalProperty, ...]:
+    if path.suffix == ".waypoints":
+        return waypoint_places(read_waypoints(_text(path)))
+    if path.suffix == ".plan":
+        return waypoint_places(read_plan(_text(path)))
+    return read_geojson(_read(path))
+
+
+def _text(path: Path) -> str:
+    return _read(path).decode("utf-8", errors="replace")  # what isn't text is refused with its line
 
 
 def _stamp(path: Path) -> tuple[int, int, int]:
@@ -88,4 +100,6 @@ def _read(path: Path) -> bytes:
 
 def _unreadable(path: Path, problem: OSError) -> PhysicalError:
     message = f"cannot read the places: {problem.strerror or problem}"
-    return PhysicalError("places", message, "give the path of a GeoJSON file", str(path))
+    return PhysicalError(
+        "places", message, "give the path of a GeoJSON file, a waypoint file or a plan", str(path)
+    )

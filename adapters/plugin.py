@@ -223,7 +223,8 @@ class Plugin(Protocol):
     `run` opens what has to be opened (an OSError or `PhysicalError` there says what is wrong with it), serves until
     it is cancelled, and then closes everything. `command` may be called from then on, also before the vehicle is
     heard; it returns as soon as the command is taken on, and raises Refused if it never can be. What becomes of it
-    is reported: any number of Accepted, then one Arrived or Rejected, unless another command takes its place.
+    is reported: any number of Accepted, then one Arrived or Rejected, unless another command takes its place. A request
+    that was rejected is refused from then on: who wants it all the same asks anew.
     """
 
     @property

@@ -7,6 +7,7 @@ everything here is said again anyway.
 from __future__ import annotations
 
 import asyncio
+import socket
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager, suppress
 from typing import Any, Final, Protocol
@@ -20,6 +21,9 @@ AGAIN: Final = 1.0
 
 MAX_UNSENT: Final = 262_144
 """Bytes that may wait in a connection."""
+
+BURST: Final = 1_048_576
+"""Bytes that a socket is asked to hold while something else is served; systems give less."""
 
 MAX_PEERS: Final = 64
 """Connections accepted by one port."""
@@ -75,6 +79,8 @@ class _Datagrams(asyncio.DatagramProtocol):
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         self._transport = transport
+        link = transport.get_extra_info("socket")
+        link.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BURST)
 
     def datagram_received(self, data: bytes, addr: tuple[Any, ...]) -> None:
         self._receive((addr[0], addr[1]), data)

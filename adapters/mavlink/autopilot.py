@@ -27,7 +27,7 @@ from adapters.transport import Port, Remote, open_port
 from adapters.troubles import Troubles
 from physical import PhysicalError
 
-TICK: Final = 0.1
+TICK: Final = 0.2
 HEARTBEAT: Final = 1.0
 SAVE: Final = 30.0
 """Seconds between two writings of the signing state: half of what runs ahead on disk."""
@@ -62,10 +62,10 @@ class Autopilot:
         key_file: Path | None = None,
         tap: Tap | None = None,
     ) -> None:
-        _check_crafts(crafts)
+        self._stations = stations or Stations()
+        _check_crafts(crafts, self._stations)
         self._name = name
         self._address = parse_address(address)
-        self._stations = stations or Stations()
         self._pilots = {craft.entity: Pilot(craft, self._stations, craft.system or 0) for craft in crafts}
         self._key_file = key_file
         self._signing = signing.load(key_file) if key_file else None
@@ -242,8 +242,12 @@ def _heartbeat() -> Message:
     )
 
 
-def _check_crafts(crafts: Sequence[Craft]) -> None:
+def _check_crafts(crafts: Sequence[Craft], stations: Stations) -> None:
     systems = [craft.system for craft in crafts]
+    if set(systems) & set(stations.ids.values()):
+        raise PhysicalError(
+            "vehicles", "a vehicle and a station share a system id", "give the station another"
+        )
     names = [craft.entity for craft in crafts]
     if len(set(names)) < len(names) or len(set(systems)) < len(systems):
         raise PhysicalError(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Final
 
 from adapters.mavlink.message import Message, say
@@ -36,7 +37,8 @@ def e7(at: Geometry) -> tuple[int, int]:
     return round(latitude * 1e7), round(longitude * 1e7)
 
 
-def route(path: Sequence[Geometry], height: float, *, takeoff: bool) -> Items:
+@lru_cache(maxsize=256)
+def route(path: tuple[Geometry, ...], height: float, *, takeoff: bool) -> Items:
     """Return the mission that visits points at a height above home and stays at the last.
 
     Item 0 stands for home, which the vehicle overwrites.
@@ -51,6 +53,7 @@ def route(path: Sequence[Geometry], height: float, *, takeoff: bool) -> Items:
     return (Item(Cmd.WAYPOINT, *e7(path[0]), 0.0, Frame.SEA_LEVEL), *first, *ways, stay)
 
 
+@lru_cache(maxsize=256)
 def fence(polygon: Geometry) -> Items:
     """Return the fence that keeps a vehicle within a polygon."""
     count = float(len(polygon.vertices))

@@ -25,7 +25,7 @@ def _objections(command: Command, craft: Craft, stations: Stations, known: Telem
         yield from _of_hand_over(command, stations, known)
     if isinstance(command, Follow) and not 0 < len(command.path) <= MAX_PATH:
         yield f"a path has 1 to {MAX_PATH} points, this one {len(command.path)}"
-    yield from _of_fence(command, craft)
+    yield from _of_fence(command, craft, known.profile)
     if isinstance(command, GoTo) and known.profile is not None:
         yield from _of_size(command, craft, known.profile)
 
@@ -44,15 +44,17 @@ def _of_hand_over(command: HandOver, stations: Stations, known: Telemetry) -> It
         yield f"it is not on {command.leave}"
 
 
-def _of_fence(command: Command, craft: Craft) -> Iterator[str]:
-    points: tuple[Geometry, ...] = ()
-    if isinstance(command, GoTo):
-        points = (waypoint(command.place),)
-    elif isinstance(command, Follow):
-        points = command.path
-    outside = [at for at in points if craft.fence is not None and not contains(craft.fence, at)]
+def _of_fence(command: Command, craft: Craft, profile: Profile | None) -> Iterator[str]:
+    """Object to points outside of the fence, and to a circle around the last that leaves it."""
+    if craft.fence is None or not isinstance(command, GoTo | Follow):
+        return
+    points = (waypoint(command.place),) if isinstance(command, GoTo) else command.path
+    radius = 0.0 if profile is None else craft.circle_of(profile)
+    outside = [at for at in points if not contains(craft.fence, at)]
     if outside:
         yield f"{outside[0]!r} lies outside the fence"
+    elif radius and not contains(craft.fence, _around(points[-1], radius)):
+        yield f"a circle of {radius:g} m around {points[-1]!r} leaves the fence"
 
 
 def _of_size(command: GoTo, craft: Craft, profile: Profile) -> Iterator[str]:
@@ -66,5 +68,9 @@ def holds_circle(place: Geometry, radius: float) -> bool:
     """Whether a circle around the waypoint of a place fits in it; at a point it is the best that can be done."""
     if place.is_point:
         return True
-    ((latitude, longitude),) = waypoint(place).vertices
-    return contains(place, circle((latitude, longitude), radius))
+    return contains(place, _around(waypoint(place), radius))
+
+
+def _around(at: Geometry, radius: float) -> Geometry:
+    ((latitude, longitude),) = at.vertices
+    return circle((latitude, longitude), radius)

@@ -5,6 +5,7 @@ A pure state machine: no socket, no clock, no randomness.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
@@ -38,6 +39,17 @@ AUTHORITY_UNKNOWN: Final = 10.0
 ASK_AUTHORITY: Final = 1.0
 CHECK_AUTHORITY: Final = 5.0
 
+_ANSWERS: Final = frozenset(
+    {
+        "COMMAND_ACK",
+        "MISSION_ACK",
+        "MISSION_COUNT",
+        "MISSION_ITEM_INT",
+        "MISSION_REQUEST",
+        "MISSION_REQUEST_INT",
+    }
+)
+
 Shown = tuple[Position | None, int | None, bool]
 """What the last publication rested on: position, authority, whether the link was lost."""
 
@@ -67,7 +79,7 @@ class Pilot:
     known: Telemetry = field(default_factory=Telemetry)
     link: Link = field(default_factory=Link)
     streams: Streams = field(default_factory=Streams)
-    on_board: frozenset[tuple[MissionType, Items]] = frozenset()
+    on_board: Mapping[MissionType, Items] = field(default_factory=dict)
     moving: Task | None = None
     handing: Task | None = None
     asked: float | None = None
@@ -90,6 +102,7 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     reason = objection(told, pilot.craft, pilot.stations, pilot.known)
     if reason:
         raise Refused(reason)
+    _check_not_rejected(pilot.moving, told)
     checked = pilot.known.profile is not None
     if isinstance(told, HandOver):
         station = pilot.stations.ids[told.join.removeprefix(CONTROL)]
@@ -98,6 +111,12 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
         )
     task = Task(told, since=now, boots=pilot.known.boots, checked=checked)
     return Outcome(replace(pilot, moving=_continued(pilot.moving, task)))
+
+
+def _check_not_rejected(before: Task | None, told: Command) -> None:
+    """Refuse a request that was rejected: a place that moves on must not take a vehicle back from its pilot."""
+    if before is not None and before.rejection and before.command.request == told.request:
+        raise Refused(f"the request was rejected: {before.rejection}", "ask anew")
 
 
 def _continued(before: Task | None, task: Task) -> Task:
@@ -112,15 +131,14 @@ def _continued(before: Task | None, task: Task) -> Task:
 def hear(pilot: Pilot, message: Message, now: float) -> Outcome:
     """Take a message of the vehicle that is meant for us, or for everybody."""
     known = absorb(pilot.known, message, now)
-    on_board = pilot.on_board if known.boots == pilot.known.boots else frozenset()
+    on_board = pilot.on_board if known.boots == pilot.known.boots else {}
     pilot = replace(pilot, known=known, on_board=on_board, streams=streams.hear(pilot.streams, message, now))
-    sent: list[Message] = []
-    if pilot.moving is not None and not pilot.moving.over:
-        heard = tasks.hear(pilot.moving, message, now)
-        pilot = replace(pilot, moving=heard.task)
-        sent += heard.sent
-    outcome = _advance(pilot, now)
-    return replace(outcome, sent=_spoken(pilot, (*sent, *outcome.sent)))
+    if message.name not in _ANSWERS or pilot.moving is None or pilot.moving.over:
+        pilot, published, trouble = _publication(pilot, now)
+        return Outcome(pilot, reports=trouble, published=published)  # tasks go on at the next tick
+    heard = tasks.hear(pilot.moving, message, now)
+    outcome = _advance(replace(pilot, moving=heard.task), now)
+    return replace(outcome, sent=_spoken(pilot, (*heard.sent, *outcome.sent)))
 
 
 def tick(pilot: Pilot, now: float) -> Outcome:
@@ -159,20 +177,18 @@ def _advance(pilot: Pilot, now: float) -> Outcome:
         if task is None or task.over:
             continue
         progress = _progress(pilot, task, now)
-        found = frozenset() if progress.on_board is None else frozenset({progress.on_board})
-        pilot = replace(pilot, on_board=_kept(pilot.on_board, found), **{slot: progress.task})  # type: ignore[arg-type]  # the slot's name is one of two
+        on_board = pilot.on_board if progress.on_board is None else {**pilot.on_board, **progress.on_board}
+        pilot = _onwards(pilot, slot, progress.task, on_board)
         sent += progress.sent
         reports += [progress.report] if progress.report else []
     pilot, published, trouble = _publication(pilot, now)
     return Outcome(pilot, tuple(sent), (*reports, *trouble), published)
 
 
-def _kept(
-    before: frozenset[tuple[MissionType, Items]], found: frozenset[tuple[MissionType, Items]]
-) -> frozenset[tuple[MissionType, Items]]:
-    """Replace what is on board by what was found there, kind by kind."""
-    kinds = {kind for kind, _ in found}
-    return frozenset(entry for entry in before if entry[0] not in kinds) | found
+def _onwards(pilot: Pilot, slot: str, task: Task, on_board: Mapping[MissionType, Items]) -> Pilot:
+    if slot == "handing":
+        return replace(pilot, handing=task, on_board=on_board)
+    return replace(pilot, moving=task, on_board=on_board)
 
 
 def _progress(pilot: Pilot, task: Task, now: float) -> Progress:

@@ -6,6 +6,7 @@ vehicle that booted anew need no cases of their own: the first thing that is not
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from adapters.mavlink import command as to
@@ -79,7 +80,7 @@ class Vehicle:
     system: int
     known: Telemetry
     profile: Profile
-    on_board: frozenset[tuple[MissionType, Items]]
+    on_board: Mapping[MissionType, Items]
     fence: Geometry | None
     circle: float
     height: float
@@ -116,7 +117,7 @@ def _prepared(vehicle: Vehicle) -> Step | None:
 
 
 def _loaded(vehicle: Vehicle, items: Items, kind: MissionType) -> Load | None:
-    return None if (kind, items) in vehicle.on_board else Load(items, kind)
+    return None if vehicle.on_board.get(kind) == items else Load(items, kind)
 
 
 def _go(command: GoTo, vehicle: Vehicle) -> Step:
@@ -162,8 +163,8 @@ def _mission_takeoff(vehicle: Vehicle, at: Geometry) -> Step | None:
 
 
 def _has_takeoff(vehicle: Vehicle) -> bool:
-    missions = (items for kind, items in vehicle.on_board if kind is MissionType.MISSION)
-    return any(len(items) > 1 and items[1].command == Cmd.TAKEOFF for items in missions)
+    items = vehicle.on_board.get(MissionType.MISSION, ())
+    return len(items) > 1 and items[1].command == Cmd.TAKEOFF
 
 
 def _sent(vehicle: Vehicle, at: Geometry) -> Step | None:

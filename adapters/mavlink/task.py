@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -36,6 +37,7 @@ class Task:
         doing: The exchange that this takes.
         accepted: Whether the state has shown that the vehicle does it.
         over: Whether it has arrived or was rejected.
+        rejection: Why it was rejected, if it was.
         begun: Whether the mission was seen at its first item.
         was_armed: Whether it was armed since the command.
         strange: Since when the state contradicts what it was.
@@ -51,6 +53,7 @@ class Task:
     doing: telling.Telling | syncing.Sync | None = None
     accepted: bool = False
     over: bool = False
+    rejection: str | None = None
     begun: bool = False
     was_armed: bool = False
     strange: float | None = None
@@ -65,7 +68,7 @@ class Progress:
     task: Task
     sent: tuple[Message, ...] = ()
     report: Report | None = None
-    on_board: tuple[MissionType, Items] | None = None
+    on_board: Mapping[MissionType, Items] | None = None
 
 
 def hear(task: Task, message: Message, now: float) -> Progress:
@@ -84,7 +87,7 @@ def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float)
     if isinstance(step, Underway):
         return _underway(task, step, now)
     if task.accepted or (task.was_armed and vehicle.known.armed is False):
-        return _contradicted(task, vehicle, now)
+        return _contradicted(task, step, vehicle, now)
     if step != task.step:
         task = replace(task, step=step, since=now, doing=_exchange(step, vehicle))
     if lost:
@@ -97,7 +100,8 @@ def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float)
 def rejected(task: Task, reason: str, now: float) -> Progress:
     """End a task without success."""
     command = task.command
-    return Progress(replace(task, over=True), report=Rejected(command.request, command.entity, now, reason))
+    report = Rejected(command.request, command.entity, now, reason)
+    return Progress(replace(task, over=True, rejection=reason), report=report)
 
 
 def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
@@ -109,12 +113,15 @@ def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
         )
     asked = task.step.message.fields if isinstance(task.step, Tell) else {}
     begins = asked.get("command") == Cmd.SET_MISSION_CURRENT and known.current == asked.get("param1")
-    return replace(task, begun=task.begun or begins, was_armed=task.was_armed or known.armed is True)
+    begun, was_armed = task.begun or begins, task.was_armed or known.armed is True
+    unchanged = (begun, was_armed) == (task.begun, task.was_armed)
+    return task if unchanged else replace(task, begun=begun, was_armed=was_armed)
 
 
 def _underway(task: Task, step: Underway, now: float) -> Progress:
     request, entity = task.command.request, task.command.entity
-    task = replace(task, strange=None, step=step, doing=None)
+    if (task.strange, task.step, task.doing) != (None, step, None):
+        task = replace(task, strange=None, step=step, doing=None)
     if step.done and not task.over:
         return Progress(replace(task, accepted=True, over=True), report=Arrived(request, entity, now))
     if not task.accepted:
@@ -122,7 +129,7 @@ def _underway(task: Task, step: Underway, now: float) -> Progress:
     return Progress(task)
 
 
-def _contradicted(task: Task, vehicle: Vehicle, now: float) -> Progress:
+def _contradicted(task: Task, step: Step, vehicle: Vehicle, now: float) -> Progress:
     """See whether someone else, or the vehicle itself, has undone it: then nobody here fights for it."""
     if task.strange is None or now - task.strange <= STRANGE:
         return Progress(task if task.strange is not None else replace(task, strange=now))
@@ -130,9 +137,9 @@ def _contradicted(task: Task, vehicle: Vehicle, now: float) -> Progress:
     if task.was_armed and known.armed is False:
         return rejected(task, "it was disarmed, and is not armed again without a new command", now)
     mode = vehicle.profile.mode_name(known.mode)
-    return rejected(
-        task, f"it does not do so any more (it is in {mode}): by itself, or told by someone else", now
-    )
+    missing = f", and would have to be told {step.why}" if isinstance(step, Tell) else ""
+    reason = f"it does not do so any more, by itself or told by someone else: it is in {mode}{missing}"
+    return rejected(task, reason, now)
 
 
 def _exchange(step: Step, vehicle: Vehicle) -> telling.Telling | syncing.Sync | None:
@@ -157,13 +164,15 @@ def _pursued(task: Task, now: float) -> Progress:
         return Progress(replace(task, doing=told), sent)
     if isinstance(task.doing, syncing.Sync):
         sync, sent = syncing.tick(task.doing, now)
-        done = (sync.kind, sync.items) if sync.confirmed else None
+        done = {sync.kind: sync.items} if sync.confirmed else None
         return Progress(replace(task, doing=sync), sent, on_board=done)
     return Progress(task)
 
 
 def _failure(step: Step, task: Task, vehicle: Vehicle) -> str:
     said = f"; its last words: {vehicle.known.said!r:.80}" if vehicle.known.said else ""
+    if vehicle.known.authority is None:
+        said += "; it does not tell which station it obeys: it may obey another"
     match step:
         case Wait():
             return f"{step.why}, for {_patience(step):.0f} s{said}"

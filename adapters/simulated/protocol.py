@@ -13,11 +13,19 @@ from adapters.mavlink.signing import EPOCH, UNITS, Signing, Verdict, check
 from adapters.simulated.body import metres_to
 from adapters.simulated.reporting import Reporter, parameter_value
 from adapters.simulated.vehicle import Target, Vehicle
+from physical import PhysicalError, polygon
 
 Answer = list[Message]
 
+_NAMES: Final[Mapping[float, str]] = MappingProxyType({number: name for name, (number, _) in STREAMS.items()})
+
 FARTHEST: Final = 50_000.0
 """Metres from home beyond which no target is taken."""
+
+HIGHEST: Final = 10_000.0
+LARGEST: Final = 1e6
+LONGEST: Final = 3.6e9
+"""Microseconds between two messages of a kind."""
 
 
 def hear(vehicle: Vehicle, reporter: Reporter, message: Message, now: float) -> Answer:
@@ -56,7 +64,7 @@ def _read_parameter(vehicle: Vehicle, _reporter: Reporter, message: Message) -> 
 
 def _set_parameter(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Answer:
     name = message["param_id"]
-    if name not in vehicle.parameters:
+    if name not in vehicle.parameters or not abs(message["param_value"]) <= LARGEST:
         return []
     vehicle.parameters[name] = message["param_value"]
     return [parameter_value(vehicle, name)]
@@ -95,10 +103,10 @@ _ANSWERS: Final[Mapping[str, Callable[[Vehicle, Reporter, Message], Answer]]] = 
 
 
 def _set_mode(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
-    mode = int(message["param2"])
+    mode = message["param2"]
     if mode not in vehicle.kind.profile.modes:
         return Result.FAILED
-    vehicle.mode = mode
+    vehicle.mode = int(mode)
     if mode == vehicle.kind.profile.guided and vehicle.armed:
         here = vehicle.body
         vehicle.target = Target(here.latitude, here.longitude, here.height, vehicle.kind.profile.circle)
@@ -122,7 +130,10 @@ def _take_off(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result
         return Result.UNSUPPORTED
     if not vehicle.armed or vehicle.mode != profile.guided or vehicle.flies:
         return Result.FAILED
-    vehicle.target = Target(vehicle.body.latitude, vehicle.body.longitude, message["param7"], profile.circle)
+    height = message["param7"]
+    if not abs(height) <= HIGHEST:
+        return Result.DENIED
+    vehicle.target = Target(vehicle.body.latitude, vehicle.body.longitude, height, profile.circle)
     return Result.ACCEPTED
 
 
@@ -131,32 +142,51 @@ def _reposition(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Resu
     if message.name != "COMMAND_INT" or not vehicle.armed:
         return Result.DENIED
     latitude, longitude = message["x"] / 1e7, message["y"] / 1e7
-    if not metres_to(vehicle.body, latitude, longitude)[0] <= FARTHEST:
+    height, circle = message["z"], message["param3"] or profile.circle
+    far = metres_to(vehicle.body, latitude, longitude)[0] > FARTHEST
+    if far or not abs(height) <= HIGHEST or not 0 < circle <= FARTHEST:
         return Result.DENIED
     vehicle.mode = profile.guided
-    vehicle.target = Target(latitude, longitude, message["z"], message["param3"] or profile.circle)
+    vehicle.target = Target(latitude, longitude, height, circle)
     return Result.ACCEPTED
 
 
 def _keep_fence(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
-    if not vehicle.store.items.get(MissionType.FENCE):
+    corners = vehicle.store.items.get(MissionType.FENCE, ())
+    try:
+        kept = polygon([(corner.x / 1e7, corner.y / 1e7) for corner in corners])
+    except PhysicalError:
         return Result.FAILED
-    vehicle.fenced = message["param1"] > 0.5
+    vehicle.fence = kept if message["param1"] > 0.5 else None
     return Result.ACCEPTED
 
 
 def _set_current(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
     count = len(vehicle.store.items.get(MissionType.MISSION, ()))
-    if not 0 <= message["param1"] < count:
+    if message["param1"] not in range(count):
         return Result.FAILED
     vehicle.current = int(message["param1"])
     return Result.ACCEPTED
 
 
-def _set_interval(_vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
-    names = {number: name for name, (number, _) in STREAMS.items()}
-    name = names.get(int(message["param1"]))
+def _start_mission(vehicle: Vehicle, _reporter: Reporter, _message: Message) -> Result:
+    if not vehicle.store.items.get(MissionType.MISSION):
+        return Result.FAILED
+    vehicle.mode = vehicle.kind.profile.auto
+    return Result.ACCEPTED
+
+
+def _request_message(_vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
+    name = _NAMES.get(message["param1"])
     if name is None:
+        return Result.FAILED
+    reporter.once(name)
+    return Result.ACCEPTED
+
+
+def _set_interval(_vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
+    name = _NAMES.get(message["param1"])
+    if name is None or not 0 <= message["param2"] <= LONGEST:
         return Result.FAILED
     reporter.every(name, message["param2"] / 1e6)
     return Result.ACCEPTED
@@ -167,7 +197,9 @@ _COMMANDS: Final[Mapping[Cmd, Callable[[Vehicle, Reporter, Message], Result]]] =
         Cmd.ARM_DISARM: _arm,
         Cmd.DO_SET_MODE: _set_mode,
         Cmd.FENCE_ENABLE: _keep_fence,
+        Cmd.MISSION_START: _start_mission,
         Cmd.REPOSITION: _reposition,
+        Cmd.REQUEST_MESSAGE: _request_message,
         Cmd.SET_MESSAGE_INTERVAL: _set_interval,
         Cmd.SET_MISSION_CURRENT: _set_current,
         Cmd.TAKEOFF: _take_off,

@@ -30,12 +30,17 @@ class Reporter:
         self._every = dict(DEFAULT)
         self._said: dict[str, float] = {}
         self._texts: list[str] = []
+        self._once: list[str] = []
 
     def every(self, name: str, seconds: float) -> None:
         """Say a message at another interval; none if it isn't positive."""
         self._every.pop(name, None)
         if seconds > 0:
             self._every[name] = max(SHORTEST, seconds)
+
+    def once(self, name: str) -> None:
+        """Say a message once."""
+        self._once = [*self._once, name][-8:]
 
     def text(self, text: str) -> None:
         """Say a text once."""
@@ -50,7 +55,9 @@ class Reporter:
         names = [name for name, period in self._every.items() if self._is_due(name, period, vehicle.uptime)]
         texts = [say("STATUSTEXT", severity=6, text=text.encode()[:50]) for text in self._texts]
         reached = [say("MISSION_ITEM_REACHED", seq=index) for index in vehicle.reached]
+        names += self._once
         self._texts.clear()
+        self._once.clear()
         vehicle.reached.clear()
         return [*(_MESSAGES[name](vehicle) for name in names), *texts, *reached]
 
@@ -92,7 +99,7 @@ def _heartbeat(vehicle: Vehicle) -> Message:
 def _status(vehicle: Vehicle) -> Message:
     sensors = {
         "onboard_control_sensors_present": PREARM_HEALTHY | GEOFENCE,
-        "onboard_control_sensors_enabled": PREARM_HEALTHY | (GEOFENCE if vehicle.fenced else 0),
+        "onboard_control_sensors_enabled": PREARM_HEALTHY | (GEOFENCE if vehicle.fence else 0),
         "onboard_control_sensors_health": PREARM_HEALTHY if vehicle.ready else 0,
     }
     rest = dict.fromkeys(

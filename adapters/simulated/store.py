@@ -16,6 +16,7 @@ from adapters.mavlink.numbers import Cmd, Frame, MissionResult, MissionType
 ASK_AGAIN: Final = 1.0
 GIVE_UP: Final = 8.0
 MAX_ITEMS: Final = 700
+HIGHEST: Final = 1e5
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +83,11 @@ class Store:
             return []
         if message["seq"] != len(going.items):
             return [_ack(going, MissionResult.INVALID_SEQUENCE)]
-        going = replace(going, items=(*going.items, item_of(message.fields)), heard=now)
+        item = item_of(message.fields)
+        if not _sound(item):
+            self.receiving = None
+            return [_ack(going, MissionResult.INVALID)]
+        going = replace(going, items=(*going.items, item), heard=now)
         return self._complete(going) if len(going.items) == going.count else self._ask(going, now)
 
     def _ask(self, going: Receiving, now: float) -> list[Message]:
@@ -107,6 +112,12 @@ class Store:
         if not 0 <= index < len(items):
             return []
         return [item_message(items[index], index, kind, message.system, message.component)]
+
+
+def _sound(item: Item) -> bool:
+    """Whether an item is on the earth, and its numbers are numbers."""
+    on_earth = abs(item.x) <= 90 * 10**7 and abs(item.y) <= 180 * 10**7
+    return on_earth and abs(item.z) <= HIGHEST and all(abs(value) <= HIGHEST for value in item.parameters)
 
 
 def _kind(message: Message) -> MissionType | None:

@@ -16,7 +16,7 @@ from adapters.mavlink.signing import Signing
 from adapters.simulated import body as bodies
 from adapters.simulated.body import Body, Limits, metres_to, moved, towards
 from adapters.simulated.store import Store
-from physical import contains, point, polygon
+from physical import Geometry, contains, point
 
 WAYPOINT_RADIUS: Final = 50.0
 """Metres from a waypoint at which a plane takes the next."""
@@ -74,6 +74,7 @@ class Vehicle:
         enforce: Whether it obeys only the station that has the authority (SYSID_ENFORCE).
         accept_unsigned: Whether unsigned packets are obeyed although it has a key, as on ArduPilot's first link.
         fixed: Whether its receiver has satellites.
+        fence: The polygon that it keeps within.
     """
 
     kind: Kind
@@ -89,7 +90,7 @@ class Vehicle:
     mode: int = 0
     current: int = 0
     target: Target | None = None
-    fenced: bool = False
+    fence: Geometry | None = None
     parameters: dict[str, float] = field(default_factory=lambda: dict(PARAMETERS))
     signing: Signing | None = None
     body: Body = field(init=False)
@@ -148,11 +149,9 @@ class Vehicle:
             self._idle(seconds)
 
     def _keep_fence(self) -> None:
-        corners = self.store.items.get(MissionType.FENCE, ())
-        if not self.fenced or len(corners) < 3 or self.mode == self.kind.profile.home:
-            return
-        inside = polygon([(corner.x / 1e7, corner.y / 1e7) for corner in corners])
-        if not contains(inside, point(self.body.latitude, self.body.longitude)):
+        """Return as soon as it is outside its fence."""
+        here = point(self.body.latitude, self.body.longitude)
+        if self.fence is not None and not contains(self.fence, here):
             self.mode = self.kind.profile.home
 
     def _follow(self, seconds: float) -> None:

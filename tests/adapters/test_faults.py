@@ -5,15 +5,15 @@ import socket
 from dataclasses import replace
 
 import pytest
-from worlds import AREA, EPOCH, flight, until
+from worlds import AREA, EPOCH, World, flight, running, until
 
-from adapters.mavlink import Craft, Stations
+from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.codec import Encoder
 from adapters.mavlink.command import long
 from adapters.mavlink.message import say
 from adapters.mavlink.numbers import Cmd
-from adapters.plugin import Accepted, Arrived, GoTo, HandOver, LinkLost, LinkRestored, Rejected
-from adapters.simulated import Disturbance, Kind, run
+from adapters.plugin import Accepted, Arrived, GoTo, HandOver, LinkLost, LinkRestored, Refused, Rejected
+from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
 from physical import box, contains, point
 
 BAD = Disturbance(loss=0.3, duplication=0.1, delay=(0.0, 1.0))
@@ -42,7 +42,7 @@ def test_it_arrives_though_a_third_is_lost_and_the_rest_comes_late_twice_and_in_
             end = await f.ended("r1")
             assert isinstance(end, Arrived), end
             assert contains(AREA, here(f.vehicle))
-            assert f.vehicle.fenced
+            assert f.vehicle.fence is not None
 
     run(main())
 
@@ -268,5 +268,59 @@ def test_something_that_is_not_ardupilot_is_rejected_with_the_reason():
             await f.plugin.command(GoTo("r1", "uav0", AREA))
             await send(f, encoder, *[beat] * 100)
             assert "ArduPilot" in f.world.of(Rejected, request="r1")[0].reason
+
+    run(main())
+
+
+def fleet(count):
+    """Vehicles and crafts for one link."""
+    vehicles = [
+        Vehicle(Kind.PLANE, (37.0, -8.6 + number * 0.002, 20.0), number + 1) for number in range(count)
+    ]
+    return vehicles, [Craft(f"uav{number}", system=number + 1) for number in range(count)]
+
+
+@pytest.mark.parametrize(("count", "disturbance"), [(4, BAD), (10, Disturbance())])
+def test_many_planes_on_one_link_all_arrive(count, disturbance):
+    async def main():
+        vehicles, crafts = fleet(count)
+        world, plugin = World(), Autopilot("autopilot", "udp:127.0.0.1:0", crafts)
+        async with running(plugin.run(world)):
+            await until(lambda: plugin.local)
+            simulator = Simulator(f"udpout:127.0.0.1:{plugin.local[1]}", vehicles, disturbance, epoch=EPOCH)
+            async with running(simulator.run()):
+                for craft in crafts:
+                    await plugin.command(GoTo(craft.entity, craft.entity, AREA))
+                await until(lambda: len(world.of(Arrived)) == count)
+        assert {report.entity for report in world.of(Arrived)} == {craft.entity for craft in crafts}
+        assert all(contains(AREA, world.property(craft.entity).geometry) for craft in crafts)
+        assert world.of(Rejected) == []
+
+    run(main())
+
+
+def test_a_vehicle_that_obeys_someone_else_and_does_not_answer_us_is_rejected_with_the_likely_cause():
+    async def main():
+        async with flight() as f:
+            f.vehicle.parameters["SYSID_MYGCS"] = 200
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            end = await f.ended("r1", 200)
+            assert isinstance(end, Rejected)
+            assert "it may obey another" in end.reason
+            assert not f.vehicle.armed
+
+    run(main())
+
+
+def test_an_authority_that_changes_hands_is_published_and_reported_if_nobody_knows_it():
+    async def main():
+        async with flight() as f:
+            f.vehicle.enforce = False
+            await until(lambda: f.world.property("uav0"))
+            f.vehicle.parameters["SYSID_MYGCS"] = 200
+            await until(lambda: f.world.property("uav0").channels == ())
+            assert "unknown authority" in f.world.troubles()
+            with pytest.raises(Refused, match="it obeys system 200, not gcs0"):
+                await f.plugin.command(GoTo("r1", "uav0", AREA))
 
     run(main())

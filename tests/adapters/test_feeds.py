@@ -6,7 +6,7 @@ import os
 import pty
 import socket
 
-import aiohttp
+import aiohttp.web
 import pytest
 from worlds import DATA, World, running, until
 
@@ -19,7 +19,7 @@ from adapters.places import StaticPlaces
 from adapters.plugin import Aged, Gone, Trouble
 from adapters.simulated import run
 from adapters.web import Listen
-from physical import PhysicalError, box, point, write_geojson
+from physical import PhysicalError, box, point, write_geojson, write_plan, write_waypoints
 from physical.geojson import read_geojson
 from physical.property import PhysicalProperty
 
@@ -263,6 +263,24 @@ def test_places_are_published_and_again_when_their_file_changes(tmp_path):
                 ("Gone", "searchArea0"),
                 ("PhysicalProperty", "oilSpill0"),
             ]
+
+    run(main())
+
+
+@pytest.mark.parametrize(("name", "write"), [("path.plan", write_plan), ("path.waypoints", write_waypoints)])
+def test_the_points_of_plans_and_waypoint_files_are_places(tmp_path, name, write):
+    path = tmp_path / name
+    path.write_text(write((point(37.0, -8.6), point(37.01, -8.61)), 100.0))
+
+    async def main():
+        world = World()
+        async with running(StaticPlaces("places", path).run(world)):
+            await wait()
+            assert [known.entity for known in world.published] == ["waypoint0", "waypoint1", "waypoint2"]
+            assert world.published[2].geometry == point(37.01, -8.61)
+            path.write_bytes(bytes(range(256)))
+            await asyncio.sleep(3)
+            assert world.troubles() == {"places unreadable"}
 
     run(main())
 

@@ -4,16 +4,20 @@ import asyncio
 from math import cos, radians
 
 import pytest
-from worlds import AREA, FIELD, HOME, TINY, flight, until
+from worlds import AREA, EPOCH, FIELD, HOME, TINY, World, flight, running, until
 
-from adapters.mavlink import Craft, Stations
+from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.numbers import MissionType
 from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Hold, Refused, Rejected, Return
-from adapters.simulated import Kind, run
+from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
 from physical import Band, box, circle, contains, distance, point, waypoint
 
 TWO = Stations({"gcs0": 255, "gcs1": 254}, ("gcs0", "gcs1"))
 PATH = (point(37.004, -8.604), point(37.008, -8.610), point(37.012, -8.602))
+
+
+SHORT = (point(37.001, -8.601), point(37.002, -8.602), point(37.001, -8.603))
+"""For what is slower: a test takes its time from the length of its flight."""
 
 
 def here(vehicle):
@@ -22,13 +26,15 @@ def here(vehicle):
 
 @pytest.mark.parametrize("kind", Kind)
 def test_every_kind_goes_to_a_place_and_is_published_inside_it(kind):
+    place = AREA if kind is Kind.PLANE else box((37.003, -8.601), (37.002, -8.603))
+
     async def main():
         async with flight(kind) as f:
-            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await f.plugin.command(GoTo("r1", "uav0", place))
             assert isinstance(await f.ended("r1"), Arrived)
             assert len(f.world.of(Accepted, request="r1")) == 1
             known = f.world.property("uav0")
-            assert contains(AREA, known.geometry)
+            assert contains(place, known.geometry)
             assert known.channels == ("control:gcs0",)
             assert (known.source, known.kind) == ("mavlink", "UAV")
             assert f.vehicle.armed
@@ -36,19 +42,19 @@ def test_every_kind_goes_to_a_place_and_is_published_inside_it(kind):
     run(main())
 
 
-@pytest.mark.parametrize("kind", [Kind.PLANE, Kind.COPTER, Kind.ROVER])
-def test_every_kind_follows_a_path_to_its_end(kind):
+@pytest.mark.parametrize(("kind", "path"), [(Kind.PLANE, PATH), (Kind.COPTER, SHORT), (Kind.ROVER, SHORT)])
+def test_every_kind_follows_a_path_to_its_end(kind, path):
     async def main():
         async with flight(kind) as f:
-            await f.plugin.command(Follow("r1", "uav0", PATH))
+            await f.plugin.command(Follow("r1", "uav0", path))
             assert isinstance(await f.ended("r1", 900), Arrived)
-            assert distance(here(f.vehicle), PATH[-1]) < 120
+            assert distance(here(f.vehicle), path[-1]) <= kind.profile.reach + 5
             assert f.vehicle.mode == kind.profile.auto
             await f.plugin.command(
-                Follow("r2", "uav0", PATH[::-1])
+                Follow("r2", "uav0", path[::-1])
             )  # in the air: it takes off no second time
             assert isinstance(await f.ended("r2", 900), Arrived)
-            assert distance(here(f.vehicle), PATH[0]) < 120
+            assert distance(here(f.vehicle), path[0]) <= kind.profile.reach + 5
 
     run(main())
 
@@ -175,7 +181,7 @@ def test_the_fence_is_on_board_and_kept_before_the_vehicle_is_armed():
                 await f.plugin.command(GoTo("r0", "uav0", circle((38, -8.6), 900)))
             await f.plugin.command(GoTo("r1", "uav0", AREA))
             await until(lambda: f.vehicle.armed)
-            assert f.vehicle.fenced
+            assert f.vehicle.fence is not None
             assert len(f.vehicle.store.items[MissionType.FENCE]) == 4
             assert isinstance(await f.ended("r1"), Arrived)
 
@@ -220,3 +226,29 @@ def test_courses_and_speeds_are_published():
             assert 270 < velocity.course < 360
 
     run(main())
+
+
+def test_a_flight_over_tcp_is_the_same():
+    async def main():
+        world, plugin = World(), Autopilot("autopilot", "tcpin:127.0.0.1:0", [Craft("uav0")])
+        async with running(plugin.run(world)):
+            await until(lambda: plugin.local)
+            vehicle = Vehicle(Kind.PLANE, HOME)
+            simulator = Simulator(f"tcp:127.0.0.1:{plugin.local[1]}", [vehicle], epoch=EPOCH)
+            async with running(simulator.run()):
+                await plugin.command(GoTo("r1", "uav0", AREA))
+                await until(lambda: world.of(Arrived))
+        assert contains(AREA, world.property("uav0").geometry)
+
+    run(main())
+
+
+def test_the_same_seed_gives_the_same_flight():
+    async def main():
+        bad = Disturbance(loss=0.3, duplication=0.1, delay=(0.0, 1.0))
+        async with flight(disturbance=bad, seed=7) as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await f.ended("r1")
+            return f.world.reports, f.world.published
+
+    assert run(main()) == run(main())

@@ -2,7 +2,7 @@
 
 import asyncio
 from collections import Counter
-from itertools import pairwise
+from itertools import islice, pairwise
 from math import pi, radians
 from statistics import median
 
@@ -89,11 +89,16 @@ def test_positions_before_the_fix_are_left_out():
     assert all(contains(area, known.geometry) for known in found)
 
 
-def test_a_real_quadcopter_is_read_with_its_bad_data():
-    found = [known for _, known in positions_of(read_tlog(COPTER), {1: Craft("uav0")})]
-    assert 2_000 < len(found) <= 2_833
+def test_a_real_quadcopter_is_read_with_its_bad_data_and_its_reboot():
+    log = list(islice(read_tlog(COPTER), 20_000))
+    found = [known for _, known in positions_of(log, {1: Craft("uav0")})]
+    heard = sum(message.name == "GLOBAL_POSITION_INT" for _, message in log)
+    assert (
+        0.7 * heard < len(found) < heard
+    )  # all but those before the fix; their time stamps are older than others
     assert all(-35.4 < known.geometry.vertices[0][0] < -35.2 for known in found)
     assert all(148 < known.geometry.vertices[0][1] < 150 for known in found)
+    assert [known.boots for _, known in tracks(log)][-1] == 1
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,57 @@
+"""Fly a simulated vehicle: `python -m adapters.simulated --to udpout:127.0.0.1:14550 --kind plane`."""
+
+import argparse
+import time
+from contextlib import suppress
+
+from adapters.simulated.clock import run
+from adapters.simulated.disturbance import Disturbance
+from adapters.simulated.serving import Simulator
+from adapters.simulated.vehicle import Kind, Vehicle
+
+
+def home(text: str) -> tuple[float, float, float]:
+    """Read LATITUDE,LONGITUDE,ALTITUDE.
+
+    >>> home("37.0,-8.6,20")
+    (37.0, -8.6, 20.0)
+    """
+    latitude, longitude, altitude = map(float, text.split(","))
+    return latitude, longitude, altitude
+
+
+def arguments() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    parser = argparse.ArgumentParser(prog="python -m adapters.simulated", description=__doc__)
+    parser.add_argument(
+        "--to", default="udpout:127.0.0.1:14550", help="the ground station (default %(default)s)"
+    )
+    parser.add_argument("--kind", default="plane", choices=[kind.name.lower() for kind in Kind])
+    parser.add_argument(
+        "--home", default="37.0,-8.6,20", type=home, metavar="LAT,LON,ALT", help="default %(default)s"
+    )
+    parser.add_argument(
+        "--system", default=1, type=int, choices=range(1, 256), metavar="ID", help="MAVLink system id"
+    )
+    parser.add_argument("--speed", default=1.0, type=float, help="how much faster than the clock on the wall")
+    parser.add_argument(
+        "--loss", default=0.0, type=float, help="the part of all packets that is lost, both ways"
+    )
+    parser.add_argument(
+        "--delay", default=0.0, type=float, metavar="SECONDS", help="the longest delay of a packet"
+    )
+    return parser
+
+
+def main() -> None:
+    """Fly until interrupted."""
+    options = arguments().parse_args()
+    vehicle = Vehicle(Kind[options.kind.upper()], options.home, options.system)
+    disturbance = Disturbance(options.loss, delay=(0.0, options.delay))
+    simulator = Simulator(options.to, [vehicle], disturbance, epoch=time.time())
+    with suppress(KeyboardInterrupt):
+        run(simulator.run(), options.speed)
+
+
+if __name__ == "__main__":
+    main()
