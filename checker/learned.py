@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from semantics.cells import Cell, Changes, Question, State, Written
+from semantics.cells import Cell, Changes, Part, Question, State, Written, merged
 from semantics.configuration import Configuration, Label, Transition
 from semantics.eta import Pending
 from semantics.expressions import Fault
@@ -54,6 +54,14 @@ class Recorder:
         """Ask a cell, and note the yes or no."""
         answer: bool = self._note(Ask(cell, question, constants))
         return answer
+
+    def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
+        """Return what a pointwise definition says of each name."""
+        return {name: part(name) for name in names}
+
+    def with_each(self, parts: Mapping[str, Changes]) -> Written:
+        """Return the cells with what each part of a conclusion writes."""
+        return self.with_(merged(parts.values()))
 
     def with_(self, changes: Mapping[Cell, Any]) -> Written:
         """Return the cells with a rule's conclusion over them."""

@@ -7,7 +7,7 @@ from checker.inspections import is_at_rest, is_waiting
 from checker.traces import Trace
 from checker.verdicts import Violation
 from semantics.configuration import Configuration, Label
-from semantics.requests import Request
+from semantics.requests import REQUESTS, Request
 from semantics.signature import Name
 from semantics.successors import expand
 
@@ -47,7 +47,7 @@ def _walk(trace: Trace) -> tuple[tuple[int, ...], Asked]:
 
 
 def _line_of_step(source: Configuration, label: Label, asked: Asked) -> int:
-    if not isinstance(label.about, str) and label.about in asked:
+    if isinstance(label.about, REQUESTS) and label.about in asked:
         return asked[label.about]
     return 0 if label.agent is None else _line_of(source, label.agent)
 

@@ -6,7 +6,9 @@ looked at puts another `Cells` in the place of a configuration: nothing in `sema
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import lru_cache
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
+
+Part = TypeVar("Part")
 
 Cell = tuple[str, ...]
 """The address of one value: what it is, then whose (`("parent", "uav0")`)."""
@@ -26,6 +28,16 @@ Question = Callable[..., bool]
 """What may be asked of a cell's value, and some constants."""
 
 
+def is_(value: object, constant: object) -> bool:
+    """Ask whether a cell's value is this one."""
+    return value == constant
+
+
+def is_something(value: object) -> bool:
+    """Ask whether a cell has a value."""
+    return value is not None
+
+
 class Cells(Protocol):
     """What a rule may do with a configuration."""
 
@@ -35,12 +47,18 @@ class Cells(Protocol):
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
         """Ask one question of a cell: only the yes or no is learned."""
 
+    def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
+        """Return what a pointwise definition says of each name: no part depends on another."""
+
 
 class State(Cells, Protocol):
     """Cells that a rule's conclusion may be written over."""
 
     def with_(self, changes: Mapping[Cell, Any]) -> "State":
         """Return the cells with these values."""
+
+    def with_each(self, parts: Mapping[str, Changes]) -> "State":
+        """Return the cells with what each part of a pointwise definition writes."""
 
 
 class Written:
@@ -62,9 +80,17 @@ class Written:
             return question(self.changes[cell], *constants)
         return self.cells.test(cell, question, *constants)
 
+    def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
+        """Return what a pointwise definition says of each name."""
+        return {name: part(name) for name in names}
+
     def with_(self, changes: Mapping[Cell, Any]) -> "Written":
         """Return the cells with more written over them."""
         return Written(self.cells, {**self.changes, **changes})
+
+    def with_each(self, parts: Mapping[str, Changes]) -> "Written":
+        """Return the cells with what each part writes."""
+        return self.with_(merged(parts.values()))
 
 
 class Layout:
@@ -111,6 +137,10 @@ class Row:
         """Ask one question of a cell."""
         return question(self.read(cell), *constants)
 
+    def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
+        """Return what a pointwise definition says of each name."""
+        return {name: part(name) for name in names}
+
     def items(self) -> Iterator[tuple[Cell, Any]]:
         """Yield cells with their values, sorted by cell."""
         return zip(self.layout.cells, self.values, strict=True)
@@ -132,6 +162,10 @@ class Row:
                 changed = True
         return Row(self.layout, tuple(values), digest) if changed else self
 
+    def with_each(self, parts: Mapping[str, Changes]) -> "Row":
+        """Return the row with what each part writes."""
+        return self.with_(merged(parts.values()))
+
     def __eq__(self, other: object) -> bool:
         if self is other:
             return True
@@ -147,6 +181,14 @@ class Row:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (Row, (self.layout, self.values))  # hashes of strings differ between processes
+
+
+def merged(parts: Iterable[Changes]) -> Changes:
+    """Return several writes as one; the later win."""
+    changes: Changes = {}
+    for each in parts:
+        changes |= each
+    return changes
 
 
 def _digest(layout: Layout, values: Iterable[Any]) -> int:

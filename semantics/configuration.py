@@ -1,13 +1,13 @@
 """Configurations ⟨α | S | η⟩: immutable, hashable, compared by value; and the transitions between them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from semantics.agents import Agents
-from semantics.cells import MONITOR, Cell, Changes, Question, Row, State
+from semantics.cells import MONITOR, Cell, Changes, Part, Question, Row, State, merged
 from semantics.eta import Eta, Pending
-from semantics.requests import Request
+from semantics.requests import REQUESTS, Received, Request
 from semantics.setting import Setting
 from semantics.signature import Name
 from semantics.structure import Structure
@@ -48,10 +48,15 @@ class Configuration:
 
     def with_(self, *changes: Changes) -> "Configuration":
         """Return the configuration with these cells written; later changes win."""
-        merged: Changes = {}
-        for each in changes:
-            merged |= each
-        return Configuration(self.setting, self.state.with_(merged))
+        return Configuration(self.setting, self.state.with_(merged(changes)))
+
+    def each(self, names: Iterable[Name], part: Callable[[Name], Part]) -> Mapping[Name, Part]:
+        """Return what a pointwise definition says of each name: no part depends on another."""
+        return self.state.each(names, part)
+
+    def with_each(self, parts: Mapping[Name, Changes]) -> "Configuration":
+        """Return the configuration with what each part of a pointwise definition writes."""
+        return Configuration(self.setting, self.state.with_each(parts))
 
     def unmonitored(self) -> "Configuration":
         """Return the configuration without the monitor's cells: what is counted."""
@@ -78,15 +83,15 @@ class Label:
     Attributes:
         rule: The name of the inference rule.
         agent: Whose rule it is; None for the environment's.
-        about: The request served, or the words after the agent.
+        about: The request served, the observation received, or the words after the agent.
     """
 
     rule: str
     agent: Name | None
-    about: Request | str = ""
+    about: Request | Received | str = ""
 
     def __str__(self) -> str:
-        words = [self.agent or "", self.about] if isinstance(self.about, str) else [str(self.about)]
+        words = [str(self.about)] if isinstance(self.about, REQUESTS) else [self.agent or "", str(self.about)]
         return f"⟨{self.rule} : {', '.join(word for word in words if word)}⟩"
 
 

@@ -305,7 +305,7 @@ OPERATORS: Mapping[str, Operator] = {
     "in": Operator(
         2,
         "whether a name is in a set or was shown in an observation",
-        lambda _, x, y: Truth.of(x in _members(y)),
+        lambda _, x, y: Truth.of(x in (y if isinstance(y, Observation) else _members(y))),
         _keys("in"),
     ),
     "==": Operator(

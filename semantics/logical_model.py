@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from bigraphs import Bigraph, from_relations, open_signature
-from semantics.cells import NAMES, Cell, Cells, Changes
+from semantics.cells import NAMES, Cell, Cells, Changes, is_, is_something
 from semantics.signature import REGION, Name
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ class LogicalModel:
         return self.cells.read(links_cell(node)) or ()
 
     def __contains__(self, node: Name) -> bool:
-        return self.parent(node) is not None
+        return self.cells.test(parent_cell(node), is_something)
 
     def nodes(self) -> tuple[Name, ...]:
         """Return dom(L), sorted."""
@@ -48,9 +48,11 @@ class LogicalModel:
 
     def children(self, place: Name) -> tuple[Name, ...]:
         """Return the nodes whose parent is a place, sorted."""
-        return tuple(
-            name for name in self.cells.read(NAMES) if self.cells.test(parent_cell(name), is_, place)
-        )
+        return tuple(name for name in self.cells.read(NAMES) if self.is_in(name, place))
+
+    def is_in(self, node: Name, place: Name) -> bool:
+        """Tell whether `parent(n)` is a place."""
+        return self.cells.test(parent_cell(node), is_, place)
 
     def ancestors(self, node: Name) -> Iterator[Name]:
         """Yield the places around a node, innermost first, the region left out."""
@@ -82,8 +84,3 @@ class LogicalModel:
             {link: [node for node in nodes if link in self.links(node)] for link in links},
             open_signature(self.setting.kinds.values()),
         )
-
-
-def is_(value: object, constant: object) -> bool:
-    """Ask whether a cell's value is this one."""
-    return value == constant

@@ -73,7 +73,7 @@ def stale_tests(request: Request, rests_on: Provenance, used: frozenset[Key]) ->
 
 
 def _changed_answers(before: Configuration, after: Configuration, query: Query) -> frozenset[Key]:
-    views = [evaluate(query, c.structure.physical, c.alpha.hosted) for c in (before, after)]
+    views = [evaluate(query, c.structure.physical, c.alpha) for c in (before, after)]
     return differences(views[0], views[1])
 
 

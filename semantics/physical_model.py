@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from physical import Band, Geometry, area, band_contains, contains, point
-from semantics.cells import NAMES, Cell, Cells, Changes
+from semantics.cells import NAMES, Cell, Cells, Changes, is_something
 from semantics.signature import REGION, Name
 
 if TYPE_CHECKING:
@@ -48,6 +48,14 @@ class InTransit:
 Placement = Placed | Carried | InTransit
 
 
+class Holder(NamedTuple):
+    """What may contain others: its area in square metres, its name, and where it stands."""
+
+    area: float
+    place: Name
+    at: Placed
+
+
 def placement_cell(entity: Name) -> Cell:
     """Address where an entity is; None there means that it is not in P."""
     return ("placement", entity)
@@ -70,6 +78,21 @@ def encloses(outer: Placed, inner: Placed) -> bool:
     return levels and not outer.geometry.is_point and contains(outer.geometry, inner.geometry)
 
 
+def is_carried(placement: Placement | None) -> bool:
+    """Ask whether something is carried."""
+    return isinstance(placement, Carried)
+
+
+def is_placed(placement: Placement | None) -> bool:
+    """Ask whether something stands by itself, not in transit."""
+    return isinstance(placement, Placed)
+
+
+def stands_in(placement: Placed, place: Name, holders: tuple[Holder, ...]) -> bool:
+    """Ask whether a place is the smallest of the holders that contain what stands there; the region, if none does."""
+    return next((holder.place for holder in holders if encloses(holder.at, placement)), REGION) == place
+
+
 class PhysicalModel:
     """P and σ_P over the cells of a configuration."""
 
@@ -89,7 +112,7 @@ class PhysicalModel:
         return self.cells.read(channels_cell(entity)) or ()
 
     def __contains__(self, entity: Name) -> bool:
-        return self.placement(entity) is not None
+        return self.cells.test(placement_cell(entity), is_something)
 
     def entities(self) -> tuple[Name, ...]:
         """Return dom(P), sorted."""
@@ -97,6 +120,8 @@ class PhysicalModel:
 
     def carrier(self, entity: Name) -> Name | None:
         """Return what carries an entity."""
+        if not self.cells.test(placement_cell(entity), is_carried):
+            return None
         placement = self.placement(entity)
         return placement.by if isinstance(placement, Carried) else None
 
@@ -159,22 +184,27 @@ class PhysicalModel:
         by = self.carrier(entity)
         if by is not None:
             return by
-        kind = self.setting.kind(entity)
-        holders = [place for place in self.setting.containers(kind) if self.contains(place, entity)]
-        return min(holders, key=lambda place: (self._area(place), place), default=REGION)
+        holders = (holder.place for holder in self._holders(entity) if self.contains(holder.place, entity))
+        return next(holders, REGION)
 
-    def _area(self, place: Name) -> float:
-        position = self.position(place)
-        return 0.0 if position is None else measure(position.geometry)
+    def is_in(self, entity: Name, place: Name) -> bool:
+        """Tell whether an entity's parent in A(P) is a place; only that is asked of where it stands."""
+        where = placement_cell(entity)
+        if self.cells.test(where, is_placed):
+            return self.cells.test(where, stands_in, place, self._holders(entity))
+        return entity in self and self.abstract_parent(entity) == place
+
+    def _holders(self, entity: Name) -> "tuple[Holder, ...]":
+        """Return what may contain an entity, the smallest first; what is carried has no room of its own."""
+        places = self.setting.containers(self.setting.kind(entity))
+        standing = [place for place in places if place != entity and self.carrier(place) is None]
+        positions = [(place, self.position(place)) for place in standing]
+        found = (Holder(measure(at.geometry), place, at) for place, at in positions if at is not None)
+        return tuple(sorted(found, key=lambda holder: holder[:2]))
 
     def children(self, place: Name) -> tuple[Name, ...]:
         """Return the children of a place, or of the region, in A(P), sorted."""
-        inside = (name for name in self.entities() if self._may_be_child(place, name))
-        return tuple(name for name in inside if self.abstract_parent(name) == place)
-
-    def _may_be_child(self, place: Name, name: Name) -> bool:
-        """Tell whether a place carries or contains an entity: no other can be its parent."""
-        return place == REGION or self.carrier(name) == place or self.contains(place, name)
+        return tuple(name for name in self.cells.read(NAMES) if self.is_in(name, place))
 
     def links(self, entity: Name) -> tuple[Name, ...]:
         """Return the links of an entity in A(P), sorted."""

@@ -4,14 +4,18 @@ A query denotes a set of nodes of A(P), composed pointwise. Its observation says
 was got on the way: a yes is a pair, a no follows from a place or link that was enumerated.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
-from semantics.cells import NAMES, Cells, Changes
+from semantics.cells import NAMES, Changes
 from semantics.logical_model import LogicalModel
 from semantics.physical_model import PhysicalModel
 from semantics.signature import REGION, Name
 from semantics.structure import Linked, Parent, Relation
+
+if TYPE_CHECKING:
+    from semantics.agents import Agents
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,181 +51,303 @@ Query = Nodes | All | Of
 
 
 @dataclass(frozen=True, slots=True)
-class Observation:
-    """L_q: what a query showed, with the answers it got.
+class Fact:
+    """What an observation says of one node, or of an agent.
 
     Attributes:
-        shown: The nodes denoted, with the places whose children were asked for; sorted.
-        agents: The agents denoted (`HOSTED_AT`), sorted.
-        relations: Every pair of σ_{A(P)} that was answered with yes, in canonical order.
-        enumerated: Places whose children were all listed: who is not among the pairs is not there.
-        looked: Nodes whose links were all listed.
-        swept: Links whose points were all listed.
+        shown: Whether it was denoted.
+        parent: The parent that was seen of it.
+        links: The links on which it was seen, sorted.
     """
 
-    shown: tuple[Name, ...] = ()
-    agents: tuple[Name, ...] = ()
-    relations: tuple[Relation, ...] = ()
-    enumerated: tuple[Name, ...] = ()
-    looked: tuple[Name, ...] = ()
-    swept: tuple[Name, ...] = ()
+    shown: bool = False
+    parent: Name | None = None
+    links: tuple[Name, ...] = ()
+
+
+NOTHING_SEEN = Fact()
+
+
+@dataclass(frozen=True, slots=True)
+class Swept:
+    """What an observation looked through to the end: who was not seen there is not there.
+
+    Attributes:
+        places: Places whose children were all listed; sorted, as the others are.
+        nodes: Nodes whose links were all listed.
+        links: Links whose points were all listed.
+    """
+
+    places: tuple[Name, ...] = ()
+    nodes: tuple[Name, ...] = ()
+    links: tuple[Name, ...] = ()
+
+
+NOTHING_SWEPT = Swept()
+
+
+class Observation:
+    """L_q: what a query showed, with the answers it got, name by name.
+
+    Attributes:
+        family: What it says of each name; agents under `agent_key`.
+        swept: What it looked through to the end.
+    """
+
+    __slots__ = ("_facts", "family", "swept")
+
+    def __init__(self, family: Mapping[Name, Fact], swept: Swept = NOTHING_SWEPT) -> None:
+        self.family = family
+        self.swept = swept
+        self._facts: tuple[tuple[Name, Fact], ...] | None = None
+
+    @staticmethod
+    def of(
+        shown: Iterable[Name] = (),
+        agents: Iterable[Name] = (),
+        relations: Iterable[Relation] = (),
+        swept: Swept = NOTHING_SWEPT,
+    ) -> "Observation":
+        """Make an observation of everything that it says."""
+        facts: dict[Name, Fact] = {}
+
+        def say(name: Name, **news: Any) -> None:
+            facts[name] = replace(facts.get(name, NOTHING_SEEN), **news)
+
+        for name in (*shown, *map(agent_key, agents)):
+            say(name, shown=True)
+        for pair in relations:
+            if isinstance(pair, Parent):
+                say(pair.node, parent=pair.place)
+            else:
+                links = facts.get(pair.node, NOTHING_SEEN).links
+                say(pair.node, links=tuple(sorted({*links, pair.link})))
+        return Observation(facts, swept)
+
+    @property
+    def facts(self) -> tuple[tuple[Name, Fact], ...]:
+        """All that it says of names, sorted."""
+        if self._facts is None:
+            told = ((name, self.family[name]) for name in sorted(self.family))
+            self._facts = tuple((name, fact) for name, fact in told if fact != NOTHING_SEEN)
+        return self._facts
+
+    def fact(self, name: Name) -> Fact:
+        """Return what it says of one name."""
+        return self.family.get(name, NOTHING_SEEN)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Observation) and (self.facts, self.swept) == (other.facts, other.swept)
+
+    def __hash__(self) -> int:
+        return hash((self.facts, self.swept))
+
+    def __repr__(self) -> str:
+        return f"Observation({dict(self.facts)!r}, {self.swept!r})"
 
     def __str__(self) -> str:
         return f"{{{', '.join((*self.shown, *self.agents))}}}"
 
     def __contains__(self, name: object) -> bool:
-        return name in self.shown or name in self.agents
+        return isinstance(name, str) and (self.fact(name).shown or self.fact(agent_key(name)).shown)
+
+    @property
+    def shown(self) -> tuple[Name, ...]:
+        """The nodes denoted, with the places whose children were asked for; sorted."""
+        return tuple(name for name, fact in self.facts if fact.shown and not name.startswith(AGENT))
+
+    @property
+    def agents(self) -> tuple[Name, ...]:
+        """The agents denoted (`HOSTED_AT`), sorted."""
+        denoted = (name for name, fact in self.facts if fact.shown and name.startswith(AGENT))
+        return tuple(name.removeprefix(AGENT) for name in denoted)
+
+    @property
+    def relations(self) -> tuple[Relation, ...]:
+        """Every pair of σ_{A(P)} that was answered with yes, in canonical order."""
+        pairs: list[Relation] = [Linked(link, name) for name, fact in self.facts for link in fact.links]
+        pairs += [Parent(name, fact.parent) for name, fact in self.facts if fact.parent is not None]
+        return tuple(sorted(pairs, key=str))
 
     def parent(self, node: Name) -> Name | None:
         """Return the parent that was seen of a node."""
-        seen = (pair.place for pair in self.relations if isinstance(pair, Parent) and pair.node == node)
-        return next(seen, None)
+        return self.fact(node).parent
 
     def children(self, place: Name) -> frozenset[Name]:
         """Return the children that were seen of a place."""
-        return frozenset(
-            pair.node for pair in self.relations if isinstance(pair, Parent) and pair.place == place
-        )
+        return frozenset(name for name, fact in self.facts if fact.parent == place)
 
     def links(self, node: Name) -> frozenset[Name]:
         """Return the links on which a node was seen."""
-        return frozenset(
-            pair.link for pair in self.relations if isinstance(pair, Linked) and pair.node == node
-        )
+        return frozenset(self.fact(node).links)
 
     def nodes(self) -> tuple[Name, ...]:
         """Return dom(L_q), sorted: what was shown, and every node of a pair."""
-        related = {pair.node for pair in self.relations}
-        places = {pair.place for pair in self.relations if isinstance(pair, Parent)} - {REGION}
-        return tuple(sorted(related | places | set(self.shown)))
+        places = {fact.parent for _, fact in self.facts if fact.parent is not None} - {REGION}
+        return tuple(sorted(places.union(name for name, _ in self.facts if not name.startswith(AGENT))))
+
+
+AGENT = "agent "
+"""How the name begins under which an observation says of an agent that it was denoted."""
+
+
+def agent_key(agent: Name) -> Name:
+    """Return the name under which an observation speaks of an agent: a node of the same name is another."""
+    return AGENT + agent
+
+
+# --- q(A(P)) ----------------------------------------------------------------------------------------------------
+
+
+def evaluate(query: Query, physical: PhysicalModel, alpha: "Agents") -> Observation:
+    """Return q(A(P)): what is asked within the query as sets, its answers name by name.
+
+    An absent host gives the empty observation.
+    """
+    looking = _Looking(query, physical, alpha)
+    names = (*looking.names, *map(agent_key, looking.agents))
+    return Observation(physical.cells.each(names, looking.fact), looking.swept())
 
 
 class _Looking:
-    """The answers that one evaluation collects."""
+    """One evaluation: the operators of a query, innermost first, each with the set that it is applied to."""
 
-    def __init__(self, physical: PhysicalModel, hosted: Callable[[Name], tuple[Name, ...]]) -> None:
+    def __init__(self, query: Query, physical: PhysicalModel, alpha: "Agents") -> None:
         self.physical = physical
-        self.hosted = hosted
-        self.relations: set[Relation] = set()
-        self.enumerated: set[Name] = set()
-        self.looked: set[Name] = set()
-        self.swept: set[Name] = set()
-        self.agents: set[Name] = set()
+        self.alpha = alpha
+        self.names: tuple[Name, ...] = physical.cells.read(NAMES)
+        self.applied: list[tuple[str, frozenset[Name]]] = []
+        self.leaf: frozenset[Name] = frozenset()
+        self.enter(query)
+        self.agents = alpha.names() if "HOSTED_AT" in dict(self.applied) else ()
+        self.links = frozenset(link for name in self.to("LINKED_TO") for link in self.links_of(name))
 
-    def ask(self, query: Query) -> set[Name]:
-        """Return the denotation of a query: nodes, and the region where a PARENT leads there."""
-        if isinstance(query, Nodes):
-            return {name for name in query.names if name in self.physical}
-        if isinstance(query, All):
-            return self.everything()
-        answer = OPERATORS[query.operator]
-        return {found for name in sorted(self.ask(query.of)) for found in answer(self, name)}
+    def enter(self, query: Query) -> None:
+        match query:
+            case Of(operator, inner):
+                self.enter(inner)
+                denoted = (
+                    self.leaf if not self.applied else {n for n in (REGION, *self.names) if self.shows(n)}
+                )
+                self.applied.append((operator, frozenset(denoted)))
+            case All():
+                everything = frozenset({REGION, *self.physical.entities()})
+                self.applied += [("CHILDREN", everything), ("LINKED_TO", everything)]
+            case Nodes(names):
+                self.leaf = frozenset(name for name in names if name in self.physical)
 
-    def everything(self) -> set[Name]:
-        entities = self.physical.entities()
-        for place in (REGION, *entities):
-            self.children(place)
-        for name in entities:
-            self.linked_to(name)
-        return set(entities)
+    def to(self, operator: str) -> frozenset[Name]:
+        """Return all that an operator is applied to."""
+        return frozenset[Name]().union(*(names for applied, names in self.applied if applied == operator))
 
-    def parent(self, name: Name) -> set[Name]:
-        if name == REGION:
-            return {REGION}
+    def swept(self) -> Swept:
+        nodes = self.to("LINKED_TO") - {REGION}
+        return Swept(*(tuple(sorted(each)) for each in (self.to("CHILDREN"), nodes, self.links)))
+
+    def fact(self, name: Name) -> Fact:
+        """Return what is answered of one name."""
+        if name.startswith(AGENT):
+            return Fact(self.alpha.host(name.removeprefix(AGENT)) in self.to("HOSTED_AT"))
+        links = tuple(link for link in self.links_of(name) if link in self.links) if self.links else ()
+        return Fact(self.shows(name), self.parent(name), links)
+
+    def shows(self, name: Name) -> bool:
+        """Tell whether the outermost operator denotes a node, or the region."""
+        if not self.applied:
+            return name in self.leaf
+        operator, inner = self.applied[-1]
+        match operator:
+            case "PARENT":
+                return any(self.physical.is_in(n, name) if n != REGION else name == n for n in sorted(inner))
+            case "CHILDREN":
+                return name in inner or self.parent_among(name, inner) is not None
+            case "LINKED_TO":
+                links = {link for n in inner for link in self.links_of(n)}
+                return name in inner or not links.isdisjoint(self.links_of(name))
+            case _:
+                return False
+
+    def parent(self, name: Name) -> Name | None:
+        """Return the parent of a node in A(P), as far as it was asked for: its own, or among children."""
+        if name in self.to("PARENT"):
+            return self.physical.abstract_parent(name)
+        return self.parent_among(name, self.to("CHILDREN"))
+
+    def parent_among(self, name: Name, places: frozenset[Name]) -> Name | None:
+        if len(places) == 1:
+            (place,) = places
+            return place if name != REGION and self.physical.is_in(name, place) else None
+        if not places or name == REGION or name not in self.physical:
+            return None
         place = self.physical.abstract_parent(name)
-        self.relations.add(Parent(name, place))
-        return {place}
+        return place if place in places else None
 
-    def children(self, name: Name) -> set[Name]:
-        found = self.physical.children(name)
-        self.relations.update(Parent(child, name) for child in found)
-        self.enumerated.add(name)
-        return {name, *found}
-
-    def linked_to(self, name: Name) -> set[Name]:
-        links = () if name == REGION else self.physical.links(name)
-        self.looked.update({name} - {REGION})
-        self.swept.update(links)
-        points = {link: self.physical.points(link) for link in links}
-        self.relations.update(Linked(link, point) for link, found in points.items() for point in found)
-        return {name, *(point for found in points.values() for point in found)}
-
-    def hosted_at(self, name: Name) -> set[Name]:
-        self.agents.update(self.hosted(name))
-        return set()
+    def links_of(self, name: Name) -> tuple[Name, ...]:
+        return () if name == REGION else self.physical.links(name)
 
 
-OPERATORS: dict[str, Callable[[_Looking, Name], set[Name]]] = {
-    "PARENT": _Looking.parent,
-    "CHILDREN": _Looking.children,
-    "LINKED_TO": _Looking.linked_to,
-    "HOSTED_AT": _Looking.hosted_at,
-}
+# --- L ⊕ L_q ----------------------------------------------------------------------------------------------------
 
 
-def evaluate(
-    query: Query, physical: PhysicalModel, hosted: Callable[[Name], tuple[Name, ...]]
-) -> Observation:
-    """Return q(A(P)); `hosted` gives the agents at a node. An absent host gives the empty observation."""
-    looking = _Looking(physical, hosted)
-    shown = looking.ask(query) - {REGION}
-    return Observation(
-        shown=tuple(sorted(shown)),
-        agents=tuple(sorted(looking.agents)),
-        relations=tuple(sorted(looking.relations, key=str)),
-        enumerated=tuple(sorted(looking.enumerated)),
-        looked=tuple(sorted(looking.looked)),
-        swept=tuple(sorted(looking.swept)),
-    )
-
-
-def overlay(logical: LogicalModel, seen: Observation, cells: Cells) -> Changes:
-    """Return the writes of L ⊕ L_q: the answers that the query got, and no more.
+def overlay(logical: LogicalModel, seen: Observation) -> Mapping[Name, Changes]:
+    """Return the writes of L ⊕ L_q, node by node: the answers that the query got, and no more.
 
     A yes sets the relation. A no removes only the relation denied: a node believed under an enumerated place and not
     seen there goes to the region, a link looked at and seen without n loses n. A new node that was not placed goes to
     the region; where a cycle would arise, its nodes whose slot was not looked at do. So L_q ⊆ L ⊕ L_q.
     """
-    names: tuple[Name, ...] = cells.read(NAMES)
-    answered = {pair.node: pair.place for pair in seen.relations if isinstance(pair, Parent)}
-    shown = frozenset(seen.nodes())
-    parents = {name: _new_parent(name, logical.parent(name), answered, seen, name in shown) for name in names}
-    _break_cycles(parents, answered)
-    changes: Changes = {}
-    for name in names:
-        place = parents[name]
-        if place is not None and place != logical.parent(name):
-            changes |= logical.nesting(name, place)
-        links = _new_links(name, frozenset(logical.links(name)), seen)
-        if links != frozenset(logical.links(name)):
-            changes |= logical.linking(name, links)
-    return changes
+    learning = _Learning(logical, seen)
+    return logical.cells.each(learning.names, learning.of)
 
 
-def _new_parent(
-    name: Name, believed: Name | None, answered: dict[Name, Name], seen: Observation, shown: bool
-) -> Name | None:
-    if name in answered:
-        return answered[name]
-    if believed in seen.enumerated or (believed is None and shown):
-        return REGION
-    return believed
+class _Learning:
+    """What one observation teaches L of each node."""
 
+    def __init__(self, logical: LogicalModel, seen: Observation) -> None:
+        self.logical = logical
+        self.seen = seen
+        self.names: tuple[Name, ...] = logical.cells.read(NAMES)
 
-def _new_links(name: Name, believed: frozenset[Name], seen: Observation) -> frozenset[Name]:
-    denied = believed if name in seen.looked else believed.intersection(seen.swept)
-    return (believed - denied) | seen.links(name)
+    def of(self, name: Name) -> Changes:
+        """Return the writes about one node."""
+        place, links = self.place(name), self.links(name)
+        nested = {} if place is None else self.logical.nesting(name, place)
+        return nested if links is None else nested | self.logical.linking(name, links)
 
+    def place(self, name: Name) -> Name | None:
+        """Return the new parent of a node, None where it keeps what it had."""
+        answered = self.seen.parent(name)
+        if answered is not None:
+            return answered
+        if name not in self.logical:
+            return REGION if self.is_node(name) else None
+        return REGION if self.is_denied(name) or self.is_on_cycle(name) else None
 
-def _break_cycles(parents: dict[Name, Name | None], answered: dict[Name, Name]) -> None:
-    """Send to the region what lies on a cycle and was not looked at; A(P) is a forest: each cycle has such a node."""
-    for start in parents:
-        path: list[Name] = []
-        place: Name | None = start
-        while place in parents and place not in path:
-            path.append(place)
-            place = parents[place]
-        if place in path:
-            for node in path[path.index(place) :]:
-                if node not in answered:
-                    parents[node] = REGION
+    def is_node(self, name: Name) -> bool:
+        """Tell whether a node is in dom(L_q)."""
+        shown = self.seen.fact(name) != NOTHING_SEEN
+        return shown or any(self.seen.parent(node) == name for node in self.names)
+
+    def is_denied(self, name: Name) -> bool:
+        """Tell whether a node is believed in a place where it was not seen."""
+        return any(self.logical.is_in(name, place) for place in self.seen.swept.places)
+
+    def is_on_cycle(self, name: Name) -> bool:
+        """Tell whether the new parents lead from a node back to it."""
+        passed: set[Name] = set()
+        at = self.logical.parent(name)
+        while at is not None and at != REGION and at not in passed:
+            if at == name:
+                return True
+            passed.add(at)
+            at = self.seen.parent(at) or (REGION if self.is_denied(at) else self.logical.parent(at))
+        return False
+
+    def links(self, name: Name) -> frozenset[Name] | None:
+        """Return the new links of a node, None where it keeps what it had."""
+        swept = self.seen.swept
+        if name in swept.nodes:
+            return self.seen.links(name)
+        if not swept.links:
+            return None
+        return frozenset(self.logical.links(name)).difference(swept.links) | self.seen.links(name)

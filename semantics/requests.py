@@ -80,6 +80,16 @@ class MGR:
         return f"MGR({self.agent}, {self.host})"
 
 
+@dataclass(frozen=True, slots=True)
+class Received:
+    """What `rcv_obs` is about: an observation, printed only where somebody looks at it."""
+
+    observation: "Observation"
+
+    def __str__(self) -> str:
+        return f"react({self.observation})"
+
+
 Request = OBS | READY | CTR | FLY | SND | MGR
 REQUESTS: tuple[type, ...] = (OBS, READY, CTR, FLY, SND, MGR)
 

@@ -15,7 +15,7 @@ from semantics.expressions import evaluated, name_in, query_of
 from semantics.provenance import NOTHING, Dependency
 from semantics.queries import evaluate, overlay
 from semantics.reactions import Reaction
-from semantics.requests import CTR, FLY, OBS, READY
+from semantics.requests import CTR, FLY, OBS, READY, Received
 from semantics.setting import Control
 from semantics.signature import Name
 from semantics.statements import ControlBy, Observe, React, at_internal
@@ -67,10 +67,10 @@ def sense(c: Configuration, a: Name) -> Iterator[Transition]:
         if not isinstance(pending.request, OBS):  # premise: OBS(a, q) ∈ η, in line
             continue
         query = pending.request.query
-        seen = evaluate(query, c.structure.physical, c.alpha.hosted)  # premise: L_q = q(A(P))
+        seen = evaluate(query, c.structure.physical, c.alpha)  # premise: L_q = q(A(P))
         rests_on = pending.rests_on | {Dependency(query)} if c.setting.monitored else NOTHING
         ready = c.eta.replacing(pending, READY(a, query, seen), rests_on)
-        target = c.with_(overlay(c.structure.logical, seen, c), ready)
+        target = c.with_(ready).with_each(overlay(c.structure.logical, seen))
         yield Transition(Label("sense", a, pending.request), target, served=pending)
 
 
@@ -92,7 +92,7 @@ def rcv_obs(c: Configuration, a: Name) -> Iterator[Transition]:
         if not enter_case(process, statement.cases, seen, pending.rests_on, here):  # premise: a case for it
             continue
         target = c.with_(continuing(c, process), c.eta.removing(pending))
-        yield Transition(Label("rcv_obs", a, f"react({seen})"), target)
+        yield Transition(Label("rcv_obs", a, Received(seen)), target)
 
 
 def req_ctr(c: Configuration, a: Name) -> Iterator[Transition]:

@@ -28,7 +28,7 @@ def test_for_goes_through_a_set_in_canonical_order():
 
 
 def test_an_observation_is_gone_through_by_all_that_it_shows():
-    assert members_of(Observation(("base", "u0"), ("a",))) == ("a", "base", "u0")
+    assert members_of(Observation.of(("base", "u0"), ("a",))) == ("a", "base", "u0")
 
 
 def test_while_runs_as_long_as_its_test_holds():

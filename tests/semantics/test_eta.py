@@ -15,7 +15,7 @@ requests: st.SearchStrategy[Request] = st.sampled_from(
         MGR("a", "u0"),
         SND("a", "b", "x"),
         SND("a", "b", frozenset({"p", "q", "r"})),
-        READY("a", All(), Observation()),
+        READY("a", All(), Observation.of()),
         OBS("b", All()),
         SND("b", "a", ("x",)),
     ]

@@ -20,7 +20,7 @@ from semantics.queries import Observation
 from semantics.structure import Linked, Parent
 from semantics.values import LARGEST_NUMBER, Truth
 
-SEEN = Observation(("base", "u0"), ("a",), (Parent("u0", "base"), Linked("w", "u0"), Linked("w", "u1")))
+SEEN = Observation.of(("base", "u0"), ("a",), (Parent("u0", "base"), Linked("w", "u0"), Linked("w", "u1")))
 
 
 def value(expression, **store):

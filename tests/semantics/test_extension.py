@@ -93,7 +93,7 @@ def test_a_mailbox_has_no_order_of_arrival():
 
 
 def test_messages_that_show_alike_are_kept_apart_in_one_order():
-    one, other = Observation(("u0",)), Observation(("u0",), relations=(Parent("u0", "base"),))
+    one, other = Observation.of(("u0",)), Observation.of(("u0",), relations=(Parent("u0", "base"),))
     c = pair(a=())
     for first, second in ((one, other), (other, one)):
         after = c.with_(c.alpha.posting("b", first))

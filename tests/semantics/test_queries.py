@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 from small_missions import aboard, mission
 
 from semantics import strategies
+from semantics.agents import Agents
 from semantics.cells import Cells
 from semantics.configuration import Configuration
 from semantics.initial import Beliefs
@@ -14,11 +15,11 @@ from semantics.structure import Linked, Parent
 
 
 def look(c: Configuration, query: Query) -> Observation:
-    return evaluate(query, c.structure.physical, c.alpha.hosted)
+    return evaluate(query, c.structure.physical, c.alpha)
 
 
 def learn(c: Configuration, seen: Observation) -> Configuration:
-    return c.with_(overlay(c.structure.logical, seen, c))
+    return c.with_each(overlay(c.structure.logical, seen))
 
 
 def of(operators: str, name: str) -> Query:
@@ -40,12 +41,12 @@ def test_the_parent_of_the_region_is_the_region():
     c = mission(["sea", "area", "spill"])
     top = look(c, of("CHILDREN PARENT PARENT PARENT PARENT", "spill"))
     assert top.shown == ("sea",)
-    assert top.enumerated == (REGION,)
+    assert top.swept.places == (REGION,)
 
 
 def test_an_absent_host_gives_the_empty_observation():
     c = mission(["base", "u0", "u1"], placed={"u0": None})
-    assert look(c, of("CHILDREN PARENT", "u0")) == Observation()
+    assert look(c, of("CHILDREN PARENT", "u0")) == Observation.of()
 
 
 def test_linked_to_shows_all_points_of_all_links():
@@ -53,7 +54,7 @@ def test_linked_to_shows_all_points_of_all_links():
     c = mission(["base", "u0", "u1", "gcs0", "gcs1"], channels=channels)
     seen = look(c, of("LINKED_TO", "u0"))
     assert seen.shown == ("gcs0", "gcs1", "u0")
-    assert (seen.looked, seen.swept) == (("u0",), ("wifi", "x"))
+    assert (seen.swept.nodes, seen.swept.links) == (("u0",), ("wifi", "x"))
     assert seen.links("u0") == {"wifi", "x"}
 
 
@@ -84,7 +85,7 @@ def test_operators_compose_pointwise(data):
 
 @given(strategies.structures())
 def test_all_shows_exactly_the_abstraction(structure):
-    seen = evaluate(All(), structure.physical, lambda _: ())
+    seen = evaluate(All(), structure.physical, Agents(structure.physical.cells))
     physical = structure.physical
     parents = {Parent(name, physical.abstract_parent(name)) for name in physical.entities()}
     links = {Linked(link, name) for name in physical.entities() for link in physical.links(name)}
@@ -146,9 +147,9 @@ def check_only_answers_were_taken(c: Cells, seen: Observation, after) -> None:
         old, new = before.parent(node), after.parent(node)
         if new != old and node not in answered:
             assert new == REGION
-            assert old in seen.enumerated or on_a_cycle(before, seen, node)
+            assert old in seen.swept.places or on_a_cycle(before, seen, node)
         lost = set(before.links(node)) - set(after.links(node))
-        assert node in seen.looked or lost <= set(seen.swept)
+        assert node in seen.swept.nodes or lost <= set(seen.swept.links)
         assert set(after.links(node)) - set(before.links(node)) <= seen.links(node)
     for node in after.nodes():
         assert len([place for place, _ in zip(after.ancestors(node), range(50), strict=False)]) < 50
@@ -163,7 +164,7 @@ def on_a_cycle(before, seen: Observation, node: str) -> bool:
         if place == node:
             return True
         place = seen.parent(place) or (
-            REGION if before.parent(place) in seen.enumerated else before.parent(place)
+            REGION if before.parent(place) in seen.swept.places else before.parent(place)
         )
     return True
 

@@ -11,7 +11,7 @@ atoms = st.one_of(
     st.integers(1 - LARGEST_NUMBER, LARGEST_NUMBER - 1),
     st.text(max_size=3),
     st.sampled_from(Truth),
-    st.just(Observation(("u0",))),
+    st.just(Observation.of(("u0",))),
 )
 values = st.recursive(
     atoms,
@@ -31,8 +31,8 @@ def test_values_have_one_key_if_and_only_if_they_are_equal(one, other):
 
 
 def test_observations_that_show_alike_have_different_keys():
-    assert order_key(Observation(("u0",))) != order_key(
-        Observation(("u0",), relations=(Parent("u0", "base"),))
+    assert order_key(Observation.of(("u0",))) != order_key(
+        Observation.of(("u0",), relations=(Parent("u0", "base"),))
     )
 
 
