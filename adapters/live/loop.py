@@ -18,7 +18,7 @@ from adapters.plugin import Aged, Command, Plugin, Published, Refused, Rejected,
 GATHER = 0.004
 """Seconds for which arrivals are gathered before the next turn."""
 
-SLICE = 6
+SLICE = 3
 """How many steps are taken before the loop looks at what has come in meanwhile."""
 
 IDLE = 0.5
