@@ -11,7 +11,7 @@ from typing import Any
 from adapters.recording.reading import Recording, is_recording
 from bigactors.exits import Exit
 from bigactors.files import read_bytes, read_json
-from bigactors.foreign import watched
+from bigactors.foreign import TELEMETRY, watched
 from bigactors.missions import digest_of, open_mission, shipped_missions, variation_of
 from bigactors.mistakes import Mistake
 from bigactors.recordings import mission_of, open_recording, trace_of
@@ -46,7 +46,8 @@ def run(options: Namespace) -> Exit:
 
 def is_foreign(path: str) -> bool:
     """Tell whether a file is neither a trace nor a recording of ours: a telemetry log, or AIS."""
-    return not is_recording(path) and read_bytes(path, 64).lstrip()[:1] != b"{"
+    first = read_bytes(path, 64).lstrip()[:1]
+    return path.endswith(TELEMETRY) or (first != b"" and first in b"!$\\#")
 
 
 def show_foreign(options: Namespace) -> Exit:
