@@ -78,7 +78,7 @@ def search_patrol(size: Size) -> Searched:
 
 
 TOOLS: dict[str, Tool] = {
-    "bigactors, learned": partial(explore_patrol, engine=Engine.LEARNED),
+    "bigactors, fast": partial(explore_patrol, engine=Engine.FAST),
     "bigactors, reference": partial(explore_patrol, engine=Engine.REFERENCE),
     "SPIN, no reduction": search_patrol,
 }

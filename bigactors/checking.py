@@ -67,7 +67,7 @@ class Failed:
 
 
 def check_mission(
-    name: str, limits: Limits, variation: Variation, engine: Engine = Engine.LEARNED
+    name: str, limits: Limits, variation: Variation, engine: Engine | None = None
 ) -> Checked | Failed:
     """Check one mission; what goes wrong is told on the standard error and returned."""
     try:
@@ -86,7 +86,7 @@ def check_mission(
 
 
 def check_missions(
-    names: list[str], limits: Limits, variation: Variation, engine: Engine
+    names: list[str], limits: Limits, variation: Variation, engine: Engine | None
 ) -> Iterator[Checked | Failed]:
     """Check missions in turn; after an interruption the others are not begun."""
     interrupted = False

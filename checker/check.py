@@ -3,7 +3,16 @@
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
-from checker.exploration import INTERRUPTION, Engine, Exploration, Inspect, Limits, Progress, explore
+from checker.exploration import (
+    INTERRUPTION,
+    Engine,
+    Exploration,
+    Inspect,
+    Limits,
+    Progress,
+    explore,
+    time_met,
+)
 from checker.findings import Collected, Finding
 from checker.inspections import Computation, DeadlockFreedom, Invariant, LocalConsistency, Reachability
 from checker.ownership import owned
@@ -17,20 +26,42 @@ from semantics.propositions import Property
 Reporter = Callable[[Progress], None]
 
 
+PATIENCE = 1.0
+"""Seconds after which a mission that the reference explorer has not got through is given to the fast one."""
+
+
 def check(
     initial: Configuration,
     properties: Iterable[Property],
     limits: Limits | None = None,
     report: Reporter | None = None,
     notes: tuple[str, ...] = (),
-    engine: Engine = Engine.LEARNED,
+    engine: Engine | None = None,
 ) -> Report:
     """Explore everything that is reachable and decide the properties.
 
     Race-freedom is first looked for in the text (by ownership); where that doesn't settle it, the mission is explored
     once more with what observations rest on remembered. Configurations are counted without that memory.
+
+    Args:
+        initial: Where to start.
+        properties: What is to be decided.
+        limits: Where to stop.
+        report: Told of the progress.
+        notes: What the report is to say besides.
+        engine: How to explore; by default whichever is quicker for the mission's size.
     """
-    return _Check(initial, tuple(properties), limits or Limits(), report, engine).run(notes)
+    given, limits = tuple(properties), limits or Limits()
+    if engine is not None:
+        return _Check(initial, given, limits, report, engine).run(notes)
+    most = limits.seconds
+    if most is None or most > PATIENCE:
+        quick = replace(limits, seconds=PATIENCE)
+        tried = _Check(initial, given, quick, report, Engine.REFERENCE).run(notes)
+        if not any(bound.startswith(time_met(PATIENCE)) for bound in tried.bounds):
+            return tried
+        return _Check(initial, given, limits, report, Engine.FAST).run(notes)
+    return _Check(initial, given, limits, report, Engine.REFERENCE).run(notes)
 
 
 class _Check:
@@ -73,7 +104,7 @@ class _Check:
             verdicts=tuple(map(self.decide, self.properties)),
             configurations=len(self.found.configurations),
             transitions=self.found.transitions,
-            depth=max(self.found.depths),
+            depth=self.found.depth,
             bounds=tuple(dict.fromkeys([*self.found.bounds, *later])),
             rules=dict(sorted(self.found.rules.items())),
             notes=notes,

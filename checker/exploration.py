@@ -5,12 +5,11 @@ It visits each configuration once, in the order of its distance from the first, 
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 
-from checker.learned import Learner
-from semantics.configuration import Configuration, Label, Transition
+from semantics.configuration import Configuration, Transition
 from semantics.successors import Expansion, expand
 
 MOST_PENDING = 64
@@ -52,7 +51,7 @@ class Engine(Enum):
     """How configurations are expanded; the results are the same."""
 
     REFERENCE = "reference"
-    LEARNED = "learned"
+    FAST = "fast"
 
 
 Inspect = Callable[[int, Configuration, Expansion], None]
@@ -65,9 +64,9 @@ class Exploration:
 
     Attributes:
         configurations: In the order of discovery; the first is the initial one.
-        origins: For each, the number of the one that it was first reached from (-1 for the initial one).
-        labels: For each, the label of the transition that first reached it.
-        depths: For each, its distance from the initial one.
+        origins: For each, the number of the one that it was first reached from (of the initial one, its own).
+        depth: How far the farthest is from the initial one.
+        expanded: How many of them were expanded: all, unless time ran out.
         transitions: How many transitions there are.
         rules: How many transitions each rule has.
         bounds: The limits that were met; empty where the exploration is complete.
@@ -75,10 +74,10 @@ class Exploration:
         rule_runs: How often an actor's rules were run in Python, where they were learned.
     """
 
-    configurations: list[Configuration]
-    origins: list[int] = field(default_factory=lambda: [-1])
-    labels: list[Label | None] = field(default_factory=lambda: [None])
-    depths: list[int] = field(default_factory=lambda: [0])
+    configurations: Sequence[Configuration]
+    origins: Sequence[int]
+    depth: int = 0
+    expanded: int = 0
     transitions: int = 0
     rules: Counter[str] = field(default_factory=Counter)
     bounds: list[str] = field(default_factory=list)
@@ -93,18 +92,22 @@ class Exploration:
     def path(self, number: int) -> tuple[int, ...]:
         """Return the numbers of the configurations on a shortest path to one, both ends included."""
         path = [number]
-        while self.origins[path[-1]] >= 0:
-            path.append(self.origins[path[-1]])
+        while path[-1] > 0:
+            path.append(int(self.origins[path[-1]]))
         return tuple(reversed(path))
+
+
+Report = Callable[[Progress], None]
+"""What is told of the progress."""
 
 
 def explore(
     initial: Configuration,
     inspect: Iterable[Inspect] = (),
     limits: Limits | None = None,
-    report: Callable[[Progress], None] | None = None,
+    report: Report | None = None,
     every: float = 0.5,
-    engine: Engine = Engine.LEARNED,
+    engine: Engine = Engine.REFERENCE,
 ) -> Exploration:
     """Visit everything that is reachable, breadth-first.
 
@@ -116,11 +119,11 @@ def explore(
         every: Seconds.
         engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
     """
-    explorer = _Explorer(initial, tuple(inspect), limits or Limits(), report, every)
-    if engine is Engine.LEARNED:
-        explorer.learner = Learner()
-        explorer.allowed = explorer.learner.expand
-    return explorer.run()
+    if engine is Engine.FAST:
+        from checker.fast import explore_fast  # noqa: PLC0415  # numba takes its time to load
+
+        return explore_fast(initial, tuple(inspect), limits or Limits(), report, every)
+    return _Explorer(initial, tuple(inspect), limits or Limits(), report, every).run()
 
 
 class _Explorer:
@@ -129,17 +132,18 @@ class _Explorer:
         initial: Configuration,
         inspect: tuple[Inspect, ...],
         limits: Limits,
-        report: Callable[[Progress], None] | None,
+        report: Report | None,
         every: float,
     ) -> None:
-        self.found = Exploration([initial])
+        self.configurations = [initial]
+        self.origins = [0]
+        self.depths = [0]
+        self.found = Exploration(self.configurations, self.origins)
         self.numbers = {initial: 0}
         self.inspect = inspect
         self.limits = limits
         self.report = report
         self.every = every
-        self.allowed: Callable[[Configuration], Expansion] = expand
-        self.learner: Learner | None = None
 
     def run(self) -> Exploration:
         started = time.monotonic()
@@ -148,16 +152,17 @@ class _Explorer:
         except KeyboardInterrupt:
             self.bound(INTERRUPTION)
         self.found.seconds = time.monotonic() - started
-        self.found.rule_runs = self.learner.runs if self.learner else None
+        self.found.depth = self.depths[-1]
+        self.found.bounds.sort()
         return self.found
 
     def visit_all(self, started: float) -> None:
-        found, reported = self.found, started
-        for number, configuration in enumerate(found.configurations):  # grows while it is gone through
+        reported = started
+        for number, configuration in enumerate(self.configurations):  # grows while it is gone through
             now = time.monotonic()
             most = self.limits.seconds
             if most is not None and now - started + self.limits.spent > most:
-                self.bound(f"the time limit of {most:g} s")
+                self.bound(time_met(most))
                 break
             if self.report is not None and now - reported >= self.every:
                 self.report(self.progress(number, now - started))
@@ -165,11 +170,12 @@ class _Explorer:
             self.expand(number, configuration)
 
     def expand(self, number: int, configuration: Configuration) -> None:
-        expansion = self.allowed(configuration)
+        expansion = expand(configuration)
+        self.found.expanded = number + 1
         for look in self.inspect:
             look(number, configuration, expansion)
         if crowded(configuration, self.limits.pending):
-            self.bound(f"more than {self.limits.pending} requests or messages of one agent pending")
+            self.bound(crowd_met(self.limits.pending))
             return
         for transition in expansion.transitions:
             self.follow(number, transition)
@@ -181,14 +187,13 @@ class _Explorer:
         if transition.target in self.numbers:
             return
         most = self.limits.configurations
-        if most is not None and len(found.configurations) >= most:
-            self.bound(f"the limit of {most:,} configurations")
+        if most is not None and len(self.configurations) >= most:
+            self.bound(limit_met(most))
             return
-        self.numbers[transition.target] = len(found.configurations)
-        found.configurations.append(transition.target)
-        found.origins.append(number)
-        found.labels.append(label)
-        found.depths.append(found.depths[number] + 1)
+        self.numbers[transition.target] = len(self.configurations)
+        self.configurations.append(transition.target)
+        self.origins.append(number)
+        self.depths.append(self.depths[number] + 1)
 
     def bound(self, reason: str) -> None:
         if reason not in self.found.bounds:
@@ -196,10 +201,23 @@ class _Explorer:
 
     def progress(self, number: int, seconds: float) -> Progress:
         found = self.found
-        total = len(found.configurations)
-        return Progress(
-            total, found.transitions, found.depths[number], total - number, number / max(seconds, 1e-9)
-        )
+        total, rate = len(self.configurations), number / max(seconds, 1e-9)
+        return Progress(total, found.transitions, self.depths[number], total - number, rate)
+
+
+def limit_met(most: int) -> str:
+    """Say that there are more configurations than were to be visited."""
+    return f"the limit of {most:,} configurations"
+
+
+def time_met(seconds: float) -> str:
+    """Say that the time was over."""
+    return f"the time limit of {seconds:g} s"
+
+
+def crowd_met(most: int) -> str:
+    """Say that more is pending than is followed."""
+    return f"more than {most} requests or messages of one agent pending"
 
 
 def crowded(c: Configuration, most: int) -> bool:

@@ -66,6 +66,12 @@ def step_of(source: Configuration, label: Label, target: Configuration) -> Step:
     return Step(label, alike.index(target), target)
 
 
+def step_between(source: Configuration, target: Configuration) -> Step:
+    """Return the first step from one configuration to another."""
+    label = next(transition.label for transition in candidates(source) if transition.target == target)
+    return step_of(source, label, target)
+
+
 def candidates(source: Configuration) -> tuple[Transition, ...]:
     """Return what may follow: transitions in turn first."""
     expansion = expand(source)
@@ -74,13 +80,8 @@ def candidates(source: Configuration) -> tuple[Transition, ...]:
 
 def trace_to(found: Exploration, number: int) -> Trace:
     """Return a shortest trace to a configuration of an exploration."""
-    path = found.path(number)
-    steps = []
-    for source, target in pairwise(path):
-        label = found.labels[target]
-        assert label is not None
-        steps.append(step_of(found.configurations[source], label, found.configurations[target]))
-    return Trace(found.configurations[0], tuple(steps))
+    run = [found.configurations[each] for each in found.path(number)]
+    return Trace(run[0], tuple(step_between(source, target) for source, target in pairwise(run)))
 
 
 def print_trace(trace: Trace, *, changes: bool = True) -> Iterator[str]:

@@ -88,8 +88,10 @@ def is_placed(placement: Placement | None) -> bool:
     return isinstance(placement, Placed)
 
 
-def stands_in(placement: Placed, place: Name, holders: tuple[Holder, ...]) -> bool:
+def stands_in(placement: Placement | None, place: Name, holders: tuple[Holder, ...]) -> bool:
     """Ask whether a place is the smallest of the holders that contain what stands there; the region, if none does."""
+    if not isinstance(placement, Placed):
+        return False
     return next((holder.place for holder in holders if encloses(holder.at, placement)), REGION) == place
 
 

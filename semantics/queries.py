@@ -226,15 +226,21 @@ class _Looking:
         match query:
             case Of(operator, inner):
                 self.enter(inner)
-                denoted = (
-                    self.leaf if not self.applied else {n for n in (REGION, *self.names) if self.shows(n)}
-                )
-                self.applied.append((operator, frozenset(denoted)))
+                self.applied.append((operator, self.denoted()))
             case All():
                 everything = frozenset({REGION, *self.physical.entities()})
                 self.applied += [("CHILDREN", everything), ("LINKED_TO", everything)]
             case Nodes(names):
                 self.leaf = frozenset(name for name in names if name in self.physical)
+
+    def denoted(self) -> frozenset[Name]:
+        """Return what the outermost operator so far denotes."""
+        if not self.applied:
+            return self.leaf
+        operator, inner = self.applied[-1]
+        if operator == "PARENT":
+            return frozenset(REGION if n == REGION else self.physical.abstract_parent(n) for n in inner)
+        return frozenset(n for n in (REGION, *self.names) if self.shows(n, self.parent(n)))
 
     def to(self, operator: str) -> frozenset[Name]:
         """Return all that an operator is applied to."""
@@ -248,11 +254,12 @@ class _Looking:
         """Return what is answered of one name."""
         if name.startswith(AGENT):
             return Fact(self.alpha.host(name.removeprefix(AGENT)) in self.to("HOSTED_AT"))
+        parent = self.parent(name)
         links = tuple(link for link in self.links_of(name) if link in self.links) if self.links else ()
-        return Fact(self.shows(name), self.parent(name), links)
+        return Fact(self.shows(name, parent), parent, links)
 
-    def shows(self, name: Name) -> bool:
-        """Tell whether the outermost operator denotes a node, or the region."""
+    def shows(self, name: Name, parent: Name | None) -> bool:
+        """Tell whether the outermost operator denotes a node or the region; `parent` as far as that was asked."""
         if not self.applied:
             return name in self.leaf
         operator, inner = self.applied[-1]
@@ -260,7 +267,7 @@ class _Looking:
             case "PARENT":
                 return any(self.physical.is_in(n, name) if n != REGION else name == n for n in sorted(inner))
             case "CHILDREN":
-                return name in inner or self.parent_among(name, inner) is not None
+                return name in inner or parent in inner
             case "LINKED_TO":
                 links = {link for n in inner for link in self.links_of(n)}
                 return name in inner or not links.isdisjoint(self.links_of(name))

@@ -9,12 +9,12 @@ from semantics.environment import Clause
 from semantics.expressions import Fault
 from semantics.extension import EXTENSION, migrate, say, snd
 from semantics.monitor import marked
-from semantics.rules import RULES, TIMED_RULES, Rule, actuate, command, commit, env, rcv_obs, sense
+from semantics.rules import RULES, TIMED_RULES, Rule, actuate, command, commit, env, sense
 from semantics.setting import Control, Scheduler
 from semantics.signature import Name
 
-SERVING: frozenset[Rule] = frozenset({sense, rcv_obs, actuate, command, commit, snd, migrate})
-"""The rules that have a pending request of the agent among their premises."""
+SERVING: frozenset[Rule] = frozenset({sense, actuate, command, commit, snd, migrate})
+"""The rules that serve a pending request; the others are an agent's own next step."""
 
 TURNLESS = frozenset({"commit"})
 """What is served under `fcfs` without waiting for a turn."""
@@ -29,11 +29,24 @@ def rules_of(control: Control) -> tuple[Rule, ...]:
 def steps(c: Configuration, a: Name) -> Iterator[Transition | Fault]:
     """Yield what one agent's rules allow, apart from others' turns, and each fault in the place of what it hinders.
 
-    A failed computation hinders only its own rule: what the agent had asked for is served all the same.
+    What the agent had asked for is served first, as in the paper's run; a failed computation hinders only its own rule.
     """
-    idle = not c.eta.of(a)
+    yield from served(c, a)
+    yield from moves(c, a)
+
+
+def served(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Yield what is done about an agent's pending requests."""
+    if c.eta.of(a):
+        for rule in rules_of(c.setting.control):
+            if rule in SERVING:
+                yield from rule(c, a)
+
+
+def moves(c: Configuration, a: Name) -> Iterator[Transition | Fault]:
+    """Yield an agent's own next steps."""
     for rule in rules_of(c.setting.control):
-        if idle and rule in SERVING:
+        if rule in SERVING:
             continue
         try:
             yield from rule(c, a)
@@ -88,7 +101,6 @@ def expansion_of(
     steps_found = list(by_agents)
     faults = tuple(step for step in steps_found if isinstance(step, Fault))
     found = [step for step in steps_found if not isinstance(step, Fault)]
-    # As in the paper's run, what is asked is served first.
     found.sort(key=lambda transition: transition.served is None)
     allowed = tuple(dict.fromkeys(marked(c, transition) for transition in found))
     waiting: tuple[Transition, ...] = ()

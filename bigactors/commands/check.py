@@ -42,7 +42,9 @@ def run(options: Namespace) -> Exit:
     alone = any(output.to_standard_output for output in outputs)
     results: list[Checked | Failed] = []
     folders: set[str] = set()
-    for result in check_missions(options.files, limits, variation_of(options), Engine(options.engine)):
+    for result in check_missions(
+        options.files, limits, variation_of(options), options.engine and Engine(options.engine)
+    ):
         results.append(result)
         if not alone:
             for line in report_lines(result, traces=not options.no_traces):
@@ -110,7 +112,7 @@ def _check_verdict(options: Namespace) -> None:
 
 def keep_verdict(checked: Checked, options: Namespace) -> None:
     """Write the verdict on a mission, and say so."""
-    data = verdict_json(checked, options.engine)
+    data = verdict_json(checked, options.engine or "by size")
     write_json(options.verdict, data)
     tell(f"  verdict: {'holds' if data['holds'] else 'does not hold'}, written to {options.verdict}")
 

@@ -1,0 +1,274 @@
+"""The fast explorer: breadth-first like the reference, over packed rows and learned trees.
+
+It visits the same configurations in the same order and stops at the same bounds.
+"""
+
+from collections import Counter
+from collections.abc import Iterator
+from itertools import accumulate
+
+import numpy as np
+from numpy.typing import NDArray
+
+from checker.fast import kernel
+from checker.fast.arrays import Growing
+from checker.fast.columns import packing
+from checker.fast.kernel import ALPHA, AT, CODE, CROWDS, CUT, GATHERED, LIMIT, NODE, SIZE, TREE, TURNS, WORDS
+from checker.fast.learner import Actor, CodedSource, Learner
+from checker.fast.pages import Pages
+from semantics.cells import AGENTS, Row
+from semantics.configuration import Configuration
+from semantics.setting import Scheduler
+from semantics.successors import by_clause, moves, served
+
+BATCH = 1 << 13
+"""Successors that are looked up at once: what is touched for them fits a core's own cache."""
+
+FIRST_ROWS = 1 << 15
+MOST_ACTORS = 512
+MOST_ROWS = (1 << 31) - 1
+
+
+class Space:
+    """The configurations reached so far, as rows, and how far their expansion has come.
+
+    Attributes:
+        learner: What is known of the rules.
+        packing: Where each column stands in a row.
+        origins: For each row the one that it was first reached from; the first is its own.
+    """
+
+    def __init__(self, learner: Learner, limit: int | None) -> None:
+        self.learner = learner
+        self.state = np.zeros(kernel.STATE, np.int64)
+        self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
+        self.state[TURNS] = learner.setting.scheduler is Scheduler.FCFS
+        self.clauses = [learner.tree(Actor(by_clause, clause)) for clause in learner.setting.environment]
+        self.counts = Growing(np.int64)
+        self.masks = Growing(np.uint64)
+        self.words = Pages(np.uint64, FIRST_ROWS)
+        self.origins = Pages(np.uint32, FIRST_ROWS)
+        self.packing = packing([len(column.values) for column in learner.columns.all])
+        self.state[WORDS] = self.packing.words
+        self.table = Pages(np.uint32, 1)
+        self._make_batch(BATCH)
+        self._add_first()
+        self._make_room()
+        self._see()
+
+    @property
+    def size(self) -> int:
+        """How many configurations there are."""
+        return int(self.state[SIZE])
+
+    @property
+    def expanded(self) -> int:
+        """How many of them were expanded."""
+        return int(self.state[AT])
+
+    @property
+    def was_cut(self) -> bool:
+        """Whether the limit left configurations out."""
+        return bool(self.state[CUT])
+
+    @property
+    def is_crowded(self) -> bool:
+        """Whether some were not followed, because an agent has too much pending."""
+        return bool(self.state[CROWDS])
+
+    @property
+    def bytes_used(self) -> int:
+        """How many bytes rows, origins and the visited set take, room included."""
+        return sum(each.room.nbytes for each in (self.words, self.origins, self.table))
+
+    def rules(self) -> Counter[str]:
+        """Return how many transitions each rule has."""
+        names = {number: name for name, number in self.learner.rules.items()}
+        found: Counter[str] = Counter()
+        counts = self.counts.room[: len(self.learner.leaves.rule)]
+        for step in np.flatnonzero(counts):
+            found[names[int(self.learner.leaves.rule.room[step])]] += int(counts[step])
+        return found
+
+    def row(self, number: int) -> Row:
+        """Return the cells of a configuration."""
+        return self.learner.columns.row(self.codes(number))
+
+    def configuration(self, number: int) -> Configuration:
+        """Return a configuration."""
+        return Configuration(self.learner.setting, self.row(number))
+
+    def codes(self, number: int) -> list[int]:
+        """Return the code of each column in a row."""
+        at, where = number * self.packing.words, self.packing
+        words = self.words.room[at : at + where.words]
+        return [int(code) for code in (words[where.word] >> where.shift) & where.mask]
+
+    # --- expanding ------------------------------------------------------------------------------------------------
+
+    def advance(self, until: int) -> None:
+        """Expand rows up to a number, learning what is not known on the way."""
+        while True:
+            ended = kernel.advance(
+                self.model,
+                self.words.room,
+                self.origins.room,
+                self.table.room,
+                self.batch,
+                self.counts.room,
+                self.state,
+                until,
+            )
+            if ended == kernel.DONE:
+                return
+            if ended == kernel.FULL:
+                self._make_room()
+            else:
+                self._miss()
+
+    def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
+        """Return the leaf that each row leads to in a tree, learning what is not known on the way."""
+        found = np.zeros(len(rows), np.int32)
+        done = 0
+        while done < len(rows):
+            done += kernel.classify(self.model, self.words.room, rows[done:], tree, found[done:], self.state)
+            if done < len(rows):
+                self._learn(int(rows[done]))
+        return found
+
+    def edges(self, rows: range) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int64]]]:
+        """Yield the transitions of rows that were expanded, some at a time: origins, steps, and targets (< 0: none)."""
+        expanded, self.state[AT] = self.expanded, rows.start
+        try:
+            while self.state[AT] < rows.stop:
+                known = kernel.gather(self.model, self.words.room, self.batch, self.state, rows.stop)
+                count = int(self.state[GATHERED])
+                targets = np.zeros(count, np.int64)
+                kernel.look_up(self.words.room, self.table.room, self.batch, targets, self.state)
+                self.state[GATHERED] = 0
+                yield self.batch.origins[:count].copy(), self.batch.steps[:count].copy(), targets
+                if not known:
+                    self._miss()
+        finally:
+            self.state[AT] = expanded
+
+    def _miss(self) -> None:
+        if self.state[NODE] == kernel.WIDE:
+            self._make_batch(2 * len(self.batch.hashes))
+        else:
+            self._learn(int(self.state[AT]))
+
+    def _learn(self, row: int) -> None:
+        learner, node, code = self.learner, int(self.state[NODE]), int(self.state[CODE])
+        known = False
+        if node >= 0:
+            column = learner.columns.all[learner.trees.column_of(node)]
+            known = learner.trees.settle(node, code, column)
+        if not known:
+            learner.learn(int(self.state[TREE]), CodedSource(learner.columns, self.codes(row)))
+        self._see()
+
+    def _see(self) -> None:
+        """Let the loops see what is known now."""
+        self._pack()
+        agents, begins = self._agents()
+        trees, leaves = self.learner.trees, self.learner.leaves
+        self._make_masks()
+        learned = (
+            trees.root,
+            trees.nodes,
+            trees.next,
+            leaves.leaves,
+            leaves.steps,
+            leaves.copies,
+            leaves.part,
+        )
+        actors = (np.array(numbers, np.int32) for numbers in (begins, agents, self.clauses))
+        self.model = kernel.Model._make(
+            (*(each.room for each in learned), self.masks.room, self.packing.columns, *actors)
+        )
+
+    def _make_masks(self) -> None:
+        """Work out what the transitions that are new keep and set; all of them where the packing is."""
+        leaves, width = self.learner.leaves, 2 * self.packing.words
+        known = self.masks.size // width
+        self.masks.extend((len(leaves.rule) - known) * width)
+        self.counts.extend(len(leaves.rule) - len(self.counts))
+        kernel.make_masks(
+            self.masks.used,
+            leaves.steps.room,
+            leaves.writes.room,
+            self.packing.columns,
+            self.packing.words,
+            known,
+        )
+
+    def _agents(self) -> tuple[list[int], list[int]]:
+        """Return the trees of the agents, for each value of the cell that says which there are, and where it begins."""
+        learner = self.learner
+        groups = [learner.still.read(AGENTS)]
+        self.state[ALPHA] = -1
+        if AGENTS in learner.varying:
+            self.state[ALPHA] = number = learner.columns.numbers[(AGENTS,)]
+            groups = learner.columns.all[number].values
+        trees = [
+            [learner.tree(Actor(rules, a)) for rules in (served, moves) for a in group] for group in groups
+        ]
+        return [tree for group in trees for tree in group], [0, *accumulate(map(len, trees))]
+
+    def _pack(self) -> None:
+        """Pack the rows anew where a column has outgrown its bits; the batch is empty of rows that matter."""
+        sizes = [len(column.values) for column in self.learner.columns.all]
+        self.packing = self.packing.extended(sizes)
+        if self.packing.holds(sizes):
+            return
+        old, self.packing = self.packing, packing(sizes, self.packing.words)
+        self.state[WORDS] = self.packing.words
+        self._reserve_rows(len(self.origins.room))
+        new = self.packing
+        kernel.repack(self.words.room, self.size, old.columns, new.columns, old.words, new.words)
+        self.masks.size = 0
+        self._make_batch(len(self.batch.hashes))
+        self._rebuild(len(self.table.room))
+
+    # --- room -----------------------------------------------------------------------------------------------------
+
+    def _add_first(self) -> None:
+        codes = self.learner.columns.codes(self.learner.still)
+        where = self.packing = packing([len(column.values) for column in self.learner.columns.all])
+        for word, shift, code in zip(where.word, where.shift, codes, strict=True):
+            self.words.room[word] |= np.uint64(code) << shift
+        self.state[SIZE] = 1
+
+    def _make_batch(self, successors: int) -> None:
+        """Make an empty batch; what it held must have been stored."""
+        self.batch = kernel.Batch(
+            np.zeros(successors * self.packing.words, np.uint64),
+            np.zeros(successors, np.uint64),
+            np.zeros(successors, np.int64),
+            np.zeros(successors, np.int32),
+            np.zeros(len(self.clauses) + MOST_ACTORS, np.int32),
+        )
+        self.state[GATHERED] = 0
+
+    def _make_room(self) -> None:
+        """Make room for a batch of new rows."""
+        wanted = min(self.size + len(self.batch.hashes), int(self.state[LIMIT]))
+        if wanted > len(self.origins.room):
+            self._reserve_rows(max(wanted, more(len(self.origins.room))))
+        if len(self.table.room) * 3 // 4 < wanted:
+            self._rebuild(max(2 * wanted, more(len(self.table.room))))
+
+    def _reserve_rows(self, rows: int) -> None:
+        self.words.grow(rows * self.packing.words)
+        self.origins.grow(rows)
+
+    def _rebuild(self, slots: int) -> None:
+        self.table = Pages(np.uint32, 1)  # give the old one back before the next is taken
+        self.table = Pages(np.uint32, slots)
+        kernel.rebuild(self.words.room, self.size, self.packing.words, self.table.room)
+
+
+def more(room: int) -> int:
+    """Return how much room comes after so much: the more there is, the less is added."""
+    return room * 2 if room < 1 << 22 else room * 3 // 2

@@ -1,0 +1,443 @@
+"""The compiled loops: walk the trees over the frontier, keep the exact visited set.
+
+Rows are packed words (see `columns.Packing`). The visited set is an open hash table of row numbers, each beside as
+many bits of its hash as 32 bits leave room for; equality is decided on whole rows. Successors are gathered, and their
+places in the table and the rows found there are touched one after another before any is compared: what these loops
+wait for is memory, which answers many questions at once.
+"""
+
+# mypy: disable-error-code="return-value, assignment, arg-type"
+# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from checker.fast.leaves import (
+    ALIKE,
+    COPIES,
+    COPIES_END,
+    CROWDED,
+    END,
+    FIRST,
+    FLAGS,
+    LEAF,
+    PAIR,
+    PARTS,
+    PARTS_END,
+    STEP,
+    TURN,
+    WRITES,
+    WRITES_END,
+)
+from checker.fast.trees import RECORD
+
+Ints = NDArray[np.int32]
+Words = NDArray[np.uint64]
+State = NDArray[np.int64]
+
+
+class Model(NamedTuple):
+    """Everything learned, as the loops see it.
+
+    Attributes:
+        root, nodes, next: See `Trees`.
+        leaves, steps, copies, part: See `Leaves`.
+        masks: For each transition and word the bits that it keeps, then those that it sets.
+        columns: For each column its word, shift and mask.
+        agents_from, agents, clauses: Trees, the agents' in groups: one for each value of the cell that names them.
+    """
+
+    root: Ints
+    nodes: State
+    next: Ints
+    leaves: Ints
+    steps: Ints
+    copies: Ints
+    part: Ints
+    masks: Words
+    columns: Words
+    agents_from: Ints
+    agents: Ints
+    clauses: Ints
+
+
+class Batch(NamedTuple):
+    """Successors that were not looked up yet: their words, hash, origin, and the transition that led there."""
+
+    words: Words
+    hashes: Words
+    origins: State
+    steps: Ints
+    leaves: Ints
+
+
+DONE, MISSED, FULL = 0, 1, 2
+"""How `advance` ends: all rows were expanded; something is not known; there is no room."""
+
+AT, SIZE, LIMIT, WORDS, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, TOUCHED = range(13)
+"""What stands where in the loops' state: the row that comes next, how many rows there are and may be, words a row,
+whether requests wait for their turn, the column that says which agents there are (-1: always the same), how many
+successors are gathered, what was not known, whether rows were left out or not followed, and nothing of meaning."""
+
+STATE = 13
+WIDE = -2
+"""What stands in the place of a node where one row has more successors than a batch holds."""
+
+COLUMN = 3
+_MULTIPLIER = np.uint64(0x9E3779B97F4A7C15)
+_HALF = np.uint64(32)
+
+
+@njit(cache=True, inline="always")
+def code_at(words: Words, at: int, columns: Words, column: int) -> int:
+    """Return the code of a column in the row that begins there."""
+    where = COLUMN * column
+    return np.int64((words[at + np.int64(columns[where])] >> columns[where + 1]) & columns[where + 2])
+
+
+@njit(cache=True, inline="always")
+def walk(words: Words, at: int, start: int, nodes: State, leads: Ints, columns: Words, state: State) -> int:
+    """Return the reference to the leaf that a row leads to from some reference on, 0 where it is not known."""
+    reference = np.int64(start)
+    node, code = np.int64(-1), np.int64(-1)
+    while reference > 0:
+        node = reference - 1
+        code = code_at(words, at, columns, nodes[RECORD * node])
+        inside = code - nodes[RECORD * node + 1]
+        reference = np.int64(0)
+        if 0 <= inside < nodes[RECORD * node + 2]:
+            reference = np.int64(leads[nodes[RECORD * node + 3] + inside])
+    if reference == 0:
+        state[NODE], state[CODE] = node, code
+    return reference
+
+
+@njit(cache=True, inline="always")
+def hashed(words: Words, at: int, count: int) -> np.uint64:
+    """Return the hash of a row."""
+    mixed = np.uint64(count)
+    for k in range(count):
+        mixed = (mixed ^ words[at + k]) * _MULTIPLIER
+        mixed ^= mixed >> _HALF
+    return mixed * _MULTIPLIER
+
+
+@njit(cache=True, inline="always")
+def slot_of(mixed: np.uint64, slots: int) -> int:
+    """Return where a hash belongs in a table of so many slots."""
+    return np.int64(((mixed >> _HALF) * np.uint64(slots)) >> _HALF)
+
+
+@njit(cache=True)
+def bits_for(slots: int) -> int:
+    """Return how many bits a row's number takes in a table of so many slots; the others hold bits of its hash."""
+    bits = 1
+    while (1 << bits) <= slots:
+        bits += 1
+    return bits
+
+
+@njit(cache=True, inline="always")
+def conclude(words: Words, at: int, masks: Words, step: int, target: Words, to: int, width: int) -> None:
+    """Write what a transition writes over what stands in the target."""
+    mask = 2 * width * step
+    for j in range(width):
+        target[to + j] = (words[at + j] & masks[mask + j]) | masks[mask + width + j]
+
+
+@njit(cache=True, inline="always")
+def copy_columns(
+    words: Words, at: int, columns: Words, copies: Ints, begin: int, end: int, target: Words, to: int
+) -> None:
+    """Copy what a transition copies from column to column."""
+    for k in range(begin, end):
+        code = np.uint64(code_at(words, at, columns, copies[PAIR * k + 1]))
+        where = COLUMN * copies[PAIR * k]
+        word, shift, mask = to + np.int64(columns[where]), columns[where + 1], columns[where + 2]
+        target[word] = (target[word] & ~(mask << shift)) | (code << shift)
+
+
+@njit(cache=True)
+def first_turn(all_leaves: Ints, steps: Ints, leaves: Ints, actors: int) -> int:
+    """Return the first turn of the queue that is enabled, -1 where none is."""
+    found = np.int64(-1)
+    for k in range(actors):
+        leaf = LEAF * leaves[k]
+        for step in range(all_leaves[leaf + FIRST], all_leaves[leaf + END]):
+            turn = np.int64(steps[STEP * step + TURN])
+            if turn >= 0 and (found < 0 or turn < found):
+                found = turn
+    return found
+
+
+@njit(cache=True)
+def is_repeated(target: Words, taken: Ints, steps: Ints, began: int, end: int, step: int, width: int) -> bool:
+    """Tell whether a row leads to the same under the same label already."""
+    for other in range(began, end):
+        if steps[STEP * taken[other] + ALIKE] == steps[STEP * step + ALIKE]:
+            same = True
+            for k in range(width):
+                same = same and target[other * width + k] == target[end * width + k]
+            if same:
+                return True
+    return False
+
+
+@njit(cache=True, inline="always")
+def find(
+    words: Words, table: Any, target: Words, k: int, mixed: np.uint64, width: int, bits: np.uint32
+) -> int:
+    """Return the number of the row that a successor is; -slot - 1 where it is new, with where it belongs."""
+    slots = len(table)
+    numbers = np.uint32((np.int64(1) << np.int64(bits)) - 1)
+    tag = np.uint32(mixed) >> bits
+    slot = slot_of(mixed, slots)
+    found = np.int64(-1)
+    while True:
+        entry = table[slot]
+        if entry == 0:
+            found = -slot - 1
+            break
+        if entry >> bits == tag:
+            row = np.int64(entry & numbers) - 1
+            same = True
+            for j in range(width):
+                same = same and words[row * width + j] == target[k * width + j]
+            if same:
+                found = row
+                break
+        slot += 1
+        if slot == slots:
+            slot = np.int64(0)
+    return found
+
+
+@njit(cache=True)
+def touch(words: Words, table: Any, hashes: Words, count: int, width: int) -> int:
+    """Read what successors will be compared with, so that the memory fetches it side by side."""
+    slots = len(table)
+    bits = np.uint32(bits_for(slots))
+    numbers = np.uint32((np.int64(1) << np.int64(bits)) - 1)
+    touched = np.uint64(0)
+    for k in range(count):
+        touched += np.uint64(table[slot_of(hashes[k], slots)])
+    for k in range(count):
+        entry = table[slot_of(hashes[k], slots)]
+        if entry != 0 and entry >> bits == np.uint32(hashes[k]) >> bits:
+            touched += words[(np.int64(entry & numbers) - 1) * width]
+    return np.int64(touched & np.uint64(1))
+
+
+@njit(cache=True)
+def store(words: Words, origins: Any, table: Any, batch: Batch, counts: State, state: State) -> None:
+    """Look up the batch: what is new becomes a row, with where it was reached from."""
+    target, hashes, reached_from, taken = batch.words, batch.hashes, batch.origins, batch.steps
+    width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
+    state[TOUCHED] = touch(words, table, hashes, state[GATHERED], width)
+    bits = np.uint32(bits_for(len(table)))
+    for k in range(state[GATHERED]):
+        counts[taken[k]] += 1
+        found = find(words, table, target, k, hashes[k], width, bits)
+        if found >= 0:
+            continue
+        if size >= limit:
+            state[CUT] += 1
+            continue
+        for j in range(width):
+            words[size * width + j] = target[k * width + j]
+        origins[size] = reached_from[k]
+        table[-found - 1] = ((np.uint32(hashes[k]) >> bits) << bits) | np.uint32(size + 1)
+        size += 1
+    state[SIZE] = size
+    state[GATHERED] = 0
+
+
+@njit(cache=True)
+def gather(  # one loop, so that its arrays are taken out of their tuples only once
+    m: Model, words: Words, batch: Batch, state: State, until: int
+) -> bool:
+    """Gather the successors of rows up to a number, or until half of the batch is full; False at what is not known.
+
+    A row's successors are gathered each once: first what its agents are served, then what they do themselves, then what
+    the environment does.
+    """
+    root, nodes, leads, columns, copies, parts = m.root, m.nodes, m.next, m.columns, m.copies, m.part
+    agents_from, agents, clauses = m.agents_from, m.agents, m.clauses
+    all_leaves, steps, masks = m.leaves, m.steps, m.masks
+    target, hashes, origins = batch.words, batch.hashes, batch.origins
+    taken, leaves = batch.steps, batch.leaves
+    width, known = state[WORDS], True
+    while known and state[AT] < until and state[GATHERED] <= len(hashes) // 2:
+        row = state[AT]
+        at = row * width
+        first, last = np.int64(0), np.int64(len(agents))
+        if state[ALPHA] >= 0:
+            group = code_at(words, at, columns, state[ALPHA])
+            first, last = np.int64(agents_from[group]), np.int64(agents_from[group + 1])
+        count = last - first + len(clauses)
+        flags = np.int64(0)
+        for k in range(count):
+            tree = agents[first + k] if first + k < last else clauses[first + k - last]
+            reference = walk(words, at, root[tree], nodes, leads, columns, state)
+            if reference == 0:
+                state[TREE] = tree
+                known = False
+                break
+            leaves[k] = -reference - 1
+            flags |= all_leaves[LEAF * (-reference - 1) + FLAGS]
+        end = state[GATHERED]
+        if known and flags & CROWDED:
+            state[CROWDS] += 1
+        elif known:
+            turn = first_turn(all_leaves, steps, leaves, last - first) if state[TURNS] else np.int64(-1)
+            began = end
+            for k in range(count):
+                leaf = LEAF * leaves[k]
+                for step in range(all_leaves[leaf + FIRST], all_leaves[leaf + END]):
+                    record = STEP * step
+                    if steps[record + TURN] >= 0 and steps[record + TURN] != turn:
+                        continue
+                    if end == len(hashes):
+                        state[NODE] = WIDE
+                        known = False
+                        break
+                    to = end * width
+                    conclude(words, at, masks, step, target, to, width)
+                    if steps[record + COPIES] < steps[record + COPIES_END]:
+                        copy_columns(
+                            words,
+                            at,
+                            columns,
+                            copies,
+                            steps[record + COPIES],
+                            steps[record + COPIES_END],
+                            target,
+                            to,
+                        )
+                    for part in range(steps[record + PARTS], steps[record + PARTS_END]):
+                        tree = parts[part]
+                        reference = walk(words, at, root[tree], nodes, leads, columns, state)
+                        if reference == 0:
+                            state[TREE] = tree
+                            known = False
+                            break
+                        own = all_leaves[LEAF * (-reference - 1) + FIRST]
+                        conclude(target, to, masks, own, target, to, width)
+                    if not known:
+                        break
+                    if steps[record + ALIKE] >= 0 and is_repeated(
+                        target, taken, steps, began, end, step, width
+                    ):
+                        continue
+                    hashes[end] = hashed(target, to, width)
+                    origins[end] = row
+                    taken[end] = step
+                    end += 1
+                if not known:
+                    break
+        if known:
+            state[GATHERED] = end
+            state[AT] += 1
+    return known
+
+
+@njit(cache=True)
+def advance(
+    m: Model, words: Words, origins: Any, table: Any, batch: Batch, counts: State, state: State, until: int
+) -> int:
+    """Expand rows up to a number, in their order; everything that was gathered is stored when it ends.
+
+    There must be room for a whole batch of new rows; it ends where there is not.
+    """
+    most = min(len(origins), len(words) // state[WORDS], len(table) * 3 // 4)
+    while state[AT] < until:
+        if min(state[SIZE] + len(batch.hashes), state[LIMIT]) > most:
+            return FULL
+        known = gather(m, words, batch, state, until)
+        store(words, origins, table, batch, counts, state)
+        if not known:
+            return MISSED
+    return DONE
+
+
+@njit(cache=True)
+def classify(m: Model, words: Words, rows: State, tree: int, found: Ints, state: State) -> int:
+    """Note the leaf that each of some rows leads to in a tree; return how many were led, all where it knows all."""
+    root, nodes, leads, columns = m.root, m.nodes, m.next, m.columns
+    width = state[WORDS]
+    done = np.int64(0)
+    for k in range(len(rows)):
+        reference = walk(words, rows[k] * width, root[tree], nodes, leads, columns, state)
+        if reference == 0:
+            state[TREE] = tree
+            break
+        found[k] = -reference - 1
+        done += 1
+    return done
+
+
+@njit(cache=True)
+def look_up(words: Words, table: Any, batch: Batch, targets: Any, state: State) -> None:
+    """Note the row that each successor of the batch is."""
+    target, hashes = batch.words, batch.hashes
+    width = state[WORDS]
+    state[TOUCHED] = touch(words, table, hashes, state[GATHERED], width)
+    bits = np.uint32(bits_for(len(table)))
+    for k in range(state[GATHERED]):
+        targets[k] = find(words, table, target, k, hashes[k], width, bits)
+
+
+@njit(cache=True)
+def rebuild(words: Words, size: int, width: int, table: Any) -> None:
+    """Fill an empty table with the rows, all of them different; their places are touched some ahead."""
+    slots = len(table)
+    bits = np.uint32(bits_for(slots))
+    ahead = 256
+    hashes = np.zeros(ahead, np.uint64)
+    touched = np.uint32(0)
+    for begin in range(0, size, ahead):
+        for row in range(begin, min(begin + ahead, size)):
+            hashes[row - begin] = hashed(words, row * width, width)
+            touched += table[slot_of(hashes[row - begin], slots)]
+        for row in range(begin, min(begin + ahead, size)):
+            mixed = hashes[row - begin]
+            slot = slot_of(mixed, slots)
+            while table[slot] != 0:
+                slot += 1
+                if slot == slots:
+                    slot = np.int64(0)
+            table[slot] = ((np.uint32(mixed) >> bits) << bits) | np.uint32(row + 1)
+    hashes[0] = touched
+
+
+@njit(cache=True)
+def repack(words: Words, size: int, old: Words, new: Words, old_width: int, new_width: int) -> None:
+    """Pack rows anew in their place, from the last to the first: a row of the new packing is not shorter."""
+    packed = np.zeros(new_width, np.uint64)
+    for row in range(size - 1, -1, -1):
+        packed[:] = 0
+        for column in range(len(old) // COLUMN):
+            code = np.uint64(code_at(words, row * old_width, old, column))
+            where = COLUMN * column
+            packed[np.int64(new[where])] |= code << new[where + 1]
+        for k in range(new_width):
+            words[row * new_width + k] = packed[k]
+
+
+@njit(cache=True)
+def make_masks(masks: Words, steps: Ints, writes: Ints, columns: Words, width: int, first: int) -> None:
+    """Work out for each transition, from a first one on, which bits of each word it keeps, and which it sets."""
+    for step in range(first, len(masks) // (2 * width)):
+        at = 2 * width * step
+        for k in range(width):
+            masks[at + k] = ~np.uint64(0)
+            masks[at + width + k] = np.uint64(0)
+        for k in range(steps[STEP * step + WRITES], steps[STEP * step + WRITES_END]):
+            where = COLUMN * writes[PAIR * k]
+            word, shift, mask = np.int64(columns[where]), columns[where + 1], columns[where + 2]
+            masks[at + word] &= ~(mask << shift)
+            masks[at + width + word] &= ~(mask << shift)
+            masks[at + width + word] |= np.uint64(writes[PAIR * k + 1]) << shift
