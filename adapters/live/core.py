@@ -6,6 +6,7 @@ the loop call the same.
 
 from __future__ import annotations
 
+from adapters.live.flying import remember
 from adapters.live.limits import check_limits
 from adapters.live.serving import in_turn
 from adapters.live.state import Batch, LiveState, Plan, Turn
@@ -52,7 +53,7 @@ def resumed(plan: Plan, c: Configuration, steps: int, orders: int, now: float) -
     state = LiveState(c, number=steps, told=orders)
     turning = Turning(plan, state, now)
     for pending in in_turn(c):
-        turning.remember(pending.request)
+        remember(turning, pending.request)
     return turning.turn().state
 
 

@@ -7,19 +7,19 @@ from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import replace
 
-from adapters.live.orders import destination, hand_overs, is_done, renewed
+from adapters.live.orders import destination, hand_overs, is_done
 from adapters.live.serving import PATIENCE, STEPS_PER_SECOND, in_turn, own_steps, refilled, served
 from adapters.live.sightings import Fences, placement_seen
 from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Pace, Plan, Turn
 from adapters.plugin import Command, HandOver, Hold, Return
 from semantics.configuration import Transition
-from semantics.control import Realisation, commits, obstacle, realisations
+from semantics.control import Realisation, obstacle, realisations
 from semantics.eta import Pending
 from semantics.expressions import Fault
-from semantics.observed import Sight, arriving
-from semantics.physical_model import Carried, Placed, Placement, placement_cell
+from semantics.observed import Sight
+from semantics.physical_model import Carried, Placed, Placement
 from semantics.precautions import Fallback
-from semantics.requests import CTR, FLY, SND, Request
+from semantics.requests import CTR, FLY, SND
 from semantics.signature import Name
 
 
@@ -206,7 +206,7 @@ class Turning:
                 return (), False
         if way.flying:
             for node, place in way.flying:
-                going = destination(self.c, way, node, place, self._request(request.agent))
+                going = destination(self.c, way, node, place, self.request_of(request.agent))
                 if going is None:
                     return (), False
                 self.orders[node] = Order(going, request.agent, self.now)
@@ -237,11 +237,12 @@ class Turning:
     def _hand_over(self, told: HandOver, agent: Name) -> None:
         known = self.handing.get(told.entity)
         if known is None and self._hears(told.entity):
-            command = replace(told, request=self._request(agent))
+            command = replace(told, request=self.request_of(agent))
             self.handing[told.entity] = Order(command, agent, self.now)
             self.commands.append(command)
 
-    def _request(self, agent: Name) -> str:
+    def request_of(self, agent: Name) -> str:
+        """Name one more order of an agent."""
         self.told += 1
         return f"{agent}-{self.told}"
 
@@ -265,55 +266,6 @@ class Turning:
         sighting = self.seen.get(entity)
         return None if sighting is None else placement_seen(self.c, self.shape(entity), sighting)
 
-    def arrive(self, entity: Name) -> bool:
-        """Commit the flight of a vehicle if it was seen where it was to go."""
-        transit, order = self.c.structure.physical.transit(entity), self.orders.get(entity)
-        at = self.where_seen(entity)
-        if transit is None or order is None or at is None or order.agent in self.grounded:
-            return False
-        if transit.to not in self.around(entity, self.c.setting.kind(entity), at):
-            return False
-        sight = Sight(f"{entity} arrives", {placement_cell(entity): at})
-        if not self.observe(sight, arriving(self.c, order.agent, sight)):
-            return False
-        del self.orders[entity]
-        return True
-
-    def renew(self, place: Name) -> None:
-        """Send vehicles on where the place that they go to has moved, and let those arrive that it has reached."""
-        physical = self.c.structure.physical
-        for entity, order in sorted(self.orders.items()):
-            transit = physical.transit(entity)
-            if transit is None or transit.to != place or self.suspended or order.agent in self.grounded:
-                continue
-            if not self.arrive(entity):
-                self._send_on(entity, order)
-
-    def _send_on(self, entity: Name, order: Order) -> None:
-        fly = next((p.request for p in in_turn(self.c) if p.request.agent == order.agent), None)
-        if not isinstance(fly, FLY) or isinstance(order.command, HandOver):
-            return
-        command = renewed(self.c, fly, order.command)
-        if command is not None:
-            self.orders[entity] = replace(order, command=command)
-            self.commands.append(command)
-
-    def remember(self, request: Request) -> None:
-        """Take up what vehicles were told for a request in another run; who confirms it is not told again."""
-        if isinstance(request, FLY):
-            found = commits(self.c, request)
-            for node, place in found.flying if found else ():
-                going = (
-                    destination(self.c, found, node, place, self._request(request.agent)) if found else None
-                )
-                if going is not None:
-                    self.orders[node] = Order(going, request.agent, self.now)
-        elif isinstance(request, CTR):
-            ways = list(realisations(self.c, request))
-            for told in hand_overs(self.c, request, ways[0], frozenset(self.plan.vehicles)) if ways else ():
-                command = replace(told, request=self._request(request.agent))
-                self.handing[told.entity] = Order(command, request.agent, self.now)
-
     # --- falling back
 
     def fall_back(self, fallback: Fallback, entities: tuple[Name, ...]) -> None:
@@ -321,7 +273,7 @@ class Turning:
         if fallback is Fallback.CONTINUE:
             return
         for entity in entities:
-            request = self._request("fallback")
+            request = self.request_of("fallback")
             told = Hold(request, entity) if fallback is Fallback.HOLD else Return(request, entity)
             self.commands.append(told)
 

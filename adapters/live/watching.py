@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 
 from adapters.live.assumptions import broken_by_place, clause_of_leaving
+from adapters.live.flying import arrive, renew
 from adapters.live.orders import is_authority
 from adapters.live.sightings import Fences, Refusal, placement_seen, sighting_of
 from adapters.live.state import Answer, Heard, Saying, Sighting
@@ -82,7 +83,7 @@ def _place(turning: Turning, entity: Name) -> None:
         _rechannel(turning, entity)
     if turning.c.structure.physical.transit(entity) is not None:
         if not isinstance(here, Carried):
-            turning.arrive(entity)
+            arrive(turning, entity)
         return
     seen = placement_seen(turning.c, turning.shape(entity), turning.seen[entity])
     if seen is None or seen == here or (isinstance(here, Carried) and isinstance(seen, Placed)):
@@ -114,7 +115,7 @@ def _move(turning: Turning, entity: Name, here: Placement | None, seen: Placemen
         if broken:
             turning.breaks(broken, entity)
         if not (isinstance(seen, Placed) and seen.geometry.is_point):
-            turning.renew(entity)
+            renew(turning, entity)
 
 
 def _channels_of_newcomer(turning: Turning, entity: Name) -> tuple[Name, ...]:

@@ -1,4 +1,4 @@
-"""What is recorded as plain data: arrivals, steps, commands, reports; and arrivals read back."""
+"""What is recorded as plain data: arrivals, steps, commands, reports."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from dataclasses import fields
 from typing import Any
 
 from adapters.live.state import Finding, Heard, LiveStep
-from adapters.plugin import Aged, Command, Gone, Published, Report
-from physical import Band, Geometry, PhysicalProperty, Velocity
+from adapters.plugin import Aged, Command, Gone, Report
+from physical import Band, Geometry, PhysicalProperty
 from semantics.canonical import digest_of_step
-from semantics.plain import geometry_of, sight_json
+from semantics.plain import sight_json
 
 
 def arrival_json(heard: Heard) -> dict[str, Any]:
@@ -41,41 +41,6 @@ def _property(plugin: str, said: PhysicalProperty) -> dict[str, Any]:
     if said.velocity is not None:
         data["velocity"] = [said.velocity.speed, said.velocity.course]
     return data
-
-
-def arrival_of(data: Any) -> Heard:
-    """Read what a plugin published; raises ValueError for what is no arrival."""
-    match data:
-        case {"plugin": str(plugin), "entity": str(entity), "gone": True}:
-            return Heard(plugin, Gone(entity, _number(data.get("time")), plugin))
-        case {"plugin": str(plugin), "entity": str(entity), "kind": str(kind), "ring": ring}:
-            return Heard(plugin, _aged(_said(entity, kind, geometry_of({"ring": ring}), data), data))
-    raise ValueError(f"{data!r:.80} is no arrival")
-
-
-def _said(entity: str, kind: str, geometry: Geometry, data: dict[str, Any]) -> PhysicalProperty:
-    altitude, velocity, by = data.get("altitude"), data.get("velocity"), data.get("carried_by")
-    return PhysicalProperty(
-        entity,
-        kind,
-        geometry,
-        None if altitude is None else Band(*map(_number, altitude)),
-        tuple(map(str, data.get("channels", ()))),
-        None if by is None else str(by),
-        _number(data["time"]) if "time" in data else None,
-        data["plugin"],
-        None if velocity is None else Velocity(*map(_number, velocity)),
-    )
-
-
-def _aged(said: PhysicalProperty, data: dict[str, Any]) -> Published:
-    return Aged(said, _number(data["time_to_live"])) if "time_to_live" in data else said
-
-
-def _number(value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(f"{value!r:.40} is not a number")
-    return float(value)
 
 
 def step_json(step: LiveStep) -> dict[str, Any]:

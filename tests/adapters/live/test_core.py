@@ -1,7 +1,7 @@
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
 from adapters.live.core import resumed, watch
-from adapters.live.state import Batch, Heard, Saying
+from adapters.live.state import Batch, Heard, Plan, Saying
 from adapters.plugin import GoTo, HandOver, Hold, LinkLost, LinkRestored, Rejected, Return
 from physical import PhysicalProperty, polygon
 from semantics.physical_model import InTransit, Placed
@@ -261,6 +261,30 @@ def test_an_agent_that_never_waits_does_not_keep_others_from_going_on():
     assert 0.0 < run.again < 0.2
     run.turn(0.01)
     assert len(run.steps) <= taken + 3
+
+
+# --- two at once ---
+
+
+def test_a_rule_that_moves_two_is_committed_when_both_are_there():
+    two = TOUR.replace("  boat0:", "  uav1: UAV = point (37.012, -8.65) linked control:gcs1\n  boat0:")
+    text = two + (
+        "rule both { west0.(uav0[a] | uav1[b] | $0) || east0.$1 -> west0.$0 || east0.(uav0[a] | uav1[b] | $1) }\n"
+        "BigActor a hosted_at uav0 with_behavior { control(both()) }"
+    )
+    plan = plan_of(text)
+    run = Run(Plan(plan.first, {"uav0": "autopilot", "uav1": "autopilot"}))
+    other = ("control:gcs1",)
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    assert run.commands == []
+    run.turn(1.0, seen("uav1", (37.012, -8.65), 1.0, channels=other))
+    assert sorted(told.entity for told in run.commands) == ["uav0", "uav1"]
+    run.turn(2.0, seen("uav0", EAST, 2.0))
+    assert "commit" not in run.rules
+    run.turn(3.0, seen("uav1", (37.012, -8.612), 3.0, channels=other))
+    assert run.rules[-1] == "commit"
+    assert run.state.orders == {}
+    assert run.findings == []
 
 
 # --- resuming -------------------------------------------------------------------------------------------
