@@ -2,7 +2,7 @@ from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
 from adapters.live.core import resumed, watch
 from adapters.live.state import Batch, Heard, Plan, Saying
-from adapters.plugin import GoTo, HandOver, Hold, LinkLost, LinkRestored, Rejected, Return
+from adapters.plugin import Aged, Gone, GoTo, HandOver, Hold, LinkLost, LinkRestored, Rejected, Return
 from physical import PhysicalProperty, polygon
 from semantics.physical_model import InTransit, Placed
 from semantics.precautions import Fallback, Precautions, TimeLimit
@@ -261,6 +261,69 @@ def test_an_agent_that_never_waits_does_not_keep_others_from_going_on():
     assert 0.0 < run.again < 0.2
     run.turn(0.01)
     assert len(run.steps) <= taken + 3
+
+
+# --- places that move ---
+
+SPILL = (
+    TOUR.replace("kind Vessel\n", "kind Vessel\n kind OilSpill contains UAV\n")
+    .replace("contains Location, Vessel", "contains Location, OilSpill, Vessel")
+    .replace("  uav0: UAV", "  oilSpill0: OilSpill = circle (37.01, -8.61) radius 300 m\n  uav0: UAV")
+)
+
+
+def test_a_vehicle_is_sent_on_where_its_place_has_drifted_to():
+    text = SPILL + (
+        "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO oilSpill0) }\n"
+        "environment { oilSpill0 drifts among circle (37.012, -8.612) radius 300 m }"
+    )
+    run = Run(plan_of(text))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    drifted = seen("oilSpill0", (37.013, -8.613), 1.0, "camera", "OilSpill", ())
+    run.turn(1.0, drifted)
+    first, second = run.commands
+    assert first.request == second.request
+    assert first.place != second.place
+    assert run.findings == []
+    run.turn(2.0, seen("uav0", (37.0135, -8.6135), 2.0))
+    assert run.rules[-1] == "commit"
+
+
+def test_a_place_that_drifts_over_a_waiting_vehicle_lets_it_arrive():
+    text = SPILL + (
+        "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO oilSpill0) }\n"
+        "environment { oilSpill0 drifts among circle (37.012, -8.612) radius 300 m }"
+    )
+    run = Run(plan_of(text))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(1.0, seen("uav0", (37.0139, -8.6139), 1.0))
+    assert "commit" not in run.rules
+    run.turn(2.0, seen("oilSpill0", (37.013, -8.613), 2.0, "camera", "OilSpill", ()))
+    assert run.rules[-1] == "commit"
+
+
+def test_what_is_too_old_leaves_p_and_so_does_what_is_said_to_be_gone():
+    run = Run(plan_of(TOUR + "environment { boat0 vanishes }"))
+    run.turn(0.0, Heard("ais", Aged(boat((37.03, -8.63), 0.0).published, 60.0)))
+    run.turn(59.0)
+    assert run.steps == []
+    run.turn(61.0)
+    assert run.labels == ["⟨env : boat0 vanishes⟩"]
+    assert run.findings == []
+    run.turn(62.0, boat((37.03, -8.63), 62.0))
+    assert run.labels[1:] == ["⟨env : boat0 appears in region⟩"]
+    run.turn(63.0, Heard("ais", Gone("boat0", 63.0, "ais")))
+    assert run.labels[2:] == ["⟨env : boat0 vanishes⟩"]
+
+
+def test_a_vehicle_in_flight_that_is_not_heard_stays_in_transit():
+    run = Run(plan_of(TOUR + GO))
+    heard = seen("uav0", WEST, 0.0)
+    run.turn(0.0, Heard("autopilot", Aged(heard.published, 30.0)))
+    run.turn(100.0)
+    assert isinstance(run.state.configuration.structure.physical.placement("uav0"), InTransit)
+    run.turn(101.0, seen("uav0", EAST, 101.0))
+    assert "commit" in run.rules
 
 
 # --- two at once ---
