@@ -145,7 +145,9 @@ def replay(initial: Configuration, data: Any) -> Trace:
             raise ReplayError(number, label, enabled, _cause(len(alike)))
         before, at = at, alike[choice].target
         if wrote is not None and digest_of_step(before, at) != wrote:
-            raise ReplayError(number, label, print_changes(before, at), "it leads to another configuration here")
+            raise ReplayError(
+                number, label, print_changes(before, at), "it leads to another configuration here"
+            )
         trace.append(Step(alike[choice].label, choice, at, sight))
     return Trace(initial, tuple(trace))
 

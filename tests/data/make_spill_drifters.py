@@ -1,4 +1,4 @@
-"""Encode `spill_watch.nmea`, which the live demonstration replays: two invented drifters, not a word of it ever received.
+"""Encode `spill_watch.nmea`, which the live demonstration replays: two invented drifters, nothing of it received.
 
 Run it to write the file anew; a test checks that this gives the same bytes. Fifty minutes from 2014-09-25 10:00:00
 UTC, a position of each drifter every 30 s, and the receiver's own time before them.
@@ -35,7 +35,9 @@ def _moment(second):
     for mmsi, lat, lon, north, east in DRIFTERS:
         fields = {"type": 18, "mmsi": mmsi, "lat": lat + north * second, "lon": lon + east * second}
         motion = {"speed": 0.4, "course": 240.0, "heading": 511, "second": second % 60}
-        for sentence in encode_dict({**fields, **motion}, talker_id="AI", sentence_type="VDM", radio_channel="B"):
+        for sentence in encode_dict(
+            {**fields, **motion}, talker_id="AI", sentence_type="VDM", radio_channel="B"
+        ):
             yield sentence.encode("ascii")
 
 

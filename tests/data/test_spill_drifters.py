@@ -12,7 +12,9 @@ def test_the_recording_is_what_the_script_encodes():
 
 
 def test_both_drifters_are_heard_for_fifty_minutes():
-    positions = read_recording(Path(__file__).parents[2] / "specs" / "missions" / "spill_watch.nmea").positions
+    positions = read_recording(
+        Path(__file__).parents[2] / "specs" / "missions" / "spill_watch.nmea"
+    ).positions
     times = [report.time for report in positions]
     assert {report.mmsi for report in positions} == {263999001, 263999002}
     assert max(times) - min(times) > 49 * 60
