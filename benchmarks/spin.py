@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,11 +15,15 @@ COMPILE = ("-O2", "-DSAFETY", "-DNOREDUCE")
 FIRST_DEPTH, MOST_DEPTH = 1_000_000, 256_000_000
 """How deep SPIN's stack is tried. All of it counts into SPIN's memory, so what is measured has the depth it needs."""
 
+CLAIM_DEPTH = 100_000
+"""How deep claims are searched: what is cut without an error is refused."""
+
 CUT = "max search depth too small"
 """What SPIN says beside "errors: 0" where it has not searched everything."""
 
 _STORED = re.compile(r"^\s*(\d+) states, stored", re.MULTILINE)
 _TRANSITIONS = re.compile(r"^\s*(\d+) transitions \(= stored\+matched\)", re.MULTILINE)
+_ERRORS = re.compile(r"errors: (\d+)")
 _REACHED = re.compile(r"depth reached (\d+)")
 
 
@@ -69,6 +74,30 @@ def search(promela: str, folder: Path) -> Searched:
         raise SpinError(f"the search was cut at {depth:,} steps")
     stored, transitions = _count(_STORED, output), _count(_TRANSITIONS, output)
     return Searched(stored, transitions - 1, seconds, memory, preparing)
+
+
+def verdicts(promela: str, claims: Mapping[str, str], folder: Path) -> dict[bool, dict[str, bool]]:
+    """Return of each claim in linear time, in SPIN's syntax and by name, whether it holds of a small model.
+
+    They are decided twice: over all runs (False), and over those that are weakly fair to each process (True).
+
+    Raises:
+        SpinError: The model or a claim is refused, or the search was cut.
+    """
+    written = "".join(f"ltl {name} {{ {formula} }}\n" for name, formula in claims.items())
+    (folder / "model.pml").write_text(promela + written, encoding="ascii")
+    _run("spin", "-a", "model.pml", folder=folder)
+    _run("gcc", "-DNOREDUCE", "-o", "pan", "pan.c", folder=folder)
+    return {fair: {name: _holds(name, folder, fair=fair) for name in claims} for fair in (False, True)}
+
+
+def _holds(claim: str, folder: Path, *, fair: bool) -> bool:
+    command = ["./pan", "-a", *(["-f"] if fair else []), f"-m{CLAIM_DEPTH}", "-N", claim]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    found = _ERRORS.search(done.stdout)
+    if done.returncode or found is None or (found[1] == "0" and CUT in done.stdout):
+        raise SpinError(f"the search failed: {done.stdout}{done.stderr}")
+    return found[1] == "0"
 
 
 def _depth(folder: Path) -> int:

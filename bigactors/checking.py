@@ -10,6 +10,7 @@ from bigactors.mistakes import Mistake, describe_bug
 from bigactors.progress import watching
 from bigactors.terminal import tell
 from checker import Engine, Limits, Report, check, report_json
+from checker.findings import MOST_VIOLATIONS
 from specs.elaboration import ElaboratedMission, Variation
 
 FAILURE_SCHEMA = "bigactors.failure/1"
@@ -67,13 +68,25 @@ class Failed:
 
 
 def check_mission(
-    name: str, limits: Limits, variation: Variation, engine: Engine | None = None
+    name: str,
+    limits: Limits,
+    variation: Variation,
+    engine: Engine | None = None,
+    violations: int = MOST_VIOLATIONS,
 ) -> Checked | Failed:
     """Check one mission; what goes wrong is told on the standard error and returned."""
     try:
         mission = open_mission(name, variation)
         with watching(mission.name) as watch:
-            report = check(mission.initial, mission.properties, limits, watch, mission.notes, engine)
+            report = check(
+                mission.initial,
+                mission.properties,
+                limits,
+                watch,
+                mission.notes,
+                engine,
+                violations=violations,
+            )
         return Checked(name, mission, digest_of(mission), report, watch.interrupted)
     except Mistake as mistake:
         tell(str(mistake))
@@ -86,7 +99,7 @@ def check_mission(
 
 
 def check_missions(
-    names: list[str], limits: Limits, variation: Variation, engine: Engine | None
+    names: list[str], limits: Limits, variation: Variation, engine: Engine | None, violations: int
 ) -> Iterator[Checked | Failed]:
     """Check missions in turn; after an interruption the others are not begun."""
     interrupted = False
@@ -94,7 +107,7 @@ def check_missions(
         if interrupted:
             yield Failed(name, Exit.INCOMPLETE, "not begun")
             continue
-        result = check_mission(name, limits, variation, engine)
+        result = check_mission(name, limits, variation, engine, violations)
         interrupted = result.interrupted
         yield result
 

@@ -4,7 +4,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from bigactors.files import write_text
 from bigactors.mistakes import Mistake, unreadable
+from bigactors.pages import Story, trace_page
 from bigactors.pictures import PictureError, draw_configuration, draw_overview, draw_trace
 from checker import Trace
 from semantics.configuration import Configuration
@@ -27,6 +29,17 @@ def draw_run(trace: Trace, folder: Path, title: str, *, each_step: bool) -> None
             draw_trace(trace.configurations, labels, folder, title=title)
         else:
             draw_overview(trace.configurations, labels, folder / "trace.svg", title=title)
+
+
+def draw_lanes(trace: Trace, path: str, title: str) -> None:
+    """Draw a trace into a file, its steps in lanes."""
+    with _mistakes(path):
+        draw_overview(trace.configurations, [step.label for step in trace.steps], path, title=title)
+
+
+def write_page(trace: Trace, path: str, title: str, start: int = 0) -> None:
+    """Write a trace as a page that steps through it."""
+    write_text(path, trace_page(Story(title, "", False, trace, start)))
 
 
 @contextmanager

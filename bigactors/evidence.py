@@ -7,6 +7,7 @@ from pathlib import Path
 from bigactors.checking import Checked
 from bigactors.drawings import draw_run
 from bigactors.files import file_stem, make_folder, write_json, write_text
+from bigactors.pages import MOST_PICTURES, Story, trace_page
 from checker import Trace, print_trace, to_json
 from semantics.printing import print_configuration
 
@@ -19,13 +20,17 @@ class Evidence:
         stem: What its folder is called.
         about: What it is evidence of.
         trace: Its steps.
+        violated: Whether it ends in a violation.
         telling: Whether each configuration is worth a picture: it ends in a violation, or in what was looked for.
+        details: More of what it is evidence of.
     """
 
     stem: str
     about: str
     trace: Trace
+    violated: bool
     telling: bool
+    details: tuple[str, ...] = ()
 
 
 def evidence_of(checked: Checked) -> Iterator[Evidence]:
@@ -34,17 +39,26 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
         name = verdict.property.name
         for violation in verdict.violations:
             about = f"{name} violated: {violation.kind}: {violation.message}"
-            yield Evidence(file_stem(f"{name}-{violation.kind}"), about, violation.trace, telling=True)
+            yield Evidence(
+                file_stem(f"{name}-{violation.kind}"),
+                about,
+                violation.trace,
+                True,
+                telling=True,
+                details=violation.details,
+            )
         if verdict.witness is not None:
             found = verdict.property.kind == "reachable"
-            yield Evidence(file_stem(f"{name}-witness"), f"{name}: a witness", verdict.witness, telling=found)
+            yield Evidence(
+                file_stem(f"{name}-witness"), f"{name}: a witness", verdict.witness, False, telling=found
+            )
 
 
 def write_evidence(checked: Checked, folder: Path) -> tuple[Path, ...]:
-    """Write every trace of a report into a folder of its own: `trace.txt`, `trace.json`, `trace.svg`.
+    """Write every trace of a report into a folder of its own: `trace.txt`, `trace.json`, `trace.svg`, `trace.html`.
 
-    Of those that end in a violation, or in what was to be reachable, each configuration is drawn too. Returns the
-    folders.
+    Of those that end in a violation, or in what was to be reachable, each configuration is drawn, of others in the page
+    the last one only. Returns the folders.
     """
     written: list[Path] = []
     for each in evidence_of(checked):
@@ -52,8 +66,25 @@ def write_evidence(checked: Checked, folder: Path) -> tuple[Path, ...]:
         write_text(str(target / "trace.txt"), "\n".join(_lines(checked, each)) + "\n")
         write_json(str(target / "trace.json"), to_json(each.trace, checked.name, checked.digest))
         draw_run(each.trace, target, f"{checked.mission.name}, {each.stem}:", each_step=each.telling)
+        write_text(str(target / "trace.html"), trace_page(story_of(checked, each)))
         written.append(target)
     return tuple(written)
+
+
+def story_of(checked: Checked, evidence: Evidence) -> Story:
+    """Return what the page of a trace tells."""
+    drawn = MOST_PICTURES if evidence.telling else 1
+    note = f"{checked.name}, {checked.digest}"
+    name = checked.mission.name
+    return Story(
+        name,
+        evidence.about,
+        evidence.violated,
+        evidence.trace,
+        drawn=drawn,
+        note=note,
+        details=evidence.details,
+    )
 
 
 def _free(path: Path, taken: list[Path]) -> Path:

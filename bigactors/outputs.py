@@ -110,7 +110,8 @@ def result_of(checked: Checked | Failed) -> Result:
     """Return a mission's result in the shape that the formats share."""
     file = file_of(checked.name)
     if isinstance(checked, Checked):
-        return Result(checked.name, file, checked.report, check_line=check_line(checked.mission))
+        text = checked.mission.source.text
+        return Result(checked.name, file, checked.report, check_line=check_line(checked.mission), text=text)
     return Result(checked.name, file, failures=tuple(_failures(checked)))
 
 

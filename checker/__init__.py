@@ -7,7 +7,7 @@ from checker.check import check
 from checker.exploration import Engine, Exploration, Limits, Progress, explore
 from checker.ownership import owned
 from checker.report import report_json, report_text
-from checker.traces import ReplayError, Step, Trace, print_trace, replay, to_json
+from checker.traces import ReplayError, Step, Trace, print_loop, print_trace, replay, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
 
 __all__ = [
@@ -25,6 +25,7 @@ __all__ = [
     "check",
     "explore",
     "owned",
+    "print_loop",
     "print_trace",
     "replay",
     "report_json",

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Iterator
 
 from checker.results import Issue, Level, Result, clean
 
-COMMANDS = {Level.WRONG: "error", Level.INCOMPLETE: "warning", Level.BUG: "error"}
+COMMANDS = {Level.WRONG: "error", Level.WARNING: "warning", Level.INCOMPLETE: "warning", Level.BUG: "error"}
 
 
 def annotations(results: Iterable[Result]) -> Iterator[str]:
-    """Yield a command for each issue; nothing exactly where every property holds."""
+    """Yield a command for each issue; no error exactly where every property holds."""
     for result in results:
         yield from (_command(result, issue) for issue in result.issues())
 

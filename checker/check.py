@@ -2,7 +2,9 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
+from checker.coverage import coverage
 from checker.exploration import (
     INTERRUPTION,
     Engine,
@@ -13,30 +15,43 @@ from checker.exploration import (
     explore,
     time_met,
 )
-from checker.findings import Collected, Finding
+from checker.findings import MOST_VIOLATIONS, Collected, Finding
 from checker.inspections import Computation, DeadlockFreedom, Invariant, LocalConsistency, Reachability
 from checker.ownership import owned
 from checker.races import ControlRaces, StaleObservationRaces
 from checker.traces import Trace, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Violation
+from checker.visited import Visited
 from semantics.configuration import Configuration
 from semantics.monitor import monitored
 from semantics.propositions import Property
+from semantics.temporal import TEMPORAL
+
+if TYPE_CHECKING:
+    from checker.temporal.decide import Decider
 
 Reporter = Callable[[Progress], None]
 
+VACUOUS = {
+    "local_consistency": "no control was ever next in line",
+    "race_freedom": "no control was ever served",
+    "arrival": "no flight ever ends",
+}
+"""What it means that nothing was examined that a property is about."""
 
 PATIENCE = 1.0
 """Seconds after which a mission that the reference explorer has not got through is given to the fast one."""
 
 
-def check(
+def check(  # noqa: PLR0913 - each says one thing of a check
     initial: Configuration,
     properties: Iterable[Property],
     limits: Limits | None = None,
     report: Reporter | None = None,
     notes: tuple[str, ...] = (),
     engine: Engine | None = None,
+    *,
+    violations: int = MOST_VIOLATIONS,
 ) -> Report:
     """Explore everything that is reachable and decide the properties.
 
@@ -50,18 +65,18 @@ def check(
         report: Told of the progress.
         notes: What the report is to say besides.
         engine: How to explore; by default whichever is quicker for the mission's size.
+        violations: Of each property so many different ones are shown at the most, each with a shortest trace.
     """
     given, limits = tuple(properties), limits or Limits()
     if engine is not None:
-        return _Check(initial, given, limits, report, engine).run(notes)
-    most = limits.seconds
-    if most is None or most > PATIENCE:
+        return _Check(initial, given, limits, report, engine, violations).run(notes)
+    if limits.seconds is None or limits.seconds > PATIENCE:
         quick = replace(limits, seconds=PATIENCE)
-        tried = _Check(initial, given, quick, report, Engine.REFERENCE).run(notes)
+        tried = _Check(initial, given, quick, report, Engine.REFERENCE, violations).run(notes)
         if not any(bound.startswith(time_met(PATIENCE)) for bound in tried.bounds):
             return tried
-        return _Check(initial, given, limits, report, Engine.FAST).run(notes)
-    return _Check(initial, given, limits, report, Engine.REFERENCE).run(notes)
+        return _Check(initial, given, limits, report, Engine.FAST, violations).run(notes)
+    return _Check(initial, given, limits, report, Engine.REFERENCE, violations).run(notes)
 
 
 class _Check:
@@ -72,17 +87,20 @@ class _Check:
         limits: Limits,
         report: Reporter | None,
         engine: Engine,
+        most: int,
     ) -> None:
         self.initial = initial
         self.properties = properties
         self.limits = limits
         self.report = report
         self.engine = engine
-        self.deadlock = DeadlockFreedom()
-        self.consistency = LocalConsistency()
-        self.computation = Computation()
-        self.races = ControlRaces()
-        self.stale = StaleObservationRaces()
+        self.most = most
+        self.visited = Visited()
+        self.deadlock = DeadlockFreedom(most)
+        self.consistency = LocalConsistency(most)
+        self.computation = Computation(most)
+        self.races = ControlRaces(most)
+        self.stale = StaleObservationRaces(most)
         self.formulas = {
             each: Invariant(each.formula) if each.kind == "invariant" else Reachability(each.formula)
             for each in self.properties
@@ -92,11 +110,20 @@ class _Check:
         self.owned = asked and owned(initial)
         self.searching = asked and not self.owned
         self.remembered: Exploration | None = None
+        self.temporal = tuple(each for each in self.properties if each.kind in TEMPORAL)
+        self.decider: Decider | None = None
 
     def run(self, notes: tuple[str, ...]) -> Report:
         races = (self.races,) if self.searching else ()
-        inspections: tuple[Inspect, ...] = (self.deadlock, self.consistency, self.computation, *races)
-        self.found = self.explore(self.initial, (*inspections, *self.formulas.values()), self.limits)
+        inspections: tuple[Inspect, ...] = (
+            self.visited,
+            self.deadlock,
+            self.consistency,
+            self.computation,
+            *races,
+        )
+        everything = (*inspections, *self.formulas.values())
+        self.found = self.explore(self.initial, everything, self.limits, edges=bool(self.temporal))
         if self.searching:
             self.remembered = self.search()
         later = self.remembered.bounds if self.remembered else []
@@ -109,10 +136,13 @@ class _Check:
             rules=dict(sorted(self.found.rules.items())),
             notes=notes,
             seconds=self.found.seconds + (self.remembered.seconds if self.remembered else 0.0),
+            coverage=coverage(self.initial, self.visited, complete=self.found.complete),
         )
 
-    def explore(self, start: Configuration, inspections: tuple[Inspect, ...], limits: Limits) -> Exploration:
-        return explore(start, inspections, limits, self.report, engine=self.engine)
+    def explore(
+        self, start: Configuration, inspections: tuple[Inspect, ...], limits: Limits, *, edges: bool = False
+    ) -> Exploration:
+        return explore(start, inspections, limits, self.report, engine=self.engine, edges=edges)
 
     def search(self) -> Exploration | None:
         """Explore once more, with memory and in the time that is left; None where the user has asked for the end."""
@@ -139,26 +169,54 @@ class _Check:
                 return self.verdict(asked, self.deadlock.arrival, note)
             case "computation":
                 return self.verdict(asked, self.computation.collected)
+            case kind if kind in TEMPORAL:
+                return self.decide_temporal(asked)
             case _:
-                return self.verdict(asked, self.formulas[asked].collected)
+                return self.decide_invariant(asked)
+
+    def decide_temporal(self, asked: Property) -> Verdict:
+        from checker.temporal.decide import Decider  # noqa: PLC0415 - numpy and scipy take their time to load
+
+        if self.decider is None:
+            self.decider = Decider(self.found, self.temporal)
+        return self.decider.decide(asked)
 
     def verdict(self, asked: Property, collected: Collected, note: str = "") -> Verdict:
         """Return the verdict of a property that no finding may speak against."""
         violations = self.violations(collected, self.found)
         outcome = self.outcome(bool(violations), self.found)
         witness = None if violations else self.witness(collected, self.found)
-        return Verdict(asked, outcome, violations, collected.count, collected.examined, witness, note)
+        return Verdict(
+            asked,
+            outcome,
+            violations,
+            collected.count,
+            collected.examined,
+            witness,
+            note,
+            len(collected.different),
+            self.vacuous(asked, outcome, collected.examined),
+        )
 
     def decide_deadlock(self, asked: Property) -> Verdict:
-        late = self.deadlock.arrival.first.get("not arrived")
+        late = next(iter(self.deadlock.arrival.first.values()), None)
         note = f"{late.message}; declare that it arrives, or check arrival" if late else ""
         return self.verdict(asked, self.deadlock.collected, note)
+
+    def decide_invariant(self, asked: Property) -> Verdict:
+        looked = self.formulas[asked]
+        verdict = self.verdict(asked, looked.collected)
+        if verdict.outcome is not Outcome.HOLDS or not isinstance(looked, Invariant):
+            return verdict
+        return replace(verdict, remarks=looked.valuations.remarks(self.initial.setting.kinds))
 
     def decide_reachable(self, asked: Property) -> Verdict:
         collected = self.formulas[asked].collected
         if collected.example is not None:
             witness = trace_to(self.found, collected.example)
-            return Verdict(asked, Outcome.HOLDS, examined=collected.examined, witness=witness)
+            remarks = () if witness.steps else ("it is true from the start",)
+            examined = collected.examined
+            return Verdict(asked, Outcome.HOLDS, examined=examined, witness=witness, remarks=remarks)
         note = f"no reachable configuration satisfies: {asked.formula}" if self.found.complete else ""
         outcome = Outcome.VIOLATED if self.found.complete else Outcome.INCOMPLETE
         return Verdict(asked, outcome, note=note)
@@ -166,24 +224,30 @@ class _Check:
     def decide_races(self, asked: Property) -> Verdict:
         if self.owned:
             note = "by ownership, without a search: no agent may write what another's control rests on"
-            return Verdict(asked, Outcome.HOLDS, note=note)
+            served = self.witness(self.consistency.collected, self.found)
+            return Verdict(asked, Outcome.HOLDS, witness=served, note=note)
         violations = self.violations(self.races.collected, self.found)
         if self.remembered is None:
             outcome = Outcome.VIOLATED if violations else Outcome.INCOMPLETE
-            return Verdict(
-                asked, outcome, violations, self.races.collected.count, note="not searched to the end"
-            )
+            count, different = self.races.collected.count, len(self.races.collected.different)
+            note = "not searched to the end"
+            return Verdict(asked, outcome, violations, count, note=note, different=different)
         control, stale = self.races.collected, self.stale.collected
         violations += self.violations(stale, self.remembered)
         outcome = self.outcome(bool(violations), self.found, self.remembered)
         witness = None if violations else self.witness(stale, self.remembered)
-        shortest = tuple(sorted(violations, key=lambda violation: len(violation.trace)))
+        shown = _shown(violations, self.most)
+        different = len(control.different) + len(stale.different)
         count, examined = control.count + stale.count, control.examined + stale.examined
         searched = f"{len(self.remembered.configurations):,}"
         note = f"searched over {searched} configurations with the monitor's memory"
-        if outcome is Outcome.HOLDS and not examined:
-            note += "; vacuous: no control was ever served"
-        return Verdict(asked, outcome, shortest, count, examined, witness, note)
+        remarks = self.vacuous(asked, outcome, examined)
+        return Verdict(asked, outcome, shown, count, examined, witness, note, different, remarks)
+
+    def vacuous(self, asked: Property, outcome: Outcome, examined: int) -> tuple[str, ...]:
+        """Return what it means that nothing was examined, where that makes a verdict say nothing."""
+        empty = outcome is Outcome.HOLDS and not examined and asked.kind in VACUOUS
+        return (f"vacuous: {VACUOUS[asked.kind]}",) if empty else ()
 
     def outcome(self, violated: bool, *explorations: Exploration) -> Outcome:
         if violated:
@@ -192,8 +256,8 @@ class _Check:
 
     def violations(self, collected: Collected, found: Exploration) -> tuple[Violation, ...]:
         return tuple(
-            Violation(each.kind, each.message, _trace(found, each), each.details)
-            for each in collected.first.values()
+            Violation(each.kind, each.message, _trace(found, each), each.details, each.subject)
+            for each in collected.chosen()
         )
 
     def witness(self, collected: Collected, found: Exploration) -> Trace | None:
@@ -201,6 +265,14 @@ class _Check:
             return None
         trace = trace_to(found, collected.example)
         return trace.extended(collected.example_by) if collected.example_by else trace
+
+
+def _shown(violations: tuple[Violation, ...], most: int) -> tuple[Violation, ...]:
+    """Return the shortest violations of two explorations: one of each kind before a second of any."""
+    shortest = sorted(violations, key=lambda violation: len(violation.trace))
+    firsts = list({each.kind: each for each in reversed(shortest)}.values())
+    kept = sorted(firsts, key=shortest.index) + [each for each in shortest if each not in firsts]
+    return tuple(each for each in shortest if each in kept[:most])
 
 
 def _trace(found: Exploration, finding: Finding) -> Trace:

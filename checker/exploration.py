@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 
+from checker.edges import Edges
 from semantics.configuration import Configuration, Transition
 from semantics.successors import Expansion, expand
 
@@ -72,6 +73,7 @@ class Exploration:
         bounds: The limits that were met; empty where the exploration is complete.
         seconds: How long it took.
         rule_runs: How often an actor's rules were run in Python, where they were learned.
+        edges: Every transition, where they were asked for.
     """
 
     configurations: Sequence[Configuration]
@@ -83,6 +85,7 @@ class Exploration:
     bounds: list[str] = field(default_factory=list)
     seconds: float = 0.0
     rule_runs: int | None = None
+    edges: Edges | None = None
 
     @property
     def complete(self) -> bool:
@@ -101,13 +104,15 @@ Report = Callable[[Progress], None]
 """What is told of the progress."""
 
 
-def explore(
+def explore(  # noqa: PLR0913 - each is optional, and named where it is used
     initial: Configuration,
     inspect: Iterable[Inspect] = (),
     limits: Limits | None = None,
     report: Report | None = None,
     every: float = 0.5,
     engine: Engine = Engine.REFERENCE,
+    *,
+    edges: bool = False,
 ) -> Exploration:
     """Visit everything that is reachable, breadth-first.
 
@@ -118,12 +123,15 @@ def explore(
         report: Called about once in `every` seconds.
         every: Seconds.
         engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
+        edges: Whether every transition is kept, as temporal properties need: by the reference explorer alone.
     """
-    if engine is Engine.FAST:
-        from checker.fast import explore_fast  # noqa: PLC0415  # numba takes its time to load
+    if engine is Engine.FAST and not edges:
+        from checker.fast.explorer import explore_fast  # noqa: PLC0415  # numba takes its time to load
 
         return explore_fast(initial, tuple(inspect), limits or Limits(), report, every)
-    return _Explorer(initial, tuple(inspect), limits or Limits(), report, every).run()
+    explorer = _Explorer(initial, tuple(inspect), limits or Limits(), report, every)
+    explorer.found.edges = Edges() if edges else None
+    return explorer.run()
 
 
 class _Explorer:
@@ -176,24 +184,34 @@ class _Explorer:
             look(number, configuration, expansion)
         if crowded(configuration, self.limits.pending):
             self.bound(crowd_met(self.limits.pending))
-            return
-        for transition in expansion.transitions:
-            self.follow(number, transition)
+            self.missing(number)
+        else:
+            for transition in expansion.transitions:
+                self.follow(number, transition)
+        if self.found.edges is not None:
+            self.found.edges.close()
 
     def follow(self, number: int, transition: Transition) -> None:
         found, label = self.found, transition.label
         found.transitions += 1
         found.rules[label.rule] += 1
-        if transition.target in self.numbers:
-            return
-        most = self.limits.configurations
-        if most is not None and len(self.configurations) >= most:
-            self.bound(limit_met(most))
-            return
-        self.numbers[transition.target] = len(self.configurations)
-        self.configurations.append(transition.target)
-        self.origins.append(number)
-        self.depths.append(self.depths[number] + 1)
+        target = self.numbers.get(transition.target)
+        if target is None:
+            most = self.limits.configurations
+            if most is not None and len(self.configurations) >= most:
+                self.bound(limit_met(most))
+                self.missing(number)
+                return
+            target = self.numbers[transition.target] = len(self.configurations)
+            self.configurations.append(transition.target)
+            self.origins.append(number)
+            self.depths.append(self.depths[number] + 1)
+        if found.edges is not None:
+            found.edges.add(label, target)
+
+    def missing(self, number: int) -> None:
+        if self.found.edges is not None:
+            self.found.edges.partial.add(number)
 
     def bound(self, reason: str) -> None:
         if reason not in self.found.bounds:

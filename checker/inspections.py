@@ -1,6 +1,7 @@
 """Inspections of single configurations: local consistency, deadlock, invariants, reachability, computation."""
 
-from checker.findings import Collected, Finding
+from checker.findings import MOST_VIOLATIONS, Collected, Finding
+from checker.vacuity import Valuations
 from semantics.configuration import Configuration, Transition
 from semantics.control import Obstacle, obstacle
 from semantics.environment import Says
@@ -23,8 +24,8 @@ WORDS = {
 class LocalConsistency:
     """For every control next in its agent's line some match is consistent and realisable (semantics.md, check 1)."""
 
-    def __init__(self) -> None:
-        self.collected = Collected()
+    def __init__(self, most: int = MOST_VIOLATIONS) -> None:
+        self.collected = Collected(most)
 
     def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
         """Look at every control that is next in line."""
@@ -39,9 +40,10 @@ class LocalConsistency:
                     self.collected.looked(number, served.get(request))
                 else:
                     message = f"{request} is {hindered.value}: {WORDS[hindered]}"
-                    self.collected.add(
-                        Finding(hindered.value, message, number, details=disagreements(c, request))
+                    found = Finding(
+                        hindered.value, message, number, None, disagreements(c, request), str(request)
                     )
+                    self.collected.add(found)
 
 
 def disagreements(c: Configuration, request: CTR | FLY) -> tuple[str, ...]:
@@ -71,9 +73,9 @@ class DeadlockFreedom:
     Flights that need never end are collected apart, as *not arrived*.
     """
 
-    def __init__(self) -> None:
-        self.collected = Collected()
-        self.arrival = Collected()
+    def __init__(self, most: int = MOST_VIOLATIONS) -> None:
+        self.collected = Collected(most)
+        self.arrival = Collected(most)
 
     def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
         """Look at every configuration in which no agent must move, and at every end of a flight."""
@@ -84,9 +86,9 @@ class DeadlockFreedom:
             return
         if expansion.by_agents:
             late = sorted({str(transition.label) for transition in expansion.by_agents})
-            self.arrival.add(
-                Finding("not arrived", f"a run may wait here for ever for {', '.join(late)}", number)
-            )
+            waits = ", ".join(late)
+            message = f"a run may wait here for ever for {waits}"
+            self.arrival.add(Finding("not arrived", message, number, subject=waits))
             return
         blocked = [
             *stuck_requests(c),
@@ -94,8 +96,9 @@ class DeadlockFreedom:
             *(f"{fault.agent} failed" for fault in expansion.faults),
         ]
         if blocked:
-            message = f"nothing but the environment can move, and {'; '.join(blocked)}"
-            self.collected.add(Finding("deadlock", message, number))
+            who = "; ".join(blocked)
+            message = f"nothing but the environment can move, and {who}"
+            self.collected.add(Finding("deadlock", message, number, subject=who))
         else:
             self.collected.looked(number)
 
@@ -154,8 +157,8 @@ def stands_in(c: Configuration, number: int, block: Block) -> bool:
 class Computation:
     """No agent's internal computation fails or diverges."""
 
-    def __init__(self) -> None:
-        self.collected = Collected()
+    def __init__(self, most: int = MOST_VIOLATIONS) -> None:
+        self.collected = Collected(most)
 
     def __call__(self, number: int, _: Configuration, expansion: Expansion) -> None:
         """Look at every step of internal computation."""
@@ -164,7 +167,8 @@ class Computation:
                 self.collected.looked(number, transition)
         for fault in expansion.faults:
             kind = "diverges" if fault.diverges else "fails"
-            self.collected.add(Finding(kind, f"{fault.agent}: {fault}", number))
+            message = f"{fault.agent}: {fault}"
+            self.collected.add(Finding(kind, message, number, subject=message))
 
 
 class Invariant:
@@ -173,10 +177,11 @@ class Invariant:
     def __init__(self, formula: Proposition) -> None:
         self.formula = formula
         self.collected = Collected()
+        self.valuations = Valuations(formula)
 
     def __call__(self, number: int, c: Configuration, _: Expansion) -> None:
         """Look at every configuration."""
-        if holds(self.formula, c):
+        if self.valuations.holds(c):
             self.collected.looked(number)
         else:
             self.collected.add(Finding("invariant", f"not true here: {self.formula}", number))

@@ -68,7 +68,7 @@ def _name(issue: Issue) -> str:
 
 
 def _kind(issue: Issue) -> str:
-    return issue.identity[-1] if issue.trace is not None else issue.rule
+    return issue.identity[2] if issue.trace is not None else issue.rule
 
 
 def _placed(result: Result, issue: Issue) -> str:

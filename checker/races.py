@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from itertools import combinations
 
-from checker.findings import Collected, Finding
+from checker.findings import MOST_VIOLATIONS, Collected, Finding
 from semantics.configuration import Configuration, Transition
 from semantics.control import applicable
 from semantics.eta import Pending
@@ -17,8 +17,8 @@ from semantics.successors import Expansion
 class ControlRaces:
     """Two enabled controls, where serving one disables the other, or the two orders end differently."""
 
-    def __init__(self) -> None:
-        self.collected = Collected()
+    def __init__(self, most: int = MOST_VIOLATIONS) -> None:
+        self.collected = Collected(most)
 
     def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
         """Look at every pair of controls that are enabled, apart from the scheduler's turn."""
@@ -33,7 +33,7 @@ class ControlRaces:
             if problem is None:
                 self.collected.looked(number, one[0])
             else:
-                self.collected.add(Finding("control race", problem, number, details=_both(one, other)))
+                self.collected.add(_race(number, problem, one, other))
 
 
 def conflict(one: list[Transition], other: list[Transition]) -> str | None:
@@ -69,15 +69,17 @@ def _request(transition: Transition) -> Request:
     return transition.served.request
 
 
-def _both(one: list[Transition], other: list[Transition]) -> tuple[str, ...]:
-    return (f"enabled here: {one[0].label} and {other[0].label}",)
+def _race(number: int, problem: str, one: list[Transition], other: list[Transition]) -> Finding:
+    enabled = f"enabled here: {one[0].label} and {other[0].label}"
+    subject = " and ".join(sorted(str(_request(each[0])) for each in (one, other)))
+    return Finding("control race", problem, number, details=(enabled,), subject=subject)
 
 
 class StaleObservationRaces:
     """A control that rests on a test whose answer another agent's control has changed since it was observed."""
 
-    def __init__(self) -> None:
-        self.collected = Collected()
+    def __init__(self, most: int = MOST_VIOLATIONS) -> None:
+        self.collected = Collected(most)
 
     def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
         """Look at every control that is served; c must be monitored."""
@@ -95,7 +97,10 @@ class StaleObservationRaces:
                 f"{pending.request} rests on '{asked}' of observe({stale[0].query}), "
                 f"and another agent has changed {changed} since it was sensed"
             )
-            self.collected.add(Finding("stale-observation race", message, number, by=transition))
+            found = Finding(
+                "stale-observation race", message, number, transition, subject=str(pending.request)
+            )
+            self.collected.add(found)
 
 
 def used_slots(c: Configuration, pending: Pending) -> frozenset[tuple[str, ...]]:

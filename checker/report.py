@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 from typing import Any
 
-from checker.traces import Trace, print_trace, to_json
+from checker.coverage_report import coverage_json
+from checker.traces import Trace, print_length, print_trace, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
 from semantics.setting import Control
 from semantics.successors import rules_of
@@ -20,16 +21,18 @@ UNITS = {
     "arrival": (" end of a flight", " ends of flights"),
     "computation": (" internal step", " internal steps"),
     "invariant": (" configuration", " configurations"),
+    "ctl": (" configuration", " configurations"),
 }
 """What is examined for each kind of property, one and several; of what is to be reachable, configurations with it."""
 
+OF_RUNS = ("ltl", "ctl")
+"""Kinds of properties of which one violation is looked for, and not how many there are."""
+
 NOTHING_EXAMINED = {
-    "local_consistency": "vacuous: no control was ever next in line",
     "deadlock_freedom": "some bigActor can always move",
-    "arrival": "vacuous: no flight ever ends",
     "computation": "no bigActor computes anything that could fail",
 }
-"""What it means that nothing was examined."""
+"""What it means that nothing was examined, where that is no shortcoming."""
 
 
 def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[str]:
@@ -49,7 +52,7 @@ def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[s
 
 def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
     line = f"  {MARKS[verdict.outcome]} {verdict.property.name:<{width}}  {verdict.outcome.value}"
-    remarks = [verdict.note, *_sizes(verdict)]
+    remarks = [verdict.note, *verdict.remarks, *_sizes(verdict)]
     yield line + "".join(f"; {remark}" for remark in remarks if remark)
     for violation in verdict.violations:
         yield from _violation(violation, traces=traces)
@@ -57,14 +60,26 @@ def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
 
 def _sizes(verdict: Verdict) -> Iterator[str]:
     if verdict.outcome is Outcome.VIOLATED:
-        if verdict.violations:
-            yield "found once" if verdict.count == 1 else f"found {verdict.count:,} times"
-    elif verdict.witness is not None:
+        if verdict.violations and verdict.property.kind not in OF_RUNS:
+            yield _found(verdict)
+    elif verdict.witness is not None and verdict.examined:
         yield f"examined {verdict.examined:,}{_unit(verdict)}, a witness of {_steps(len(verdict.witness))}"
     elif verdict.outcome is Outcome.INCOMPLETE:
         yield "not found so far" if verdict.property.kind == "reachable" else "nothing against it so far"
     elif verdict.property.kind in NOTHING_EXAMINED:
         yield NOTHING_EXAMINED[verdict.property.kind]
+
+
+def _found(verdict: Verdict) -> str:
+    shown = len(verdict.violations)
+    if verdict.count == 1:
+        return "found once"
+    times = f"found {verdict.count:,} times"
+    if verdict.different <= 1:
+        return times
+    if verdict.different == shown:
+        return f"{times}, {shown} different"
+    return f"{times}, {verdict.different:,} different, of which {shown} are shown"
 
 
 def _unit(verdict: Verdict) -> str:
@@ -79,7 +94,7 @@ def _steps(count: int) -> str:
 def _violation(violation: Violation, *, traces: bool) -> Iterator[str]:
     yield f"      {violation.kind}: {violation.message}"
     yield from (f"        {detail}" for detail in violation.details)
-    yield f"      a shortest trace, {_steps(len(violation.trace))}{':' if traces else ''}"
+    yield f"      {print_length(violation.trace)}{':' if traces else ''}"
     if traces:
         yield from (f"        {line}" for line in print_trace(violation.trace))
 
@@ -100,6 +115,7 @@ def report_json(name: str, digest: str, report: Report, control: Control) -> dic
         "properties": [_property_json(name, digest, verdict) for verdict in report.verdicts],
         "rules": dict(report.rules),
         "rules_never_used": silent,
+        "coverage": None if report.coverage is None else coverage_json(report.coverage),
         "notes": list(report.notes),
         "seconds": round(report.seconds, 3),
     }
@@ -116,11 +132,19 @@ def _property_json(name: str, digest: str, verdict: Verdict) -> dict[str, Any]:
         "verdict": verdict.outcome.value,
         "trace": trace(verdict.violations[0].trace if verdict.violations else None),
         "violations": [
-            {"kind": v.kind, "message": v.message, "details": list(v.details), "trace": trace(v.trace)}
+            {
+                "kind": v.kind,
+                "subject": v.subject,
+                "message": v.message,
+                "details": list(v.details),
+                "trace": trace(v.trace),
+            }
             for v in verdict.violations
         ],
+        "different": verdict.different,
         "count": verdict.count,
         "examined": verdict.examined,
         "witness": trace(verdict.witness),
         "note": verdict.note,
+        "remarks": list(verdict.remarks),
     }

@@ -5,16 +5,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
+from checker.coverage import Gap
+from checker.coverage_report import coverage_text, line_text
 from checker.places import violation_line
 from checker.report import report_text
-from checker.traces import Trace, print_trace
+from checker.traces import Trace, print_length, print_trace
 from checker.verdicts import Outcome, Report, Verdict, Violation
 
 
 class Level(Enum):
-    """How grave an issue is: something is wrong, nothing was decided, or bigactors itself failed."""
+    """How grave an issue is: something is wrong, looks wrong, was not decided, or bigactors itself failed."""
 
     WRONG = "wrong"
+    WARNING = "warning"
     INCOMPLETE = "incomplete"
     BUG = "internal error"
 
@@ -59,6 +62,7 @@ class Result:
         report: What was found; None where it was not explored.
         failures: Why it was not.
         check_line: The line of its `check` section, 1 without one: where properties belong that nobody wrote.
+        text: What the mission says, to quote its lines.
     """
 
     name: str
@@ -66,13 +70,14 @@ class Result:
     report: Report | None = None
     failures: tuple[Issue, ...] = ()
     check_line: int = 1
+    text: str = ""
 
     def issues(self) -> tuple[Issue, ...]:
         """Return all that there is to say, in the mission's order."""
         if self.report is None:
             return self.failures
         decided = (issue for verdict in self.report.verdicts for issue in self.issues_of(verdict))
-        return (*decided, *self.undecided())
+        return (*decided, *self.undecided(), *self.warnings())
 
     def issues_of(self, verdict: Verdict) -> Iterator[Issue]:
         """Yield what speaks against a property: nothing exactly where it holds."""
@@ -92,6 +97,17 @@ class Result:
             yield Issue(
                 Level.INCOMPLETE, rule, title, self._cut_off(), self.check_line, identity=("incomplete",)
             )
+
+    def warnings(self) -> Iterator[Issue]:
+        """Yield what holds and says less than it seems to, and what of the mission no run reaches."""
+        if self.report is None:
+            return
+        for verdict in self.report.verdicts:
+            for remark in verdict.remarks:
+                yield self._remark(verdict, remark)
+        covered = self.report.coverage
+        for gap in covered.gaps if covered is not None and covered.complete else ():
+            yield self._gap(gap)
 
     def line_of(self, verdict: Verdict) -> int:
         """Return the line that asks for a property."""
@@ -114,9 +130,28 @@ class Result:
             violation.message,
             violation_line(violation) or self.line_of(verdict),
             asked=self.line_of(verdict),
-            identity=(asked.kind, asked.name, violation.kind),
+            identity=(asked.kind, asked.name, violation.kind, *filter(None, [violation.subject])),
             details=violation.details,
             trace=violation.trace,
+        )
+
+    def _remark(self, verdict: Verdict, remark: str) -> Issue:
+        asked, line = verdict.property, self.line_of(verdict)
+        identity = (asked.kind, asked.name, remark)
+        return Issue(Level.WARNING, "vacuity", f"{asked.name} holds", remark, line, identity=identity)
+
+    def _gap(self, gap: Gap) -> Issue:
+        quoted = line_text(self.text, gap.line).strip()
+        identity = (gap.sort, gap.message, quoted)
+        details = (quoted,) if quoted else ()
+        return Issue(
+            Level.WARNING,
+            "coverage",
+            "not covered",
+            gap.message,
+            gap.line,
+            identity=identity,
+            details=details,
         )
 
     def _without_trace(self, verdict: Verdict, level: Level, message: str) -> Issue:
@@ -130,16 +165,19 @@ def issue_text(issue: Issue) -> str:
     """Return an issue with its details and its trace as lines of text."""
     lines = [issue.message, *(f"  {detail}" for detail in issue.details)]
     if issue.trace is not None:
-        lines.append(
-            f"a shortest trace, {len(issue.trace):,} {'step' if len(issue.trace) == 1 else 'steps'}:"
-        )
+        lines.append(f"{print_length(issue.trace)}:")
         lines += [f"  {line}" for line in print_trace(issue.trace)]
     return "\n".join(lines)
 
 
 def result_text(result: Result) -> str:
     """Return the report of a result without its traces; empty where there is none."""
-    return "" if result.report is None else "\n".join(report_text(result.name, result.report, traces=False))
+    if result.report is None:
+        return ""
+    lines = list(report_text(result.name, result.report, traces=False))
+    if result.report.coverage is not None:
+        lines += coverage_text(result.name, result.report.coverage, result.text)
+    return "\n".join(lines)
 
 
 def clean(text: str) -> str:

@@ -24,24 +24,32 @@ RULES = {
     "arrival": "No run waits for ever for the end of a flight.",
     "invariant": "A proposition is true of every configuration.",
     "reachable": "A proposition is true of some configuration.",
+    "ltl": "A formula of linear time is true of every fair run.",
+    "ctl": "A formula of branching time is true of the tree of fair runs.",
+    "progress": "Every pending request is eventually served on every fair run.",
     "computation": "No bigActor's computation fails or diverges.",
     "exploration": "Everything reachable is visited.",
+    "coverage": "Some run reaches each statement, takes each branch, and meets each clause of the environment.",
+    "vacuity": "What holds does not hold for want of anything that could break it.",
 }
 """What each kind of property says."""
+
+LEVELS = {Level.WRONG: "error", Level.WARNING: "warning"}
+"""The levels of results; what else there is to say are notifications."""
 
 MISTAKE = "A mistake in the mission, or in how it is called."
 
 
 def sarif_json(results: Iterable[Result], version: str) -> dict[str, Any]:
-    """Return results as plain data; what is wrong is a result, what was not decided a notification.
+    """Return results as plain data; what is or looks wrong is a result, what was not decided a notification.
 
     The execution counts as successful (§3.20.14) exactly where everything was decided: no results of one that was cut
     off read as a success.
     """
     found = [(result, issue) for result in results for issue in result.issues()]
-    wrong = [(result, issue) for result, issue in found if issue.level is Level.WRONG]
+    wrong = [(result, issue) for result, issue in found if issue.level in LEVELS]
     rules = sorted({*RULES, *(issue.rule for _, issue in found)})
-    notified = [_notification(*each, rules) for each in found if each[1].level is not Level.WRONG]
+    notified = [_notification(*each, rules) for each in found if each[1].level not in LEVELS]
     done = not notified and not any(result.failures for result, _ in found)
     seen: Counter[str] = Counter()
     return {
@@ -72,7 +80,7 @@ def _result(result: Result, issue: Issue, rules: list[str], seen: Counter[str]) 
     said: dict[str, Any] = {
         "ruleId": clean(issue.rule),
         "ruleIndex": rules.index(issue.rule),
-        "level": "error",
+        "level": LEVELS[issue.level],
         "message": _message("\n".join((f"{issue.title}: {issue.message}", *issue.details))),
         "locations": [_location(result.file, issue.line, issue)],
         "partialFingerprints": {"bigactorsIssue/v1": fingerprint(result, issue, seen)},

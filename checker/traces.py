@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 from checker.exploration import Exploration
+from checker.inspections import is_unfair
 from semantics.canonical import digest_of_step
 from semantics.configuration import Configuration, Label, Transition
 from semantics.monitor import monitored
@@ -15,8 +16,8 @@ from semantics.printing import print_changes
 from semantics.successors import expand
 
 SCHEMA = "bigactors.trace/1"
-"""The version of the step schema: schema, mission, digest, monitored, and steps of label, choice and changes; steps
-of live runs also say what was observed, when, and the digest of what they wrote."""
+"""The version of the step schema: schema, mission, digest, monitored, steps of label, choice and changes, and loop;
+steps of live runs also say what was observed, when, and the digest of what they wrote."""
 
 MOST_STEPS = 1_000_000
 
@@ -40,10 +41,18 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """A run from the initial configuration."""
+    """A run from the initial configuration.
+
+    Attributes:
+        initial: Where it begins.
+        steps: What is done.
+        loop: The number of the configuration from which the run repeats for ever: the last is the same. If it is the
+            last itself, nothing has to happen there, and the run stays. None where the run is not for ever.
+    """
 
     initial: Configuration
     steps: tuple[Step, ...] = ()
+    loop: int | None = None
 
     def __len__(self) -> int:
         return len(self.steps)
@@ -90,6 +99,34 @@ def print_trace(trace: Trace, *, changes: bool = True) -> Iterator[str]:
         yield f"c{number} --{step.label}--> c{number + 1}"
         if changes:
             yield from (f"      {line}" for line in print_changes(source, step.target))
+    if trace.loop is not None:
+        yield print_loop(trace)
+
+
+def print_loop(trace: Trace) -> str:
+    """Print where a run that goes on for ever comes round."""
+    end = len(trace)
+    if trace.loop == end:
+        return f"c{end} stays for ever: nothing has to happen"
+    return f"c{end} = c{trace.loop}: {_steps_of(end - (trace.loop or 0))} from there on, again and again"
+
+
+def _steps_of(count: int) -> str:
+    return "the step" if count == 1 else f"the {count:,} steps"
+
+
+def print_length(trace: Trace) -> str:
+    """Print what a trace is, and how long."""
+    steps = "1 step" if len(trace) == 1 else f"{len(trace):,} steps"
+    if trace.loop is None:
+        return f"a shortest trace, {steps}"
+    if trace.loop == len(trace):
+        return f"a run of {steps}, at whose end it stays for ever"
+    return f"a run of {steps}, {_last(len(trace) - trace.loop)} repeated for ever"
+
+
+def _last(count: int) -> str:
+    return "the last one" if count == 1 else f"the last {count:,}"
 
 
 # --- replay ---------------------------------------------------------------------------------------------------
@@ -116,7 +153,8 @@ def to_json(trace: Trace, mission: str, digest: str) -> dict[str, Any]:
         _step_json(source, step) for step, source in zip(trace.steps, trace.configurations, strict=False)
     ]
     remembering = trace.initial.setting.monitored
-    return {"schema": SCHEMA, "mission": mission, "digest": digest, "monitored": remembering, "steps": steps}
+    data = {"schema": SCHEMA, "mission": mission, "digest": digest, "monitored": remembering, "steps": steps}
+    return data if trace.loop is None else data | {"loop": trace.loop}
 
 
 def _step_json(source: Configuration, step: Step) -> dict[str, Any]:
@@ -129,10 +167,10 @@ def replay(initial: Configuration, data: Any) -> Trace:
     """Return the trace that plain data describes, run again through the rules, with the monitor's memory if it had it.
 
     Raises:
-        ReplayError: A step is not allowed.
+        ReplayError: A step is not allowed, or the run doesn't come round where it should.
         ValueError: The data are no trace.
     """
-    steps = _steps(data)
+    steps, loop = _steps(data), _loop(data)
     if data.get("monitored") is True and not initial.setting.monitored:
         initial = monitored(initial)
     trace: list[Step] = []
@@ -149,7 +187,23 @@ def replay(initial: Configuration, data: Any) -> Trace:
                 number, label, print_changes(before, at), "it leads to another configuration here"
             )
         trace.append(Step(alike[choice].label, choice, at, sight))
-    return Trace(initial, tuple(trace))
+    return _closed(Trace(initial, tuple(trace), loop))
+
+
+def _closed(trace: Trace) -> Trace:
+    """Return a trace after a look at where it comes round."""
+    if trace.loop is None:
+        return trace
+    last = trace.configurations[-1]
+    expansion = expand(last)
+    enabled = sorted({str(transition.label) for transition in expansion.transitions})
+    if trace.loop == len(trace) and any(not is_unfair(last, each) for each in expansion.by_agents):
+        raise ReplayError(len(trace), "staying for ever", enabled, "something has to be done")
+    if last != trace.configurations[trace.loop]:
+        raise ReplayError(
+            len(trace), f"coming round to c{trace.loop}", enabled, "its last step leads elsewhere"
+        )
+    return trace
 
 
 def _cause(alike: int) -> str:
@@ -167,6 +221,14 @@ def _steps(data: Any) -> list[tuple[str, int, Sight | None, str | None]]:
     if not isinstance(steps, list) or len(steps) > MOST_STEPS:
         raise ValueError(f"this is no trace: 'steps' should be a list of at most {MOST_STEPS:,} steps")
     return [_step(number, step) for number, step in enumerate(steps, 1)]
+
+
+def _loop(data: Any) -> int | None:
+    loop: int | None = data.get("loop")
+    whole = isinstance(loop, int) and not isinstance(loop, bool)
+    if loop is not None and not (whole and 0 <= loop <= len(data["steps"])):
+        raise ValueError("this is no trace: 'loop' should be the number of one of its configurations")
+    return loop
 
 
 def _step(number: int, step: Any) -> tuple[str, int, Sight | None, str | None]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
+from checker.coverage import Coverage
 from checker.traces import Trace
 from semantics.propositions import Property
 
@@ -18,12 +19,21 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """One way in which a property fails, with a shortest trace that ends in it."""
+    """One way in which a property fails, with a shortest trace that ends in it.
+
+    Attributes:
+        kind: What it is.
+        message: In words.
+        trace: A shortest run that ends in it.
+        details: More lines.
+        subject: What it is about, such as a request; empty where the property itself says that.
+    """
 
     kind: str
     message: str
     trace: Trace
     details: tuple[str, ...] = ()
+    subject: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,11 +43,13 @@ class Verdict:
     Attributes:
         property: The property.
         outcome: Whether it holds.
-        violations: One for each kind of violation, the shortest trace first.
-        count: How many violations there were in all.
+        violations: One for each kind and subject, the shortest trace first, as far as they are shown.
+        count: How often a violation was met, in whichever configuration.
         examined: How many things the property was about were found good; 0 makes a verdict vacuous.
         witness: A trace to one of them, where something holds.
         note: How it was decided, or what else is to be known.
+        different: How many kinds and subjects of violations there were, shown or not.
+        remarks: What makes a verdict that holds say less than it seems to.
     """
 
     property: Property
@@ -47,6 +59,8 @@ class Verdict:
     examined: int = 0
     witness: Trace | None = None
     note: str = ""
+    different: int = 0
+    remarks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +76,7 @@ class Report:
         rules: How many transitions each inference rule has.
         notes: What is to be known of the verdicts.
         seconds: How long it took.
+        coverage: What was reached of the mission's text.
     """
 
     verdicts: tuple[Verdict, ...]
@@ -72,6 +87,7 @@ class Report:
     rules: Mapping[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     seconds: float = 0.0
+    coverage: Coverage | None = None
 
     @property
     def complete(self) -> bool:

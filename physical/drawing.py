@@ -27,6 +27,7 @@ from physical.map_scene import MapEntity, Scene, Sheet, area_of, scene_of
 from physical.map_style import kind_colours
 from physical.map_view import bounds, degrees_text, tick_step, ticks
 from physical.map_writing import write_labels
+from physical.shape import Geometry
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,7 +38,7 @@ BULGES: Final = (0.12, -0.12, 0.05, -0.05, 0.19, -0.19)
 """How far the lines of channels leave the straight way, a share of its length."""
 
 
-def draw_map(
+def draw_map(  # noqa: PLR0913 - each says one thing of the map
     entities: Iterable[MapEntity],
     axes: Axes,
     *,
@@ -45,6 +46,7 @@ def draw_map(
     marked: Collection[str] = frozenset(),
     colours: Mapping[str, str] | None = None,
     channel_colours: Mapping[str, str] | None = None,
+    within: Sequence[Geometry] = (),
 ) -> Sheet:
     """Draw a map that fills the axes, whose place in the figure must not change afterwards.
 
@@ -55,12 +57,14 @@ def draw_map(
         marked: Names with a dashed outline, such as those that are believed to be elsewhere.
         colours: A colour for each kind; other kinds take one of the palette.
         channel_colours: The same for channels.
+        within: What the view is for, such as all that a run goes through, so that its maps are alike; else what is
+            drawn.
 
     Returns:
         The sheet: where positions lie on the axes, for whoever draws more on them.
     """
     in_order = sorted(entities, key=lambda entity: entity.name)
-    scene = scene_of(in_order, _size(axes), colours or {}, highlight, marked)
+    scene = scene_of(in_order, _size(axes), colours or {}, highlight, marked, within)
     sheet = scene.sheet
     axes.set(xlim=(0, sheet.width), ylim=(0, sheet.height), aspect="equal")
     draw_grid(axes, *_grid(sheet))

@@ -126,8 +126,12 @@ def scene_of(
     colours: Mapping[str, str],
     highlight: Collection[str],
     marked: Collection[str],
+    within: Sequence[Geometry] = (),
 ) -> Scene:
-    """Return the scene of entities, each name once, on a sheet of a width and height in points."""
+    """Return the scene of entities, each name once, on a sheet of a width and height in points.
+
+    The sheet shows `within`, and where that is empty what there is.
+    """
     known = {entity.name: entity for entity in entities}
     placed = {
         entity.name: entity.geometry
@@ -135,13 +139,14 @@ def scene_of(
         if entity.geometry and entity.carried_by not in known
     }
     goals = [entity.destination for entity in entities if entity.destination and entity.name in placed]
-    plane = plane_of([*placed.values(), *goals])
-    boxes = [bounds(plane.outline(geometry)) for geometry in [*placed.values(), *goals]]
+    shown = list(within) or [*placed.values(), *goals]
+    plane = plane_of(shown)
+    boxes = [bounds(plane.outline(geometry)) for geometry in shown]
     seen = focus(boxes)
     view = view_of([boxes[each] for each in seen] or [Box(0, 0, 0, 0)], size[0] / size[1])
     sheet = Sheet(plane, view, *size)
     outlines = {name: sheet.outline(geometry) for name, geometry in placed.items()}
-    far = {name for rank, name in enumerate(placed) if rank not in seen}
+    far = {name for rank, name in enumerate(placed) if within or rank not in seen}
     kinds = [entity.kind for entity in entities]
     return Scene(
         sheet,

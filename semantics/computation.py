@@ -43,15 +43,34 @@ LOOPS: Final = (Loop, While, ForEach)
 """Statements that come again: what one turn had to pass says nothing of the next, which looks anew."""
 
 
+Passage = tuple[int, int]
+"""A statement and which of its branches was taken, `STEPPED` for the statement itself."""
+
+STEPPED: Final = -1
+
+
 @dataclass(slots=True)
 class Process:
-    """One agent's code and variables while it computes, with what each rests on, and what it displays."""
+    """One agent's code and variables while it computes, with what each rests on, and what it displays.
+
+    Attributes:
+        program: What it runs.
+        code: What is left of it to run.
+        rests_on: What each statement that is left rests on.
+        scope: Its variables.
+        shown: What it has displayed.
+        passed: What it and its forks have stepped over, and which branches they took: for coverage alone, and in no
+            configuration.
+        left: The statement that it has left last.
+    """
 
     program: Program
     code: Code
     rests_on: tuple[Provenance, ...]
     scope: Scope
     shown: list[str] = field(default_factory=list)
+    passed: list[Passage] = field(default_factory=list)
+    left: int = -1
 
     @property
     def next(self) -> Statement | None:
@@ -61,8 +80,12 @@ class Process:
     def leave(self) -> Provenance:
         """Drop the first statement and return what got the agent there."""
         here, self.rests_on = self.rests_on[0], self.rests_on[1:]
-        self.code = self.code[1:]
+        self.left, self.code = self.code[0], self.code[1:]
         return here
+
+    def took(self, branch: int) -> None:
+        """Note which branch is taken of the statement that was left last."""
+        self.passed.append((self.left, branch))
 
     def enter(self, block: Block, rests_on: Provenance) -> None:
         """Put a block before what is left."""
@@ -109,7 +132,7 @@ class Process:
         """Return an independent copy."""
         scope = self.scope
         copy = Scope(scope.agent, scope.host, dict(scope.store), dict(scope.rests_on), scope.kinds)
-        return Process(self.program, self.code, self.rests_on, copy, list(self.shown))
+        return Process(self.program, self.code, self.rests_on, copy, list(self.shown), self.passed, self.left)
 
 
 def compute(process: Process) -> Iterator[Process]:
@@ -128,6 +151,7 @@ def compute(process: Process) -> Iterator[Process]:
             following = start.next
             if following is None or not isinstance(following, Internal):
                 break
+            start.passed.append((start.code[0], STEPPED))
             _step(start, following)
         else:
             raise Fault(f"no command is reached within {MOST_STEPS} internal steps", diverges=True)
@@ -136,9 +160,10 @@ def compute(process: Process) -> Iterator[Process]:
 
 def _choose(process: Process, statement: Choice) -> Iterator[Process]:
     if isinstance(statement, Choose):
-        for block in statement.alternatives:
+        for rank, block in enumerate(statement.alternatives):
             chosen = process.fork()
             chosen.enter(block, chosen.leave())
+            chosen.took(rank)
             yield chosen
         return
     members, rests_on = process.members(statement.members)
@@ -148,6 +173,7 @@ def _choose(process: Process, statement: Choice) -> Iterator[Process]:
         chosen = process.fork()
         chosen.scope.binding({statement.variable: member}, rests_on)
         chosen.enter(statement.body, chosen.leave() | rests_on)
+        chosen.took(0)
         yield chosen
 
 
@@ -177,7 +203,9 @@ def _step(process: Process, statement: Internal) -> None:
             process.leave()
         case If(test, then, otherwise):
             value, rests_on = process.evaluate(test)
-            process.enter(then if truth(value) else otherwise, process.leave() | tested(rests_on))
+            chosen = truth(value)
+            process.enter(then if chosen else otherwise, process.leave() | tested(rests_on))
+            process.took(0 if chosen else 1)
         case While(test, body):
             _step_while(process, test, body)
         case For(members, rest, each):
@@ -203,6 +231,7 @@ def _step_while(process: Process, test: Expression, body: Block) -> None:
     value, rests_on = process.evaluate(test)
     here = process.rests_on[0]
     if truth(value):
+        process.passed.append((process.code[0], 0))
         process.enter(body, here | tested(rests_on))
         return
     process.leave()
@@ -216,6 +245,7 @@ def _step_for(process: Process, variable: str, rest: str, body: Block) -> None:
         process.leave()
         return
     process.scope.binding({variable: members[0], rest: members[1:]}, here)
+    process.passed.append((process.code[0], 0))
     process.enter(body, here)
 
 
@@ -227,7 +257,7 @@ def enter_case(
     The body rests on the guards that were tried; what the pattern binds, on what the value rests on.
     """
     before = here
-    for case in cases:
+    for rank, case in enumerate(cases):
         binding = bind(case.pattern, value)
         if binding is None:
             continue
@@ -242,6 +272,7 @@ def enter_case(
         if not any(each.guard is None and bind(each.pattern, value) is not None for each in cases):
             process.passing(here - before)
         process.enter(case.body, here)
+        process.took(rank)
         return True
     return False
 

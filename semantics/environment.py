@@ -12,7 +12,7 @@ from semantics.physical_model import (
     down_cell,
 )
 from semantics.signature import Name
-from semantics.values import Value
+from semantics.values import Value, show
 
 Effect = tuple[str, Changes]
 """What happens in words, and what it writes into P."""
@@ -36,6 +36,15 @@ class Drifts:
     next: tuple[tuple[int, ...], ...]
     first: tuple[int, ...]
 
+    @property
+    def words(self) -> tuple[str, ...]:
+        """What may happen, in words."""
+        return tuple(map(self.word, range(len(self.names))))
+
+    def word(self, index: int) -> str:
+        """Say in words that it drifts to a placement."""
+        return f"{self.entity} drifts to {self.names[index]}"
+
     def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
         """Yield each drift; what is absent, carried or under command does not drift."""
         here = physical.placement(self.entity)
@@ -44,8 +53,7 @@ class Drifts:
         known = self.placements.index(here) if here in self.placements else None
         for index in self.first if known is None else self.next[known]:
             if self.placements[index] != here:
-                words = f"{self.entity} drifts to {self.names[index]}"
-                yield words, physical.placing(self.entity, self.placements[index])
+                yield self.word(index), physical.placing(self.entity, self.placements[index])
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,12 +63,17 @@ class Drops:
     channel: Name
     returns: bool
 
+    @property
+    def words(self) -> tuple[str, ...]:
+        """What may happen, in words."""
+        return (f"{self.channel} drops", f"{self.channel} returns")[: 1 + self.returns]
+
     def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
         """Yield the drop of a channel that is up, the return of one that is down."""
         if not physical.is_down(self.channel):
-            yield f"{self.channel} drops", {down_cell(self.channel): True}
+            yield self.words[0], {down_cell(self.channel): True}
         elif self.returns:
-            yield f"{self.channel} returns", {down_cell(self.channel): False}
+            yield self.words[1], {down_cell(self.channel): False}
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +89,12 @@ class Leaves:
         """The cell that says whether it was by leaving that the entity is off the channel."""
         return ("left", self.entity, self.channel)
 
+    @property
+    def words(self) -> tuple[str, ...]:
+        """What may happen, in words."""
+        both = (f"{self.entity} leaves {self.channel}", f"{self.entity} returns to {self.channel}")
+        return both[: 1 + self.returns]
+
     def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
         """Yield the entity's leaving; its return only where it had left, not where a control took it off."""
         channels = frozenset(physical.channels(self.entity))
@@ -83,10 +102,10 @@ class Leaves:
             return
         if self.channel in channels:
             left = physical.joining(self.entity, channels - {self.channel})
-            yield f"{self.entity} leaves {self.channel}", left | {self.left: True}
+            yield self.words[0], left | {self.left: True}
         elif self.returns and physical.cells.read(self.left):
             back = physical.joining(self.entity, channels | {self.channel})
-            yield f"{self.entity} returns to {self.channel}", back | {self.left: False}
+            yield self.words[1], back | {self.left: False}
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,14 +116,19 @@ class Appears:
     placements: tuple[Placed | Carried, ...]
     channels: tuple[Name, ...] = ()
 
+    @property
+    def words(self) -> tuple[str, ...]:
+        """What may happen, in words."""
+        several = len(self.placements) > 1
+        numbers = range(1, len(self.placements) + 1)
+        return tuple(f"{self.entity} appears" + (f" ({number})" if several else "") for number in numbers)
+
     def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
         """Yield each place where it may appear, if it is absent."""
         if self.entity in physical:
             return
-        several = len(self.placements) > 1
-        for number, placement in enumerate(self.placements, 1):
+        for words, placement in zip(self.words, self.placements, strict=True):
             if not isinstance(placement, Carried) or placement.by in physical:
-                words = f"{self.entity} appears" + (f" ({number})" if several else "")
                 changes = physical.joining(self.entity, frozenset(self.channels))
                 yield words, physical.placing(self.entity, placement) | changes
 
@@ -115,6 +139,11 @@ class Vanishes:
 
     entity: Name
 
+    @property
+    def words(self) -> tuple[str, ...]:
+        """What may happen, in words."""
+        return (f"{self.entity} vanishes",)
+
     def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
         """Yield its vanishing, if it is there."""
         if self.entity not in physical:
@@ -122,7 +151,7 @@ class Vanishes:
         changes: Changes = {}
         for name in sorted({self.entity, *physical.cargo(self.entity)}):
             changes |= physical.placing(name, None) | physical.joining(name, frozenset())
-        yield f"{self.entity} vanishes", changes
+        yield self.words[0], changes
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +167,11 @@ class Says:
     def counter(self) -> Cell:
         """The cell that counts how often it may still be said."""
         return ("says", str(self.number))
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """What may happen, in words."""
+        return (f"{show(self.message, frozenset())} to {self.agent}",)
 
 
 @dataclass(frozen=True, slots=True)

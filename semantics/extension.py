@@ -189,7 +189,7 @@ def say(c: Configuration, clause: Clause) -> Iterator[Transition]:
     if left == 0 or clause.agent not in c.alpha:  # premises: not too often, a ∈ α
         return
     counted: Changes = {clause.counter: left - 1}
-    label = Label("say", None, f"{show(clause.message, frozenset())} to {clause.agent}")
+    label = Label("say", None, clause.words[0])
     yield Transition(label, c.with_(c.alpha.posting(clause.agent, clause.message), counted))
 
 

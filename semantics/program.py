@@ -28,6 +28,7 @@ from semantics.statements import (
     Spawn,
     Statement,
     While,
+    branches,
 )
 
 if TYPE_CHECKING:
@@ -55,12 +56,26 @@ class Program:
         behaviours: The parametrised behaviours.
         reactions: Commands and named rules: from the host and the arguments to a `Reaction`.
         lines: The line of the mission's text that each statement stands in (from 1), as far as there is one.
+        branch_lines: The same of cases and alternatives, by statement and rank.
+        declared: The line in which each rule and behaviour is declared, by sort (`rule`, `behaviour`) and name.
     """
 
     statements: tuple[Statement, ...] = ()
     behaviours: Mapping[str, Behaviour] = field(default_factory=dict)
     reactions: Mapping[str, "Callable[..., Reaction]"] = field(default_factory=dict)
     lines: tuple[int, ...] = ()
+    branch_lines: Mapping[tuple[int, int], int] = field(default_factory=dict)
+    declared: Mapping[tuple[str, str], int] = field(default_factory=dict)
+
+    def line(self, number: int) -> int:
+        """Return the line of a statement, 0 where there is none."""
+        return self.lines[number] if number < len(self.lines) else 0
+
+    def branch_line(self, number: int, rank: int) -> int:
+        """Return the line of a branch: its own, else that of its first statement, else its statement's."""
+        body = branches(self.statements[number])[rank]
+        first = self.line(body[0]) if body else 0
+        return self.branch_lines.get((number, rank)) or first or self.line(number)
 
     @cached_property
     def _reads(self) -> list[Names]:

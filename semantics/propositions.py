@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from semantics.configuration import Configuration
 from semantics.requests import REQUESTS
@@ -10,6 +10,9 @@ from semantics.signature import REGION, Name
 from semantics.statements import React
 from semantics.stepping import next_statement
 from semantics.values import Value, show
+
+if TYPE_CHECKING:
+    from semantics.temporal import Fairness, Temporal
 
 # --- atoms ----------------------------------------------------------------------------------------------------
 
@@ -247,17 +250,21 @@ class Property:
     """What is to be checked.
 
     Attributes:
-        kind: `local_consistency`, `race_freedom`, `deadlock_freedom`, `arrival`, `computation`, `invariant` or
-            `reachable`.
+        kind: `local_consistency`, `race_freedom`, `deadlock_freedom`, `arrival`, `computation`, `invariant`,
+            `reachable`, `ltl`, `ctl` or `progress`.
         name: Its name; that of its kind where the mission gives none.
         formula: Of an invariant, or of what is to be reachable.
         line: Where it stands in the mission's text, from 1; 0 where it was not written.
+        temporal: The formula of `ltl` and `ctl`.
+        fairness: Which runs count, for `ltl`, `ctl` and `progress`: all where it is empty.
     """
 
     kind: str
     name: str
     formula: Proposition = Always(True)
     line: int = 0
+    temporal: "Temporal | None" = None
+    fairness: tuple["Fairness", ...] = ()
 
 
 REQUEST_WORDS = tuple(kind.__name__ for kind in REQUESTS)

@@ -41,6 +41,7 @@ class Setting:
         control: Whether control takes time.
         arriving: Entities whose flights always end: their `commit` is fair.
         monitored: Whether what observations rest on is remembered, for stale-observation races.
+        clause_lines: The line of the mission's text that each clause of the environment stands in, from 1.
     """
 
     signature: Signature
@@ -51,6 +52,7 @@ class Setting:
     control: Control = Control.ATOMIC
     arriving: frozenset[Name] = field(default_factory=frozenset)
     monitored: bool = False
+    clause_lines: tuple[int, ...] = ()
 
     def kind(self, name: Name) -> str:
         """Return the kind of an entity."""

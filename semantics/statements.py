@@ -173,6 +173,21 @@ Internal = Assign | Display | Tested | If | While | For | ForEach | Match | Call
 Statement = Command | Choice | Internal | Loop
 
 
+def branches(statement: Statement) -> tuple[Block, ...]:
+    """Return the blocks of which a statement takes one: of what may be passed over, only the block itself."""
+    match statement:
+        case If(_, then, otherwise):
+            return (then, otherwise)
+        case React(cases) | Match(_, cases):
+            return tuple(case.body for case in cases)
+        case Choose(alternatives):
+            return alternatives
+        case While(_, body) | ForEach(_, _, body) | ChooseFrom(_, _, body):
+            return (body,)
+        case _:
+            return ()
+
+
 def at_internal(statement: Statement | None) -> bool:
     """Tell whether the next step is internal: `fun`."""
     return isinstance(statement, Internal | Choice)

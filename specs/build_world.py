@@ -185,6 +185,22 @@ class BuildWorld(Transformer[Token, s.Mission]):
     def reachable(self, c: Children) -> s.Reachable:
         return s.Reachable(c[1], c[3], span=cover(c))
 
+    def temporal(self, c: Children) -> s.TemporalProperty:
+        fairness = () if c[2] is None else c[2].value
+        return s.TemporalProperty(str(c[0]), c[1], c[4], fairness, span=cover(c))
+
+    def progress(self, c: Children) -> s.Progress:
+        return s.Progress(() if c[2] is None else c[2].value, c[1], span=cover(c))
+
+    def under(self, c: Children) -> Part:
+        return Part(cover(c), nodes(c))
+
+    def fairness(self, c: Children) -> s.Fairness:
+        return s.Fairness(str(c[0]), nodes(c), span=cover(c))
+
+    def steps(self, c: Children) -> s.Steps:
+        return s.Steps(tuple(name(token) for token in c if token is not None), span=cover(c))
+
     # --- live runs
 
     def live(self, c: Children) -> s.Live:
@@ -212,6 +228,30 @@ class BuildWorld(Transformer[Token, s.Mission]):
 
     def quantified(self, c: Children) -> s.Quantified:
         return s.Quantified(str(c[0]), name(c[1]), name(c[3]), c[5], span=cover(c))
+
+    def path_prefix(self, c: Children) -> s.PathPrefix:
+        words = " ".join(map(str, c[:-1]))
+        return s.PathPrefix(s.SIGNS.get(words, words), c[-1], span=cover(c))
+
+    def path_operation(self, c: Children) -> s.PathOperation:
+        return s.PathOperation(str(c[1]), c[0], c[2], span=cover(c))
+
+    def leads_to(self, c: Children) -> s.LeadsTo:
+        return s.LeadsTo(c[0], c[3], span=cover(c))
+
+    def path_quantifier(self, c: Children) -> s.PathQuantifier:
+        quantifier, letter = str(c[0][0]), str(c[0][1:])
+        span = cover(c)
+        if not letter:
+            return s.PathQuantifier(quantifier, c[1], span=span)
+        path = s.PathPrefix(s.SIGNS[letter], c[1], span=s.Span(span.start + 1, span.end))
+        return s.PathQuantifier(quantifier, path, span=span)
+
+    def taken(self, c: Children) -> s.Taken:
+        return s.Taken(c[1], span=cover(c))
+
+    def enabled(self, c: Children) -> s.Enabled:
+        return s.Enabled(c[1], span=cover(c))
 
     def formula_group(self, c: Children) -> s.Formula:
         formula: s.Formula = c[1]

@@ -437,8 +437,16 @@ class Code(Enum):
         """A hundred mistakes are shown at the most; the others are counted.""",
     )
 
-    BAD_TIME_LIMIT = (
+    WRONG_LOGIC = (
         "LS611",
+        "operator of another logic",
+        """`invariant` and `reachable` are about configurations one by one. `ltl` is about every run: `[]`, `<>`, X,
+        U, R and W in any combination, `taken`, no A and no E. `ctl` is about the tree of runs: each operator of
+        paths stands directly behind A or E. `env` and `say` are nobody's rules.""",
+    )
+
+    BAD_TIME_LIMIT = (
+        "LS612",
         "time limit out of bounds",
         """In the `live` section a request has more than no time, and a week at the most.""",
     )

@@ -282,6 +282,16 @@ def write_call(node: s.Call) -> str:
     return f"{write(node.behaviour)}({listed(node.arguments)})"
 
 
+def _temporal(node: s.TemporalProperty) -> list[str]:
+    head = [node.logic, write(node.label), *_under(node.fairness)]
+    return [*head[:-1], f"{head[-1]}:", write(node.formula)]
+
+
+def _under(fairness: Sequence[s.Fairness]) -> list[str]:
+    words = ("under", *("and" for _ in fairness[1:]))
+    return [f"{word} {write(each)}" for word, each in zip(words, fairness, strict=True)] if fairness else []
+
+
 _PIECES: Final[dict[type[s.Node], Callable[..., list[str]]]] = {
     s.Kind: _kind,
     s.Entity: _entity,
@@ -310,6 +320,11 @@ _PIECES: Final[dict[type[s.Node], Callable[..., list[str]]]] = {
     s.StandardProperty: lambda node: [node.name],
     s.Invariant: lambda node: [f"invariant {write(node.label)}:", write(node.formula)],
     s.Reachable: lambda node: [f"reachable {write(node.label)}:", write(node.formula)],
+    s.TemporalProperty: _temporal,
+    s.Progress: lambda node: [
+        f"progress {write(node.label)}" if node.label else "progress",
+        *_under(node.fairness),
+    ],
     s.Observe: lambda node: [f"observe({write(node.query)})"],
     s.Control: lambda node: [f"control({write(node.action)})"],
     s.Send: lambda node: [f"send {write(node.message)} to {write(node.recipient)}"],

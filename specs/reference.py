@@ -100,7 +100,16 @@ NODES: Final[dict[str, tuple[type[s.Node], ...]]] = {
         s.Arrives,
     ),
     "Scheduler and control": (s.Scheduler, s.ControlMode),
-    "Checks": (s.Check, s.StandardProperty, s.Invariant, s.Reachable),
+    "Checks": (
+        s.Check,
+        s.StandardProperty,
+        s.Invariant,
+        s.Reachable,
+        s.TemporalProperty,
+        s.Progress,
+        s.Fairness,
+        s.Steps,
+    ),
     "Live runs": (s.Live, s.OnBroken, s.TimeLimit, s.Duration),
     "Formulas": (
         s.Inside,
@@ -116,6 +125,12 @@ NODES: Final[dict[str, tuple[type[s.Node], ...]]] = {
         s.Negation,
         s.Connective,
         s.Quantified,
+        s.PathPrefix,
+        s.PathOperation,
+        s.LeadsTo,
+        s.PathQuantifier,
+        s.Taken,
+        s.Enabled,
     ),
 }
 
@@ -207,6 +222,11 @@ check {
   race_freedom
   invariant "one at a time": forall x: UAV . x in basin0 -> not pending a
   reachable "found": uav0 in oilSpill0 and a.found == true
+  progress
+  ltl "answered" under weak fairness of agents: pending OBS a leads to taken sense a
+  ltl "watched" under strong fairness of commit a and weak fairness of b, environment:
+      [] <> actually uav0 in oilSpill0
+  ctl "can always go home": AG EF uav0 in base0
 }
 """,
 }

@@ -12,7 +12,7 @@ from specs.grammar import keywords, spellings
 from specs.syntax.nodes import Span
 from specs.text import Prepared
 
-_WORD: Final = re.compile(r'"(?:[^"\\\n]|\\.)*+"|\w+|<->|=>|==|!=|<=|>=|->|\|\||&&|\S')
+_WORD: Final = re.compile(r'"(?:[^"\\\n]|\\.)*+"|\w+|<->|<>|\[\]|=>|==|!=|<=|>=|->|\|\||&&|\S')
 _NAME: Final = re.compile(r"[^\W\d_]\w*")
 _SEEN: Final = 200  # characters looked back for the previous word
 

@@ -33,8 +33,17 @@ _FORMULA: Final = frozenset(
         "true",
         "false",
         "(",
+        "[]",
+        "<>",
+        "always",
+        "eventually",
+        "next",
+        "infinitely",
+        "taken",
+        "enabled",
     ]
 )
+_CONNECTIVES: Final = frozenset(["and", "&&", "or", "||", "->", "<->", "U", "R", "W", "until", "leads"])
 _GROUPS: Final[tuple[tuple[str, str, frozenset[str], frozenset[str]], ...]] = (
     ("observe", "a statement", STATEMENTS, frozenset({"NAME"})),
     ("signature", "a declaration", SECTIONS | {"control"}, frozenset()),
@@ -50,7 +59,7 @@ _GROUPS: Final[tuple[tuple[str, str, frozenset[str], frozenset[str]], ...]] = (
     ),
     ("polygon", "a geometry", frozenset({"point", "box", "polygon", "circle"}), frozenset()),
     ("of", "an operator", _OPERATORS, frozenset()),
-    ("<->", "a connective", frozenset({"and", "&&", "or", "||", "->", "<->"}), frozenset()),
+    ("<->", "a connective", _CONNECTIVES, frozenset()),
 )
 _SORTS: Final = {
     "NAME": "a name",

@@ -13,6 +13,8 @@ _ESCAPES: Final = str.maketrans({'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\
 # How tightly an operator binds, and how tightly what stands on its two sides must; 8 binds tightest.
 _BINARY: Final = {"or": (1, 1, 2), "and": (2, 2, 3), "+": (5, 5, 6), "-": (5, 5, 6)}
 _COMPARISON: Final = (4, 5, 5)
+_PATH: Final = (5, 6, 5)
+_WORDS: Final = ("always", "eventually", "next", "infinitely often")
 _CONNECTIVE: Final = {"<->": (1, 1, 2), "->": (2, 3, 2), "or": (3, 3, 4), "and": (4, 4, 5)}
 _ATOM: Final = 8
 
@@ -45,8 +47,14 @@ def binding(node: s.Node) -> int:
         case s.Connective():
             return _CONNECTIVE[node.operator][0]
         case s.Negation():
-            return 8 if isinstance(node.operand, s.SameName | s.Stored) else 5
-        case s.Quantified():
+            return 8 if isinstance(node.operand, s.SameName | s.Stored) else 6
+        case s.PathOperation():
+            return _PATH[0]
+        case s.PathPrefix():
+            return 0 if node.operator in _WORDS else 6
+        case s.PathQuantifier():
+            return 6
+        case s.Quantified() | s.LeadsTo():
             return 0
     return _ATOM
 
@@ -220,7 +228,7 @@ def _(node: s.Negation) -> str:
         return f"{write(claim.left)} != {write(claim.right)}"
     if isinstance(claim, s.Stored):
         return f"{write(claim.agent)}.{write(claim.variable)} != {inner(claim.value, _ATOM)}"
-    return f"not {inner(claim, 5)}"
+    return f"not {inner(claim, 6)}"
 
 
 @write.register
@@ -287,6 +295,56 @@ def _(node: s.SameName) -> str:
 @write.register
 def _(node: s.Stored) -> str:
     return f"{write(node.agent)}.{write(node.variable)} == {inner(node.value, _ATOM)}"
+
+
+# --- what is claimed of runs
+
+
+@write.register
+def _(node: s.PathPrefix) -> str:
+    if node.operator in _WORDS:
+        return f"{node.operator} {write(node.operand)}"
+    return f"{node.operator} {inner(node.operand, 6)}"
+
+
+@write.register
+def _(node: s.PathOperation) -> str:
+    _, left, right = _PATH
+    return f"{inner(node.left, left)} {node.operator} {inner(node.right, right)}"
+
+
+@write.register
+def _(node: s.LeadsTo) -> str:
+    return f"{inner(node.left, 1)} leads to {inner(node.right, 1)}"
+
+
+@write.register
+def _(node: s.PathQuantifier) -> str:
+    path = node.operand
+    letters = {sign: letter for letter, sign in s.SIGNS.items()}
+    if isinstance(path, s.PathPrefix) and path.operator in letters:
+        return f"{node.quantifier}{letters[path.operator]} {inner(path.operand, 6)}"
+    return f"{node.quantifier} {inner(path, 6)}"
+
+
+@write.register
+def _(node: s.Taken) -> str:
+    return f"taken {write(node.steps)}"
+
+
+@write.register
+def _(node: s.Enabled) -> str:
+    return f"enabled {write(node.steps)}"
+
+
+@write.register
+def _(node: s.Steps) -> str:
+    return " ".join(map(write, node.words))
+
+
+@write.register
+def _(node: s.Fairness) -> str:
+    return f"{node.strength} fairness of {listed(node.steps)}"
 
 
 # --- placements

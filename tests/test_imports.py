@@ -28,6 +28,7 @@ LIBRARIES = {
     "networkx": ("bigraphs/", "checker/", "specs/elaboration/bodies.py"),  # where a graph is a graph
     "numpy": ("checker/",),
     "numba": ("checker/",),
+    "scipy": ("checker/temporal/components.py",),
     "pyais": ("physical/ais_decode.py",),
     "pymavlink": ("adapters/mavlink/codec.py",),
     "aiohttp": ("adapters/web.py",),

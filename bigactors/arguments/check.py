@@ -40,13 +40,22 @@ def fill(parser: Parser) -> None:
         "--trace",
         metavar="DIR",
         type=named,
-        help="write the trace of each violation and witness into DIR: as text, as JSON and as pictures",
+        help="write the trace of each violation and witness into DIR: as text, as JSON, as pictures and as a page that "
+        "steps through it",
     )
     parser.add_argument(
         "--verdict",
         metavar="FILE",
         type=named,
-        help="write the verdict that `run` asks for (docs/verdict.md); of one mission, with --control timed",
+        help="write the verdict that `run` asks for (docs/live.md); of one mission, with --control timed",
+    )
+    parser.add_argument(
+        "--violations",
+        metavar="N",
+        type=at_least_one,
+        default=5,
+        help="show no more than N different violations of each property, each with a shortest trace; the others are "
+        "counted (default 5)",
     )
     parser.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
     parser.add_argument(

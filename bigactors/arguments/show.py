@@ -10,9 +10,11 @@ def fill(parser: Parser) -> None:
     parser.add_argument("file", nargs="?", metavar="FILE", help=f"{MISSION}; with --trace it may be left out")
     parser.add_argument(
         "--output",
+        "--out",
         metavar="FILE",
         type=named,
-        help="the picture, .svg or .png (default: the mission's name .svg, here)",
+        help="the picture, .svg or .png (default: the mission's name .svg, here), or a page that steps through the "
+        "whole trace, .html",
     )
     parser.add_argument(
         "--trace", metavar="TRACE", type=named, help="a trace in JSON, as check --trace and simulate write it"
@@ -23,16 +25,31 @@ def fill(parser: Parser) -> None:
         type=at_least_zero,
         help="show c_K of the trace (default: its last configuration)",
     )
+    parser.add_argument(
+        "--lanes",
+        action="store_true",
+        help="print the trace with a lane for each agent and only what each step changed; a picture only with --output",
+    )
+    parser.add_argument(
+        "--against",
+        metavar="TRACE",
+        type=named,
+        help="say where the trace and this one part, and what differs after that; draw nothing",
+    )
     varying(parser)
 
 
 COMMAND = Command(
     "show",
-    "print and draw a configuration",
-    "Print the initial configuration of a mission, or any one of a trace; draw its bigraph beside the map.",
+    "print and draw a configuration or a trace",
+    "Print the initial configuration of a mission, or any one of a trace; draw its bigraph beside the map. Show a\n"
+    "whole trace in lanes, as a page that steps through it, or against another one.",
     (
         "bigactors show oil_spill.mission --output oil_spill.png",
         "bigactors show oil_spill.mission --trace run.json --step 3",
+        "bigactors show --trace run.json --lanes",
+        "bigactors show --trace run.json --output run.html",
+        "bigactors show --trace run.json --against other.json",
     ),
     fill,
 )

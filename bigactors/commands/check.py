@@ -15,6 +15,7 @@ from bigactors.outputs import outputs_of, write_outputs
 from bigactors.terminal import paint, say, tell
 from bigactors.verdict_files import verdict_json
 from checker import Engine, Limits, report_text
+from checker.coverage_report import coverage_text
 from checker.report import MARKS
 from checker.verdicts import Outcome
 from semantics.successors import rules_of
@@ -42,9 +43,8 @@ def run(options: Namespace) -> Exit:
     alone = any(output.to_standard_output for output in outputs)
     results: list[Checked | Failed] = []
     folders: set[str] = set()
-    for result in check_missions(
-        options.files, limits, variation_of(options), options.engine and Engine(options.engine)
-    ):
+    engine, most = options.engine and Engine(options.engine), options.violations
+    for result in check_missions(options.files, limits, variation_of(options), engine, most):
         results.append(result)
         if not alone:
             for line in report_lines(result, traces=not options.no_traces):
@@ -74,6 +74,8 @@ def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
     ]
     if silent:
         yield f"  rules never used: {', '.join(silent)}"
+    if report.coverage is not None:
+        yield from coverage_text(result.name, report.coverage, result.mission.source.text)
 
 
 def summary(results: list[Checked | Failed]) -> Iterator[str]:
@@ -127,4 +129,4 @@ def keep_evidence(checked: Checked, folder: str, taken: set[str]) -> None:
         name, number = f"{stem}-{number}", number + 1
     taken.add(name)
     for written in write_evidence(checked, Path(folder) / name):
-        tell(f"  trace: {written}/trace.txt, .json and .svg")
+        tell(f"  trace: {written}/trace.html, .txt, .json and .svg")

@@ -32,6 +32,6 @@ def _show(name: str, out: Path) -> Exit:
         draw(result.mission.initial, picture, title=name)
         say(f"  picture: {picture}")
         for written in write_evidence(result, folder):
-            say(f"  trace: {written}/trace.txt, .json and .svg")
+            say(f"  trace: {written}/trace.html, .txt, .json and .svg")
     say()
     return result.exit

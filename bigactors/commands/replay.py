@@ -17,7 +17,7 @@ from bigactors.mistakes import Mistake
 from bigactors.recordings import mission_of, open_recording, trace_of
 from bigactors.terminal import is_terminal, paint, say, tell
 from bigraphs import draw_text
-from checker import ReplayError, Trace, print_trace, replay
+from checker import ReplayError, Trace, print_loop, print_trace, replay
 from semantics.abstraction import as_it_is
 from semantics.monitor import monitored
 from semantics.printing import print_configuration
@@ -40,7 +40,8 @@ def run(options: Namespace) -> Exit:
     for line in paced(trace, times, options.speed, stepwise=options.step):
         say(line)
     say(f"c{len(trace)} = {print_configuration(trace.configurations[-1])}")
-    say(f"{options.trace}: {len(trace)} steps replayed on {mission.name}")
+    again = f", and {print_loop(trace)}" if trace.loop is not None else ""
+    say(f"{options.trace}: {len(trace)} steps replayed on {mission.name}{again}")
     return Exit.HOLDS
 
 

@@ -3,8 +3,21 @@
 Nothing is decided here: what is believed, what is actual and what changed is asked of `semantics`.
 """
 
-from bigactors.pictures.configuration import draw_configuration
+from bigactors.pictures.configuration import Look, draw_configuration, look_of
 from bigactors.pictures.page import PictureError
+from bigactors.pictures.panels import Panels, Picture
+from bigactors.pictures.scene import channels_of, shown_names
 from bigactors.pictures.trace import draw_overview, draw_trace
 
-__all__ = ["PictureError", "draw_configuration", "draw_overview", "draw_trace"]
+__all__ = [
+    "Look",
+    "Panels",
+    "Picture",
+    "PictureError",
+    "channels_of",
+    "draw_configuration",
+    "draw_overview",
+    "draw_trace",
+    "look_of",
+    "shown_names",
+]

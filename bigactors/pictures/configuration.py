@@ -64,7 +64,8 @@ class Look:
     marked: frozenset[Name]
 
 
-def _look_of(c: Configuration, before: Configuration | None) -> Look:
+def look_of(c: Configuration, before: Configuration | None) -> Look:
+    """Return how a configuration looks beside the one before."""
     glowing = frozenset() if before is None else changed_names(before, c)
     return Look(palette_of(c), glowing, differing(c))
 
@@ -90,7 +91,7 @@ def draw_configuration(
 
 
 def _page(c: Configuration, title: str | None, changed: Configuration | None) -> Page:
-    look = _look_of(c, changed)
+    look = look_of(c, changed)
     legend = _legend_rows(_entries(c, look))
     rows = max(1, _shown(len(c.alpha.names())), _shown(len(c.eta.all())))
     top = MARGIN + (26.0 if title else 0.0)
@@ -148,7 +149,12 @@ def _draw_logical(page: Page, c: Configuration, top: float, look: Look) -> None:
     scale = min(PANEL / width, PANEL_HEIGHT / height, LARGEST)
     left = MARGIN + (PANEL - width * scale) / 2
     above = top + 18.0 + (PANEL_HEIGHT - height * scale) / 2
-    axes = page.panel(left, above, width * scale, height * scale)
+    draw_logical(c, page.panel(left, above, width * scale, height * scale), plan, scale, look)
+
+
+def draw_logical(c: Configuration, axes: "Axes", plan: Layout, scale: float, look: Look) -> None:
+    """Draw L into axes that have the size of its plan, so many times magnified."""
+    bigraph = c.structure.logical.bigraph()
     draw_bigraph(bigraph, axes, highlight=look.glowing)
     numbers = [number for number, node in enumerate(bigraph.nodes) if node.name in look.marked]
     for number in numbers:

@@ -2,33 +2,27 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import accumulate, pairwise
+from itertools import accumulate
 from pathlib import Path
 from typing import Final
 
 from bigactors.pictures.configuration import draw_configuration
 from bigactors.pictures.page import Page, plain_style, wrapped
+from checker.lanes import Lanes, LaneStep, lanes_of
 from physical.map_style import INK, QUIET
 from semantics.configuration import Configuration, Label
-from semantics.printing import print_changes
-from semantics.signature import Name
 
 MARGIN: Final = 26.0
 NUMBERS: Final = 30.0
-LANE: Final = 138.0
-SERVED_LANE: Final = 176.0
+LANE: Final = 168.0
 CHANGES: Final = 300.0
 GUTTER: Final = 14.0
 HEAD: Final = 30.0
 MOST_LINES: Final = 6
 """Lines that are shown of what one step changed."""
 
-SERVED: Final = "served"
-ENVIRONMENT: Final = "environment"
-SERVING: Final = frozenset({"sense", "actuate", "command", "commit", "snd", "migrate"})
-"""Rules that serve a request: what they do happens between the agents and the world."""
-
-COLOURS: Final = {SERVED: ("#e9f7ee", "#4fa672"), ENVIRONMENT: ("#fdf1e3", "#d08a3c")}
+SERVED: Final = ("#e9f7ee", "#4fa672")
+AROUND: Final = ("#fdf1e3", "#d08a3c")
 AGENT: Final = ("#e8f1fd", "#4f86c6")
 
 
@@ -37,17 +31,17 @@ class Row:
     """One step of the overview.
 
     Attributes:
-        lane: Where its box stands: an agent, `served` or `environment`.
+        lane: Where its box stands: the rank of its lane.
+        colours: Its fill and its border: of an agent's own step, of one that serves a request, or of the environment's.
         rule: The rule, as the box's heading.
         words: What else its label says, in lines.
-        agent: Whose request is served.
         changes: What changed, in lines.
     """
 
-    lane: str
+    lane: int
+    colours: tuple[str, str]
     rule: str
     words: tuple[str, ...]
-    agent: Name | None
     changes: tuple[str, ...]
 
     @property
@@ -95,43 +89,35 @@ def draw_overview(
     *,
     title: str | None = None,
     links: Sequence[str] = (),
+    loop: int | None = None,
 ) -> None:
     """Write one picture of a trace: the steps in their lanes, from top to bottom, with what each changed.
 
-    `links` are what the boxes lead to in an SVG, one for each step.
+    `links` are what the boxes lead to in an SVG, one for each step; `loop` is from where the run repeats for ever.
 
     Raises:
         PictureError: The name of the file ends in neither `.svg` nor `.png`.
         OSError: The file cannot be written.
     """
-    rows = rows_of(configurations, labels)
-    lanes = lanes_of(configurations, rows)
+    lanes = lanes_of(configurations, labels, loop)
     with plain_style():
-        _page(rows, lanes, title, links).save(Path(path), title or "trace")
+        _page(lanes, title and title.rstrip(":"), links).save(Path(path), title or "trace")
 
 
-def rows_of(configurations: Sequence[Configuration], labels: Sequence[Label]) -> tuple[Row, ...]:
+def rows_of(lanes: Lanes) -> tuple[Row, ...]:
     """Return the steps of a trace as rows of its overview."""
-    return tuple(
-        _row(before, after, label)
-        for (before, after), label in zip(pairwise(configurations), labels, strict=True)
-    )
+    return tuple(map(_row, lanes.steps))
 
 
-def _row(before: Configuration, after: Configuration, label: Label) -> Row:
-    if label.rule in SERVING:
-        lane, width = SERVED, SERVED_LANE
-    else:
-        lane, width = label.agent or ENVIRONMENT, LANE
-    words = wrapped(str(label.about), width - 26.0, 7.0, 3)
-    return Row(lane, label.rule, words, label.agent, _changes(before, after))
+def _row(step: LaneStep) -> Row:
+    colours = SERVED if step.serves else AROUND if step.label.agent is None else AGENT
+    words = wrapped(step.about, LANE - 26.0, 7.0, 3)
+    return Row(step.lane, colours, step.label.rule, words, _changes(step))
 
 
-def _changes(before: Configuration, after: Configuration) -> tuple[str, ...]:
-    """Return what changed in S and η and in the agents' hosts and mailboxes; what agents are at, the lanes show."""
-    at = tuple(f"α  {agent}@" for agent in after.alpha.names())
-    lines = [line for line in print_changes(before, after) if not line.startswith(at)]
-    shown = [piece for line in lines for piece in wrapped(line, CHANGES, 7.0, 2)]
+def _changes(step: LaneStep) -> tuple[str, ...]:
+    """Return what changed, in a few lines."""
+    shown = [piece for change in step.changes for piece in wrapped(str(change), CHANGES, 7.0, 2)]
     return tuple(
         shown
         if len(shown) <= MOST_LINES
@@ -139,58 +125,42 @@ def _changes(before: Configuration, after: Configuration) -> tuple[str, ...]:
     )
 
 
-def lanes_of(configurations: Sequence[Configuration], rows: Sequence[Row]) -> dict[str, tuple[float, float]]:
-    """Return for each lane, left to right, where it begins and how wide it is."""
-    agents = sorted({agent for c in configurations for agent in c.alpha.names()})
-    used = {row.lane for row in rows}
-    lanes = [*agents, SERVED, *([ENVIRONMENT] if ENVIRONMENT in used else [])]
-    widths = [SERVED_LANE if lane == SERVED else LANE for lane in lanes]
-    starts = accumulate((width + GUTTER for width in widths), initial=MARGIN + NUMBERS)
-    return {lane: (start, width) for lane, start, width in zip(lanes, starts, widths, strict=False)}
-
-
-def _page(
-    rows: Sequence[Row], lanes: dict[str, tuple[float, float]], title: str | None, links: Sequence[str]
-) -> Page:
-    end = max(start + width for start, width in lanes.values()) + GUTTER
+def _page(lanes: Lanes, title: str | None, links: Sequence[str]) -> Page:
+    rows = rows_of(lanes)
+    starts = [MARGIN + NUMBERS + rank * (LANE + GUTTER) for rank in range(len(lanes.names))]
+    end = MARGIN + NUMBERS + len(starts) * (LANE + GUTTER)
     top = MARGIN + (24.0 if title else 0.0) + HEAD
     tops = list(accumulate((row.height for row in rows), initial=top))
-    page = Page(end + CHANGES + MARGIN, tops[-1] + MARGIN)
+    page = Page(end + CHANGES + MARGIN, tops[-1] + MARGIN + (HEAD if lanes.end else 0.0))
+    if lanes.end:
+        page.write(MARGIN, tops[-1] + HEAD, lanes.end, 8.0, bold=True)
     if title:
         page.write(MARGIN, MARGIN + 9, title, 14.0, bold=True, width=page.width - 2 * MARGIN)
-    for lane, (start, width) in lanes.items():
-        _draw_lane(page, lane, start, width, (top - HEAD, tops[-1]))
+    for name, start in zip(lanes.names, starts, strict=True):
+        _draw_lane(page, name, start, (top - HEAD, tops[-1]))
     page.heading(end, top - HEAD + 15, "changed", "by each step")
     for number, (row, y) in enumerate(zip(rows, tops, strict=False)):
         page.rule(MARGIN, page.width - MARGIN, y - 2.0)
         page.write(MARGIN, y + 14.0, f"c{number + 1}", 8.0, ink=QUIET)
-        _draw_row(page, row, lanes, y + 3.0, links[number] if links else None)
+        _draw_row(page, row, starts[row.lane], y + 3.0, links[number] if links else None)
         for rank, line in enumerate(row.changes):
             page.write(end, y + 12.5 + rank * 10.5, line, 7.0)
     return page
 
 
-def _draw_lane(page: Page, lane: str, start: float, width: float, span: tuple[float, float]) -> None:
-    page.write(start + width / 2, span[0] + 15, lane, 9.0, bold=True, width=width, ha="center")
-    middle = start + width / 2
+def _draw_lane(page: Page, name: str, start: float, span: tuple[float, float]) -> None:
+    middle = start + LANE / 2
+    page.write(middle, span[0] + 15, name, 9.0, bold=True, width=LANE, ha="center")
     page.axes.plot([middle, middle], [span[0] + HEAD - 6, span[1]], color="#d8dee4", linewidth=1.0, zorder=1)
 
 
-def _draw_row(
-    page: Page, row: Row, lanes: dict[str, tuple[float, float]], y: float, link: str | None
-) -> None:
-    from matplotlib.patches import Circle, FancyBboxPatch  # noqa: PLC0415 - only who draws needs matplotlib
+def _draw_row(page: Page, row: Row, start: float, y: float, link: str | None) -> None:
+    from matplotlib.patches import FancyBboxPatch  # noqa: PLC0415 - only who draws needs matplotlib
 
-    start, width = lanes[row.lane]
-    fill, border = COLOURS.get(row.lane, AGENT)
-    if row.agent in lanes and row.lane != row.agent:
-        other, breadth = lanes[row.agent]
-        middle, level = other + breadth / 2, y + row.box_height / 2
-        page.axes.plot([middle, start], [level, level], color=border, linewidth=1.1, zorder=2)
-        page.axes.add_patch(Circle((middle, level), 3.0, facecolor="white", edgecolor=border, zorder=3))
+    fill, border = row.colours
     box = FancyBboxPatch(
         (start + 4, y),
-        width - 8,
+        LANE - 8,
         row.box_height,
         boxstyle="round,pad=0,rounding_size=5",
         facecolor=fill,

@@ -131,7 +131,13 @@ def elaborate_bodies(
     }
     reactions = {name: checked(name, command, names.kinds) for name, command in COMMANDS.items()}
     reactions |= {name: Maker(schema, names.kinds) for name, schema in bodies.schemas.items()}
-    return bodies, Program(tuple(program.statements), behaviours, reactions, tuple(program.lines))
+    statements, lines = tuple(program.statements), tuple(program.lines)
+    declared = {
+        key: names.findings.source.line(span.start)
+        for key, span in names.spans.items()
+        if key[0] in ("rule", "behaviour")
+    }
+    return bodies, Program(statements, behaviours, reactions, lines, program.branch_lines, declared)
 
 
 def _parameters(definition: s.Definition, names: Names) -> dict[str, str]:

@@ -11,6 +11,7 @@ from specs.codes import Code
 from specs.elaboration.bodies import Bodies
 from specs.elaboration.formulas import Formulas
 from specs.elaboration.names import Names
+from specs.elaboration.temporal import TemporalFormulas
 
 D = TypeVar("D", bound=s.Node)
 
@@ -45,10 +46,13 @@ def elaborate_checks(mission: s.Mission, names: Names, bodies: Bodies) -> tuple[
     """Return the properties in the order written, or those that go without saying, and `computation`."""
     written = [item for section in mission.each(s.Check) for item in section.properties]
     formulas, seen, found = Formulas(names, bodies), set[str](), list[Property]()
+    temporal = TemporalFormulas(formulas)
     for item in written:
         line = names.findings.source.line(item.span.start)
         if isinstance(item, s.StandardProperty):
             prop = Property(item.name, item.name, line=line)
+        elif isinstance(item, s.TemporalProperty | s.Progress):
+            prop = temporal.property(item, line)
         else:
             kind = "invariant" if isinstance(item, s.Invariant) else "reachable"
             prop = Property(kind, item.label.value, formulas.elaborate(item.formula), line)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Final
 
 from semantics.propositions import (
@@ -34,8 +34,8 @@ Bound = Mapping[str, str]
 """What each quantified name stands for."""
 
 
-class _TooLarge(Exception):
-    """A formula that comes to more atoms than are allowed."""
+class TooLarge(Exception):
+    """A formula that comes to more than is allowed: what is too much, and what to do."""
 
 
 class Formulas:
@@ -48,40 +48,49 @@ class Formulas:
 
     def elaborate(self, formula: s.Formula) -> Proposition:
         """Return a formula as a proposition; reports what is wrong with it, and where the bound is passed."""
-        if self.atoms > MOST_ATOMS:
+        if self.full:
             return Always(True)
         try:
-            return self._formula(formula, {})
-        except _TooLarge:
-            message = f"written out, the properties have more than {MOST_ATOMS:,} atoms"
-            self.names.findings.add(
-                Code.FORMULA_TOO_LARGE, formula, message, "quantify over fewer names, or split it"
-            )
+            return self.proposition(formula, {})
+        except TooLarge as error:
+            self.report(formula, error)
             return Always(True)
 
-    def _formula(self, node: s.Formula, bound: Bound) -> Proposition:
+    @property
+    def full(self) -> bool:
+        """Whether so many atoms were counted that the properties which follow are not looked at."""
+        return self.atoms > MOST_ATOMS
+
+    def report(self, formula: s.Formula, error: TooLarge) -> None:
+        """Report a formula that is too large."""
+        message, hint = error.args
+        self.names.findings.add(Code.FORMULA_TOO_LARGE, formula, message, hint)
+
+    def proposition(self, node: s.Formula, bound: Bound) -> Proposition:
         """Return a formula with what is quantified around it replaced."""
         match node:
             case s.Negation(operand):
-                return Not(self._formula(operand, bound))
+                return Not(self.proposition(operand, bound))
             case s.Connective():
                 return self._connective(node, bound)
             case s.Quantified():
                 return self._quantified(node, bound)
             case _:
-                self._count(1)
+                self.count(1)
                 return self._atom(node, bound)
 
-    def _count(self, atoms: int) -> None:
+    def count(self, atoms: int) -> None:
+        """Count atoms; raises TooLarge where they are too many."""
         self.atoms += atoms
-        if self.atoms > MOST_ATOMS:
-            raise _TooLarge
+        if self.full:
+            message = f"written out, the properties have more than {MOST_ATOMS:,} atoms"
+            raise TooLarge(message, "quantify over fewer names, or split it")
 
     def _connective(self, node: s.Connective, bound: Bound) -> Proposition:
         before = self.atoms
-        left, right = self._formula(node.left, bound), self._formula(node.right, bound)
+        left, right = self.proposition(node.left, bound), self.proposition(node.right, bound)
         if node.operator == "<->":
-            self._count(self.atoms - before)
+            self.count(self.atoms - before)
             return And((_implies(left, right), _implies(right, left)))
         if node.operator == "->":
             return _implies(left, right)
@@ -89,15 +98,21 @@ class Formulas:
         return make((*_parts(left, make), *_parts(right, make)))
 
     def _quantified(self, node: s.Quantified, bound: Bound) -> Proposition:
-        if not self.names.kind(node.kind):
-            return Always(True)
         found = []
-        members = [name for name, kind in sorted(self.names.kinds.items()) if kind == node.kind.text]
-        for name in members:
-            found.append(self._formula(node.body, {**bound, node.variable.text: name}))  # noqa: PERF401 - a frame less
-        if not members:
-            self._formula(node.body, {**bound, node.variable.text: REGION})  # for the mistakes in it
+        for each in self.bindings(node, bound, self.proposition):
+            found.append(self.proposition(node.body, each))  # noqa: PERF401 - a frame less
         return And(tuple(found)) if node.quantifier == "forall" else Or(tuple(found))
+
+    def bindings(
+        self, node: s.Quantified, bound: Bound, elaborate: Callable[[s.Formula, Bound], object]
+    ) -> list[Bound]:
+        """Return what names stand for in each instance of what is quantified."""
+        if not self.names.kind(node.kind):
+            return []
+        members = [name for name, kind in sorted(self.names.kinds.items()) if kind == node.kind.text]
+        if not members:
+            elaborate(node.body, {**bound, node.variable.text: REGION})  # for the mistakes in it
+        return [{**bound, node.variable.text: name} for name in members]
 
     # --- atoms
 
@@ -126,7 +141,9 @@ class Formulas:
                 return self._same(node, bound)
             case s.Stored():
                 return self._stored(node, bound)
-        raise AssertionError(node)
+        message = "this is about runs, and here single configurations are looked at"
+        self.names.findings.add(Code.WRONG_LOGIC, node, message, "write it in ltl or ctl")
+        return Always(True)
 
     def _entity(self, name: s.Name, bound: Bound) -> str:
         if name.text not in bound:

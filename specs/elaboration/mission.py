@@ -80,7 +80,7 @@ def elaborate(
     declare_behaviours(mission, names)
     mobility = elaborate_mobility(mission, names, world)
     check_nesting(names, world, mobility)
-    clauses, arriving = elaborate_environment(mission, names, world, mobility)
+    clauses, clause_lines, arriving = elaborate_environment(mission, names, world, mobility)
     beliefs = elaborate_beliefs(mission, names)
     bodies, program = elaborate_bodies(mission, names, elaborate_rules(mission, names))
     agents = {}
@@ -94,7 +94,16 @@ def elaborate(
     properties = elaborate_checks(mission, names, bodies)
     precautions = elaborate_live(mission, names)
     _stop(names.findings)
-    setting = Setting(names.signature, dict(names.kinds), program, clauses, scheduler, control, arriving)
+    setting = Setting(
+        names.signature,
+        dict(names.kinds),
+        program,
+        clauses,
+        scheduler,
+        control,
+        arriving,
+        clause_lines=clause_lines,
+    )
     there = {name: world.channels[name] for name in world.placements}
     first = initial(setting, world.placements, there, agents)
     if beliefs.parents or beliefs.links:

@@ -82,6 +82,7 @@ class Numbering:
     lines: list[int] = field(default_factory=list)
     variables: Variables = field(default_factory=Variables)
     starts: list[int] = field(default_factory=list)
+    branch_lines: dict[tuple[int, int], int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         text = self.names.findings.source.text
@@ -90,8 +91,16 @@ class Numbering:
     def reserve(self, node: s.Node) -> int:
         """Return the number of one more statement."""
         self.statements.append(_FILLED_LATER)
-        self.lines.append(bisect_right(self.starts, node.span.start))
+        self.lines.append(self.line(node))
         return len(self.statements) - 1
+
+    def line(self, node: s.Node) -> int:
+        """Return the line in which something begins."""
+        return bisect_right(self.starts, node.span.start)
+
+    def branch(self, number: int, rank: int, node: s.Node) -> None:
+        """Note where a branch of a statement begins."""
+        self.branch_lines[number, rank] = self.line(node)
 
     def body(self, body: Body, written: tuple[s.Statement, ...], parameters: Mapping[str, str]) -> None:
         """Number the statements of a body."""
@@ -194,8 +203,8 @@ class _Statements:
             self.program.schemas[name] = schema
         return name, tuple(map(Variable, bound.values()))
 
-    def react(self, node: s.React, place: _Place, _: int) -> k.Statement:
-        return k.React(self.cases(node.cases, place, react=True))
+    def react(self, node: s.React, place: _Place, number: int) -> k.Statement:
+        return k.React(self.cases(node.cases, place, number, react=True))
 
     def send(self, node: s.Send, place: _Place, _: int) -> k.Statement:
         message = self.expression(node.message, place)
@@ -266,13 +275,16 @@ class _Statements:
         self.program.statements[each] = k.ForEach(variable, rest, self.block(node.body, inner, tail=False))
         return k.For(members, rest, each)
 
-    def match(self, node: s.Match, place: _Place, _: int) -> k.Statement:
-        return k.Match(self.expression(node.subject, place), self.cases(node.cases, place, react=False))
+    def match(self, node: s.Match, place: _Place, number: int) -> k.Statement:
+        return k.Match(
+            self.expression(node.subject, place), self.cases(node.cases, place, number, react=False)
+        )
 
-    def choose(self, node: s.Choose, place: _Place, _: int) -> k.Statement:
+    def choose(self, node: s.Choose, place: _Place, number: int) -> k.Statement:
         found: list[k.Block] = []
-        for each in node.alternatives:
-            found.append(self.block(each.body, place.scope.inner(), tail=place.tail))  # noqa: PERF401 - a frame less
+        for rank, each in enumerate(node.alternatives):
+            self.program.branch(number, rank, each)
+            found.append(self.block(each.body, place.scope.inner(), tail=place.tail))
         return k.Choose(tuple(found))
 
     def choose_from(self, node: s.ChooseFrom, place: _Place, _: int) -> k.Statement:
@@ -293,9 +305,12 @@ class _Statements:
         else:
             check_arity(node.behaviour, len(node.arguments), len(behaviour.parameters), self.names.findings)
 
-    def cases(self, written: tuple[s.Case, ...], place: _Place, *, react: bool) -> tuple[k.Case, ...]:
+    def cases(
+        self, written: tuple[s.Case, ...], place: _Place, number: int, *, react: bool
+    ) -> tuple[k.Case, ...]:
         found: list[k.Case] = []
-        for case in written:
+        for rank, case in enumerate(written):
+            self.program.branch(number, rank, case)
             inner = place.scope.inner()
             check_distinct(case.pattern, self.names)
             pattern = elaborate_pattern(case.pattern, self.names, partial(self.bind, inner), react=react)

@@ -11,6 +11,7 @@ from specs.syntax.formulas import Formula
 from specs.syntax.live import Live
 from specs.syntax.nodes import Name, Node
 from specs.syntax.statements import Statement
+from specs.syntax.temporal import Progress, TemporalProperty
 from specs.syntax.world import Believes, Placement, Signature, World
 
 # --- rules, behaviours, bigActors
@@ -188,7 +189,7 @@ class Reachable(Node):
     formula: Formula
 
 
-Property: TypeAlias = StandardProperty | Invariant | Reachable
+Property: TypeAlias = StandardProperty | Invariant | Reachable | TemporalProperty | Progress
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Formulas: what `invariant` and `reachable` claim of one configuration."""
+"""Formulas: what properties claim of one configuration, and with the operators of `temporal`, of runs."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TypeAlias
 
 from specs.syntax.expressions import Expression, TruthLiteral
 from specs.syntax.nodes import Name, Node
+from specs.syntax.temporal import Enabled, LeadsTo, PathOperation, PathPrefix, PathQuantifier, Taken
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,4 +140,10 @@ Formula: TypeAlias = (
     | HostedAt
     | SameName
     | Stored
+    | PathPrefix
+    | PathOperation
+    | LeadsTo
+    | PathQuantifier
+    | Taken
+    | Enabled
 )

@@ -1,23 +1,11 @@
-import importlib.util
-import sys
 from pathlib import Path
 
 import pytest
+from scripts import script
 
 from checker import explore
 from specs import parse_bytes
 from specs.elaboration import elaborate
-
-BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
-
-
-def script(name):
-    """Load a benchmark's module from its file: the folder is no package."""
-    spec = importlib.util.spec_from_file_location(f"benchmarks_{name}", BENCHMARKS / f"{name}.py")
-    module = sys.modules.setdefault(spec.name, importlib.util.module_from_spec(spec))
-    spec.loader.exec_module(module)
-    return module
-
 
 patrol = script("patrol")
 spin = script("spin")

@@ -1,9 +1,12 @@
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from bigactors.cli import main
+
+sys.path.insert(0, str(Path(__file__).parent))  # for drawn_missions
 
 HEAD = """\
 signature {

@@ -162,14 +162,14 @@ def test_traces_are_kept_as_text_as_json_and_as_pictures(missions, bigactors):
     assert code == 1
     folder = missions / "traces" / "race" / "race_freedom-control_race"
     assert sorted(path.name for path in folder.iterdir()) == [
-        "c00.svg", "c01.svg", "c02.svg", "trace.json", "trace.svg", "trace.txt",
+        "c00.svg", "c01.svg", "c02.svg", "trace.html", "trace.json", "trace.svg", "trace.txt",
     ]  # fmt: skip
     text = (folder / "trace.txt").read_text(encoding="utf-8")
     assert text.startswith("race.mission (sha256:")
     assert "race_freedom violated: control race: " in text
     assert "c0 --⟨" in text
     assert (folder / "trace.svg").read_text(encoding="utf-8").startswith("<?xml")
-    assert "traces/race/race_freedom-control_race/trace.txt" in err
+    assert "traces/race/race_freedom-control_race/trace.html" in err
 
 
 def test_missions_of_one_name_keep_their_traces_apart(missions, bigactors, monkeypatch):

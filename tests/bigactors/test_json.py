@@ -38,6 +38,15 @@ def test_the_report_of_a_mission_is_valid(bigactors, mission):
     validator("report").validate(json.loads(out))
 
 
+@pytest.mark.parametrize("name", ["unserved", "unserved_behind", "runs"])
+def test_the_report_of_runs_that_go_on_for_ever_is_valid(bigactors, name):
+    path = Path(__file__).parents[1] / "corpus" / "violated" / f"{name}.mission"
+    report = json.loads(bigactors("check", str(path), "--json", "-")[1])
+    validator("report").validate(report)
+    loops = [each["trace"].get("loop") for each in report["properties"] if each["trace"]]
+    assert any(loop is not None for loop in loops)
+
+
 @pytest.mark.usefixtures("missions")
 def test_the_report_of_several_missions_is_valid(bigactors):
     names = [f"{name}.mission" for name in ("holds", "race", "mistaken")]

@@ -5,77 +5,25 @@ from pathlib import Path
 
 import matplotlib as mpl
 import pytest
+from drawn_missions import KINDS, PLACEMENTS, SIGNATURE, oil_spill, run
 from matplotlib.text import Text
 
 from bigactors.pictures import PictureError, draw_configuration, draw_overview, draw_trace
 from bigactors.pictures.page import wrapped
 from bigactors.pictures.scene import changed_names, differing, is_place, map_entities, palette_of
-from bigactors.pictures.trace import lanes_of, rows_of
+from bigactors.pictures.trace import AGENT, AROUND, SERVED, rows_of
 from bigraphs.drawing import LINKS
 from bigraphs.layout import layout
 from bigraphs.routing import route
-from physical import box, circle, point
+from checker.lanes import lanes_of
+from physical import circle, point
 from physical.map_style import text_width
 from semantics.configuration import Label
 from semantics.environment import Appears
-from semantics.expressions import Host, Literal, QueryOf
 from semantics.initial import Beliefs, initial
-from semantics.patterns import Anything
-from semantics.physical_model import Carried, Placed, channels_cell, placement_cell
+from semantics.physical_model import Placed, channels_cell, placement_cell
 from semantics.program import Program
-from semantics.reactions import COMMANDS
-from semantics.setting import Control, Setting
-from semantics.signature import Kind, Signature
-from semantics.statements import Case, ControlBy, Observe, React
-from semantics.successors import successors
-
-MOVERS = frozenset({"OilSpill", "UAV", "Vessel", "Station", "Drifter"})
-SIGNATURE = Signature.of(
-    [
-        Kind("Location", MOVERS),
-        Kind("OilSpill", frozenset({"UAV"})),
-        Kind("UAV", driven=True),
-        Kind("Vessel", carries=frozenset({"Drifter"}), driven=True),
-    ]
-)
-KINDS = {
-    "searchArea0": "Location",
-    "oilSpill0": "OilSpill",
-    "uav0": "UAV",
-    "gcs0": "Station",
-    "vessel0": "Vessel",
-    "drifter0": "Drifter",
-}
-PLACEMENTS = {
-    "searchArea0": Placed(box((37.04, -8.59), (36.94, -8.79))),
-    "oilSpill0": Placed(circle((37.00, -8.70), 400)),
-    "uav0": Placed(point(37.06, -8.55)),
-    "gcs0": Placed(point(37.07, -8.60)),
-    "vessel0": Placed(point(36.98, -8.66)),
-    "drifter0": Carried("vessel0", Placed(point(36.98, -8.66))),
-}
-CHANNELS = {"uav0": ("control:gcs0",), "gcs0": ("control:gcs0", "network"), "vessel0": ("network",)}
-STATEMENTS = (
-    ControlBy("MOVE_HOST_TO", (Literal("searchArea0"),)),
-    Observe(QueryOf("CHILDREN", QueryOf("PARENT", Host()))),
-    React((Case(Anything("seen", "observation"), None, ()),)),
-)
-
-
-def oil_spill(**changes):
-    placements = changes.pop("placements", PLACEMENTS)
-    beliefs = changes.pop("beliefs", None)
-    program = Program(STATEMENTS, {}, COMMANDS, (12, 13, 14))
-    setting = Setting(SIGNATURE, KINDS, program, control=Control.TIMED, **changes)
-    return initial(setting, placements, CHANNELS, {"searcher": ("uav0", (0, 1, 2))}, beliefs)
-
-
-def run(configuration):
-    configurations, labels = [configuration], []
-    while following := list(successors(configurations[-1])):
-        labels.append(following[0].label)
-        configurations.append(following[0].target)
-    return configurations, labels
+from semantics.setting import Setting
 
 
 def written(monkeypatch, draw, *arguments, **options):
@@ -240,28 +188,26 @@ def test_a_trace_is_a_picture_a_step_and_an_overview(tmp_path):
 
 
 def test_steps_stand_in_the_lanes_of_who_takes_them():
-    configurations, labels = run(oil_spill())
-    rows = rows_of(configurations, labels)
-    lanes = {row.rule: row.lane for row in rows}
-    assert lanes["req_ctr"] == lanes["req_obs"] == lanes["rcv_obs"] == "searcher"
-    assert lanes["command"] == lanes["commit"] == lanes["sense"] == "served"
-    assert list(lanes_of(configurations, rows)) == ["searcher", "served"]
+    lanes = lanes_of(*run(oil_spill()))
+    assert lanes.names == ("searcher",)
+    colours = {row.rule: row.colours for row in rows_of(lanes)}
+    assert colours["req_ctr"] == colours["req_obs"] == colours["rcv_obs"] == AGENT
+    assert colours["command"] == colours["commit"] == colours["sense"] == SERVED
 
 
 def test_the_environment_has_a_lane_of_its_own():
     c = oil_spill()
     after = c.with_({placement_cell("gcs0"): None})
-    rows = rows_of([c, after], [Label("env", None, "gcs0 vanishes")])
-    assert rows[0].lane == "environment"
-    assert list(lanes_of([c, after], rows)) == ["searcher", "served", "environment"]
+    lanes = lanes_of([c, after], [Label("env", None, "gcs0 vanishes")])
+    assert lanes.names == ("searcher", "environment")
+    assert [(row.lane, row.colours) for row in rows_of(lanes)] == [(1, AROUND)]
 
 
 def test_a_row_tells_only_what_changed():
-    configurations, labels = run(oil_spill())
-    rows = rows_of(configurations, labels)
+    rows = rows_of(lanes_of(*run(oil_spill())))
     (commit,) = (row for row in rows if row.rule == "commit")
-    assert any("parent(uav0) : region ↦ searchArea0" in line for line in commit.changes)
-    assert not any("searcher@" in line or "parent(vessel0)" in line for row in rows for line in row.changes)
+    assert "L  uav0 : region ↦ searchArea0" in commit.changes
+    assert not any("vessel0 :" in line for row in rows for line in row.changes)
 
 
 def test_every_step_appears_in_the_overview(tmp_path, monkeypatch):

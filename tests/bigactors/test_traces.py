@@ -206,3 +206,52 @@ def test_what_cannot_be_shown_is_told(bigactors, words, said):
     assert code == 2
     assert said in err
     assert "Traceback" not in err
+
+
+@pytest.mark.usefixtures("run")
+def test_a_trace_is_shown_in_lanes_and_drawn_only_if_asked(bigactors, missions):
+    code, out, err = bigactors("show", "--trace", "run.json", "--lanes")
+    assert (code, err) == (0, "")
+    assert out.splitlines()[2] == "c1    ● req_ctr"
+    assert not list(missions.glob("*.svg"))
+    code, _, err = bigactors("show", "--trace", "run.json", "--lanes", "--output", "lanes.svg")
+    assert (code, err) == (0, "picture written to lanes.svg\n")
+    assert (missions / "lanes.svg").stat().st_size > 1000
+
+
+@pytest.mark.usefixtures("run")
+@pytest.mark.parametrize("option", ["--output", "--out"])
+def test_a_trace_becomes_a_page(bigactors, missions, option):
+    code, _, err = bigactors("show", "--trace", "run.json", option, "page.html", "--step", "3")
+    assert (code, err) == (0, "page written to page.html\n")
+    page = (missions / "page.html").read_text(encoding="utf-8")
+    assert page.startswith("<!DOCTYPE html>\n")
+    assert 'data-start="3"' in page
+    assert page.count("data-frame=") == 9
+
+
+@pytest.mark.usefixtures("run")
+def test_two_traces_are_compared(bigactors):
+    bigactors("simulate", "holds.mission", "--seed", "3", "--steps", "2", "--json", "short.json")
+    code, out, err = bigactors("show", "--trace", "run.json", "--against", "short.json")
+    assert (code, err) == (0, "")
+    assert out.splitlines()[:4] == [
+        "< run.json: 8 steps",
+        "> short.json: 2 steps",
+        "the same for 2 steps, up to c2; then",
+        "  < c2 --⟨req_obs : a, observe(CHILDREN(PARENT(uav0)))⟩--> c3",
+    ]
+
+
+@pytest.mark.usefixtures("missions")
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("holds.mission", "--lanes"), "--lanes shows a trace"),
+        (("holds.mission", "--against", "x.json"), "--against is for two traces"),
+    ],
+)
+def test_what_is_of_a_trace_needs_one(bigactors, words, said):
+    code, _, err = bigactors("show", *words)
+    assert code == 2
+    assert said in err

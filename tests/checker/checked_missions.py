@@ -65,7 +65,7 @@ def verdict_of(report: Report, name: str) -> Verdict:
 
 def kinds(found: Verdict) -> dict[str, int]:
     """Return the kinds of violations with the lengths of their shortest traces."""
-    return {each.kind: len(each.trace) for each in found.violations}
+    return {each.kind: len(each.trace) for each in reversed(found.violations)}
 
 
 def violation(found: Verdict, kind: str) -> Violation:

@@ -7,6 +7,17 @@ from checker.results import Issue, Level, Result
 from semantics.propositions import Property
 
 ENTERS = moves("gate0", "a", "uav0")
+GAPS = """
+BigActor a hosted_at uav0 with_behavior {
+  observe(PARENT(HOST))
+  react {
+    case o if uav1 in o => control(MOVE_HOST_TO gate0)
+    case o => skip
+  }
+}
+check { local_consistency }
+"""
+"""A case that is never taken, and hence a property that says nothing."""
 PILOTS = moves("south0", "a", "uav0") + moves("gate0", "b", "uav0")
 HOSTILE = '<a b="c"> & ]]> ::error::%0A,line=1\n\r\t\x00\x07\x1b[31m\x9f\ud800\ufffe\'→'
 """Markup, commands, controls, a lone surrogate and a non-character."""
@@ -14,7 +25,8 @@ HOSTILE = '<a b="c"> & ]]> ::error::%0A,line=1\n\r\t\x00\x07\x1b[31m\x9f\ud800\u
 
 def result(text, name="m.mission", limits=SPARE):
     mission = load(text)
-    return Result(name, name, check(mission.initial, mission.properties, limits), check_line=7)
+    report = check(mission.initial, mission.properties, limits)
+    return Result(name, name, report, check_line=7, text=mission.source.text)
 
 
 def cut_off(text=ENTERS, name="m.mission"):

@@ -5,6 +5,7 @@ import re
 from mission_results import (
     BUG,
     ENTERS,
+    GAPS,
     HOSTILE,
     MISTAKE,
     NOT_BEGUN,
@@ -39,6 +40,25 @@ def read(*results):
 
 def test_what_holds_says_nothing():
     assert read(result(ENTERS)) == []
+
+
+def test_what_holds_vacuously_and_what_is_never_reached_are_warnings():
+    vacuous, gap = read(result(GAPS))
+    assert vacuous == (
+        "warning",
+        {"file": "m.mission", "line": "32", "title": "m.mission: local_consistency holds"},
+        "vacuous: no control was ever next in line",
+    )
+    assert gap == (
+        "warning",
+        {"file": "m.mission", "line": "28", "title": "m.mission: not covered"},
+        "this case is never taken\ncase o if uav1 in o => control(MOVE_HOST_TO gate0)",
+    )
+
+
+def test_what_was_cut_off_has_no_warnings_of_what_it_did_not_reach():
+    titles = [place["title"] for _, place, _ in read(cut_off(GAPS))]
+    assert titles == ["m.mission: local_consistency incomplete", "m.mission: computation incomplete"]
 
 
 def test_a_violation_is_an_error_at_its_statement():

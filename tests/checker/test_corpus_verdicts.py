@@ -38,7 +38,7 @@ def test_what_holds_is_reported(path):
 def test_every_kind_of_violation_has_a_mission():
     kinds = {
         "unmatched", "inconsistent", "unrealisable", "control race", "stale-observation race", "deadlock",
-        "not arrived", "fails", "diverges", "invariant",
+        "not arrived", "fails", "diverges", "invariant", "ltl", "ctl", "unserved CTR", "unserved OBS",
     }  # fmt: skip
     shown = {
         found for path in VIOLATED for found in re.findall(r"^      (\S.*?): ", expected(path), re.MULTILINE)

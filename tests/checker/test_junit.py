@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ET
 from mission_results import (
     BUG,
     ENTERS,
+    GAPS,
     HOSTILE,
     MISTAKE,
     NOT_BEGUN,
@@ -28,6 +29,12 @@ def suites(*results):
 
 def cases(given):
     return {case.get("name"): case for case in suites(given)[0].iter("testcase")}
+
+
+def test_warnings_fail_no_case_and_stand_in_the_output():
+    suite = next(iter(ET.fromstring(junit_text([result(GAPS)]).encode())))
+    assert (suite.get("failures"), suite.get("errors")) == ("0", "0")
+    assert "  m.mission:28: warning: this case is never taken\n    28 | " in suite.find("system-out").text
 
 
 def test_a_mission_is_a_suite_and_a_property_is_a_case():

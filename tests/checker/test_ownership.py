@@ -19,7 +19,7 @@ def races(c, most=1_500):
     control, stale = ControlRaces(), StaleObservationRaces()
     found = explore(c, (control,), Limits(configurations=most))
     remembered = explore(monitored(c), (stale,), Limits(configurations=2 * most))
-    kinds = {*control.collected.first, *stale.collected.first}
+    kinds = {kind for kind, _ in (*control.collected.first, *stale.collected.first)}
     return kinds if kinds or (found.complete and remembered.complete) else None
 
 

@@ -52,7 +52,10 @@ def test_what_holds_is_said_with_what_was_examined():
         ),
         "  ✓ deadlock_freedom   holds; examined 1 configuration at rest, a witness of 2 steps",
         "  ✓ arrival            holds; vacuous: no flight ever ends",
-        "  ✓ never              holds; examined 3 configurations, a witness of 0 steps",
+        (
+            "  ✓ never              holds; vacuous: nothing that it speaks of ever changes; examined 3 configurations, "
+            "a witness of 0 steps"
+        ),
         "  ✓ in                 holds; examined 1, a witness of 2 steps",
         "  ✓ computation        holds; no bigActor computes anything that could fail",
         "  rules: actuate 1, req_ctr 1",
@@ -124,6 +127,46 @@ def test_without_traces_only_their_lengths_are_shown():
     found = lines(PILOTS + "check { race_freedom }")
     assert "      a shortest trace, 2 steps" in found
     assert not any("--⟨" in line for line in found)
+
+
+THREE_STALE = """
+BigActor a hosted_at gcs0 with_behavior { control(MOVE uav1 TO gate0) }
+BigActor b hosted_at gcs1 with_behavior { control(MOVE uav0 TO gate0) control(MOVE uav0 TO south0) }
+BigActor c hosted_at vessel0 with_behavior { control(MOVE_HOST_TO gate0) }
+environment { vessel0 drifts among point (36.985, -8.71), point (37.02, -8.69) }
+check { local_consistency }
+"""
+
+
+def test_each_request_that_cannot_be_served_is_a_violation_of_its_own():
+    found = [line for line in lines(THREE_STALE) if line.startswith(("  ✗", "      "))]
+    assert [line for line in found if not line.startswith("        ")] == [
+        "  ✗ local_consistency  violated; found 69 times, 3 different",
+        "      unmatched: CTR(a, MOVE uav1 TO gate0) is unmatched: its redex matches nothing in L",
+        "      a shortest trace, 1 step",
+        "      unmatched: CTR(b, MOVE uav0 TO gate0) is unmatched: its redex matches nothing in L",
+        "      a shortest trace, 1 step",
+        (
+            "      inconsistent: CTR(c, MOVE_HOST_TO gate0) is inconsistent: L believes what P no longer shows: "
+            "nobody looked since"
+        ),
+        "      a shortest trace, 2 steps",
+    ]
+
+
+def test_only_so_many_violations_are_shown_and_the_others_counted():
+    mission = load(THREE_STALE)
+    for most, said in ((1, "3 different, of which 1 are shown"), (2, "3 different, of which 2 are shown")):
+        report = check(mission.initial, mission.properties, violations=most)
+        assert len(report.verdicts[0].violations) == most
+        assert said in next(line for line in report_text("m", report) if "✗" in line)
+
+
+def test_each_kind_is_shown_before_a_second_of_any():
+    mission = load(THREE_STALE)
+    shown = check(mission.initial, mission.properties, violations=2).verdicts[0]
+    assert [each.kind for each in shown.violations] == ["unmatched", "inconsistent"]
+    assert shown.different == 3
 
 
 def test_findings_are_counted():
@@ -206,6 +249,16 @@ def test_the_data_say_what_the_report_says():
             "migrate",
             "spawn",
         ],
+        "coverage": {
+            "complete": True,
+            "statements": {"reached": 2, "of": 2},
+            "branches": {"reached": 0, "of": 0},
+            "rules": {"reached": 0, "of": 0},
+            "clauses": {"reached": 0, "of": 0},
+            "lines_reached": [25, 26],
+            "lines_not_reached": [],
+            "gaps": [],
+        },
         "notes": ["a note"],
     }
     assert data["seconds"] >= 0
@@ -298,4 +351,13 @@ def test_a_verdict_and_its_violations_are_values():
     assert report_json("m", "d", Report((), 1, 0, 0), Control.TIMED)["rules_never_used"][6:8] == [
         "command",
         "commit",
+    ]
+
+
+def test_race_freedom_by_ownership_has_a_run_in_which_a_control_is_served():
+    (race,) = (each for each in as_json(ENTERS + EVERYTHING)["properties"] if each["name"] == "race_freedom")
+    assert race["note"].startswith("by ownership")
+    assert [step["label"] for step in race["witness"]["steps"]] == [
+        "⟨req_ctr : a, control(MOVE_HOST_TO gate0)⟩",
+        "⟨actuate : CTR(a, MOVE_HOST_TO gate0)⟩",
     ]

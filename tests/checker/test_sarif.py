@@ -10,6 +10,7 @@ from jsonschema.exceptions import ValidationError
 from mission_results import (
     BUG,
     ENTERS,
+    GAPS,
     HOSTILE,
     MISTAKE,
     NOT_BEGUN,
@@ -45,6 +46,18 @@ def region(found):
 
 def test_the_schema_is_a_schema():
     Draft202012Validator.check_schema(SCHEMA)
+
+
+def test_warnings_are_results_and_the_run_is_a_success_all_the_same():
+    found = run_of(result(GAPS))
+    assert [(each["ruleId"], each["level"], region(each)["startLine"]) for each in found["results"]] == [
+        ("vacuity", "warning", 32),
+        ("coverage", "warning", 28),
+    ]
+    assert found["invocations"][0] == {"executionSuccessful": True, "toolExecutionNotifications": []}
+    moved = run_of(result("\n" + GAPS))
+    fingerprints = [[each["partialFingerprints"] for each in run["results"]] for run in (found, moved)]
+    assert fingerprints[0] == fingerprints[1]
 
 
 def test_every_sort_of_result_is_valid():

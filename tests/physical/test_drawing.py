@@ -165,6 +165,15 @@ def test_a_far_entity_is_pointed_at_and_does_not_shrink_the_rest():
     assert {"farVessel", "70 km away"} <= drawn([*MARINA, far])[2]
 
 
+def test_a_map_shows_what_it_is_for_and_points_at_what_lies_beyond():
+    within = tuple(each.geometry for each in OIL_SPILL if each.geometry)
+    one, other = (drawn(each, within=within)[1].view for each in (OIL_SPILL, OIL_SPILL[:2]))
+    assert one == other
+    far = MapEntity("farVessel", "Vessel", point(38.4, -8.7))
+    assert "farVessel" in drawn([*OIL_SPILL, far], within=within)[2]
+    assert drawn([*OIL_SPILL, far], within=within)[1].view == one
+
+
 def test_metres_are_as_long_to_the_north_as_to_the_east():
     _, sheet, _ = drawn([MapEntity("a", "Sea", box((70.1, 20.3), (70.0, 20.0)), place=True)])
     area = bounds(sheet.outline(box((70.1, 20.3), (70.0, 20.0))))

@@ -34,6 +34,8 @@ SPECIAL = {
     s.Parameter: "rule r({}) {{ a -> b }}",
     s.RuleBody: "rule r {}",
     s.Case: "def f() = {{ react {{ {} }} }}",
+    s.Steps: 'check {{ ltl "q": taken {} }}',
+    s.Fairness: "check {{ progress under {} }}",
     s.Alternative: "def f() = {{ choose {{ {} }} }}",
 }
 SECTIONS = {s.Signature, s.World, s.Believes, s.Environment, s.Check, s.Live, s.Mission}

@@ -1,0 +1,28 @@
+"""Markup: elements written so that no text of a mission can be taken for any."""
+
+from html import escape
+
+from checker.results import clean
+
+
+def text(words: object) -> str:
+    r"""Return words as text of a page: escaped, and without what no page can hold.
+
+    >>> text('<b>&"\x00')
+    '&lt;b&gt;&amp;&quot;�'
+    """
+    return escape(clean(str(words)))
+
+
+def element(tag: str, *inside: str, **attributes: object) -> str:
+    """Return an element around what is markup already; attributes are text, `_` in their names a hyphen.
+
+    >>> element("li", text("a < b"), class_="new", data_row=3)
+    '<li class="new" data-row="3">a &lt; b</li>'
+    """
+    words = "".join(
+        f" {name.rstrip('_').replace('_', '-')}" + ("" if value is True else f'="{text(value)}"')
+        for name, value in attributes.items()
+        if value is not None and value is not False
+    )
+    return f"<{tag}{words}>{''.join(inside)}</{tag}>"

@@ -1,0 +1,98 @@
+"""The two models of a configuration as pictures of their own, for a page that steps through a run."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+from bigactors.pictures.configuration import Look, draw_logical, look_of
+from bigactors.pictures.page import Page, plain_style
+from bigactors.pictures.scene import map_entities
+from bigactors.pictures.vector import svg_of
+from bigraphs.drawing import MARGIN as BIGRAPH_MARGIN
+from bigraphs.layout import layout
+from physical.drawing import MapEntity, draw_map
+from physical.shape import Geometry
+from semantics.configuration import Configuration
+
+MAP: Final = (600.0, 400.0)
+LATITUDES: Final = 46.0
+LONGITUDES: Final = 16.0
+MAGNIFIED: Final = 1.15
+"""How much a bigraph is magnified."""
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """The shapes of an SVG, and how wide and high it is in points."""
+
+    key: str
+    width: float
+    height: float
+    shapes: str
+
+
+@dataclass(slots=True)
+class Panels:
+    """The pictures of a run, each drawn once however many configurations look so.
+
+    Attributes:
+        within: All that the maps of the run have to have room for.
+        pictures: The pictures, by what they show.
+    """
+
+    within: tuple[Geometry, ...]
+    pictures: dict[tuple[object, ...], Picture] = field(default_factory=dict)
+
+    @staticmethod
+    def of(configurations: Sequence[Configuration]) -> "Panels":
+        """Return the panels of a run, with nothing drawn yet."""
+        entities = (entity for c in configurations for entity in map_entities(c))
+        seen = (place for entity in entities for place in _places(entity))
+        return Panels(tuple(dict.fromkeys(seen)))
+
+    def logical(self, c: Configuration, before: Configuration | None) -> Picture:
+        """Return the picture of L, what changed since the configuration before glowing."""
+        look, bigraph = look_of(c, before), c.structure.logical.bigraph()
+        shown = (bigraph, look.glowing, look.marked)
+        if shown not in self.pictures:
+            key = f"L{len(self.pictures)}"
+            plan = layout(bigraph)
+            width = (plan.width + 2 * BIGRAPH_MARGIN) * MAGNIFIED
+            height = (plan.height + 2 * BIGRAPH_MARGIN) * MAGNIFIED
+            with plain_style():
+                page = Page(width, height)
+                axes = page.panel(0.0, 0.0, width, height)
+                draw_logical(c, axes, plan, MAGNIFIED, look)
+                self.pictures[shown] = Picture(key, width, height, svg_of(page.figure, key))
+        return self.pictures[shown]
+
+    def physical(self, c: Configuration, before: Configuration | None) -> Picture:
+        """Return the map of P, what changed since the configuration before glowing."""
+        look, entities = look_of(c, before), map_entities(c)
+        shown = (entities, look.glowing, look.marked)
+        if shown not in self.pictures:
+            key = f"P{len(self.pictures)}"
+            with plain_style():
+                page = Page(*MAP)
+                self._draw(page, entities, look)
+                self.pictures[shown] = Picture(key, *MAP, svg_of(page.figure, key))
+        return self.pictures[shown]
+
+    def _draw(self, page: Page, entities: Sequence[MapEntity], look: Look) -> None:
+        axes = page.panel(LATITUDES, 6.0, MAP[0] - LATITUDES - 6.0, MAP[1] - LONGITUDES - 6.0)
+        draw_map(
+            entities,
+            axes,
+            highlight=look.glowing,
+            marked=look.marked,
+            colours=look.palette.kinds,
+            channel_colours=look.palette.channels,
+            within=self.within,
+        )
+
+
+def _places(entity: MapEntity) -> Iterator[Geometry]:
+    if entity.geometry is not None and entity.carried_by is None:
+        yield entity.geometry
+    if entity.destination is not None:
+        yield entity.destination

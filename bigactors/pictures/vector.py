@@ -1,0 +1,114 @@
+"""SVG made fit to stand in a page: what matplotlib writes, cut down to shapes and text that nothing is loaded for.
+
+Only known elements and attributes are passed on, references only to what is in the picture itself; ids are its own, so
+that several pictures may stand in one page. Text stays text, as wide as it was measured, whatever font the reader has.
+"""
+
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from html import escape
+from io import StringIO
+from typing import TYPE_CHECKING, Final
+
+from checker.results import clean
+from physical.map_style import text_width
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ELEMENTS: Final = frozenset(
+    {"g", "path", "text", "tspan", "use", "defs", "clipPath", "rect", "circle", "ellipse", "line"}
+)
+ATTRIBUTES: Final = frozenset(
+    {
+        "d",
+        "x",
+        "y",
+        "width",
+        "height",
+        "transform",
+        "style",
+        "clip-path",
+        "id",
+        "r",
+        "cx",
+        "cy",
+        "rx",
+        "ry",
+        "href",
+    }
+)
+LINK: Final = "{http://www.w3.org/1999/xlink}href"
+LONG: Final = re.compile(r"-?\d+\.\d{3,}")
+FONT: Final = re.compile(r"font: (?:(?P<style>\w+) )?(?:(?P<weight>\d+|bold) )?(?P<size>[\d.]+)px")
+
+
+def svg_of(figure: "Figure", key: str) -> str:
+    """Return the shapes of a figure as SVG without its outermost element; its ids begin with the key."""
+    import matplotlib as mpl  # noqa: PLC0415 - only who draws needs matplotlib
+    from matplotlib.text import Text  # noqa: PLC0415 - the same
+
+    for text in figure.findobj(Text):
+        text.set_path_effects([])  # the page's style sheet draws what makes text stand out
+        text.set_text(clean(text.get_text()))
+    written = StringIO()
+    with mpl.rc_context({"svg.fonttype": "none"}):
+        figure.savefig(written, format="svg", metadata={"Date": None, "Creator": None})
+    root = ET.fromstring(written.getvalue())
+    return "".join(piece for child in root for piece in _element(child, key))
+
+
+def _element(element: ET.Element, key: str) -> Iterator[str]:
+    tag = element.tag.rpartition("}")[2]
+    if tag not in ELEMENTS:
+        return
+    inner = escape((element.text or "").strip(), quote=False) if tag in ("text", "tspan") else ""
+    inner += "".join(piece for child in element for piece in _element(child, key))
+    kept = dict(_attributes(element, tag, key))
+    if tag in ("g", "defs") and not inner:
+        return
+    if tag == "g" and not kept:
+        yield inner
+        return
+    words = "".join(f' {name}="{escape(value)}"' for name, value in kept.items())
+    yield f"<{tag}{words}>{inner}</{tag}>" if inner else f"<{tag}{words}/>"
+
+
+def _attributes(element: ET.Element, tag: str, key: str) -> Iterator[tuple[str, str]]:
+    for name, value in element.attrib.items():
+        plain = "href" if name == LINK else name
+        if plain not in ATTRIBUTES or (plain == "id" and tag == "g") or value.startswith("rotate(-0 "):
+            continue
+        if plain == "href" and not value.startswith("#"):
+            continue
+        yield plain, _value(plain, value, key)
+    if tag == "text" and element.text:
+        yield from _measured(element)
+
+
+def _value(name: str, value: str, key: str) -> str:
+    if name == "id":
+        return f"{key}-{value}"
+    if name == "href":
+        return f"#{key}-{value[1:]}"
+    if name == "clip-path":
+        return re.sub(r"url\(#([\w-]+)\)", rf"url(#{key}-\1)", value)
+    if name == "style":
+        return re.sub(r"; ?", ";", re.sub(r"font-family: [^;]*;?", "", value)).replace(": ", ":").strip("; ")
+    return LONG.sub(
+        lambda number: f"{float(number[0]):.2f}", value.replace(" \n", " ").replace("\n", " ")
+    ).strip()
+
+
+def _measured(element: ET.Element) -> Iterator[tuple[str, str]]:
+    """Yield what makes a reader's font as wide as the one that was measured."""
+    style = element.get("style", "")
+    size = re.search(r"font-size: ([\d.]+)px", style) or FONT.search(style)
+    if size is not None:
+        width = float(size["size"] if size.re is FONT else size[1])
+        bold = "font-weight: bold" in style or "font-weight: 700" in style or "bold" in style
+        wide = text_width((element.text or "").strip(), width, bold=bold)
+        if wide > 1:
+            yield "textLength", f"{wide:.1f}"
+            yield "lengthAdjust", "spacingAndGlyphs"

@@ -1,0 +1,156 @@
+"""Verdicts on the temporal properties of a mission, from the edges that an exploration kept."""
+
+from collections.abc import Iterable, Iterator
+
+from checker.exploration import Exploration
+from checker.graph import Graph, graph_of
+from checker.temporal.automaton import TooLargeError
+from checker.temporal.branching import Branching
+from checker.temporal.components import Conditions
+from checker.temporal.fairness import EACH_RULE_AND_REQUEST, classes, conditions_of, optional
+from checker.temporal.lassos import Lasso
+from checker.temporal.linear import counterexample
+from checker.temporal.progress import Progress, Starved, pending_requests
+from checker.temporal.truth import Truth, valuation
+from checker.temporal.words import is_true_on
+from checker.traces import Trace, replay, step_of, to_json
+from checker.verdicts import Outcome, Verdict, Violation
+from semantics.propositions import Property
+from semantics.temporal import Denied, Either, Fairness, Globally, Now, Temporal, atoms
+
+
+class Decider:
+    """Decides the temporal properties of one exploration; what they share is computed once."""
+
+    def __init__(self, found: Exploration, properties: Iterable[Property]) -> None:
+        assert found.edges is not None
+        self.found = found
+        self.setting = found.configurations[0].setting
+        kept = graph_of(found.edges, len(found.configurations))
+        self.graph: Graph = kept.total(optional(kept.labels, self.setting.arriving))
+        asked = (atom for each in properties if each.temporal is not None for atom in atoms(each.temporal))
+        propositions = [atom.proposition for atom in asked if isinstance(atom, Now)]
+        self.truth = Truth(self.graph, valuation(found.configurations, propositions))
+
+    def decide(self, asked: Property) -> Verdict:
+        """Return the verdict on a property; what is not violated holds only where everything was explored."""
+        match asked.kind:
+            case "ltl":
+                return self.linear(asked)
+            case "ctl":
+                return self.branching(asked)
+            case _:
+                return self.progress(asked)
+
+    # --- linear time
+
+    def linear(self, asked: Property) -> Verdict:
+        """Return the verdict on what is claimed of every fair run."""
+        assert asked.temporal is not None
+        try:
+            lasso = counterexample(self.graph, self.truth, asked.temporal, self.conditions(asked.fairness))
+        except TooLargeError as error:
+            return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {error}; split the formula")
+        note = "; ".join((*self.notes(asked.fairness), *self.vacuous(asked.temporal)))
+        if lasso is None:
+            return Verdict(asked, self.unless_violated(), examined=self.graph.size, note=note)
+        message = f"false{'' if lasso.loop else ', whatever follows'}: {asked.temporal}"
+        if lasso.loop and is_true_on(lasso, asked.temporal, self.truth):
+            raise AssertionError(f"the counterexample is none: {asked.temporal}")
+        violation = Violation(asked.kind, message, self.trace(lasso))
+        return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note)
+
+    def vacuous(self, formula: Temporal) -> Iterator[str]:
+        """Yield what a formula rests on and never happens."""
+        match formula:
+            case Globally(Either(Denied(Now(proposition)), _)):
+                if not self.truth.here(Now(proposition)).any():
+                    yield f"vacuous: nowhere is it true that {proposition}"
+
+    # --- branching time
+
+    def branching(self, asked: Property) -> Verdict:
+        """Return the verdict on what is claimed of the tree of fair runs."""
+        formula = asked.temporal
+        assert formula is not None
+        tree = Branching(self.graph, self.truth, self.conditions(asked.fairness))
+        surely, perhaps = bool(tree.where(formula)[0]), bool(tree.where(formula, perhaps=True)[0])
+        note = "; ".join(self.notes(asked.fairness))
+        if perhaps:
+            outcome = self.unless_violated()
+            witness = self.trace(tree.evidence(formula)) if surely else None
+            examined = int(tree.where(formula).sum())
+            return Verdict(asked, outcome, examined=examined, witness=witness, note=note)
+        trace = self.trace(tree.evidence(formula, claimed=False))
+        details = () if trace.steps else ("no single run shows it: it is about all that may follow",)
+        violation = Violation(asked.kind, f"false at c0: {formula}", trace, details)
+        return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note)
+
+    # --- progress
+
+    def progress(self, asked: Property) -> Verdict:
+        """Return the verdict on whether every request is served."""
+        arriving = self.setting.arriving
+        pending = pending_requests(self.found.configurations, arriving)
+        fairness = self.conditions((*EACH_RULE_AND_REQUEST, *asked.fairness))
+        starved, count = Progress(self.graph, pending, fairness, arriving).starved()
+        note = "; ".join(self.notes(asked.fairness, "weak fairness of each rule and request"))
+        violations = sorted(map(self.violation, starved), key=lambda violation: len(violation.trace))
+        outcome = Outcome.VIOLATED if violations else self.unless_violated()
+        if not pending:
+            note += "; vacuous: nothing is ever requested"
+        return Verdict(asked, outcome, tuple(violations), count, len(pending) - count, note=note)
+
+    def violation(self, starved: Starved) -> Violation:
+        """Return a request that is never served as a violation."""
+        request = starved.request
+        sort = type(request).__name__
+        details = [f"it waits behind {fly}, which need not arrive" for fly in starved.behind]
+        if starved.now_and_then:
+            details.append(
+                "now and then it could be served, but not all the time: only strong fairness serves it"
+            )
+        elif not details:
+            details.append("nothing that would serve it is enabled from then on")
+        return Violation(
+            f"unserved {sort}", f"{request} is never served", self.trace(starved.run), tuple(details)
+        )
+
+    # --- what they share
+
+    def conditions(self, declared: Iterable[Fairness]) -> Conditions:
+        """Return what fair runs do infinitely often."""
+        return conditions_of(declared, self.graph, self.setting.arriving)
+
+    def notes(self, declared: tuple[Fairness, ...], *always: str) -> Iterator[str]:
+        """Yield what is assumed, and what of it is about nothing."""
+        assumed = (*always, *map(str, declared))
+        if assumed:
+            yield f"under {' and '.join(assumed)}"
+        for each in declared:
+            if not any(True for _ in classes(each, self.graph.labels, self.setting.arriving)):
+                yield f"{each} is about no step that ever is"
+
+    def unless_violated(self) -> Outcome:
+        """Return what it means that nothing speaks against a property."""
+        return Outcome.HOLDS if self.found.complete else Outcome.INCOMPLETE
+
+    def trace(self, lasso: Lasso) -> Trace:
+        """Return a run as a trace, replayed through the rules; staying at an end is no step."""
+        edges = [edge for edge in (*lasso.stem, *lasso.loop) if self.graph.actions[edge] >= 0]
+        loop = None
+        if lasso.loop or len(edges) < len(lasso.stem):
+            loop = min(len(lasso.stem), len(edges))
+        configurations = self.found.configurations
+        steps = (
+            step_of(
+                configurations[self.graph.sources[edge]],
+                self.graph.labels[self.graph.actions[edge]],
+                configurations[self.graph.targets[edge]],
+            )
+            for edge in edges
+        )
+        trace = Trace(configurations[0], tuple(steps), loop)
+        if replay(trace.initial, to_json(trace, "", "")) != trace:
+            raise AssertionError("the rules do not replay a run that they gave")
+        return trace

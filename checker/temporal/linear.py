@@ -1,0 +1,59 @@
+"""Linear time: is there a fair run on which a formula is false? If so, one that is as short as reasonable."""
+
+from checker.graph import Bools, Graph
+from checker.temporal.automaton import automaton_of
+from checker.temporal.components import Conditions, fair_components
+from checker.temporal.lassos import Lasso, fair_cycles, tightened
+from checker.temporal.product import Product, product_of
+from checker.temporal.truth import Truth
+from semantics.temporal import Both, Globally, Temporal
+
+
+def counterexample(graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions) -> Lasso | None:
+    """Return a fair run from configuration 0 on which a formula is false; None where there is none.
+
+    Without a loop it is a run after which the formula is false whatever follows: a fair continuation there always
+    is. Conjuncts are decided one by one, since their automata are smaller.
+
+    Args:
+        graph: What was explored, total. Where it is partial, None is no proof.
+        truth: Of its configurations.
+        formula: The formula.
+        fairness: What fair runs do infinitely often.
+
+    Raises:
+        TooLargeError: The automaton of some conjunct would be too large.
+    """
+    found = (_counterexample(graph, truth, each, fairness) for each in conjuncts(formula))
+    return min((lasso for lasso in found if lasso is not None), key=len, default=None)
+
+
+def conjuncts(formula: Temporal) -> list[Temporal]:
+    """Return the formulas of which a formula is the conjunction, `[]` drawn into them."""
+    match formula:
+        case Both(left, right):
+            return [*conjuncts(left), *conjuncts(right)]
+        case Globally(Both(left, right)):
+            return [*conjuncts(Globally(left)), *conjuncts(Globally(right))]
+    return [formula]
+
+
+def _counterexample(graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions) -> Lasso | None:
+    automaton = automaton_of(formula, claimed=False)
+    if not automaton.moves[0]:
+        return None
+    product = product_of(graph, automaton, truth)
+    if product.prefix is not None:
+        return Lasso(product.prefix)
+    known = None if fairness.none else ~graph.open[product.configurations]
+    return _lasso(product, product.conditions(automaton.marks, fairness), known)
+
+
+def _lasso(product: Product, conditions: Conditions, within: Bools | None) -> Lasso | None:
+    """Return a lasso; `within` are the nodes of which it is known what is enabled, where that matters."""
+    components = fair_components(product, conditions, within)
+    lassos = (  # nodes are numbered by their distance: the nearest come first
+        Lasso(product.way_to(node), tuple(int(product.edges[edge]) for edge in cycle))
+        for node, cycle in fair_cycles(product, components, conditions)
+    )
+    return min(map(tightened, lassos), key=len, default=None)

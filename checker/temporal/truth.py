@@ -1,0 +1,73 @@
+"""Where formulas without temporal operators are true: arrays over the configurations and edges of a graph."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from checker.graph import Bools, Graph
+from semantics.configuration import Configuration
+from semantics.propositions import Always, Proposition, holds
+from semantics.temporal import Both, Denied, Either, Enabled, Now, Steps, Taken, Temporal, atoms
+
+Valuation = Mapping[Proposition, Bools]
+"""For each proposition, for each configuration, whether it is true there."""
+
+
+def valuation(configurations: Iterable[Configuration], asked: Iterable[Proposition]) -> Valuation:
+    """Evaluate propositions on all configurations."""
+    wanted = tuple(dict.fromkeys(asked))
+    rows = [[holds(each, c) for each in wanted] for c in configurations]
+    table = np.array(rows, dtype=np.bool_).reshape(len(rows), len(wanted))
+    return {each: np.ascontiguousarray(table[:, column]) for column, each in enumerate(wanted)}
+
+
+@dataclass(eq=False)
+class Truth:
+    """Answers where formulas are true.
+
+    Attributes:
+        graph: The graph, total.
+        values: Of the propositions.
+    """
+
+    graph: Graph
+    values: Valuation
+    known: dict[Temporal, Bools] = field(default_factory=dict)
+
+    def steps(self, steps: Steps) -> Bools:
+        """Return for each edge whether it is one of some steps."""
+        return self.graph.taken(np.array([steps.has(label) for label in self.graph.labels], dtype=np.bool_))
+
+    def here(self, formula: Temporal) -> Bools:
+        """Return for each configuration whether a formula about it alone is true."""
+        if formula not in self.known:
+            self.known[formula] = self._here(formula)
+        return self.known[formula]
+
+    def _here(self, formula: Temporal) -> Bools:
+        match formula:
+            case Now(Always(value)):
+                return np.full(self.graph.size, value)
+            case Now(proposition):
+                return self.values[proposition]
+            case Enabled(steps):
+                return self.graph.enabled(self.steps(steps))
+            case Denied(inner):
+                return ~self.here(inner)
+            case Both(left, right):
+                return self.here(left) & self.here(right)
+            case Either(left, right):
+                return self.here(left) | self.here(right)
+        raise ValueError(f"more than the configuration is asked for: {formula}")
+
+    def taken(self, atom: Taken) -> Bools:
+        """Return for each edge whether an atom about it is true."""
+        if atom not in self.known:
+            self.known[atom] = self.steps(atom.steps)
+        return self.known[atom]
+
+
+def is_about_steps(formula: Temporal) -> bool:
+    """Tell whether it is asked what is enabled."""
+    return any(isinstance(atom, Enabled) for atom in atoms(formula))

@@ -1,0 +1,268 @@
+"""Vacuity: whether an invariant holds for want of anything that could break it.
+
+A part of a formula is *never needed* if the formula holds whatever that part is: if it still holds with the part
+replaced by false where it stands positively, by true where negatively (Kupferman and Vardi, Vacuity detection in
+temporal model checking, 1999). Of an invariant that is decided exactly on the valuations of its atoms that were met.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import reduce
+from operator import and_, or_
+from typing import Any, Final
+
+from checker.quantified import Path, is_quantified
+from semantics import cells
+from semantics.cells import Cell, Cells, Changes, Question, Written, is_, merged
+from semantics.configuration import Configuration
+from semantics.propositions import Always, And, Atom, Not, Or, Proposition, holds
+from semantics.signature import Name
+
+MOST_ATOMS: Final = 64
+"""The most different atoms of a formula whose valuations are gathered."""
+
+MOST_REMARKS: Final = 3
+
+Columns = Mapping[Atom, int]
+"""For each atom the valuations in which it is true, a bit for each."""
+
+
+@dataclass(slots=True)
+class Valuations:
+    """The truth of a formula's atoms in each configuration that was visited, and whether anything they read changed.
+
+    Attributes:
+        formula: The formula.
+        atoms: Its atoms, once each; none where there are too many to be gathered.
+        met: The valuations that were met, a bit for each atom.
+        still: What the first configuration answered, as long as all others answer alike; None since one didn't.
+    """
+
+    formula: Proposition
+    atoms: tuple[Atom, ...] = ()
+    met: set[int] = field(default_factory=set)
+    still: "Answers | None" = None
+    begun: bool = False
+
+    def __post_init__(self) -> None:
+        found = tuple(dict.fromkeys(atoms_of(self.formula)))
+        self.atoms = found if len(found) <= MOST_ATOMS else ()
+
+    def holds(self, c: Configuration) -> bool:
+        """Tell whether the formula is true of a configuration, and remember its valuation."""
+        self.compare(c)
+        if not self.atoms:
+            return holds(self.formula, c)
+        valuation = sum(1 << rank for rank, atom in enumerate(self.atoms) if holds(atom, c))
+        self.met.add(valuation)
+        columns = {atom: valuation >> rank & 1 for rank, atom in enumerate(self.atoms)}
+        return truth(self.formula, columns, 1) == 1
+
+    def compare(self, c: Configuration) -> None:
+        """Note whether a configuration still answers as the first one did."""
+        if not self.begun:
+            self.begun = True
+            self.still = asked(self.atoms or tuple(atoms_of(self.formula)), c)
+        elif self.still is not None and any(
+            c.test(cell, question, *constants) != said
+            for (cell, question, constants), said in self.still.items()
+        ):
+            self.still = None
+
+    @property
+    def columns(self) -> Columns:
+        """The valuations that were met, atom by atom."""
+        met = sorted(self.met)
+        return {
+            atom: sum(1 << number for number, valuation in enumerate(met) if valuation >> rank & 1)
+            for rank, atom in enumerate(self.atoms)
+        }
+
+    def remarks(self, kinds: Mapping[Name, str]) -> tuple[str, ...]:
+        """Return what makes the invariant vacuous, if it holds: at most a few sentences."""
+        if self.still is not None and self.begun:
+            return ("vacuous: nothing that it speaks of ever changes",)
+        if not self.atoms:
+            return ()
+        found = tuple(unneeded(self.formula, self.columns, len(self.met), kinds))
+        rest = len(found) - MOST_REMARKS
+        return found if rest <= 0 else (*found[:MOST_REMARKS], f"{rest:,} more of its parts are never needed")
+
+
+Answers = dict[tuple[Cell, Question, tuple[Any, ...]], bool]
+"""What was asked of cells, with the answers."""
+
+
+class Asking:
+    """Cells that note what is asked of them."""
+
+    def __init__(self, asked: Cells) -> None:
+        self.cells = asked
+        self.answers: Answers = {}
+
+    def read(self, cell: Cell) -> Any:
+        """Return the value of a cell: it is asked whether it is this one."""
+        value = self.cells.read(cell)
+        self.answers[cell, is_, (value,)] = True
+        return value
+
+    def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
+        """Ask a cell."""
+        self.answers[cell, question, constants] = found = self.cells.test(cell, question, *constants)
+        return found
+
+    def each(self, names: Iterable[str], part: Callable[[str], cells.Part]) -> Mapping[str, cells.Part]:
+        """Return what a pointwise definition says of each name."""
+        return {name: part(name) for name in names}
+
+    def with_(self, changes: Mapping[Cell, Any]) -> Written:
+        """Return the cells with more written over them."""
+        return Written(self, dict(changes))
+
+    def with_each(self, parts: Mapping[str, Changes]) -> Written:
+        """Return the cells with what each part writes."""
+        return Written(self, merged(parts.values()))
+
+
+def asked(atoms: Iterable[Atom], c: Configuration) -> Answers:
+    """Return all that atoms ask of a configuration."""
+    asking = Asking(c.state)
+    for atom in atoms:
+        holds(atom, Configuration(c.setting, asking))
+    return asking.answers
+
+
+def atoms_of(formula: Proposition) -> Iterator[Atom]:
+    """Yield the atoms of a formula, but for `true` and `false`."""
+    match formula:
+        case Not(inner):
+            yield from atoms_of(inner)
+        case And(parts) | Or(parts):
+            for part in parts:
+                yield from atoms_of(part)
+        case Always():
+            return
+        case _:
+            yield formula
+
+
+# --- which parts are never needed -----------------------------------------------------------------------------
+
+
+def truth(formula: Proposition, columns: Columns, every: int) -> int:
+    """Return the valuations in which a formula is true, of `every`, a bit for each."""
+    match formula:
+        case Not(inner):
+            return every & ~truth(inner, columns, every)
+        case And(parts):
+            return reduce(and_, (truth(part, columns, every) for part in parts), every)
+        case Or(parts):
+            return reduce(or_, (truth(part, columns, every) for part in parts), 0)
+        case Always(value):
+            return every if value else 0
+        case _:
+            return columns[formula]
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A part of a formula as it was written: in the body of a quantifier it stands in many places.
+
+    Attributes:
+        formula: What it is; in the body of a quantifier its first instance.
+        paths: Where it stands.
+        positive: Whether it stands below an even number of negations.
+    """
+
+    formula: Proposition
+    paths: tuple[Path, ...]
+    positive: bool = True
+
+    def parts(self, kinds: Mapping[Name, str]) -> Iterator["Part"]:
+        """Yield the parts that it has itself."""
+        operands = operands_of(self.formula)
+        positive = self.positive is not isinstance(self.formula, Not)
+        if is_quantified(self.formula, kinds):
+            everywhere = tuple((*path, rank) for path in self.paths for rank in range(len(operands)))
+            yield Part(operands[0], everywhere, positive)
+            return
+        for rank, operand in enumerate(operands):
+            yield Part(operand, tuple((*path, rank) for path in self.paths), positive)
+
+
+def unneeded(formula: Proposition, columns: Columns, count: int, kinds: Mapping[Name, str]) -> Iterator[str]:
+    """Yield in words the outermost parts of an invariant that are never needed, on so many valuations."""
+    every = (1 << count) - 1
+    if truth(formula, columns, every) == every:
+        yield from _unneeded(formula, Part(formula, ((),)), columns, every, kinds)
+
+
+def _unneeded(
+    formula: Proposition, around: Part, columns: Columns, every: int, kinds: Mapping[Name, str]
+) -> Iterator[str]:
+    for part in around.parts(kinds):
+        if isinstance(part.formula, Always):
+            continue
+        mutant = formula
+        for path in part.paths:
+            mutant = replaced(mutant, path, Always(not part.positive))
+        if truth(mutant, columns, every) == every:
+            yield _remark(around, part, columns, every)
+        else:
+            yield from _unneeded(formula, part, columns, every, kinds)
+
+
+def operands_of(formula: Proposition) -> tuple[Proposition, ...]:
+    """Return the operands of a connective, of an atom none."""
+    match formula:
+        case Not(inner):
+            return (inner,)
+        case And(parts) | Or(parts):
+            return parts
+        case _:
+            return ()
+
+
+def replaced(formula: Proposition, path: Path, by: Proposition) -> Proposition:
+    """Return a formula with another in the place of a part."""
+    if not path:
+        return by
+    rank, rest = path[0], path[1:]
+    if isinstance(formula, Not):
+        return Not(replaced(formula.formula, rest, by))
+    assert isinstance(formula, And | Or)
+    parts = list(formula.formulas)
+    parts[rank] = replaced(parts[rank], rest, by)
+    return type(formula)(tuple(parts))
+
+
+def _remark(around: Part, part: Part, columns: Columns, every: int) -> str:
+    """Say that a part is never needed, and why."""
+    many = len(part.paths) > 1
+    shown = part.formula
+    if isinstance(shown, Not) and isinstance(around.formula, Or):
+        shown = shown.formula  # the condition of an implication
+    said = f"'{shown}' and its like are never needed" if many else f"'{shown}' is never needed"
+    match around.formula:
+        case Or((Not(condition), conclusion)) if part.formula == conclusion:
+            never = f"'{condition}' {'and its like are' if many else 'is'} never true"
+            return f"vacuous: {never}, so that {said}"
+        case Or(parts):
+            rest: Proposition = Or(_others(parts, part))
+            always = truth(rest, columns, every) == every
+            return f"{said}: '{rest}' is always true" if always else f"{said}: it holds without"
+        case And(parts):
+            rest = And(_others(parts, part))
+            return (
+                f"{said}: it holds without"
+                if truth(rest, columns, every)
+                else f"{said}: '{rest}' is never true"
+            )
+        case _:
+            return f"{said}: it holds without"
+
+
+def _others(parts: tuple[Proposition, ...], part: Part) -> tuple[Proposition, ...]:
+    """Return the operands of a connective but for one."""
+    rank = part.paths[0][-1]
+    return parts[:rank] + parts[rank + 1 :]

@@ -1,0 +1,204 @@
+"""Temporal properties: formulas of runs, the steps that they speak of, and the fairness that they rest on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import Final
+
+from semantics import temporal as t
+from semantics.propositions import Always, Property
+from semantics.setting import Control
+from semantics.successors import rules_of
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.formulas import Bound, Formulas, TooLarge
+from specs.elaboration.names import Names
+
+MOST_NESTED: Final = 32
+"""So many operators of paths may be inside each other."""
+
+RULES: Final = (*(rule.__name__ for rule in rules_of(Control.TIMED)), *t.ENVIRONMENTS)
+
+EACH: Final[dict[str, tuple[t.Steps, tuple[str, ...]]]] = {
+    "agents": (t.Steps(), ("agent",)),
+    "rules": (t.Steps(), ("agent", "rule")),
+    "requests": (t.Steps(t.SERVES), ("label",)),
+    "environment": (t.Steps(t.ENVIRONMENTS), ()),
+}
+"""The steps that a word stands for, and what tells apart those that fairness means by it."""
+
+_PREFIXES: Final[dict[str, Callable[[t.Temporal], t.Temporal]]] = {
+    "[]": t.Globally,
+    "always": t.Globally,
+    "<>": t.Eventually,
+    "eventually": t.Eventually,
+    "X": t.Next,
+    "next": t.Next,
+    "infinitely often": lambda inner: t.Globally(t.Eventually(inner)),
+}
+_OPERATIONS: Final[dict[str, Callable[[t.Temporal, t.Temporal], t.Temporal]]] = {
+    "U": t.Until,
+    "until": t.Until,
+    "R": t.Release,
+    "W": t.WeakUntil,
+}
+_OF_RUNS: Final = (s.PathPrefix, s.PathOperation, s.LeadsTo, s.PathQuantifier, s.Taken, s.Enabled)
+
+
+class TemporalFormulas:
+    """Elaborates temporal properties; what is about one configuration is left to `formulas`."""
+
+    def __init__(self, formulas: Formulas) -> None:
+        self.formulas = formulas
+        self.names: Names = formulas.names
+        self.logic = "ltl"
+        self.of_runs: set[int] = set()
+
+    def property(self, item: s.TemporalProperty | s.Progress, line: int) -> Property:
+        """Return a property of runs."""
+        fairness = tuple(each for declared in item.fairness for each in self.fairness(declared))
+        if isinstance(item, s.Progress):
+            name = item.label.value if item.label else "progress"
+            return Property("progress", name, line=line, fairness=fairness)
+        self.logic = item.logic
+        return Property(
+            item.logic, item.label.value, line=line, temporal=self.formula(item), fairness=fairness
+        )
+
+    def formula(self, item: s.TemporalProperty) -> t.Temporal:
+        """Return a property's formula; reports what is wrong with it, and where a bound is passed."""
+        if self.formulas.full:
+            return t.Now(Always(True))
+        self.of_runs = set()
+        for node in reversed(tuple(s.walk(item.formula))):  # parts before what they are parts of
+            if isinstance(node, _OF_RUNS) or any(id(part) in self.of_runs for part in s.parts(node)):
+                self.of_runs.add(id(node))
+        try:
+            return self._claim(item.formula, {}, 0)
+        except TooLarge as error:
+            self.formulas.report(item.formula, error)
+        return t.Now(Always(True))
+
+    def _claim(self, node: s.Formula, bound: Bound, depth: int) -> t.Temporal:
+        """Return a formula with what is quantified around it replaced; `depth` counts the operators of paths around."""
+        if id(node) not in self.of_runs:
+            return t.Now(self.formulas.proposition(node, bound))
+        match node:
+            case s.Negation(operand):
+                return t.Denied(self._claim(operand, bound, depth))
+            case s.Connective():
+                return self._connective(node, bound, depth)
+            case s.Quantified():
+                return self._quantified(node, bound, depth)
+            case s.Taken(steps):
+                if self.logic == "ctl":
+                    message = "in ctl no step is taken: all that may follow are looked at"
+                    self._refuse(node, message, "write it in ltl, or say enabled")
+                self.formulas.count(1)
+                return t.Taken(self.steps(steps)[0])
+            case s.Enabled(steps):
+                self.formulas.count(1)
+                return t.Enabled(self.steps(steps)[0])
+        if depth >= MOST_NESTED:
+            raise TooLarge(f"more than {MOST_NESTED} operators of paths inside each other", "split it")
+        return self._of_paths(node, bound, depth + 1)
+
+    def _connective(self, node: s.Connective, bound: Bound, depth: int) -> t.Temporal:
+        before = self.formulas.atoms
+        left, right = self._claim(node.left, bound, depth), self._claim(node.right, bound, depth)
+        if node.operator == "<->":
+            self.formulas.count(self.formulas.atoms - before)
+            return t.Both(t.Either(t.Denied(left), right), t.Either(t.Denied(right), left))
+        if node.operator == "->":
+            return t.Either(t.Denied(left), right)
+        return (t.Both if node.operator == "and" else t.Either)(left, right)
+
+    def _quantified(self, node: s.Quantified, bound: Bound, depth: int) -> t.Temporal:
+        claims = []
+        for each in self.formulas.bindings(node, bound, partial(self._claim, depth=depth)):
+            claims.append(self._claim(node.body, each, depth))  # noqa: PERF401 - a frame less
+        join = t.Both if node.quantifier == "forall" else t.Either
+        while len(claims) > 1:  # in pairs: a tree that is not deep
+            odd = claims[-1:] if len(claims) % 2 else []
+            pairs = zip(claims[::2], claims[1::2], strict=False)
+            claims = [*(join(one, other) for one, other in pairs), *odd]
+        return claims[0] if claims else t.Now(Always(node.quantifier == "forall"))
+
+    # --- operators of paths
+
+    def _of_paths(self, node: s.Formula, bound: Bound, depth: int) -> t.Temporal:
+        match node:
+            case s.LeadsTo(left, right):
+                return self._leads_to(self._claim(left, bound, depth), self._claim(right, bound, depth))
+            case s.PathQuantifier():
+                return self._on_paths(node, bound, depth)
+            case s.PathPrefix() | s.PathOperation():
+                if self.logic == "ctl":
+                    message = "in ctl an operator of paths stands directly behind A or E"
+                    self._refuse(node, message, "write AG, EF, AX or A (F U G)")
+                return self._path(node, bound, depth)
+        raise AssertionError(node)
+
+    def _on_paths(self, node: s.PathQuantifier, bound: Bound, depth: int) -> t.Temporal:
+        path = node.operand
+        if self.logic == "ltl":
+            message = f"ltl is about every run, and doesn't say '{node.quantifier}'"
+            self._refuse(node, message, "leave it out, or write it in ctl")
+        if isinstance(path, s.PathPrefix | s.PathOperation):
+            make = t.OnAllPaths if node.quantifier == "A" else t.OnSomePath
+            return make(self._path(path, bound, depth))
+        self._refuse(path, f"'{node.quantifier}' needs an operator of paths", "write AG, EF, AX or A (F U G)")
+        return t.Now(Always(True))
+
+    def _path(self, node: s.PathPrefix | s.PathOperation, bound: Bound, depth: int) -> t.Temporal:
+        if isinstance(node, s.PathOperation):
+            left, right = self._claim(node.left, bound, depth), self._claim(node.right, bound, depth)
+            return _OPERATIONS[node.operator](left, right)
+        if node.operator == "infinitely often" and self.logic == "ctl":
+            self._refuse(node, "'infinitely often' is two operators of paths", "write AG AF F")
+        return _PREFIXES[node.operator](self._claim(node.operand, bound, depth))
+
+    def _leads_to(self, left: t.Temporal, right: t.Temporal) -> t.Temporal:
+        if self.logic == "ctl":
+            then = t.OnAllPaths(t.Eventually(right))
+            return t.OnAllPaths(t.Globally(t.Either(t.Denied(left), then)))
+        return t.Globally(t.Either(t.Denied(left), t.Eventually(right)))
+
+    def _refuse(self, node: s.Node, message: str, hint: str) -> None:
+        self.names.findings.add(Code.WRONG_LOGIC, node, message, hint)
+
+    # --- steps and fairness
+
+    def fairness(self, declared: s.Fairness) -> Iterable[t.Fairness]:
+        """Yield what is owed to each of the steps that a declaration lists."""
+        for each in declared.steps:
+            steps, per = self.steps(each)
+            word = " ".join(name.text for name in each.words)
+            yield t.Fairness(declared.strength == "strong", steps, per, word)
+
+    def steps(self, node: s.Steps) -> tuple[t.Steps, tuple[str, ...]]:
+        """Return the steps that words name, and what tells apart those that fairness means by them."""
+        first, *whose = node.words
+        if not whose and first.text in self.names.agents:
+            return t.Steps((), first.text), ()
+        if not whose and first.text in EACH:
+            return EACH[first.text]
+        if first.text not in RULES:
+            self._unknown(first, whose)
+            return t.Steps(), ()
+        if whose and self._somebodys(first):
+            self.names.agent(whose[0])
+            return t.Steps((first.text,), whose[0].text), ()
+        return t.Steps((first.text,)), ("label",) if first.text in t.ENVIRONMENTS else ("agent",)
+
+    def _unknown(self, first: s.Name, whose: list[s.Name]) -> None:
+        among = RULES if whose else (*RULES, *EACH, *self.names.agents)
+        otherwise = f"the rules are {', '.join(RULES)}"
+        sort = "rule" if whose else "rule or bigActor"
+        self.names.findings.unknown(first, among, sort=sort, otherwise=otherwise)
+
+    def _somebodys(self, rule: s.Name) -> bool:
+        if rule.text in t.ENVIRONMENTS:
+            self._refuse(rule, f"'{rule.text}' is no bigActor's rule", "leave the bigActor out")
+        return rule.text not in t.ENVIRONMENTS

@@ -1,0 +1,241 @@
+"""Pages: one file that needs nothing else, whatever names and messages a mission has."""
+
+import base64
+import hashlib
+import re
+from html.parser import HTMLParser
+from importlib.resources import files as resources
+
+import pytest
+from drawn_missions import CHANNELS, KINDS, PLACEMENTS, SIGNATURE, oil_spill, run
+
+from bigactors.pages import Story, trace_page
+from bigactors.pictures import Panels
+from bigactors.pictures.page import Page
+from bigactors.pictures.vector import svg_of
+from checker import Step, Trace
+from semantics.agents import mailbox_cell
+from semantics.initial import initial
+from semantics.program import Program
+from semantics.setting import Setting
+
+HOSTILE = "</script><img src=//evil.example/x onerror=alert(1)>&amp;\"' $x^2$"
+EMPTY = {"meta", "input", "br", "img", "link"}
+DRAWN = {"g", "path", "text", "tspan", "use", "defs", "clippath", "rect", "circle", "ellipse", "line", "svg"}
+WRITTEN = {
+    "html", "head", "meta", "title", "style", "noscript", "body", "header", "h1", "h2", "p", "main", "section",
+    "table", "thead", "tbody", "tfoot", "tr", "th", "td", "a", "div", "b", "ul", "li", "span", "small", "button",
+    "input", "output", "figure", "details", "summary", "pre", "script",
+}  # fmt: skip
+
+
+class Reader(HTMLParser):
+    """What a browser finds in a page: elements with their attributes, and text; balanced, or it says so."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.elements, self.texts, self.open = [], [], []
+        self.feed(page)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+        if tag not in EMPTY:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.texts.append(data)
+
+    def all(self, tag, **attributes):
+        return [
+            found
+            for name, found in self.elements
+            if name == tag
+            and all(found.get(key.replace("_", "-")) == value for key, value in attributes.items())
+        ]
+
+
+def trace_of(configuration):
+    configurations, labels = run(configuration)
+    steps = (Step(label, 0, target) for label, target in zip(labels, configurations[1:], strict=True))
+    return Trace(configurations[0], tuple(steps))
+
+
+@pytest.fixture(scope="module")
+def trace():
+    return trace_of(oil_spill())
+
+
+@pytest.fixture(scope="module")
+def page(trace):
+    return trace_page(Story("oil spill", "found: a witness", False, trace, note="digest"))
+
+
+def hostile_trace():
+    """A run in which every name is hostile."""
+    named = {name: f"{name}{HOSTILE}" for name in KINDS}
+    kinds = {named[name]: kind for name, kind in KINDS.items()}
+    setting = Setting(SIGNATURE, kinds, Program(()))
+    placements = {named[name]: each for name, each in PLACEMENTS.items() if name != "drifter0"}
+    channels = {named[name]: tuple(f"{each}{HOSTILE}" for each in on) for name, on in CHANNELS.items()}
+    c = initial(setting, placements, channels, {f"a{HOSTILE}": (named["uav0"], ())})
+    return Trace(c.with_({mailbox_cell(f"a{HOSTILE}"): (HOSTILE, "\x00\x1b\ud800")}))
+
+
+# --- what it shows --------------------------------------------------------------------------------------------
+
+
+def test_a_page_has_a_row_and_a_frame_for_each_configuration(page, trace):
+    read = Reader(page)
+    assert [each["data-row"] for _, each in read.elements if "data-row" in each] == [
+        str(number) for number in range(len(trace) + 1)
+    ]
+    frames = [each for _, each in read.elements if "data-frame" in each]
+    assert [each["data-label"] for each in frames] == [
+        "the first configuration",
+        *(str(step.label) for step in trace.steps),
+    ]
+    pictures = {each["data-picture"] for each in read.all("svg") if "data-picture" in each}
+    assert {frame[key] for frame in frames for key in ("data-l", "data-p")} == pictures
+
+
+def test_what_looks_alike_is_drawn_once(page, trace):
+    pictures = [each for each in Reader(page).all("svg") if "data-picture" in each]
+    assert 4 <= len(pictures) < 2 * (len(trace) + 1)
+
+
+def test_the_lanes_say_who_did_what_and_what_it_changed(page):
+    text = "\n".join(Reader(page).texts)
+    for words in (
+        "searcher",
+        "req_ctr",
+        "control(MOVE_HOST_TO searchArea0)",
+        "+ CTR(searcher, MOVE_HOST_TO searchArea0)",
+    ):
+        assert words in text
+
+
+def test_a_long_trace_is_drawn_at_its_end_only(trace):
+    read = Reader(trace_page(Story("t", "", False, trace, drawn=2)))
+    drawn = [each["data-l"] != "" for _, each in read.elements if "data-frame" in each]
+    assert drawn == [False] * (len(trace) - 1) + [True] * 2
+
+
+def test_of_a_trace_that_no_page_can_hold_the_end_is_shown(trace, monkeypatch):
+    monkeypatch.setattr("bigactors.pages.story.MOST_FRAMES", 3)
+    read = Reader(trace_page(Story("t", "", False, trace, start=5)))
+    count = len(trace)
+    numbers = [str(number) for number in range(count - 2, count + 1)]
+    assert [each["data-row"] for _, each in read.elements if "data-row" in each] == numbers
+    assert [each["data-frame"] for _, each in read.elements if "data-frame" in each] == numbers
+    (body,) = read.all("body")
+    assert body == {"data-start": str(5 - (count - 2)), "data-first": str(count - 2)}
+    assert f"{count} steps. " in read.texts
+
+
+def test_a_run_that_repeats_leads_back(trace):
+    read = Reader(trace_page(Story("t", "", False, trace, drawn=1, loop=2)))
+    assert read.all("body")[0]["data-loop"] == "2"
+    assert f"↻ c{len(trace)} is c2: from there on again and again" in read.texts
+
+
+def test_a_trace_without_steps_is_a_page(trace):
+    read = Reader(trace_page(Story("t", "", False, Trace(trace.initial))))
+    assert [each["max"] for each in read.all("input")] == ["0"]
+
+
+def test_all_maps_of_a_run_have_one_view(trace):
+    panels = Panels.of(trace.configurations)
+    grids = {
+        tuple(re.findall(r">([\d.]+°[NSEW])<", panels.physical(c, None).shapes)) for c in trace.configurations
+    }
+    assert len(grids) == 1
+
+
+def test_the_same_trace_gives_the_same_page(trace, page):
+    assert trace_page(Story("oil spill", "found: a witness", False, trace, note="digest")) == page
+
+
+def test_a_page_is_small(page, trace):
+    assert len(page.encode()) / (len(trace) + 1) < 40_000
+
+
+# --- that it is safe and self-contained -----------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module", params=["plain", "hostile"])
+def any_page(request, page):
+    if request.param == "plain":
+        return page
+    return trace_page(Story(HOSTILE, HOSTILE, True, hostile_trace(), note=HOSTILE, details=(HOSTILE,)))
+
+
+def test_nothing_is_loaded_from_anywhere(any_page):
+    read = Reader(any_page)
+    for tag, attributes in read.elements:
+        assert tag in WRITTEN | DRAWN
+        assert not {"src", "srcset", "action", "formaction", "data", "poster", "background"} & set(attributes)
+        assert not [name for name in attributes if name.startswith("on") or name == "xlink:href"]
+        assert attributes.get("href", "#").startswith("#")
+        assert "url(" not in attributes.get("style", "")
+        assert all("http" not in (value or "") for value in attributes.values())
+    styles = any_page[any_page.index("<style>") : any_page.index("</style>")]
+    assert "url(" not in styles
+    assert "@import" not in styles
+
+
+def test_the_only_script_is_ours_and_the_policy_names_its_digest(any_page):
+    script = (resources("bigactors.pages") / "trace.js").read_text(encoding="utf-8")
+    assert any_page.count("<script") == 1
+    assert f"<script>{script}</script>" in any_page
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    (policy,) = Reader(any_page).all("meta", http_equiv="Content-Security-Policy")
+    assert policy["content"].startswith("default-src 'none'; ")
+    assert f"script-src 'sha256-{digest}'" in policy["content"]
+
+
+def test_hostile_names_are_text(any_page):
+    read = Reader(any_page)
+    assert read.all("img") == []
+    assert not any(sign in any_page for sign in ("\x00", "\x1b", "\ud800"))
+    any_page.encode("utf-8")
+
+
+def test_hostile_names_are_shown_as_they_are():
+    texts = "".join(Reader(trace_page(Story(HOSTILE, "", False, hostile_trace()))).texts)
+    assert texts.count(HOSTILE) >= 8
+
+
+def test_ids_are_there_once_and_references_lead_to_them(any_page):
+    read = Reader(any_page)
+    ids = [each["id"] for _, each in read.elements if "id" in each]
+    assert len(ids) == len(set(ids))
+    clips = {each["clip-path"][5:-1] for _, each in read.elements if "clip-path" in each}
+    assert clips <= set(ids)
+
+
+def test_a_page_can_be_used_without_a_pointer_or_sight(any_page):
+    read = Reader(any_page)
+    assert read.elements[0] == ("html", {"lang": "en"})
+    assert all(each.get("aria-label") or each.get("title") for each in read.all("button"))
+    assert all(
+        each.get("role") == "img" and each["aria-label"] for each in read.all("svg") if "data-picture" in each
+    )
+    assert [each["aria-label"] for each in read.all("input")] == ["configuration"]
+    assert {each.get("scope") for each in read.all("th")} == {"row", "col"}
+
+
+def test_only_known_shapes_pass_into_a_picture():
+    page = Page(100, 100)
+    page.write(10, 10, "<b>&\x00")
+    shapes = svg_of(page.figure, "K")
+    assert "&lt;b&gt;&amp;\N{REPLACEMENT CHARACTER}" in shapes
+    assert not re.search(r"<(metadata|style|script|image|!--)", shapes)
+    assert re.findall(r'<text [^>]*textLength="[\d.]+"', shapes)
