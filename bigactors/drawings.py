@@ -26,15 +26,17 @@ def draw_run(trace: Trace, folder: Path, title: str, *, each_step: bool) -> None
     labels = [step.label for step in trace.steps]
     with _mistakes(str(folder)):
         if each_step and len(trace) <= MOST_PICTURES:
-            draw_trace(trace.configurations, labels, folder, title=title)
+            draw_trace(trace.configurations, labels, folder, title=title, loop=trace.loop)
         else:
-            draw_overview(trace.configurations, labels, folder / "trace.svg", title=title)
+            draw_overview(trace.configurations, labels, folder / "trace.svg", title=title, loop=trace.loop)
 
 
 def draw_lanes(trace: Trace, path: str, title: str) -> None:
     """Draw a trace into a file, its steps in lanes."""
     with _mistakes(path):
-        draw_overview(trace.configurations, [step.label for step in trace.steps], path, title=title)
+        draw_overview(
+            trace.configurations, [step.label for step in trace.steps], path, title=title, loop=trace.loop
+        )
 
 
 def write_page(trace: Trace, path: str, title: str, start: int = 0) -> None:

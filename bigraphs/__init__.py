@@ -1,7 +1,8 @@
 """Bigraphs: places nested in places, links across them, and rules that rewrite both.
 
-Values, algebra, rules, matching, rewriting, canonical forms and drawings; notations are read and written by
-`bigraphs.notation`. This room knows nothing of missions, vehicles, the earth or agents.
+Values, algebra, rules, matching, rewriting, canonical forms and drawings; whole systems, explored, run and decided by
+`bigraphs.engine`; notations are read and written by `bigraphs.notation`, transition systems written by
+`bigraphs.exports`. This room knows nothing of missions, vehicles, the earth or agents.
 """
 
 from bigraphs.algebra import (
@@ -29,6 +30,7 @@ from bigraphs.canonical import canonical, equal
 from bigraphs.decomposition import Parts, recompose, take_apart
 from bigraphs.drawing import draw_bigraph, save_bigraph
 from bigraphs.errors import BigraphError, NotationError
+from bigraphs.exploration import explore
 from bigraphs.graphs import to_networkx
 from bigraphs.interface import Interface
 from bigraphs.labels import link_label, node_labels
@@ -38,11 +40,26 @@ from bigraphs.relations import from_relations
 from bigraphs.rewriting import rewrite, successors
 from bigraphs.rules import ReactionRule, matches, rule
 from bigraphs.signature import Control, Signature, open_signature
+from bigraphs.simulation import Bounds, Stage, simulate
+from bigraphs.system import (
+    Action,
+    Condition,
+    Predicate,
+    PriorityClass,
+    Rule,
+    System,
+    SystemKind,
+    Where,
+)
 from bigraphs.text import draw_text
+from bigraphs.transitions import Transition, TransitionSystem
 
 __all__ = [
+    "Action",
     "Bigraph",
     "BigraphError",
+    "Bounds",
+    "Condition",
     "Control",
     "Interface",
     "Layout",
@@ -52,8 +69,17 @@ __all__ = [
     "NotationError",
     "Parts",
     "Place",
+    "Predicate",
+    "PriorityClass",
     "ReactionRule",
+    "Rule",
     "Signature",
+    "Stage",
+    "System",
+    "SystemKind",
+    "Transition",
+    "TransitionSystem",
+    "Where",
     "assemble",
     "atom",
     "canonical",
@@ -64,6 +90,7 @@ __all__ = [
     "draw_bigraph",
     "draw_text",
     "equal",
+    "explore",
     "find",
     "find_matches",
     "from_relations",
@@ -89,6 +116,7 @@ __all__ = [
     "rewrite",
     "rule",
     "save_bigraph",
+    "simulate",
     "sites_in",
     "substitution",
     "successors",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import reduce
 from itertools import chain
 
@@ -43,26 +43,44 @@ def compose(context: Bigraph, content: Bigraph) -> Bigraph:
     )
 
 
-def parallel(left: Bigraph, right: Bigraph) -> Bigraph:
-    """Set side by side, sharing outer names: left || right. Inner names must differ."""
-    _ = Interface(0, left.inner.names) * Interface(0, right.inner.names)
-    shift, edges = len(left.nodes), left.edges
+def parallel(*operands: Bigraph) -> Bigraph:
+    """Set side by side, sharing outer names: left || right; linear in all. Inner names must differ."""
+    nodes: list[Node] = []
+    sites: list[tuple[Place, ...]] = []
+    inner_links: dict[str, Link] = {}
+    signature, regions, edges = EMPTY, 0, 0
+    for each in operands:
+        _ = Interface(0, tuple(name for name, _ in each.inner_links if name in inner_links)) * each.inner
+        places, link = _shifted(len(nodes), regions, edges)
+        signature |= each.signature
+        nodes.extend(moved(node, places, link) for node in each.nodes)
+        sites.extend(tuple(chain.from_iterable(map(places, parents))) for parents in each.sites)
+        inner_links.update((name, link(old)) for name, old in each.inner_links)
+        regions, edges = regions + each.regions, edges + each.edges
+    outer = {name for each in operands for name in each.outer_names}
+    return assemble(
+        signature,
+        nodes,
+        regions=regions,
+        sites=sites,
+        edges=edges,
+        inner_links=inner_links,
+        outer_names=outer,
+    )
+
+
+def _shifted(
+    nodes: int, regions: int, edges: int
+) -> tuple[Callable[[Place], tuple[Place]], Callable[[Link], Link]]:
+    """Return where places and links go when so many nodes, regions and edges are before them."""
 
     def places(place: Place) -> tuple[Place]:
-        return (place + shift if place >= 0 else place - left.regions,)
+        return (place + nodes if place >= 0 else place - regions,)
 
     def link(old: Link) -> Link:
         return old + edges if isinstance(old, int) else old
 
-    return assemble(
-        left.signature | right.signature,
-        (*left.nodes, *(moved(node, places, link) for node in right.nodes)),
-        regions=left.regions + right.regions,
-        sites=[*left.sites, *(chain.from_iterable(map(places, parents)) for parents in right.sites)],
-        edges=edges + right.edges,
-        inner_links={**dict(left.inner_links), **{name: link(old) for name, old in right.inner_links}},
-        outer_names=(*left.outer_names, *right.outer_names),
-    )
+    return places, link
 
 
 def tensor(left: Bigraph, right: Bigraph) -> Bigraph:

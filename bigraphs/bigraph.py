@@ -134,7 +134,7 @@ def links(bigraph: Bigraph) -> list[Link]:
 def moved(node: Node, places: Callable[[Place], Iterable[Place]], links: Callable[[Link], Link]) -> Node:
     """Return the node with its parents and links mapped."""
     parents = tuple({target: None for parent in node.parents for target in places(parent)})
-    return replace(node, parents=parents, ports=tuple(map(links, node.ports)))
+    return Node(node.control, node.name, tuple(map(links, node.ports)), parents)
 
 
 def assemble(  # noqa: PLR0913 - the parts of a bigraph, by keyword
@@ -190,7 +190,7 @@ def normal(bigraph: Bigraph, order: Sequence[int]) -> Bigraph:
 
 def _tidy(signature: Signature, node: Node) -> Node:
     ports = node.ports if signature[node.control].ordered else tuple(sorted(node.ports, key=link_key))
-    return replace(node, parents=tuple(sorted(node.parents)), ports=ports)
+    return Node(node.control, node.name, ports, tuple(sorted(node.parents)))
 
 
 def _edge_ranks(bigraph: Bigraph, rank: Mapping[int, int]) -> dict[int, int]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 
 class BigraphError(ValueError):
     """A mistake in a bigraph, a rule or a text of one: what was found and expected, and what to do.
@@ -20,7 +22,10 @@ class BigraphError(ValueError):
 
 
 class NotationError(BigraphError):
-    """A mistake at a place in a text; `offset` and `length` count characters of `text`."""
+    """A mistake at a place in a text; `offset` and `length` count characters of `text`.
+
+    Where a text has several, this is the first, and `mistakes` has them all, sorted by position.
+    """
 
     def __init__(
         self, code: str, message: str, text: str, offset: int, *, length: int = 1, hint: str = ""
@@ -29,6 +34,16 @@ class NotationError(BigraphError):
         self.text = text
         self.offset = min(max(offset, 0), len(text))
         self.length = max(length, 1)
+        self.mistakes: tuple[NotationError, ...] = (self,)
+
+    @classmethod
+    def of(cls, mistakes: Iterable[NotationError]) -> NotationError:
+        """Return the first of some mistakes, knowing the others."""
+        ordered = sorted(mistakes, key=lambda mistake: (mistake.offset, mistake.code, mistake.message))
+        first = ordered[0]
+        found = cls(first.code, first.message, first.text, first.offset, length=first.length, hint=first.hint)
+        found.mistakes = (found, *ordered[1:])
+        return found
 
     @property
     def line(self) -> int:
@@ -41,8 +56,8 @@ class NotationError(BigraphError):
         return self.offset - (self.text.rfind("\n", 0, self.offset) + 1) + 1
 
     def render(self, source: str = "<text>") -> str:
-        """Return the mistake as a block with the line it is in and a caret beneath."""
-        return render(self, source)
+        """Return the mistakes, each as a block with the line it is in and a caret beneath."""
+        return "\n\n".join(render(mistake, source) for mistake in self.mistakes)
 
     def __str__(self) -> str:
         return f"{self.line}:{self.column}: {super().__str__()}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import pairwise
 from typing import Literal, TypeAlias
@@ -35,11 +35,13 @@ class Control:
             )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Signature:
-    """A set of controls, sorted by name."""
+    """A set of controls, sorted by name. It is asked at every node, so it keeps its hash and an index."""
 
     controls: tuple[Control, ...] = ()
+    _by_name: dict[str, Control] = field(init=False, repr=False)
+    _hash: int = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         ordered = tuple(sorted(self.controls, key=lambda control: control.name))
@@ -47,16 +49,29 @@ class Signature:
             if one.name == other.name:
                 raise BigraphError("control", f"control '{one.name}' is declared twice")
         object.__setattr__(self, "controls", ordered)
+        object.__setattr__(self, "_by_name", {control.name: control for control in ordered})
+        object.__setattr__(self, "_hash", hash(ordered))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Signature):
+            return NotImplemented
+        return self is other or (self._hash == other._hash and self.controls == other.controls)
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    def __reduce__(self) -> tuple[type[Signature], tuple[tuple[Control, ...]]]:
+        return Signature, (self.controls,)  # hashes of strings differ between processes
 
     def __getitem__(self, name: str) -> Control:
-        found = _by_name(self).get(name)
+        found = self._by_name.get(name)
         if found is None:
             known = ", ".join(control.name for control in self.controls) or "none"
             raise BigraphError("control", f"unknown control '{name}'", f"the signature has {known}")
         return found
 
     def __contains__(self, name: str) -> bool:
-        return name in _by_name(self)
+        return name in self._by_name
 
     def __or__(self, other: Signature) -> Signature:
         """Return both, where they agree on the controls that they share."""
@@ -71,13 +86,8 @@ def open_signature(names: Iterable[str]) -> Signature:
 
 
 @lru_cache(maxsize=256)
-def _by_name(signature: Signature) -> dict[str, Control]:
-    return {control.name: control for control in signature.controls}
-
-
-@lru_cache(maxsize=256)
 def _union(one: Signature, other: Signature) -> Signature:
-    merged = _by_name(one) | _by_name(other)
+    merged = {control.name: control for control in (*one.controls, *other.controls)}
     for control in one.controls:
         if merged[control.name] != control:
             hint = "give both bigraphs one signature"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from bigraphs.errors import BigraphError
@@ -37,7 +37,9 @@ def _check_names(bigraph: Bigraph) -> None:
     _check_distinct("outer name", bigraph.outer_names)
 
 
-def _check_distinct(what: str, names: Iterable[str]) -> None:
+def _check_distinct(what: str, names: Collection[str]) -> None:
+    if len(set(names)) == len(names) and all(name.isprintable() and name for name in names):
+        return
     for name, times in sorted(Counter(names).items()):
         if not name:
             raise BigraphError("name", f"an empty {what}", "leave the name out, or give it letters")

@@ -68,6 +68,8 @@ def check(  # noqa: PLR0913 - each says one thing of a check
         violations: Of each property so many different ones are shown at the most, each with a shortest trace.
     """
     given, limits = tuple(properties), limits or Limits()
+    if any(each.kind in TEMPORAL for each in given):
+        engine = Engine.REFERENCE  # which keeps edges
     if engine is not None:
         return _Check(initial, given, limits, report, engine, violations).run(notes)
     if limits.seconds is None or limits.seconds > PATIENCE:

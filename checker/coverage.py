@@ -6,10 +6,11 @@ A pure function of the mission and of what was visited, whatever explored it.
 from collections.abc import Iterable, Iterator, Set
 from dataclasses import dataclass
 
-from checker.visited import Visited, passages
+from checker.visited import Visited, moment_of, passages
 from semantics.computation import STEPPED, Passage
 from semantics.configuration import Configuration
 from semantics.program import Program
+from semantics.signature import Name
 from semantics.statements import (
     Block,
     Choose,
@@ -99,10 +100,16 @@ def coverage(initial: Configuration, visited: Visited, *, complete: bool) -> Cov
     )
 
 
+def passed_over(c: Configuration, a: Name) -> frozenset[Passage]:
+    """Return what an agent's computation passes over from a configuration on, in one step."""
+    return frozenset(passages(c.setting, moment_of(c, a)))
+
+
 def reached(initial: Configuration, visited: Visited) -> "Reached":
     """Return what was reached of the program: where agents stood, and what they passed."""
     setting = initial.setting
-    passed = {passage for moment in visited.moments for passage in passages(setting, moment)}
+    computed = {passage for moment in visited.moments for passage in passages(setting, moment)}
+    passed = computed | visited.passed
     stood = {code[0] for codes in visited.codes.values() for code in codes if code}
     stepped = {number for number, branch in passed if branch == STEPPED}
     taken = frozenset(passage for passage in passed if passage[1] != STEPPED)

@@ -84,9 +84,9 @@ def lanes_of(
     return Lanes((*agents, *([ENVIRONMENT] if around else [])), tuple(steps), loop)
 
 
-def lanes_of_trace(trace: Trace, loop: int | None = None) -> Lanes:
+def lanes_of_trace(trace: Trace) -> Lanes:
     """Return a trace in lanes."""
-    return lanes_of(trace.configurations, [step.label for step in trace.steps], loop)
+    return lanes_of(trace.configurations, [step.label for step in trace.steps], trace.loop)
 
 
 def lanes_text(lanes: Lanes, width: int = 100) -> Iterator[str]:

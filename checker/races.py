@@ -1,13 +1,15 @@
 """Race-freedom (semantics.md, check 2): control races in a configuration, stale-observation races at a transition."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import combinations
 
 from checker.findings import MOST_VIOLATIONS, Collected, Finding
+from semantics.cells import MONITOR
 from semantics.configuration import Configuration, Transition
 from semantics.control import applicable
 from semantics.eta import Pending
 from semantics.monitor import CONTROLS, slots_used, stale_tests
+from semantics.provenance import Dependency
 from semantics.requests import CTR, FLY, Request
 from semantics.rules import TIMED_RULES, actuate
 from semantics.setting import Scheduler
@@ -22,21 +24,39 @@ class ControlRaces:
 
     def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
         """Look at every pair of controls that are enabled, apart from the scheduler's turn."""
-        served: dict[tuple[object, int], list[Transition]] = {}
-        for transition in expansion.enabled:
-            if transition.label.rule in CONTROLS and transition.served is not None:
-                served.setdefault((transition.served.cell, transition.served.position), []).append(transition)
-        for one, other in combinations(served.values(), 2):
-            if one[0].label.agent == other[0].label.agent and c.setting.scheduler is not Scheduler.UNORDERED:
-                continue
-            problem = conflict(one, other) or conflict(other, one) or different_ends(one, other)
+        for one, other, problem in compared(c, enabled_controls(expansion.enabled)):
             if problem is None:
                 self.collected.looked(number, one[0])
             else:
                 self.collected.add(_race(number, problem, one, other))
 
 
-def conflict(one: list[Transition], other: list[Transition]) -> str | None:
+Control = list[Transition]
+"""The transitions that serve one pending control."""
+
+
+def enabled_controls(enabled: Iterable[Transition]) -> list[Control]:
+    """Return the enabled controls, each with its transitions."""
+    served: dict[tuple[object, int], Control] = {}
+    for transition in enabled:
+        if transition.label.rule in CONTROLS and transition.served is not None:
+            served.setdefault((transition.served.cell, transition.served.position), []).append(transition)
+    return list(served.values())
+
+
+def compared(
+    c: Configuration, controls: list[Control]
+) -> Iterator[tuple[Control, Control, tuple[str, str] | None]]:
+    """Yield each pair of controls with what is wrong with it: in words, and about what."""
+    for one, other in combinations(controls, 2):
+        if one[0].label.agent == other[0].label.agent and c.setting.scheduler is not Scheduler.UNORDERED:
+            continue
+        problem = conflict(one, other) or conflict(other, one) or different_ends(c, one, other)
+        about = " and ".join(sorted(str(_request(each[0])) for each in (one, other)))
+        yield one, other, None if problem is None else (problem, about)
+
+
+def conflict(one: Control, other: Control) -> str | None:
     """Return in words that serving one control disables another, None where it doesn't."""
     request = _request(other[0])
     for transition in one:
@@ -45,15 +65,18 @@ def conflict(one: list[Transition], other: list[Transition]) -> str | None:
     return None
 
 
-def different_ends(one: list[Transition], other: list[Transition]) -> str | None:
+def different_ends(c: Configuration, one: Control, other: Control) -> str | None:
     """Return in words that the two orders end differently, None where they don't; η's order aside."""
-    if _ends(one, _request(other[0])) == _ends(other, _request(one[0])):
+    ends = [_ends(one, _request(other[0])), _ends(other, _request(one[0]))]
+    cells = sorted({cell for end in ends for after in end for cell in after.state.changed(c.state)})
+    counted = [cell for cell in cells if cell[0] != MONITOR]
+    if len({frozenset(tuple(map(after.read, counted)) for after in end) for end in ends}) == 1:
         return None
     return f"{_request(one[0])} and {_request(other[0])} end differently in the two orders"
 
 
-def _ends(first: list[Transition], then: Request) -> set[Configuration]:
-    return {after.target.unmonitored() for transition in first for after in serving(transition.target, then)}
+def _ends(first: Control, then: Request) -> list[Configuration]:
+    return [after.target for transition in first for after in serving(transition.target, then)]
 
 
 def serving(c: Configuration, request: Request) -> Iterator[Transition]:
@@ -69,10 +92,9 @@ def _request(transition: Transition) -> Request:
     return transition.served.request
 
 
-def _race(number: int, problem: str, one: list[Transition], other: list[Transition]) -> Finding:
+def _race(number: int, problem: tuple[str, str], one: Control, other: Control) -> Finding:
     enabled = f"enabled here: {one[0].label} and {other[0].label}"
-    subject = " and ".join(sorted(str(_request(each[0])) for each in (one, other)))
-    return Finding("control race", problem, number, details=(enabled,), subject=subject)
+    return Finding("control race", problem[0], number, details=(enabled,), subject=problem[1])
 
 
 class StaleObservationRaces:
@@ -87,7 +109,7 @@ class StaleObservationRaces:
             pending = transition.served
             if transition.label.rule not in CONTROLS or pending is None:
                 continue
-            stale = stale_tests(pending.request, pending.rests_on, used_slots(c, pending))
+            stale = is_stale(c, pending)
             if not stale:
                 self.collected.looked(number, transition)
                 continue
@@ -101,6 +123,11 @@ class StaleObservationRaces:
                 "stale-observation race", message, number, transition, subject=str(pending.request)
             )
             self.collected.add(found)
+
+
+def is_stale(c: Configuration, pending: Pending) -> tuple[Dependency, ...]:
+    """Return what a control rests on that others have changed since it was observed."""
+    return stale_tests(pending.request, pending.rests_on, used_slots(c, pending))
 
 
 def used_slots(c: Configuration, pending: Pending) -> frozenset[tuple[str, ...]]:

@@ -5,7 +5,7 @@ replaced by false where it stands positively, by true where negatively (Kupferma
 temporal model checking, 1999). Of an invariant that is decided exactly on the valuations of its atoms that were met.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from functools import reduce
 from operator import and_, or_
@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from checker.quantified import Path, is_quantified
 from semantics import cells
-from semantics.cells import Cell, Cells, Changes, Question, Written, is_, merged
+from semantics.cells import Cell, Cells, Changes, Question, State, Written, is_, merged
 from semantics.configuration import Configuration
 from semantics.propositions import Always, And, Atom, Not, Or, Proposition, holds
 from semantics.signature import Name
@@ -122,6 +122,10 @@ class Asking:
     def with_each(self, parts: Mapping[str, Changes]) -> Written:
         """Return the cells with what each part writes."""
         return Written(self, merged(parts.values()))
+
+    def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # it is where everything begins
+        """Return that nothing was written."""
+        return frozenset()
 
 
 def asked(atoms: Iterable[Atom], c: Configuration) -> Answers:

@@ -54,12 +54,14 @@ class Visited:
     Attributes:
         codes: What was left of each agent to run.
         moments: In which it computed or received something.
+        passed: What computations passed over, as far as it is known without their moments.
         happened: The words of what the environment did and said.
         known: The cells of agents that were met, so that no moment is made twice.
     """
 
     codes: dict[Name, set[Code]] = field(default_factory=dict)
     moments: set[Moment] = field(default_factory=set)
+    passed: set[Passage] = field(default_factory=set)
     happened: set[str] = field(default_factory=set)
     known: set[tuple[Any, ...]] = field(default_factory=set)
 

@@ -4,7 +4,7 @@ Rules see a configuration only through `read` and `test`, and answer with `Chang
 looked at puts another `Cells` in the place of a configuration: nothing in `semantics/` can tell the difference.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from functools import lru_cache
 from typing import Any, Protocol, TypeVar
 
@@ -60,6 +60,9 @@ class State(Cells, Protocol):
     def with_each(self, parts: Mapping[str, Changes]) -> "State":
         """Return the cells with what each part of a pointwise definition writes."""
 
+    def changed(self, since: "State") -> Set[Cell]:
+        """Return the cells that were written since, as far as these cells come from those."""
+
 
 class Written:
     """Cells with some changes before them: what a conclusion, or a P' that is being built, is read from."""
@@ -91,6 +94,10 @@ class Written:
     def with_each(self, parts: Mapping[str, Changes]) -> "Written":
         """Return the cells with what each part writes."""
         return self.with_(merged(parts.values()))
+
+    def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # all that was written is known
+        """Return the cells that were written."""
+        return self.changes.keys()
 
 
 class Layout:
@@ -165,6 +172,10 @@ class Row:
     def with_each(self, parts: Mapping[str, Changes]) -> "Row":
         """Return the row with what each part writes."""
         return self.with_(merged(parts.values()))
+
+    def changed(self, since: State) -> Set[Cell]:
+        """Return the cells that have another value."""
+        return {cell for cell, value in self.items() if since.read(cell) != value}
 
     def __eq__(self, other: object) -> bool:
         if self is other:

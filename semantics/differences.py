@@ -22,7 +22,7 @@ class Difference:
     """One thing that differs.
 
     Attributes:
-        part: Where: `α`, `L`, `P` or `η`; `env` for what may still be said.
+        part: Where: `α`, `L`, `P` or `η`; `E` for what the environment may still say.
         whose: The agent, node or channel that it is about.
         text: What, in words and signs.
     """
@@ -35,7 +35,7 @@ class Difference:
         return f"{self.part}  {self.text}"
 
 
-PARTS = ("α", "L", "P", "η", "env")
+PARTS = ("α", "L", "P", "η", "E")
 """The parts of a configuration, in the order in which differences are told."""
 
 
@@ -79,7 +79,7 @@ def _of_cell(before: Configuration, after: Configuration, cell: Cell) -> Iterato
     elif what == "down":
         yield Difference("P", whose, f"{whose} {'drops' if new else 'returns'}")
     elif what == "says":
-        yield Difference("env", whose, f"may still be said: {new}")
+        yield Difference("E", whose, f"may still be said: {new}")
 
 
 def _at(c: Configuration, a: Name) -> str:

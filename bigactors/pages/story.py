@@ -28,7 +28,6 @@ class Story:
         drawn: How many configurations are drawn, the last ones.
         note: Where it comes from, such as the digest of the mission.
         details: More of what it is evidence of, line by line.
-        loop: The number of the configuration from which the run repeats for ever, where it does.
         first: How many configurations are left out before the trace.
     """
 
@@ -40,7 +39,6 @@ class Story:
     drawn: int = MOST_PICTURES
     note: str = ""
     details: tuple[str, ...] = ()
-    loop: int | None = None
     first: int = 0
 
 
@@ -69,7 +67,7 @@ def latest(story: Story) -> Story:
     if left_out <= 0:
         return story
     trace = Trace(story.trace.configurations[left_out], story.trace.steps[left_out:])
-    return replace(story, trace=trace, first=left_out, start=max(0, story.start - left_out), loop=None)
+    return replace(story, trace=trace, first=left_out, start=max(0, story.start - left_out))
 
 
 def frames_of(story: Story) -> tuple[Frame, ...]:

@@ -32,7 +32,7 @@ UNSCRIPTED: Final = (
 def trace_page(story: Story) -> str:
     """Return the page."""
     story = latest(story)
-    frames, lanes = frames_of(story), lanes_of_trace(story.trace, story.loop)
+    frames, lanes = frames_of(story), lanes_of_trace(story.trace)
     script, style = _resource("trace.js"), _resource("trace.css")
     allowed = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     policy = (
@@ -49,7 +49,7 @@ def trace_page(story: Story) -> str:
         element("noscript", element("style", UNSCRIPTED)),
     )
     main = element("main", _run(lanes, story.first), _stage(frames, story.first))
-    start = {"data_start": story.start, "data_first": story.first, "data_loop": story.loop}
+    start = {"data_start": story.start, "data_first": story.first, "data_loop": story.trace.loop}
     body = element("body", _header(story), main, element("script", script), **start)
     return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
 
@@ -99,8 +99,17 @@ def _row(number: int, cells: Sequence[str]) -> str:
 
 def _cells(step: LaneStep, lanes: Lanes) -> Iterator[str]:
     for lane in range(len(lanes.names)):
-        late = "late" if lane * 2 >= len(lanes.names) else None  # there is room to its left
-        yield element("td", _step(step), class_=late) if lane == step.lane else element("td")
+        if lane == step.lane:
+            yield element("td", _step(step), class_=_side(lane, len(lanes.names)))
+        else:
+            yield element("td")
+
+
+def _side(lane: int, count: int) -> str | None:
+    """Return where a box may reach over its lane: to the right from the first, to the left from the last, else both."""
+    if lane == 0:
+        return None
+    return "last" if lane == count - 1 else "inner"
 
 
 def _step(step: LaneStep) -> str:

@@ -61,10 +61,12 @@ def draw_trace(
     directory: str | Path,
     *,
     title: str | None = None,
+    loop: int | None = None,
 ) -> tuple[Path, ...]:
     """Write `c00.svg`, `c01.svg`, ... and the overview `trace.svg` into a directory, and return their paths.
 
-    There is one label fewer than configurations: the label of the step to each from the one before.
+    There is one label fewer than configurations: the label of the step to each from the one before. `loop` is from
+    where the run repeats for ever.
 
     Raises:
         OSError: A file cannot be written.
@@ -78,7 +80,7 @@ def draw_trace(
         heading = " ".join(part for part in (title, Path(name).stem, caption) if part)
         draw_configuration(c, folder / name, title=heading, changed=before)
     overview = folder / "trace.svg"
-    draw_overview(configurations, labels, overview, title=title, links=names[1:])
+    draw_overview(configurations, labels, overview, title=title, links=names[1:], loop=loop)
     return (*(folder / name for name in names), overview)
 
 

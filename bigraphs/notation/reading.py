@@ -14,7 +14,9 @@ from bigraphs.errors import NotationError
 MAX_BYTES: Final = 1_000_000
 MAX_NESTING: Final = 200
 MAX_TOKEN: Final = 10_000
+MAX_WORDS: Final = 200_000
 
+_WORD: Final = re.compile(r"\w+|[^\w\s]")
 _STEPS: Final = re.compile(r"[()]|\.|\|\|?|-->|->|[;,=]|[^\W\d]\w*|/")
 _RESETS: Final = frozenset({"|", "||", "->", "-->", ";", ",", "="})
 
@@ -32,26 +34,30 @@ def read(parser: Lark, text: str, words: Mapping[str, str], start: str) -> Any:
 
 
 def check_bounds(text: str) -> None:
-    """Refuse a text over a megabyte, a word over ten kilobytes, and nesting over 200, in linear time."""
+    """Refuse what is too long (in all, a word, in words) or nests deeper than 200, in linear time."""
     if len(text) > MAX_BYTES or len(text.encode("utf-8", "surrogatepass")) > MAX_BYTES:
         hint = "split it, or write it as relations (from_relations)"
         raise NotationError("too-long", "the text is longer than 1 MB", text, 0, hint=hint)
     for word in re.finditer(rf"[^\s.|(){{}}\[\],;/]{{{MAX_TOKEN + 1},}}", text):
         raise NotationError("too-long", "a word is longer than 10 kB", text, word.start())
+    if sum(1 for _ in _WORD.finditer(text)) > MAX_WORDS:
+        raise NotationError("too-long", f"the text has more than {MAX_WORDS} words and symbols", text, 0)
     _check_nesting(text)
 
 
 def _check_nesting(text: str) -> None:
-    depth, outer = 0, [0]
+    depth, base, before = 0, [0], [0]
     for step in _STEPS.finditer(text):
         symbol = step.group()
         if symbol == "(":
+            before.append(depth)
             depth += 1
-            outer.append(depth)
+            base.append(depth)
         elif symbol == ")":
-            depth = outer.pop() if len(outer) > 1 else 0
+            depth = before.pop() if len(before) > 1 else 0
+            del base[len(before) :]
         elif symbol in _RESETS:
-            depth = outer[-1]
+            depth = base[-1]
         elif symbol in "./":
             depth += 1
         if depth > MAX_NESTING:

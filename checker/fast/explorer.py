@@ -16,9 +16,10 @@ from checker.exploration import (
     time_met,
 )
 from checker.fast.engine import Space
+from checker.fast.inspecting import inspect_fast
 from checker.fast.learner import Learner
+from checker.fast.survey import Survey
 from semantics.configuration import Configuration
-from semantics.successors import expand
 
 CHUNK = 1 << 16
 """Configurations that are expanded between two looks at the clock."""
@@ -94,11 +95,7 @@ class _Explorer:
         except KeyboardInterrupt:
             self.bounds.append(INTERRUPTION)
         space, configurations = self.space, Configurations(self.space)
-        for number in range(space.expanded if inspect else 0):
-            c = configurations[number]
-            expansion = expand(c)
-            for look in inspect:
-                look(number, c, expansion)
+        inspect_fast(Survey(space), inspect)
         rules = space.rules()
         return Exploration(
             configurations,

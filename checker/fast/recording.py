@@ -4,12 +4,12 @@ A rule is pure and sees cells through `read`, `test` and `each` alone, so one re
 configuration that answers the same questions alike. What is never written is not asked: it is the same everywhere.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from typing import Any
 
 from checker.fast.values import Hole, put_together
-from semantics.cells import Cell, Changes, Part, Question, Row, merged
+from semantics.cells import Cell, Changes, Part, Question, Row, State, merged
 from semantics.queries import Fact
 from semantics.signature import Name
 
@@ -59,6 +59,7 @@ class Recorder:
         scopes: What was asked, by the rule itself and then by the part that is being recorded.
         taken: The cells that were taken to be never written.
         known: What was worked out already, scope by scope.
+        families: The pointwise definitions that were made.
     """
 
     source: Source
@@ -68,6 +69,7 @@ class Recorder:
     scopes: list[Asked] = field(default_factory=lambda: [{}])
     taken: set[Cell] = field(default_factory=set)
     known: list[dict[Any, Any]] = field(default_factory=lambda: [{}])
+    families: list[Any] = field(default_factory=list)
 
     def read(self, cell: Cell) -> Any:
         """Return the value of a cell, and note its skeleton; what its observations say is noted as it is asked."""
@@ -93,7 +95,9 @@ class Recorder:
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
         """Return a pointwise definition whose parts wait until somebody asks for them."""
-        return Pointwise(self, tuple(names), part)
+        family = Pointwise(self, tuple(names), part)
+        self.families.append(family)  # what is known of it is kept by its identity
+        return family
 
     def with_(self, changes: Mapping[Cell, Any]) -> "Conclusion":
         """Return the cells with a rule's conclusion over them."""
@@ -102,6 +106,10 @@ class Recorder:
     def with_each(self, parts: Mapping[str, Changes]) -> "Conclusion":
         """Return the cells with the parts of a conclusion over them."""
         return Conclusion(self, {}, (parts,))
+
+    def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # it is where everything begins
+        """Return that nothing was written."""
+        return frozenset()
 
     def apart(self, part: Callable[[], Part]) -> tuple[Part, Asked]:
         """Return a part with what it asked beyond the rule itself."""
@@ -211,3 +219,19 @@ class Conclusion:
     def with_each(self, parts: Mapping[str, Changes]) -> "Conclusion":
         """Return the cells with the parts of a pointwise definition written over them, and nothing else after."""
         return Conclusion(self.recorder, self.changes, (*self.families, parts))
+
+    def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # all that was written is known
+        """Return the cells that were written."""
+        return (
+            merged(each for family in self.families for each in family.values()).keys() | self.changes.keys()
+        )
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Conclusion) or self.recorder is not other.recorder:
+            return NotImplemented
+        return all(
+            self.read(cell) == other.read(cell) for cell in sorted(self.changed(self) | other.changed(other))
+        )
+
+    def __hash__(self) -> int:
+        return hash(id(self.recorder))  # what is written may be what was there

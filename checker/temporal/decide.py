@@ -51,14 +51,18 @@ class Decider:
             lasso = counterexample(self.graph, self.truth, asked.temporal, self.conditions(asked.fairness))
         except TooLargeError as error:
             return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {error}; split the formula")
-        note = "; ".join((*self.notes(asked.fairness), *self.vacuous(asked.temporal)))
+        note, remarks = (
+            self.note(asked.fairness),
+            (*self.empty(asked.fairness), *self.vacuous(asked.temporal)),
+        )
         if lasso is None:
-            return Verdict(asked, self.unless_violated(), examined=self.graph.size, note=note)
+            outcome = self.unless_violated()
+            return Verdict(asked, outcome, examined=self.graph.size, note=note, remarks=remarks)
         message = f"false{'' if lasso.loop else ', whatever follows'}: {asked.temporal}"
         if lasso.loop and is_true_on(lasso, asked.temporal, self.truth):
             raise AssertionError(f"the counterexample is none: {asked.temporal}")
         violation = Violation(asked.kind, message, self.trace(lasso))
-        return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note)
+        return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
 
     def vacuous(self, formula: Temporal) -> Iterator[str]:
         """Yield what a formula rests on and never happens."""
@@ -75,16 +79,16 @@ class Decider:
         assert formula is not None
         tree = Branching(self.graph, self.truth, self.conditions(asked.fairness))
         surely, perhaps = bool(tree.where(formula)[0]), bool(tree.where(formula, perhaps=True)[0])
-        note = "; ".join(self.notes(asked.fairness))
+        note, remarks = self.note(asked.fairness), tuple(self.empty(asked.fairness))
         if perhaps:
             outcome = self.unless_violated()
             witness = self.trace(tree.evidence(formula)) if surely else None
             examined = int(tree.where(formula).sum())
-            return Verdict(asked, outcome, examined=examined, witness=witness, note=note)
+            return Verdict(asked, outcome, examined=examined, witness=witness, note=note, remarks=remarks)
         trace = self.trace(tree.evidence(formula, claimed=False))
         details = () if trace.steps else ("no single run shows it: it is about all that may follow",)
         violation = Violation(asked.kind, f"false at c0: {formula}", trace, details)
-        return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note)
+        return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
 
     # --- progress
 
@@ -94,12 +98,20 @@ class Decider:
         pending = pending_requests(self.found.configurations, arriving)
         fairness = self.conditions((*EACH_RULE_AND_REQUEST, *asked.fairness))
         starved, count = Progress(self.graph, pending, fairness, arriving).starved()
-        note = "; ".join(self.notes(asked.fairness, "weak fairness of each rule and request"))
+        note = self.note(asked.fairness, "weak fairness of each rule and request")
         violations = sorted(map(self.violation, starved), key=lambda violation: len(violation.trace))
         outcome = Outcome.VIOLATED if violations else self.unless_violated()
-        if not pending:
-            note += "; vacuous: nothing is ever requested"
-        return Verdict(asked, outcome, tuple(violations), count, len(pending) - count, note=note)
+        empty = () if pending else ("vacuous: nothing is ever requested",)
+        return Verdict(
+            asked,
+            outcome,
+            tuple(violations),
+            count,
+            len(pending) - count,
+            note=note,
+            different=count,
+            remarks=(*self.empty(asked.fairness), *empty),
+        )
 
     def violation(self, starved: Starved) -> Violation:
         """Return a request that is never served as a violation."""
@@ -112,9 +124,8 @@ class Decider:
             )
         elif not details:
             details.append("nothing that would serve it is enabled from then on")
-        return Violation(
-            f"unserved {sort}", f"{request} is never served", self.trace(starved.run), tuple(details)
-        )
+        message, trace = f"{request} is never served", self.trace(starved.run)
+        return Violation(f"unserved {sort}", message, trace, tuple(details), str(request))
 
     # --- what they share
 
@@ -122,11 +133,13 @@ class Decider:
         """Return what fair runs do infinitely often."""
         return conditions_of(declared, self.graph, self.setting.arriving)
 
-    def notes(self, declared: tuple[Fairness, ...], *always: str) -> Iterator[str]:
-        """Yield what is assumed, and what of it is about nothing."""
+    def note(self, declared: tuple[Fairness, ...], *always: str) -> str:
+        """Return what is assumed."""
         assumed = (*always, *map(str, declared))
-        if assumed:
-            yield f"under {' and '.join(assumed)}"
+        return f"under {' and '.join(assumed)}" if assumed else ""
+
+    def empty(self, declared: tuple[Fairness, ...]) -> Iterator[str]:
+        """Yield what of it is about nothing."""
         for each in declared:
             if not any(True for _ in classes(each, self.graph.labels, self.setting.arriving)):
                 yield f"{each} is about no step that ever is"

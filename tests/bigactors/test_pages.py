@@ -3,6 +3,7 @@
 import base64
 import hashlib
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from importlib.resources import files as resources
 
@@ -141,7 +142,7 @@ def test_of_a_trace_that_no_page_can_hold_the_end_is_shown(trace, monkeypatch):
 
 
 def test_a_run_that_repeats_leads_back(trace):
-    read = Reader(trace_page(Story("t", "", False, trace, drawn=1, loop=2)))
+    read = Reader(trace_page(Story("t", "", False, replace(trace, loop=2), drawn=1)))
     assert read.all("body")[0]["data-loop"] == "2"
     assert f"↻ c{len(trace)} is c2: from there on again and again" in read.texts
 

@@ -64,7 +64,7 @@ CHANGES = {
         {placement_cell("uav0"): Carried("vessel0", Placed(point(36.95, -8.7)))},
         ["P  uav0 : in shore0 ↦ carried by vessel0"],
     ),
-    "what may still be said": ({SAYS.counter: 1}, ["env  may still be said: 1"]),
+    "what may still be said": ({SAYS.counter: 1}, ["E  may still be said: 1"]),
     "who is there": ({AGENTS: ("a",)}, []),
 }
 

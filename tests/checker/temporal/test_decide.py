@@ -133,12 +133,12 @@ def test_a_verdict_says_under_which_fairness_it_is():
 
 def test_fairness_to_what_never_is_is_pointed_out():
     found = verdict(ONCE, 'ltl "q" under strong fairness of sense a: <> ended a')
-    assert found.note.endswith("strong fairness of sense a is about no step that ever is")
+    assert found.remarks == ("strong fairness of sense a is about no step that ever is",)
 
 
 def test_what_leads_to_something_and_never_is_is_pointed_out():
     found = verdict(ONCE, 'ltl "q": pending MGR a leads to ended a')
-    assert found.note == "vacuous: nowhere is it true that pending MGR a"
+    assert found.remarks == ("vacuous: nowhere is it true that pending MGR a",)
 
 
 def test_a_formula_that_is_too_large_is_not_decided():

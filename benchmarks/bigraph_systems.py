@@ -1,0 +1,190 @@
+"""Explore the UAV family beside BigraphER: states and transitions are asserted, then time and memory are printed.
+
+Usage: `python benchmarks/bigraph_systems.py [--bigrapher PATH] [--growth] [--output FILE]`. Where BigraphER is not
+found, its seconds are those measured once on another machine, and marked *quoted*. Seconds are of processor time, so
+that two programs on a busy machine can be compared.
+"""
+
+import argparse
+import json
+import multiprocessing
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import tracemalloc
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from uav_family import Case, counts, text
+
+from bigraphs.exploration import explore
+from bigraphs.notation import read_system
+from bigraphs.system import System
+
+RESULTS = Path(__file__).parent / "results" / "bigraphs.json"
+
+QUOTED: dict[Case, tuple[float, bool]] = {
+    Case("row", 3, 4, distinct=False, open=True): (3.2, True),
+    Case("row", 4, 4, distinct=False, open=True): (27.0, True),
+    Case("row", 3, 4, distinct=True, open=True): (53.0, True),
+    Case("row", 4, 4, distinct=True, open=True): (75.0, False),
+    Case("ring", 5, 6, distinct=False, open=False): (59.0, True),
+    Case("3x3", 2, 9, distinct=False, open=True): (62.0, True),
+    Case("3x3", 3, 9, distinct=False, open=False): (28.0, True),
+}
+"""BigraphER 1.9.3's seconds, November 2026, and whether it had ended by then."""
+
+MANY = 10_000
+"""From how many states on the memory of the whole process tells what a state takes."""
+
+GROWTH = [Case("row", 5, 4, distinct=True, open=True), Case("row", 5, 5, distinct=True, open=True)]
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """One run of ours: what it found, in what processor time, and how much memory each state took."""
+
+    states: int
+    transitions: int
+    seconds: float
+    bytes_per_state: float
+
+
+@dataclass(frozen=True, slots=True)
+class Peer:
+    """What BigraphER took; it may not have ended by then."""
+
+    seconds: float
+    ended: bool
+    source: str
+
+
+def measure(case: Case) -> Measured:
+    """Explore a case in a process of its own; raises SystemExit if the counts are wrong."""
+    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+        found = pool.submit(_measure, case).result()
+    expected = counts(case)
+    if (found.states, found.transitions) != expected:
+        raise SystemExit(f"{case}: {found.states} states and {found.transitions} transitions, not {expected}")
+    return found
+
+
+def _measure(case: Case) -> Measured:
+    system = read_system(text(case))
+    before = _peak()
+    began = time.process_time()
+    found = explore(system)
+    seconds = time.process_time() - began
+    if not found.complete:
+        raise SystemExit(f"{case}: incomplete, {found.reason}")
+    grown = _peak() - before if len(found) > MANY else _traced(system)
+    return Measured(len(found), len(found.starts), seconds, grown / len(found))
+
+
+def _peak() -> int:
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+
+
+def _traced(system: System) -> int:
+    """Return the most bytes that exploring takes, in a second run: few states drown in what Python takes itself."""
+    tracemalloc.start()
+    explore(system)
+    return tracemalloc.get_traced_memory()[1]
+
+
+def beside(case: Case, program: str | None, limit: int) -> Peer | None:
+    """Run BigraphER on a case, or quote what it took; None where neither is known."""
+    if program is None:
+        return Peer(*QUOTED[case], "quoted") if case in QUOTED else None
+    if case not in QUOTED:
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "case.big"
+        path.write_text(text(case), encoding="utf-8")
+        before = os.times()
+        done = subprocess.run(
+            ["sh", "-c", f'ulimit -t {limit}; exec "$@"', "sh", program, "full", "-M", "1000000", str(path)],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    ended = done.returncode == 0
+    if ended:
+        _check_peer(case, done.stdout)
+    elif done.returncode not in (-signal.SIGXCPU, -signal.SIGKILL):
+        raise SystemExit(f"{case}: BigraphER ended with {done.returncode}:\n{done.stderr}")
+    return Peer(_children(before), ended, "measured")
+
+
+def _children(before: os.times_result) -> float:
+    after = os.times()
+    return after.children_user - before.children_user + after.children_system - before.children_system
+
+
+def _check_peer(case: Case, printed: str) -> None:
+    words = printed.replace("\x1b", " ").split()
+    numbers = [int(word) for word in words if word.isdigit()]
+    if not set(counts(case)) <= set(numbers):
+        raise SystemExit(f"{case}: BigraphER does not print {counts(case)}:\n{printed}")
+
+
+def row(case: Case, ours: Measured, peer: Peer | None) -> str:
+    """Return one line of the table."""
+    rate = ours.states / ours.seconds
+    figures = f"{ours.states:,} / {ours.transitions:,} | {ours.seconds:.3f} | {rate:,.0f} | {ours.bytes_per_state:,.0f}"
+    if peer is None:
+        return f"| {case} | {figures} | | |"
+    more = "" if peer.ended else "more than "
+    return f"| {case} | {figures} | {more}{peer.seconds:.1f} {peer.source} | {more}{peer.seconds / ours.seconds:,.0f} |"
+
+
+HEAD = """\
+| case | states / transitions | s | states/s | bytes/state | BigraphER s | ratio |
+| --- | ---: | ---: | ---: | ---: | ---: | ---: |
+"""
+
+
+def table(cases: Sequence[Case], program: str | None, limit: int) -> Iterator[tuple[str, dict[str, object]]]:
+    """Yield for each case its line, and the same as data."""
+    for case in cases:
+        ours, peer = measure(case), beside(case, program, limit)
+        data = {"case": str(case), "ours": asdict(ours), "bigrapher": None if peer is None else asdict(peer)}
+        yield row(case, ours, peer), data
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure, print the table, and keep it."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument(
+        "--bigrapher", default=shutil.which("bigrapher"), help="the program to measure beside"
+    )
+    parser.add_argument(
+        "--limit",
+        type=int,
+        default=600,
+        help="seconds of processor time that BigraphER is given (default 600)",
+    )
+    parser.add_argument("--growth", action="store_true", help="larger cases, too, up to 100,000 states")
+    parser.add_argument("--output", type=Path, default=RESULTS, help="where the figures are kept")
+    given = parser.parse_args(arguments)
+    cases = [*QUOTED, *(GROWTH if given.growth else ())]
+    sys.stdout.write(HEAD)
+    kept = []
+    for line, data in table(cases, given.bigrapher, given.limit):
+        sys.stdout.write(f"{line}\n")
+        sys.stdout.flush()
+        kept.append(data)
+    given.output.parent.mkdir(parents=True, exist_ok=True)
+    given.output.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

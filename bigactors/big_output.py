@@ -1,0 +1,45 @@
+"""What `bigactors big full` writes."""
+
+from argparse import Namespace
+from collections.abc import Iterator
+from pathlib import Path
+
+from bigactors.files import check_writable, json_text, write_text
+from bigactors.terminal import say_text
+from bigraphs.exports import graph_svg, prism_files, storm_files, to_dot, to_html, to_json
+from bigraphs.exports.html import MOST_STATES, first_states
+from bigraphs.transitions import TransitionSystem
+
+
+def check_outputs(options: Namespace) -> None:
+    """Refuse, before anything is explored, paths that cannot be written; raises Mistake."""
+    for path in (options.html, options.svg, options.dot, options.json):
+        if path and path != "-":
+            check_writable(path)
+    for prefix in (options.prism, options.storm):
+        if prefix:
+            check_writable(f"{prefix}.tra")
+
+
+def write_outputs(options: Namespace, found: TransitionSystem) -> Iterator[str]:
+    """Write what was asked for, and yield the names of the files."""
+    title = Path(options.file).name
+    if options.html:
+        yield _write(options.html, to_html(found, title))
+    if options.svg:
+        yield _write(options.svg, graph_svg(first_states(found, MOST_STATES)))
+    if options.dot:
+        yield _write(options.dot, to_dot(found))
+    if options.json == "-":
+        say_text(json_text(to_json(found)))
+    elif options.json:
+        yield _write(options.json, json_text(to_json(found)))
+    for prefix, write in ((options.prism, prism_files), (options.storm, storm_files)):
+        if prefix:
+            for suffix, text in write(found).items():
+                yield _write(prefix + suffix, text)
+
+
+def _write(path: str, text: str) -> str:
+    write_text(path, text)
+    return path

@@ -1,0 +1,4 @@
+"""The engine: states as integers and bit masks, matching by plans, rewriting by differences, canonical keys.
+
+Nothing in here knows how a system is written or drawn. `bigraphs.exploration` and `bigraphs.simulation` run it.
+"""

@@ -1,0 +1,161 @@
+"""The symmetries of a rule: occurrences that one maps to another are one occurrence.
+
+A symmetry of a redex permutes nodes, links, regions and sites. It is one of the rule if it makes the same of the
+reactum: `A{x} | A{y} --> B{x} | B{y}` has one, `A{x} | A{y} --> B{x} | A{y}` has none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from bigraphs.bigraph import Bigraph, Link, Node, Place, assemble, moved
+from bigraphs.canonical import equal
+from bigraphs.engine.patterns import Pattern, compile_pattern
+from bigraphs.engine.runs import Occurrence
+from bigraphs.engine.search import Matcher
+from bigraphs.engine.state import make_state
+from bigraphs.engine.world import World, has_sharing
+from bigraphs.signature import Control, Signature
+from bigraphs.system import Rule
+
+
+@dataclass(frozen=True, slots=True)
+class Symmetry:
+    """Where a symmetry takes each node and each link."""
+
+    nodes: tuple[int, ...]
+    links: tuple[int, ...]
+
+    def of(self, occurrence: Occurrence) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Return the nodes and links of the same occurrence, seen through the symmetry."""
+        nodes, links = occurrence.nodes, occurrence.links
+        return tuple([nodes[node] for node in self.nodes]), tuple([links[link] for link in self.links])
+
+
+class Representatives:
+    """Chooses one of the occurrences that the symmetries of a rule make of one another.
+
+    Twins (`Pattern.twins`) are kept in order by the search; here the others are dealt with.
+    """
+
+    def __init__(self, pattern: Pattern, symmetries: Sequence[Symmetry]) -> None:
+        self.twins = pattern.twins
+        self.symmetries = symmetries
+
+    def choose(self, occurrences: list[Occurrence]) -> list[Occurrence]:
+        """Return one of each that are equal, in the order given."""
+        return list(filter(self.chosen, occurrences)) if self.symmetries else occurrences
+
+    def chosen(self, occurrence: Occurrence) -> bool:
+        """Say whether an occurrence is the least of those that it stands for."""
+        mine = (occurrence.nodes, occurrence.links)
+        return all(self.ordered(*symmetry.of(occurrence)) >= mine for symmetry in self.symmetries)
+
+    def ordered(
+        self, nodes: tuple[int, ...], links: tuple[int, ...]
+    ) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Put twins in order, as the search does."""
+        if not self.twins:
+            return nodes, links
+        found = list(nodes)
+        for group in self.twins:
+            for place, slot in zip(group, sorted(nodes[node] for node in group), strict=True):
+                found[place] = slot
+        return tuple(found), links
+
+
+def symmetries(rule: Rule, pattern: Pattern) -> tuple[Symmetry, ...]:
+    """Return the symmetries of a rule up to exchanging twins, without the identity."""
+    width = len(rule.redex.sites)
+    closed = _with_markers(rule.redex, range(width), width)
+    result = _with_markers(rule.reactum, rule.instantiation, width)
+    found = []
+    for occurrence in _self_matches(closed):
+        nodes = occurrence.nodes[: pattern.size]
+        symmetry = Symmetry(nodes, occurrence.links)
+        if symmetry == Symmetry(tuple(range(pattern.size)), tuple(range(len(occurrence.links)))):
+            continue
+        if equal(result, _seen_through(result, closed, occurrence, pattern.size)):
+            found.append(symmetry)
+    return tuple(found)
+
+
+def _with_markers(bigraph: Bigraph, sites: Sequence[int], width: int) -> Bigraph:
+    """Return a ground bigraph with a node for each site, whose control tells which site of the redex it is."""
+    kinds = [Control(f"${site}", 0) for site in range(width)]
+    markers = [
+        Node(f"${site}", None, (), parents) for site, parents in zip(sites, bigraph.sites, strict=True)
+    ]
+    return replace(
+        bigraph,
+        signature=Signature((*bigraph.signature.controls, *kinds)),
+        nodes=(*bigraph.nodes, *markers),
+        sites=(),
+    )
+
+
+def _self_matches(marked: Bigraph) -> list[Occurrence]:
+    """Return every map of a redex to itself that keeps nodes, nesting and links; twins in order."""
+    site = Control("$", 0)
+    kinds = [control for control in marked.signature.controls if not control.name.startswith("$")]
+    alike = replace(
+        marked,
+        signature=Signature((*kinds, site)),
+        nodes=tuple(replace(node, control=_plain(node.control)) for node in marked.nodes),
+    )
+    world = World(alike.signature, alike.outer_names, alike.regions, sharing=has_sharing(alike))
+    pattern = compile_pattern(world, alike)
+    names = set(range(pattern.names))
+    return [
+        found
+        for found in Matcher(world, pattern).find(make_state(world, alike))
+        if len(set(found.links)) == len(found.links)
+        and set(found.links[: pattern.names]) == names
+        and _region_map(marked, found) is not None
+    ]
+
+
+def _plain(control: str) -> str:
+    return "$" if control.startswith("$") else control
+
+
+def _region_map(marked: Bigraph, symmetry: Occurrence) -> dict[Place, Place] | None:
+    """Return where a map takes the regions, or None if the nodes of one do not come to lie in one."""
+    tops = [
+        {number for number, node in enumerate(marked.nodes) if ~region in node.parents}
+        for region in range(marked.regions)
+    ]
+    found: dict[Place, Place] = {}
+    for region, top in enumerate(tops):
+        image = {symmetry.nodes[number] for number in top}
+        there = [~other for other, held in enumerate(tops) if held == image and ~other not in found.values()]
+        if not there:
+            return None
+        found[~region] = there[0]
+    return found
+
+
+def _seen_through(result: Bigraph, marked: Bigraph, symmetry: Occurrence, size: int) -> Bigraph:
+    """Return the reactum with its regions, names and sites renamed as a symmetry of the redex says."""
+    regions = _region_map(marked, symmetry) or {}
+    names = marked.outer_names
+    renamed = {name: names[symmetry.links[number]] for number, name in enumerate(names)}
+    sites = {
+        marked.nodes[number].control: marked.nodes[symmetry.nodes[number]].control
+        for number in range(size, len(marked.nodes))
+    }
+
+    def link(old: Link) -> Link:
+        return renamed[old] if isinstance(old, str) else old
+
+    nodes = [
+        replace(
+            moved(node, lambda place: (regions.get(place, place),), link),
+            control=sites.get(node.control, node.control),
+        )
+        for node in result.nodes
+    ]
+    return assemble(
+        result.signature, nodes, regions=result.regions, edges=result.edges, outer_names=result.outer_names
+    )

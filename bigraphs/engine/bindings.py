@@ -1,0 +1,84 @@
+"""Links of a pattern bound to links of a state, port by port or, where ports have no order, in each way that fits."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+
+from bigraphs.engine.patterns import Pattern
+from bigraphs.engine.runs import Placing, Run, Step
+from bigraphs.engine.state import State
+from bigraphs.engine.world import World
+
+
+def binding(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
+    """Return what binds the links of a node in each way that fits."""
+    ports = pattern.ports[node]
+    if not ports:
+        return lambda run, used, _: then(run, used)
+    if len(ports) == 1 or world.ordered[pattern.controls[node]]:
+        return _in_order(world, pattern, ports, then)
+    return _in_any_order(world, pattern, ports, then)
+
+
+def _in_order(world: World, pattern: Pattern, ports: tuple[int, ...], then: Step) -> Placing:
+    fits = _fitting(world, pattern)
+
+    def bind(run: Run, used: int, slot: int) -> bool:
+        targets, links, fresh = run.state.ports[slot], run.links, []
+        over = False
+        if len(targets) == len(ports):
+            for link, target in zip(ports, targets, strict=True):
+                known = links[link]
+                if known < 0 and fits(run.state, link, target):
+                    links[link] = target
+                    fresh.append(link)
+                elif known != target:
+                    break
+            else:
+                over = then(run, used)
+        for link in fresh:
+            links[link] = -1
+        return over
+
+    return bind
+
+
+def _in_any_order(world: World, pattern: Pattern, ports: tuple[int, ...], then: Step) -> Placing:
+    """Give each link of a node one of the slot's links that it has as often."""
+    fits = _fitting(world, pattern)
+    wanted = sorted(Counter(ports).items())
+
+    def bind(run: Run, used: int, slot: int) -> bool:
+        targets = run.state.ports[slot]
+        if len(targets) != len(ports):
+            return False
+        return any(then(run, used) for _ in ways(run, Counter(targets), 0))
+
+    def ways(run: Run, left: Counter[int], place: int) -> Iterator[None]:
+        if place == len(wanted):
+            yield
+            return
+        link, times = wanted[place]
+        known = run.links[link]
+        for target in [target for target in left if left[target] >= times]:
+            if target != known and (known >= 0 or not fits(run.state, link, target)):
+                continue
+            left[target] -= times
+            run.links[link] = target
+            yield from ways(run, left, place + 1)
+            run.links[link] = known
+            left[target] += times
+
+    return bind
+
+
+def _fitting(world: World, pattern: Pattern) -> Callable[[State, int, int], bool]:
+    """Return what says whether a link of the pattern may be a link of the state: an edge needs an edge as large."""
+    names, fixed = pattern.names, len(world.names)
+    sizes = [len(nodes) for nodes in pattern.on]
+
+    def fits(state: State, link: int, target: int) -> bool:
+        return link < names or (target >= fixed and state.points[target].bit_count() == sizes[link])
+
+    return fits

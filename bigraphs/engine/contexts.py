@@ -1,0 +1,123 @@
+"""What lies around an occurrence: whether rules may act there, and what conditions look at."""
+
+from __future__ import annotations
+
+from bigraphs.algebra import lean
+from bigraphs.bigraph import Bigraph, Place, assemble, moved
+from bigraphs.engine.patterns import Pattern, compile_pattern
+from bigraphs.engine.runs import Occurrence
+from bigraphs.engine.search import Matcher
+from bigraphs.engine.state import State, bits
+from bigraphs.engine.world import World
+from bigraphs.system import Condition, Where
+
+
+class Surroundings:
+    """What is above the places of one state, looked up once; `passive` says whether to care for passive controls."""
+
+    def __init__(self, state: State, *, passive: bool) -> None:
+        self.state = state
+        self.passive = passive
+        self._above: dict[int, int] = {}
+
+    def above(self, place: int) -> int:
+        """Return the mask of a place, if it is a node, and of all that it is in."""
+        if place < 0:
+            return 0
+        found = self._above.get(place)
+        if found is None:
+            found = pending = 1 << place
+            while pending:
+                low = pending & -pending
+                pending ^= low
+                around = _mask(self.state.parents[low.bit_length() - 1]) & ~found
+                found |= around
+                pending |= around
+            self._above[place] = found
+        return found
+
+    def admits(self, pattern: Pattern, occurrence: Occurrence) -> bool:
+        """Say whether all regions are in active places, none of them inside of what is matched."""
+        parents, nodes, used = self.state.parents, occurrence.nodes, occurrence.mask
+        for node in pattern.roots:
+            for place in parents[nodes[node]]:
+                if place >= 0 and not used >> place & 1:
+                    above = self.above(place)
+                    if above & used or (self.passive and not self.is_active(above)):
+                        return False
+        return True
+
+    def is_active(self, above: int) -> bool:
+        """Say whether rules act inside of all these nodes."""
+        world = self.state.world
+        return all(world.active[world.control_of[self.state.labels[slot]]] for slot in bits(above))
+
+
+def _mask(places: tuple[int, ...]) -> int:
+    found = 0
+    for place in places:
+        if place >= 0:
+            found |= 1 << place
+    return found
+
+
+class ConditionCheck:
+    """A condition of a rule, ready to be asked.
+
+    A condition is about what is in its part of the state alone: an edge of its pattern needs an edge that goes
+    nowhere else, and what an occurrence of the redex is in has a hole there.
+    """
+
+    def __init__(self, world: World, condition: Condition) -> None:
+        self.positive = condition.positive
+        self.where = condition.where
+        self.matcher = Matcher(world, compile_pattern(world, without_idle(condition.pattern)))
+
+    def holds(self, state: State, occurrence: Occurrence) -> bool:
+        """Say whether the condition holds of an occurrence."""
+        inside = below(state, occurrence.mask) & ~occurrence.mask
+        if self.where is Where.PARAM:
+            return occurs(self.matcher, state, inside) is self.positive
+        return occurs(self.matcher, state, state.occupied() & ~inside & ~occurrence.mask) is self.positive
+
+
+def occurs(matcher: Matcher, state: State, allowed: int = -1) -> bool:
+    """Say whether a pattern is anywhere among the allowed slots, in active places or not."""
+    if not matcher.pattern.wide():
+        return bool(matcher.find(state, allowed, once=True))
+    around = Surroundings(state, passive=False)
+    return any(around.admits(matcher.pattern, found) for found in matcher.find(state, allowed))
+
+
+def below(state: State, slots: int) -> int:
+    """Return the mask of all that is in these nodes, however deep."""
+    found, waiting = 0, slots
+    while waiting:
+        low = waiting & -waiting
+        waiting ^= low
+        fresh = state.kids[low.bit_length() - 1] & ~found
+        found |= fresh
+        waiting |= fresh
+    return found
+
+
+def without_idle(pattern: Bigraph) -> Bigraph:
+    """Return a pattern without what asks for nothing: regions without nodes, sites in regions, idle links."""
+    used = sorted({place for node in pattern.nodes for place in node.parents if place < 0}, reverse=True)
+    rank = {place: ~number for number, place in enumerate(used)}
+    names = {link for node in pattern.nodes for link in node.ports if isinstance(link, str)}
+
+    def places(place: Place) -> tuple[Place, ...]:
+        return (rank.get(place, place),)
+
+    kept = [[place for place in parents if place >= 0] for parents in pattern.sites]
+    return lean(
+        assemble(
+            pattern.signature,
+            [moved(node, places, lambda link: link) for node in pattern.nodes],
+            regions=len(used),
+            sites=[parents for parents in kept if parents],
+            edges=pattern.edges,
+            outer_names=names,
+        )
+    )

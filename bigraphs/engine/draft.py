@@ -1,0 +1,141 @@
+"""A state while it is rewritten: every change is made through here and noted."""
+
+from __future__ import annotations
+
+from bigraphs.engine.state import State, bits
+from bigraphs.errors import BigraphError
+
+
+class Draft:
+    """A copy of a state that is being changed.
+
+    Attributes:
+        changed: The mask of the slots whose control, places or links are not what they were.
+        emptied: The mask of the slots in which something else is now.
+        relinked: The mask of the links on which something else is now.
+        removed: The mask of the slots whose node is gone, even if there is another one in its place.
+    """
+
+    __slots__ = ("changed", "emptied", "relinked", "removed", "state")
+
+    def __init__(self, state: State) -> None:
+        self.state = state.copy()
+        self.changed = 0
+        self.emptied = 0
+        self.relinked = 0
+        self.removed = 0
+
+    def touched_by_links(self) -> int:
+        """Return the mask of what is on the links that changed."""
+        found = 0
+        for link in bits(self.relinked):
+            found |= self.state.points[link]
+        return found
+
+    def move(self, slot: int, places: tuple[int, ...]) -> None:
+        """Put a node into other places."""
+        kids, bit = self.state.kids, 1 << slot
+        for place in self.state.parents[slot]:
+            kids[place] &= ~bit
+            if place >= 0:
+                self.emptied |= 1 << place
+        for place in places:
+            kids[place] |= bit
+            if place >= 0:
+                self.emptied |= 1 << place
+        self.state.parents[slot] = places
+        self.changed |= bit
+
+    def relink(self, slot: int, links: tuple[int, ...]) -> None:
+        """Link the ports of a node otherwise."""
+        points, bit = self.state.points, 1 << slot
+        for link in self.state.ports[slot]:
+            points[link] &= ~bit
+            self.relinked |= 1 << link
+        for link in links:
+            points[link] |= bit
+            self.relinked |= 1 << link
+        self.state.ports[slot] = links
+        self.changed |= bit
+
+    def relabel(self, slot: int, label: int) -> None:
+        """Give a node another name."""
+        self.state.labels[slot] = label
+        self.changed |= 1 << slot
+
+    def new_edge(self) -> int:
+        """Return an edge with nothing on it, the least there is."""
+        points, first = self.state.points, len(self.state.world.names)
+        for edge in range(first, len(points)):
+            if not points[edge] and not self.relinked >> edge & 1:
+                self.relinked |= 1 << edge
+                return edge
+        points.append(0)
+        self.relinked |= 1 << len(points) - 1
+        return len(points) - 1
+
+    def new_slot(self, label: int) -> int:
+        """Return a slot with a new node in it, which is nowhere yet."""
+        state = self.state
+        if state.free:
+            slot = (state.free & -state.free).bit_length() - 1
+            state.free ^= 1 << slot
+        else:
+            slot = len(state.labels)
+            state.labels.append(-1)
+            state.parents.append(())
+            state.kids.insert(slot, 0)
+            state.ports.append(())
+            state.codes.append(-1)
+        state.labels[slot] = label
+        state.by_control[state.world.control_of[label]] |= 1 << slot
+        self.changed |= 1 << slot
+        return slot
+
+    def remove(self, slot: int) -> None:
+        """Take a node away; what is still in it must be moved or removed by whoever does so."""
+        state = self.state
+        self.move(slot, ())
+        self.relink(slot, ())
+        state.by_control[state.world.control_of[state.labels[slot]]] &= ~(1 << slot)
+        state.labels[slot] = -1
+        state.free |= 1 << slot
+        self.removed |= 1 << slot
+
+    def remove_all(self, slot: int) -> None:
+        """Take a node away with all that is in it and nowhere else."""
+        state, waiting = self.state, [slot]
+        while waiting:
+            gone = waiting.pop()
+            for kid in bits(state.kids[gone]):
+                rest = tuple(place for place in state.parents[kid] if place != gone)
+                if rest:
+                    self.move(kid, rest)
+                else:
+                    waiting.append(kid)
+            self.remove(gone)
+
+    def copy_all(self, slot: int, places: tuple[int, ...]) -> None:
+        """Put a copy of a node, with all that is in it, into other places; links are shared by the copies."""
+        state, waiting = self.state, [(slot, places)]
+        while waiting:
+            copied, places = waiting.pop()
+            self._check_copied(copied, shared=copied != slot and len(state.parents[copied]) > 1)
+            twin = self.new_slot(state.labels[copied])
+            self.move(twin, places)
+            self.relink(twin, state.ports[copied])
+            waiting += [(kid, (twin,)) for kid in bits(state.kids[copied])]
+
+    def _check_copied(self, slot: int, *, shared: bool) -> None:
+        world, label = self.state.world, self.state.labels[slot]
+        name, kind = world.name_of[label], world.signature.controls[world.control_of[label]].name
+        if name is not None:
+            message = f"the rule would copy {name}:{kind}"
+            raise BigraphError("copy", message, "a name is one node; copy anonymous ones")
+        if shared:
+            raise BigraphError("copy", "the rule would copy a node that other places share")
+
+    def finish(self) -> State:
+        """Return the state with its codes."""
+        self.state.recode((self.changed | self.emptied) & ~self.state.free)
+        return self.state

@@ -1,0 +1,271 @@
+"""States up to the numbers of their edges: an exact canonical key by refinement and individualisation.
+
+Without edges and shared nodes the key of a state is canonical already. Otherwise what the codes say is unfolded
+into a small graph: a vertex for each node with an edge in it, a vertex for each edge; an empty node with one port on
+an edge is no vertex but an incidence between what it is in and that edge, and what has no edge in it is a part of
+its parent's label. Vertices are coloured by what is around them until nothing splits; where a tie is left, each
+tied vertex is singled out in turn, and the least encoding wins. Ties that a symmetry explains are tried once
+(McKay): edges with the same incidences are told apart from the start, and a symmetry found at a leaf prunes what
+it maps to what was seen.
+"""
+
+from __future__ import annotations
+
+from array import array
+from typing import NamedTuple, TypeAlias
+
+from bigraphs.engine.state import Key, State, bits
+from bigraphs.engine.world import REFERENCE, Row, World
+
+Incidence: TypeAlias = tuple[int, int]
+"""A label, and an edge (or the link that stands for a shared node)."""
+
+Around: TypeAlias = list[tuple[int, int]]
+"""What a vertex is next to: labels, shifted to stand above a colour, and vertices."""
+
+
+class Profile(NamedTuple):
+    """What a code says of its own node: a label, its edges, and the codes of the nodes in it that have some."""
+
+    label: int
+    incidences: tuple[Incidence, ...]
+    kids: tuple[int, ...]
+
+
+_SHIFT = (
+    20  # a label above a vertex is one small integer, as long as there are not more than a million vertices
+)
+_IN, _HOLDS, _EDGE = 0 << _SHIFT, 1 << _SHIFT, 2
+
+
+class Labelling:
+    """The canonical keys of the states of one world."""
+
+    def __init__(self, world: World) -> None:
+        self.world = world
+        self._labels: dict[object, int] = {}
+        self._profiles: dict[int, Profile] = {}
+
+    def canonical(self, state: State) -> Key:
+        """Return a key that two states of this world share if, and only if, they are the same bigraph."""
+        if self.world.plain:
+            return state.key()
+        graph = _Graph(self)
+        for region in range(self.world.regions):
+            graph.add_region(region, [state.kid_code(slot) for slot in bits(state.kids[~region])])
+        if self.world.sharing:
+            for slot in bits(state.occupied()):
+                if len(state.parents[slot]) > 1:
+                    graph.add(state.codes[slot], -1)
+        return graph.key()
+
+    def number(self, label: object) -> int:
+        """Return the number of a label; those below are kept for relations between places."""
+        return self._labels.setdefault(label, len(self._labels) + 3)
+
+    def profile(self, code: int) -> Profile:
+        """Return what a code says."""
+        found = self._profiles.get(code)
+        if found is None:
+            found = self._profiles[code] = self._make_profile(self.world.rows[code])
+        return found
+
+    def _make_profile(self, row: Row) -> Profile:
+        label, ports, kids, itself = row
+        bare, incidences, inside = self.sort_kids(kids)
+        own = [(self.number(("port", place)), link) for place, link in self._edge_ports(label, ports)]
+        if itself:
+            own.append((self.number("itself"), itself))
+        number = self.number((label, self._named(ports), bare))
+        return Profile(number, (*own, *incidences), inside)
+
+    def sort_kids(
+        self, kids: tuple[int, ...]
+    ) -> tuple[tuple[int, ...], tuple[Incidence, ...], tuple[int, ...]]:
+        """Return the codes that have no edges, those that are incidences as such, and the others."""
+        bare, incidences, inside = [], [], []
+        for code in kids:
+            if self.world.bare[code]:
+                bare.append(code)
+            elif (found := self._incidence(self.world.rows[code])) is not None:
+                incidences.append(found)
+            else:
+                inside.append(code)
+        return tuple(bare), tuple(incidences), tuple(inside)
+
+    def _incidence(self, row: Row) -> Incidence | None:
+        label, ports, kids, itself = row
+        edges = self._edge_ports(label, ports)
+        if itself or len(edges) != 1 or not all(self.world.bare[kid] for kid in kids):
+            return None
+        ((place, link),) = edges
+        return self.number(("leaf", label, self._named(ports), place, kids)), link
+
+    def _edge_ports(self, label: int, ports: tuple[int, ...]) -> list[Incidence]:
+        """Return the ports on edges, numbered where their order counts."""
+        fixed, world = len(self.world.names), self.world
+        ordered = label != REFERENCE and world.ordered[world.control_of[label]]
+        return [(port if ordered else 0, link) for port, link in enumerate(ports) if not 0 <= link < fixed]
+
+    def _named(self, ports: tuple[int, ...]) -> tuple[int, ...]:
+        fixed = len(self.world.names)
+        return tuple(link if 0 <= link < fixed else -1 for link in ports)
+
+
+class _Graph:
+    """The part of a state that refinement has to look at."""
+
+    def __init__(self, labelling: Labelling) -> None:
+        self.labelling = labelling
+        self.labels: list[tuple[int, int]] = []  # with the rank among twins
+        self.around: list[Around] = []
+        self.edges: dict[int, int] = {}
+
+    def add_region(self, region: int, codes: list[int]) -> None:
+        bare, incidences, inside = self.labelling.sort_kids(tuple(codes))
+        label = self.labelling.number(("region", region, tuple(sorted(bare))))
+        self._add(Profile(label, incidences, tuple(sorted(inside))), -1)
+
+    def add(self, code: int, parent: int) -> None:
+        self._add(self.labelling.profile(code), parent)
+
+    def _add(self, profile: Profile, parent: int) -> None:
+        """Add a node, and all in it that has an edge."""
+        waiting = [(profile, parent, 0)]
+        while waiting:
+            profile, parent, twin = waiting.pop()
+            vertex = self._vertex(profile.label, twin)
+            if parent >= 0:
+                self.around[vertex].append((_IN, parent))
+                self.around[parent].append((_HOLDS, vertex))
+            self._join(vertex, profile.incidences)
+            before, rank = -1, 0
+            for code in profile.kids:  # sorted, so twins are neighbours
+                rank = rank + 1 if code == before else 0
+                before = code
+                waiting.append((self.labelling.profile(code), vertex, rank))
+
+    def _join(self, vertex: int, incidences: tuple[Incidence, ...]) -> None:
+        for label, link in incidences:
+            edge = self.edges.get(link)
+            if edge is None:
+                edge = self.edges[link] = self._vertex(_EDGE, 0)
+            self.around[vertex].append((label << _SHIFT, edge))
+            self.around[edge].append((label << _SHIFT, vertex))
+
+    def _vertex(self, label: int, twin: int) -> int:
+        self.labels.append((label, twin))
+        self.around.append([])
+        return len(self.labels) - 1
+
+    def key(self) -> Key:
+        """Return the canonical key."""
+        self._tell_twin_edges_apart()
+        rank = {label: place for place, label in enumerate(sorted(set(self.labels)))}
+        colours = _refine(self.around, [rank[label] for label in self.labels])
+        if len(set(colours)) == len(colours):
+            return self.encode(colours)
+        return _Search(self).run(colours)
+
+    def _tell_twin_edges_apart(self) -> None:
+        seen: dict[tuple[tuple[int, int], ...], int] = {}
+        for edge in self.edges.values():
+            same = tuple(sorted(self.around[edge]))
+            rank = seen[same] = seen.get(same, -1) + 1
+            self.labels[edge] = (_EDGE, rank)
+
+    def encode(self, colours: list[int]) -> Key:
+        """Return vertex by vertex, in the order of their colours, its label and what it is next to."""
+        parts: list[int] = []
+        order = [0] * len(colours)
+        for vertex, colour in enumerate(colours):
+            order[colour] = vertex
+        for vertex in order:
+            label = self.labels[vertex][0]
+            if label != _EDGE:
+                near = sorted([kind + colours[other] for kind, other in self.around[vertex]])
+                parts += [label, len(near), *near]
+        return b"~" + array("Q", parts).tobytes()
+
+
+def _refine(around: list[Around], colours: list[int]) -> list[int]:
+    """Split colours by the colours around, until nothing splits; colours are ranks."""
+    count = len(set(colours))
+    while True:
+        keys = [
+            (colour, *sorted([label + colours[other] for label, other in near]))
+            for colour, near in zip(colours, around, strict=True)
+        ]
+        rank = {key: place for place, key in enumerate(sorted(set(keys)))}
+        colours = [rank[key] for key in keys]
+        if len(rank) == count or len(rank) == len(around):
+            return colours
+        count = len(rank)
+
+
+class _Search:
+    """One search tree: refine, single out, compare leaves."""
+
+    def __init__(self, graph: _Graph) -> None:
+        self.graph = graph
+        self.best: Key | None = None
+        self.order: list[int] = []
+        self.path: list[int] = []
+        self.symmetries: list[dict[int, int]] = []
+
+    def run(self, colours: list[int]) -> Key:
+        self.visit(colours, [])
+        assert self.best is not None  # every branch ends in a leaf
+        return self.best
+
+    def visit(self, colours: list[int], path: list[int]) -> int:
+        """Search below one node of the tree; return the depth at which the search is to go on."""
+        self.graph.labelling.world.pause()
+        cell = _first_tie(colours)
+        if not cell:
+            return self.leaf(colours, path)
+        tried: list[int] = []
+        for vertex in cell:
+            if tried and self.seen_by_symmetry(vertex, tried, path):
+                continue
+            tried.append(vertex)
+            single = [2 * c + (c == colours[vertex] and v != vertex) for v, c in enumerate(colours)]
+            depth = self.visit(_refine(self.graph.around, single), [*path, vertex])
+            if depth < len(path):
+                return depth
+        return len(path)
+
+    def leaf(self, colours: list[int], path: list[int]) -> int:
+        key = self.graph.encode(colours)
+        order = [vertex for _, vertex in sorted((colour, vertex) for vertex, colour in enumerate(colours))]
+        if self.best is None or key < self.best:
+            self.best, self.order, self.path = key, order, path
+        elif key == self.best:
+            self.symmetries.append(dict(zip(self.order, order, strict=True)))
+            return _common(self.path, path)
+        return len(path)
+
+    def seen_by_symmetry(self, vertex: int, tried: list[int], path: list[int]) -> bool:
+        """Say whether symmetries that fix the path map a tried vertex to this one."""
+        fixing = [symmetry for symmetry in self.symmetries if all(symmetry[step] == step for step in path)]
+        orbit, waiting = {vertex}, [vertex]
+        for member in waiting:  # grows while it is walked; inverses are powers, as the group is finite
+            for symmetry in fixing:
+                if symmetry[member] not in orbit:
+                    orbit.add(symmetry[member])
+                    waiting.append(symmetry[member])
+        return not orbit.isdisjoint(tried)
+
+
+def _first_tie(colours: list[int]) -> list[int]:
+    cells: dict[int, list[int]] = {}
+    for vertex, colour in enumerate(colours):
+        cells.setdefault(colour, []).append(vertex)
+    return next((cells[colour] for colour in sorted(cells) if len(cells[colour]) > 1), [])
+
+
+def _common(one: list[int], other: list[int]) -> int:
+    return next(
+        (depth for depth, (a, b) in enumerate(zip(one, other, strict=False)) if a != b),
+        min(len(one), len(other)),
+    )

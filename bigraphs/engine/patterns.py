@@ -1,0 +1,156 @@
+"""What is looked for: a redex, or the pattern of a condition or predicate, as arrays of integers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Final
+
+from bigraphs.bigraph import Bigraph, children
+from bigraphs.engine.world import World
+from bigraphs.errors import BigraphError
+
+MOST_NODES: Final = 150
+"""How many nodes a pattern may have: a search goes as deep as that, some frames for each."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pattern:
+    """A pattern over one world; nodes and links are numbered as in its bigraph, edges after names.
+
+    Attributes:
+        labels: The label of each node, or -1 for a node without a name.
+        parents: The nodes that each node is in.
+        homes: The regions that each node is in.
+        kids: The nodes in each node.
+        sited: Whether each node has a site.
+        ports: The links of each node.
+        on: The nodes on each link.
+        names: How many of the links are names; the others are edges.
+        sites: The nodes that each site is in.
+        roots: The nodes that are in a region.
+        twins: Groups of nodes that are interchangeable, whatever the rest of a rule says.
+    """
+
+    controls: tuple[int, ...]
+    labels: tuple[int, ...]
+    parents: tuple[tuple[int, ...], ...]
+    homes: tuple[tuple[int, ...], ...]
+    kids: tuple[tuple[int, ...], ...]
+    sited: tuple[bool, ...]
+    ports: tuple[tuple[int, ...], ...]
+    on: tuple[tuple[int, ...], ...]
+    names: int
+    regions: int
+    sites: tuple[tuple[int, ...], ...]
+    roots: tuple[int, ...]
+    twins: tuple[tuple[int, ...], ...]
+
+    @property
+    def size(self) -> int:
+        """Return the number of nodes."""
+        return len(self.controls)
+
+    @property
+    def closed(self) -> range:
+        """Return the links that are edges."""
+        return range(self.names, len(self.on))
+
+    def wide(self) -> bool:
+        """Say whether a part of it might lie inside what another one holds."""
+        parts = len(self.components()) > 1 or any(len(around) > 1 for around in self.parents)
+        return parts and any(self.sited)
+
+    def components(self) -> list[set[int]]:
+        """Return the sets of nodes that places connect."""
+        left, found = set(range(self.size)), []
+        while left:
+            part, waiting = set[int](), [min(left)]
+            while waiting:
+                node = waiting.pop()
+                if node not in part:
+                    part.add(node)
+                    waiting += [*self.parents[node], *self.kids[node]]
+            left -= part
+            found.append(part)
+        return found
+
+
+def compile_pattern(world: World, bigraph: Bigraph) -> Pattern:
+    """Return a pattern; raises BigraphError if it is too large."""
+    if len(bigraph.nodes) > MOST_NODES:
+        message = f"a pattern of {len(bigraph.nodes)} nodes; {MOST_NODES} are the most"
+        raise BigraphError("too-large", message, "look for a part of it")
+    number: dict[int | str, int] = {name: link for link, name in enumerate(bigraph.outer_names)}
+    fixed, inside = len(bigraph.outer_names), children(bigraph)
+    labels = [world.label(node.control, node.name) for node in bigraph.nodes]
+    ports = tuple(
+        tuple(number[link] if isinstance(link, str) else fixed + link for link in node.ports)
+        for node in bigraph.nodes
+    )
+    sited = {place for parents in bigraph.sites for place in parents}
+    on: list[list[int]] = [[] for _ in range(fixed + bigraph.edges)]
+    for node, links in enumerate(ports):
+        for link in set(links):
+            on[link].append(node)
+    return Pattern(
+        tuple(world.control_of[label] for label in labels),
+        tuple(
+            label if node.name is not None else -1 for label, node in zip(labels, bigraph.nodes, strict=True)
+        ),
+        tuple(tuple(place for place in node.parents if place >= 0) for node in bigraph.nodes),
+        tuple(tuple(~place for place in node.parents if place < 0) for node in bigraph.nodes),
+        tuple(tuple(inside[node]) for node in range(len(bigraph.nodes))),
+        tuple(node in sited for node in range(len(bigraph.nodes))),
+        ports,
+        tuple(map(tuple, on)),
+        fixed,
+        bigraph.regions,
+        tuple(tuple(place for place in parents if place >= 0) for parents in bigraph.sites),
+        tuple(number for number, node in enumerate(bigraph.nodes) if min(node.parents) < 0),
+        _twins(bigraph, ports, inside, sited),
+    )
+
+
+def _twins(
+    bigraph: Bigraph, ports: tuple[tuple[int, ...], ...], inside: dict[int, list[int]], sited: Iterable[int]
+) -> tuple[tuple[int, ...], ...]:
+    """Group empty nodes that are alike, in the same places, and on the same links."""
+    groups: dict[object, list[int]] = {}
+    held = set(sited)
+    for number, node in enumerate(bigraph.nodes):
+        if node.name is None and not inside[number] and number not in held:
+            groups.setdefault((node.control, node.parents, ports[number]), []).append(number)
+    return tuple(tuple(group) for group in groups.values() if len(group) > 1)
+
+
+def check_solid(redex: Bigraph, what: str) -> None:
+    """Raise BigraphError unless each occurrence of a redex takes a state apart in one way (Milner's solid redexes)."""
+    inhabited = {place for node in redex.nodes for place in node.parents}
+    idle = sorted(set(redex.outer_names) - {link for node in redex.nodes for link in node.ports})
+    if not redex.nodes:
+        raise BigraphError("redex", f"{what} has no node to look for", "put one into its left-hand side")
+    for region in range(redex.regions):
+        if ~region not in inhabited:
+            raise BigraphError(
+                "redex",
+                f"region {region} of {what} has no node, so it would match anywhere",
+                "put a node into it, or leave it out",
+            )
+    for site, parents in enumerate(redex.sites):
+        if any(place < 0 for place in parents):
+            hint = "what stands beside a node in a region is kept anyway; put the site into a node"
+            raise BigraphError("redex", f"site {site} of {what} is directly in a region", hint)
+        if redex.sites.index(parents) != site:
+            first = redex.sites.index(parents)
+            raise BigraphError(
+                "redex", f"sites {first} and {site} of {what} are side by side", "one site holds it all"
+            )
+    if idle:
+        hint = "link it to a node, or leave it out"
+        raise BigraphError(
+            "redex", f"the name '{idle[0]}' of {what} is on no node, so it would match any link", hint
+        )
+
+
+__all__ = ["Pattern", "check_solid", "compile_pattern"]

@@ -1,0 +1,245 @@
+"""Rules made ready: what to look for, and what to change where it is found, node by node."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeAlias
+
+from bigraphs.engine.automorphisms import Representatives, symmetries
+from bigraphs.engine.contexts import ConditionCheck
+from bigraphs.engine.draft import Draft
+from bigraphs.engine.patterns import check_solid, compile_pattern
+from bigraphs.engine.runs import Occurrence
+from bigraphs.engine.search import Matcher
+from bigraphs.engine.sharing import region_places, site_contents
+from bigraphs.engine.state import State, bits
+from bigraphs.engine.tracking import top_down, traced, track, track_edges
+from bigraphs.engine.world import World
+from bigraphs.errors import BigraphError
+from bigraphs.system import Rule
+
+_Places: TypeAlias = Callable[[tuple[int, ...]], tuple[int, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class NodeChange:
+    """What becomes of one node of the reactum.
+
+    `old` is the node of the redex that it is, or -1. `places` are nodes of the reactum or regions, None where it
+    stays; `links` are links of the reactum, None where it keeps them.
+    """
+
+    node: int
+    old: int
+    label: int
+    places: tuple[int, ...] | None
+    links: tuple[int, ...] | None
+
+
+@dataclass(frozen=True, slots=True)
+class SiteChange:
+    """What becomes of what a site of the redex holds: it goes to the first of the `uses`, the others get copies."""
+
+    site: int
+    uses: tuple[tuple[int, ...], ...]
+    stays: bool
+
+
+class Reaction:
+    """A rule of one world: its matcher, and what it changes.
+
+    Attributes:
+        wide: Whether an occurrence may have to be refused for where its regions are.
+        exact: The controls of the nodes of the redex that have no site.
+        closed: Whether the redex has edges.
+    """
+
+    def __init__(self, world: World, rule: Rule, number: int) -> None:
+        check_solid(rule.redex, f"the redex of rule '{rule.label}'")
+        self.world, self.rule, self.number = world, rule, number
+        self.pattern = compile_pattern(world, rule.redex)
+        self.matcher = Matcher(world, self.pattern)
+        self.conditions = tuple(ConditionCheck(world, condition) for condition in rule.conditions)
+        self.wide = world.passive or self.pattern.wide()
+        self.exact = frozenset(
+            control
+            for control, sited in zip(self.pattern.controls, self.pattern.sited, strict=True)
+            if not sited
+        )
+        self.closed = rule.redex.edges > 0
+        self._compile()
+
+    @cached_property
+    def representatives(self) -> Representatives:
+        """What chooses among occurrences that are one; made when the rule has an occurrence."""
+        return Representatives(self.pattern, symmetries(self.rule, self.pattern))
+
+    def _compile(self) -> None:
+        rule, world = self.rule, self.world
+        reactum = rule.reactum
+        self.tracked = track(rule.redex, reactum)
+        self.edges = track_edges(rule.redex, reactum, self.tracked)
+        self.labels = [world.label(node.control, node.name) for node in reactum.nodes]
+        kept = set(self.tracked)
+        self.removed = tuple(node for node in range(self.pattern.size) if node not in kept)
+        changes = [self._node_change(number) for number in top_down(reactum)]
+        self.created = tuple(change for change in changes if change.old < 0)
+        self.kept = tuple(
+            change
+            for change in changes
+            if change.old >= 0 and (change.places is not None or change.links is not None)
+        )
+        self.sites = tuple(
+            change
+            for site in range(len(rule.redex.sites))
+            if not (change := self._site_change(site)).stays or len(change.uses) != 1
+        )
+        self.placed = any(
+            place < 0
+            for places in (
+                *(change.places or () for change in changes),
+                *(use for change in self.sites for use in change.uses),
+            )
+            for place in places
+        )
+
+    def _node_change(self, number: int) -> NodeChange:
+        node, old = self.rule.reactum.nodes[number], self.tracked[number]
+        label = self.labels[number]
+        names = {name: link for link, name in enumerate(self.rule.reactum.outer_names)}
+        links = [names[link] if isinstance(link, str) else self.pattern.names + link for link in node.ports]
+        if old < 0:
+            return NodeChange(number, old, label, node.parents, tuple(links))
+        before = self.rule.redex.nodes[old]
+        stays = traced(node.parents, self.tracked) == set(before.parents)
+        same = self._links_stay(links, self.pattern.ports[old])
+        return NodeChange(number, old, label, None if stays else node.parents, None if same else tuple(links))
+
+    def _links_stay(self, links: list[int], before: tuple[int, ...]) -> bool:
+        names = self.pattern.names
+        traced = [
+            link
+            if link < names
+            else names + self.edges[link - names]
+            if self.edges[link - names] >= 0
+            else -1
+            for link in links
+        ]
+        return traced == list(before)
+
+    def _site_change(self, site: int) -> SiteChange:
+        reactum, instantiation = self.rule.reactum, self.rule.instantiation
+        uses = [places for places, held in zip(reactum.sites, instantiation, strict=True) if held == site]
+        before = set(self.rule.redex.sites[site])
+        staying = [use for use in uses if traced(use, self.tracked) == before][:1]
+        for use in staying:
+            uses.remove(use)
+        return SiteChange(site, (*staying, *uses), bool(staying))
+
+    def apply(self, state: State, occurrence: Occurrence) -> tuple[Draft, dict[int, int]]:
+        """Return the state that the rule makes of an occurrence, and the slots of the reactum's nodes in it."""
+        nodes = occurrence.nodes
+        regions = self._region_places(state, occurrence) if self.placed else []
+        contents = self._contents(state, occurrence) if self.sites else []
+        draft = Draft(state)
+        slots = {number: nodes[old] for number, old in enumerate(self.tracked) if old >= 0}
+        for change in self.created:
+            slots[change.node] = draft.new_slot(change.label)
+        if self.world.named:
+            self._name(draft, state, slots)
+
+        def places(written: tuple[int, ...]) -> tuple[int, ...]:
+            found = [[slots[place]] if place >= 0 else regions[~place] for place in written]
+            if not any(found):
+                message = f"rule '{self.rule.label}' puts something into a region that lies nowhere here"
+                raise BigraphError("orphan", message, "give it a place in a node of the rule, too")
+            return tuple(sorted({place for some in found for place in some}))
+
+        self._relink(draft, occurrence, slots)
+        for change in (*self.created, *self.kept):
+            if change.places is not None:
+                draft.move(slots[change.node], places(change.places))
+        if contents:
+            self._change_contents(draft, state, occurrence, contents, places)
+        for old in self.removed:
+            draft.remove(nodes[old])
+        return draft, slots
+
+    def _name(self, draft: Draft, state: State, slots: dict[int, int]) -> None:
+        """Give the reactum's nodes their names; what an anonymous node of the redex matched loses its own."""
+        for number, label in enumerate(self.labels):
+            name = self.world.name_of[label]
+            if name is not None and self.tracked[number] < 0 and label in state.labels:
+                message = f"rule '{self.rule.label}' creates '{name}', which is there already"
+                raise BigraphError("name", message, "a name is one node")
+            if draft.state.labels[slots[number]] != label:
+                draft.relabel(slots[number], label)
+
+    def _region_places(self, state: State, occurrence: Occurrence) -> list[list[int]]:
+        if self.world.sharing:
+            return region_places(self.pattern, state, occurrence.nodes, occurrence.mask)
+        found: list[list[int]] = [[] for _ in range(self.pattern.regions)]
+        for node, homes in enumerate(self.pattern.homes):
+            for region in homes:
+                found[region] = [state.parents[occurrence.nodes[node]][0]]
+        return found
+
+    def _contents(self, state: State, occurrence: Occurrence) -> list[int]:
+        """Return the mask of what each site holds."""
+        if self.world.sharing:
+            return site_contents(self.pattern, state, occurrence.nodes, occurrence.mask)
+        return [state.kids[occurrence.nodes[home]] & ~occurrence.mask for (home,) in self.pattern.sites]
+
+    def _relink(self, draft: Draft, occurrence: Occurrence, slots: dict[int, int]) -> None:
+        names = self.pattern.names
+        edges = [occurrence.links[names + edge] if edge >= 0 else draft.new_edge() for edge in self.edges]
+        for change in (*self.created, *self.kept):
+            if change.links is not None:
+                links = [
+                    occurrence.links[link] if link < names else edges[link - names] for link in change.links
+                ]
+                ordered = self.world.ordered[self.world.control_of[change.label]]
+                draft.relink(slots[change.node], tuple(links) if ordered else tuple(sorted(links)))
+
+    def _change_contents(
+        self, draft: Draft, state: State, occurrence: Occurrence, contents: list[int], places: _Places
+    ) -> None:
+        """Move, copy and drop what the sites hold."""
+        changes = {change.site: change for change in self.sites}
+        for slot in bits(_union(contents[site] for site in changes)):
+            within = [site for site, held in enumerate(contents) if held >> slot & 1]
+            around = {place for place in state.parents[slot] if place < 0 or not occurrence.mask >> place & 1}
+            shared = bool(around) or len(within) > 1
+            for site in within:
+                if site not in changes or changes[site].stays:
+                    around.update(occurrence.nodes[home] for home in self.pattern.sites[site])
+                elif changes[site].uses:
+                    around.update(places(changes[site].uses[0]))
+            self._copy(
+                draft,
+                slot,
+                [use for site in within if site in changes for use in changes[site].uses[1:]],
+                places,
+                shared=shared,
+            )
+            if not around:
+                draft.remove_all(slot)
+            elif around != set(state.parents[slot]):
+                draft.move(slot, tuple(sorted(around)))
+
+    def _copy(
+        self, draft: Draft, slot: int, uses: list[tuple[int, ...]], places: _Places, *, shared: bool
+    ) -> None:
+        if uses and shared:
+            raise BigraphError("copy", f"rule '{self.rule.label}' would copy a node that other places share")
+        for use in uses:
+            draft.copy_all(slot, places(use))
+
+
+def _union(masks: Iterable[int]) -> int:
+    found = 0
+    for mask in masks:
+        found |= mask
+    return found

@@ -1,0 +1,203 @@
+"""The search for occurrences: one plan per pattern and node to begin with, made once, run on every state.
+
+A plan places the nodes of a pattern one after the other, next to those that are placed already, so that its
+candidates are an intersection of a few masks. An occurrence maps nodes injectively and keeps controls, nesting
+and links: a node without a site has nothing else in it, an edge is matched with all of its points, a name by any
+link. Only a region all of whose nodes are in other nodes, too, may lie nowhere. Whether the regions lie where rules
+may act is asked afterwards (`bigraphs.engine.contexts`), since that can change without any node of the occurrence
+being touched.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from bigraphs.engine.bindings import binding
+from bigraphs.engine.patterns import Pattern
+from bigraphs.engine.runs import Occurrence, Placing, Run, Step
+from bigraphs.engine.sharing import shared_places_fit
+from bigraphs.engine.state import State, bits
+from bigraphs.engine.world import World
+
+_OFTEN: Final = 0x3FF
+"""After how many steps, less one, a search pauses."""
+
+
+class Matcher:
+    """Finds a pattern in the states of one world."""
+
+    def __init__(self, world: World, pattern: Pattern) -> None:
+        self.world = world
+        self.pattern = pattern
+        self._plans: list[Placing | None] = [None] * pattern.size
+
+    def plan(self, first: int) -> Placing:
+        """Return what places the whole pattern from one node on; it is made when it is first asked for."""
+        found = self._plans[first]
+        if found is None:
+            found = self._plans[first] = _plan(self.world, self.pattern, first)
+        return found
+
+    def find(self, state: State, allowed: int = -1, *, once: bool = False) -> list[Occurrence]:
+        """Return every occurrence within the allowed slots, or one of them."""
+        pattern, run = self.pattern, Run(state, self.pattern, allowed, once=once)
+        if not pattern.size:
+            return [Occurrence((), tuple(run.links), 0)]
+        counts = [state.by_control[control].bit_count() for control in pattern.controls]
+        first = counts.index(min(counts))
+        candidates = state.by_control[pattern.controls[first]] & allowed
+        if candidates:
+            plan = self.plan(first)
+            any(plan(run, 0, slot) for slot in bits(candidates))
+        return run.found
+
+    def find_at(self, state: State, touched: int) -> list[Occurrence]:
+        """Return every occurrence that has a node among the touched ones."""
+        run = Run(state, self.pattern, -1, once=False)
+        controls = self.pattern.controls
+        for slot in bits(touched & ~state.free):
+            control = self.world.control_of[state.labels[slot]]
+            for node, wanted in enumerate(controls):
+                if wanted == control:
+                    self.plan(node)(run, 0, slot)
+            run.allowed &= ~(1 << slot)  # what holds this slot has been found
+        return run.found
+
+
+def _plan(world: World, pattern: Pattern, first: int) -> Placing:
+    """Return what places the whole pattern, from one node on."""
+    order = _order(pattern, first)
+    step = _end(world, pattern)
+    for place in reversed(range(1, pattern.size)):
+        bound = frozenset(order[:place])
+        placing = _placing(world, pattern, order[place], step)
+        step = _choice(pattern, order[place], bound, placing)
+    return _placing(world, pattern, first, step)
+
+
+def _order(pattern: Pattern, first: int) -> list[int]:
+    """Return the nodes so that each is as near to those before as can be."""
+    order = [first]
+    while len(order) < pattern.size:
+        left = [node for node in range(pattern.size) if node not in order]
+        order.append(max(left, key=lambda node: (_nearness(pattern, node, order), -node)))
+    return order
+
+
+def _nearness(pattern: Pattern, node: int, placed: list[int]) -> tuple[bool, ...]:
+    return (
+        any(child in placed for child in pattern.kids[node]),
+        any(other in placed for link in pattern.ports[node] for other in pattern.on[link]),
+        any(parent in placed for parent in pattern.parents[node]),
+        any(_beside(pattern, node, other) for other in placed),
+    )
+
+
+def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing) -> Step:
+    """Return the step that tries every slot for a node which the placed ones leave."""
+    control = pattern.controls[node]
+    above = tuple(parent for parent in pattern.parents[node] if parent in bound)
+    below = tuple(kid for kid in pattern.kids[node] if kid in bound)
+    beside = next((other for other in sorted(bound) if _beside(pattern, node, other)), -1)
+    along = tuple({link for link in pattern.ports[node] if bound & frozenset(pattern.on[link])})
+    group = next((group for group in pattern.twins if node in group), ())
+    before = [twin for twin in group if twin < node and twin in bound]
+    after = [twin for twin in group if twin > node and twin in bound]
+    between = [twin for twin in group if node < twin < min(after, default=pattern.size)]
+    reserve = len(between)  # twins that are still to be placed above this one
+
+    def step(run: Run, used: int) -> bool:
+        run.steps += 1
+        if run.steps & _OFTEN == 0:
+            run.state.world.pause()
+        state, nodes = run.state, run.nodes
+        mask = state.by_control[control] & run.allowed & ~used
+        for parent in above:
+            mask &= state.kids[nodes[parent]]
+        for kid in below:
+            mask &= _mask(state.parents[nodes[kid]])
+        if beside >= 0:
+            mask &= state.kids[state.parents[nodes[beside]][0]]
+        for link in along:
+            mask &= state.points[run.links[link]]
+        for twin in before:
+            mask &= -2 << nodes[twin]
+        for twin in after:
+            mask &= (1 << nodes[twin]) - 1
+        while mask:
+            low = mask & -mask
+            mask ^= low
+            if reserve and mask.bit_count() < reserve:
+                return False
+            if placing(run, used, low.bit_length() - 1):
+                return True
+        return False
+
+    return step
+
+
+def _beside(pattern: Pattern, node: int, other: int) -> bool:
+    """Say whether two nodes are in one region and nowhere else, so that all their places are the same."""
+    alone = not pattern.parents[node] and not pattern.parents[other]
+    return alone and len(pattern.homes[node]) == 1 and pattern.homes[node] == pattern.homes[other]
+
+
+def _mask(places: tuple[int, ...]) -> int:
+    found = 0
+    for place in places:
+        if place >= 0:
+            found |= 1 << place
+    return found
+
+
+def _placing(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
+    """Return what checks a slot for a node, binds its links, and goes on."""
+    inside, sited = len(pattern.kids[node]), pattern.sited[node]
+    above, rooted = len(pattern.parents[node]), bool(pattern.homes[node])
+    alone = rooted and not above
+    label = pattern.labels[node]
+    bind = binding(world, pattern, node, then)
+
+    def place(run: Run, used: int, slot: int) -> bool:
+        state = run.state
+        there = state.kids[slot].bit_count()
+        if there < inside or (there > inside and not sited):
+            return False
+        spare = len(state.parents[slot]) - above
+        if (
+            spare < 0
+            or (spare > 0 and not rooted)
+            or (not spare and alone)
+            or (label >= 0 and state.labels[slot] != label)
+        ):
+            return False
+        run.nodes[node] = slot
+        return bind(run, used | 1 << slot, slot)
+
+    return place
+
+
+def _end(world: World, pattern: Pattern) -> Step:
+    """Return the step that checks what only whole occurrences show, and keeps them."""
+    roots = pattern.roots
+    closed = [(link, pattern.on[link]) for link in pattern.closed if pattern.on[link]]
+    above = [len(pattern.parents[node]) for node in range(pattern.size)]
+    sharing = world.sharing
+
+    def end(run: Run, used: int) -> bool:
+        state, nodes, links = run.state, run.nodes, run.links
+        for node in roots:
+            if (_mask(state.parents[nodes[node]]) & used).bit_count() != above[node]:
+                return False
+        for link, on in closed:
+            mask = 0
+            for node in on:
+                mask |= 1 << nodes[node]
+            if mask != state.points[links[link]] or links.count(links[link]) != 1:
+                return False
+        if sharing and not shared_places_fit(pattern, state, nodes, used):
+            return False
+        run.found.append(Occurrence(tuple(nodes), tuple(links), used))
+        return run.once
+
+    return end

@@ -1,0 +1,97 @@
+"""Where regions lie and what sites hold, for an occurrence in a state whose nodes may have several parents.
+
+A place outside of an occurrence holds each region whose top nodes are all in it, unless it holds a larger one;
+what is in an occurrence is in each site whose places it is all in, unless there is a larger one. So there is one
+way to take a state apart, and it does not depend on how anything is numbered. A region whose nodes all have places in
+the pattern itself may lie nowhere (as in Sevegnani and Calder's bigraphs with sharing, where a site may be an orphan).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from bigraphs.engine.patterns import Pattern
+from bigraphs.engine.state import State, bits
+
+
+def shared_places_fit(pattern: Pattern, state: State, nodes: Sequence[int], used: int) -> bool:
+    """Say whether regions and sites account for all that an occurrence's nodes are in, and for all in them."""
+    places = region_places(pattern, state, nodes, used)
+    tops = _tops(pattern, nodes)
+    for place, inside in _around(state, nodes, used).items():
+        if inside != _union(tops[region] for region, found in enumerate(places) if place in found):
+            return False
+    homes = _site_masks(pattern, nodes)
+    for slot in bits(_held(state, nodes) & ~used):
+        within = _matched_parents(state, slot, used)
+        if within != _union(homes[site] for site in _sites_at(homes, within)):
+            return False
+    return True
+
+
+def region_places(pattern: Pattern, state: State, nodes: Sequence[int], used: int) -> list[list[int]]:
+    """Return the places of each region, sorted."""
+    tops = _tops(pattern, nodes)
+    found: list[list[int]] = [[] for _ in tops]
+    for place, inside in sorted(_around(state, nodes, used).items()):
+        fitting = [region for region, top in enumerate(tops) if top & ~inside == 0]
+        for region in fitting:
+            if not any(_smaller(tops[region], tops[other]) for other in fitting):
+                found[region].append(place)
+    return found
+
+
+def site_contents(pattern: Pattern, state: State, nodes: Sequence[int], used: int) -> list[int]:
+    """Return the mask of the topmost slots in each site."""
+    homes = _site_masks(pattern, nodes)
+    found = [0] * len(homes)
+    for slot in bits(_held(state, nodes) & ~used):
+        for site in _sites_at(homes, _matched_parents(state, slot, used)):
+            found[site] |= 1 << slot
+    return found
+
+
+def _sites_at(homes: Sequence[int], within: int) -> list[int]:
+    fitting = [site for site, home in enumerate(homes) if home & ~within == 0]
+    return [site for site in fitting if not any(_smaller(homes[site], homes[other]) for other in fitting)]
+
+
+def _smaller(one: int, other: int) -> bool:
+    return one != other and one & ~other == 0
+
+
+def _tops(pattern: Pattern, nodes: Sequence[int]) -> list[int]:
+    found = [0] * pattern.regions
+    for node, homes in enumerate(pattern.homes):
+        for region in homes:
+            found[region] |= 1 << nodes[node]
+    return found
+
+
+def _site_masks(pattern: Pattern, nodes: Sequence[int]) -> list[int]:
+    return [_union(1 << nodes[place] for place in parents) for parents in pattern.sites]
+
+
+def _around(state: State, nodes: Sequence[int], used: int) -> dict[int, int]:
+    """Return the places around an occurrence, each with those of its nodes that are in it."""
+    found: dict[int, int] = {}
+    for slot in nodes:
+        for place in state.parents[slot]:
+            if place < 0 or not used >> place & 1:
+                found[place] = found.get(place, 0) | 1 << slot
+    return found
+
+
+def _held(state: State, nodes: Sequence[int]) -> int:
+    return _union(state.kids[slot] for slot in nodes)
+
+
+def _matched_parents(state: State, slot: int, used: int) -> int:
+    return _union(1 << place for place in state.parents[slot] if place >= 0) & used
+
+
+def _union(masks: Iterable[int]) -> int:
+    found = 0
+    for mask in masks:
+        found |= mask
+    return found

@@ -1,0 +1,32 @@
+"""Node identity: which node of a state is which of the next."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from bigraphs.engine.machine import Step
+from bigraphs.engine.occurrences import Spot
+from bigraphs.engine.state import State, bits
+
+
+def identities(spot: Spot, step: Step) -> Iterator[tuple[int, int]]:
+    """Yield the number of each node before a step with its number after it, where it is the same node.
+
+    A node that the rule does not touch is itself, and so is one of the redex that is in the reactum
+    (`bigraphs.engine.tracking`). Numbers are those of the bigraphs that `to_bigraph` makes of the two states.
+    """
+    before, after = _numbers(spot.state), _numbers(step.target.state)
+    for slot, number in before.items():
+        if slot in after and not step.target.lost >> slot & 1:
+            yield number, after[slot]
+
+
+def _numbers(state: State) -> dict[int, int]:
+    """Return the number that each slot has in the bigraph of a state: named nodes first, by name."""
+    names = state.world.name_of
+
+    def key(slot: int) -> tuple[bool, str, int]:
+        name = names[state.labels[slot]]
+        return name is None, name or "", slot
+
+    return {slot: number for number, slot in enumerate(sorted(bits(state.occupied()), key=key))}

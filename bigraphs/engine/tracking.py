@@ -1,0 +1,79 @@
+"""Which nodes of a reactum are nodes of the redex: how a node keeps its identity through a reaction."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+
+from bigraphs.bigraph import Bigraph, children
+
+Pairing = Callable[[int, int], bool]
+
+
+def track(redex: Bigraph, reactum: Bigraph) -> tuple[int, ...]:
+    """Return for each node of the reactum the node of the redex that it is, or -1 if it is new.
+
+    A named node is its namesake. An anonymous one is a node of the same control that is not taken: one with the
+    same links in the same place if there is any, else with the same links, else in the same place, else any.
+    Places are compared by the nodes that they are, so whoever keeps its neighbours keeps its identity.
+    """
+    found = [-1] * len(reactum.nodes)
+    for fits in _passes(redex, reactum, found):
+        for number in top_down(reactum):
+            if found[number] < 0:
+                free = (old for old in range(len(redex.nodes)) if old not in found)
+                alike = (old for old in free if _same_kind(redex, reactum, old, number))
+                found[number] = next((old for old in alike if fits(old, number)), -1)
+    return tuple(found)
+
+
+def track_edges(redex: Bigraph, reactum: Bigraph, nodes: tuple[int, ...]) -> tuple[int, ...]:
+    """Return for each edge of the reactum the edge of the redex that it is, or -1: one that shares a tracked node."""
+    found: list[int] = []
+    for edge in range(reactum.edges):
+        on = [nodes[number] for number, node in enumerate(reactum.nodes) if edge in node.ports]
+        olds = (link for old in on if old >= 0 for link in redex.nodes[old].ports if isinstance(link, int))
+        found.append(next((link for link in olds if link not in found), -1))
+    return tuple(found)
+
+
+def _same_kind(redex: Bigraph, reactum: Bigraph, old: int, new: int) -> bool:
+    one, other = redex.nodes[old], reactum.nodes[new]
+    return one.control == other.control and one.name == other.name
+
+
+def _passes(redex: Bigraph, reactum: Bigraph, found: list[int]) -> list[Pairing]:
+    def links(old: int, new: int) -> bool:
+        return _open(redex, old) == _open(reactum, new)
+
+    def place(old: int, new: int) -> bool:
+        return traced(reactum.nodes[new].parents, found) == set(redex.nodes[old].parents)
+
+    return [
+        lambda old, new: links(old, new) and place(old, new),
+        links,
+        place,
+        lambda _old, _new: True,
+    ]
+
+
+def traced(places: Iterable[int], nodes: Sequence[int]) -> set[int | None]:
+    """Return places of the reactum as places of the redex; a new node is None."""
+    return {(nodes[place] if nodes[place] >= 0 else None) if place >= 0 else place for place in places}
+
+
+def _open(bigraph: Bigraph, number: int) -> list[str]:
+    return [link if isinstance(link, str) else "" for link in bigraph.nodes[number].ports]
+
+
+def top_down(bigraph: Bigraph) -> list[int]:
+    """Return the nodes, each after those that it is in."""
+    inside, order = children(bigraph), list[int]()
+    waiting = [len(node.parents) for node in bigraph.nodes]
+    places: list[int] = [~region for region in range(bigraph.regions)]
+    for place in places:  # grows while it is walked
+        for child in inside[place]:
+            waiting[child] -= 1
+            if waiting[child] == 0:
+                order.append(child)
+                places.append(child)
+    return order

@@ -1,0 +1,90 @@
+"""What all states of one system share: numbered controls and names, and subtrees that are interned once.
+
+Controls, outer names and regions are small integers in here. A *label* is a control, or a control with a
+node's name. A *row* says of a node its label, its links, the codes of what is in it and, if it has several
+parents, the link that stands for itself; the number of a row is its *code*. Equal codes are equal subtrees, so a
+state is told by the codes of the nodes in its regions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+from bigraphs.bigraph import Bigraph
+from bigraphs.errors import BigraphError
+from bigraphs.signature import Signature
+
+Row: TypeAlias = tuple[int, tuple[int, ...], tuple[int, ...], int]
+
+REFERENCE = -1
+"""The label of the row that stands, in each of its places, for a node that has several."""
+
+
+class World:
+    """The tables of one system; they only grow.
+
+    Attributes:
+        names: The outer names of every state, sorted; link `i` is name `i`, edges are numbered after them.
+        regions: How many regions every state has.
+        sharing: Whether a node may have several parents.
+        plain: Whether no state has an edge or a shared node, so that equal keys are equal states.
+        named: Whether nodes may have names.
+        rows: What each code stands for.
+        bare: For each code whether no edge and no shared node is in it.
+        pause: What long searches call now and then; it may raise an exception to end them.
+    """
+
+    def __init__(
+        self, signature: Signature, names: tuple[str, ...], regions: int, *, sharing: bool, edges: bool = True
+    ) -> None:
+        self.signature = signature
+        self.names = names
+        self.regions = regions
+        self.sharing = sharing
+        self.plain = not sharing and not edges
+        self.pause: Callable[[], None] = lambda: None
+        self.named = False
+        self.controls = {control.name: number for number, control in enumerate(signature.controls)}
+        self.ordered = tuple(control.ordered for control in signature.controls)
+        self.active = tuple(control.status == "active" for control in signature.controls)
+        self.passive = any(control.status == "passive" for control in signature.controls)
+        self.control_of: list[int] = list(range(len(signature.controls)))
+        self.name_of: list[str | None] = [None] * len(signature.controls)
+        self._labels: dict[tuple[int, str], int] = {}
+        self.codes: dict[Row, int] = {}
+        self.rows: list[Row] = []
+        self.bare: list[bool] = []
+
+    def label(self, control: str, name: str | None) -> int:
+        """Return the label of a control with a node's name, if it has one."""
+        number = self.controls.get(control)
+        if number is None:
+            raise BigraphError("control", f"unknown control '{control}'", "give all rules one signature")
+        if name is None:
+            return number
+        self.named = True
+        found = self._labels.get((number, name))
+        if found is None:
+            found = self._labels[number, name] = len(self.control_of)
+            self.control_of.append(number)
+            self.name_of.append(name)
+        return found
+
+    def code(self, row: Row) -> int:
+        """Return the code of a row, a new one if it has not been seen."""
+        found = self.codes.get(row)
+        if found is None:
+            found = self.codes[row] = len(self.rows)
+            self.rows.append(row)
+            fixed = len(self.names)
+            alone = row[3] == 0 and all(0 <= link < fixed for link in row[1])
+            self.bare.append(alone and all(self.bare[kid] for kid in row[2]))
+        return found
+
+
+def has_sharing(bigraph: Bigraph) -> bool:
+    """Say whether a node or a site has several parents."""
+    return any(len(node.parents) > 1 for node in bigraph.nodes) or any(
+        len(parents) > 1 for parents in bigraph.sites
+    )

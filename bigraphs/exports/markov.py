@@ -1,0 +1,141 @@
+"""A transition system as a Markov model: what the files for PRISM and for Storm have in common.
+
+A BRS becomes a decision process in which every transition is a choice of its own. A state in which nothing can
+happen gets a loop and the label `deadlock`, as these checkers demand of every state that something follows it. Of
+an incomplete system, states that were not expanded are labelled `unexpanded` and get such a loop, too: nothing is
+decided beyond them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+from itertools import groupby
+from typing import NamedTuple
+
+from bigraphs.system import SystemKind
+from bigraphs.transitions import TransitionSystem
+
+
+class MarkovKind(Enum):
+    """The kinds of Markov model."""
+
+    DTMC = "dtmc"
+    CTMC = "ctmc"
+    MDP = "mdp"
+
+
+KINDS = {
+    SystemKind.BRS: MarkovKind.MDP,
+    SystemKind.PBRS: MarkovKind.DTMC,
+    SystemKind.SBRS: MarkovKind.CTMC,
+    SystemKind.NBRS: MarkovKind.MDP,
+}
+
+
+class Move(NamedTuple):
+    """One entry of the matrix; `choice` counts from 0 in each state, `action` may be empty."""
+
+    source: int
+    choice: int
+    target: int
+    weight: float
+    action: str
+    reward: float
+
+
+@dataclass(frozen=True, slots=True)
+class Markov:
+    """A Markov model: its moves sorted by source and choice, its labels with their states, and state rewards."""
+
+    kind: MarkovKind
+    states: int
+    moves: tuple[Move, ...]
+    labels: tuple[tuple[str, tuple[int, ...]], ...]
+    rewards: tuple[tuple[int, float], ...]
+
+    @property
+    def choices(self) -> int:
+        """Count the choices of all states."""
+        return len({(move.source, move.choice) for move in self.moves})
+
+
+def to_markov(system: TransitionSystem) -> Markov:
+    """Return the Markov model of a transition system."""
+    moves = tuple(_moves(system))
+    stuck = _stuck(system)
+    loops = tuple(Move(state, 0, state, 1.0, "", 0.0) for state in stuck)
+    return Markov(
+        KINDS[system.kind],
+        len(system),
+        tuple(sorted((*moves, *loops), key=lambda move: (move.source, move.choice, move.target))),
+        tuple(_labels(system, stuck)),
+        tuple(_rewards(system)),
+    )
+
+
+def _stuck(system: TransitionSystem) -> list[int]:
+    going = set(system.starts)
+    return [state for state in range(len(system)) if state not in going]
+
+
+def _moves(system: TransitionSystem) -> Iterator[Move]:
+    rewards = {action.name: float(action.reward) for action in system.system.actions}
+    for source, group in groupby(system.transitions(), key=lambda each: each.source):
+        outgoing = list(group)
+        if system.kind is SystemKind.BRS:
+            for choice, each in enumerate(outgoing):
+                yield Move(source, choice, each.target, 1.0, label_name("_".join(each.rules)), 0.0)
+            continue
+        actions = sorted({each.action or "" for each in outgoing})
+        for each in outgoing:
+            action = each.action or ""
+            choice, reward = actions.index(action), rewards.get(action, 0.0)
+            yield Move(source, choice, each.target, each.weight, label_name(action), reward)
+
+
+def _labels(system: TransitionSystem, stuck: list[int]) -> Iterator[tuple[str, tuple[int, ...]]]:
+    yield "init", (0,)
+    yield "deadlock", tuple(state for state in stuck if state < system.expanded)
+    if not system.complete:
+        yield "unexpanded", tuple(range(system.expanded, len(system)))
+    taken = {"init", "deadlock", "unexpanded"}
+    for number, predicate in enumerate(system.system.predicates):
+        name = label_name(predicate.label)
+        while name in taken:
+            name += "_"
+        taken.add(name)
+        yield name, tuple(system.states_with(number))
+
+
+def _rewards(system: TransitionSystem) -> Iterator[tuple[int, float]]:
+    """Yield the states whose predicates have rewards, with their sum."""
+    earning = [
+        (float(predicate.reward), system.labels[number])
+        for number, predicate in enumerate(system.system.predicates)
+        if predicate.reward
+    ]
+    for state in range(len(system)):
+        total = sum(reward for reward, holds in earning if holds[state])
+        if total:
+            yield state, total
+
+
+def label_name(text: str) -> str:
+    """Return a label as PRISM and Storm can read it.
+
+    >>> label_name('at(1,"west")')
+    'at_1_west'
+    """
+    return re.sub(r"\W+", "_", text).strip("_")
+
+
+def number(value: float) -> str:
+    """Write a number so that reading it gives the same number, whole ones without a point.
+
+    >>> number(0.1), number(2.0)
+    ('0.1', '2')
+    """
+    return repr(int(value)) if value == int(value) and abs(value) < 1e15 else repr(value)

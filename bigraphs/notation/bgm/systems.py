@@ -1,0 +1,198 @@
+"""A whole `.bgm` file elaborated to a system with properties."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from bigraphs.algebra import lean
+from bigraphs.bigraph import Bigraph
+from bigraphs.notation.bgm import queries
+from bigraphs.notation.bgm.parser import parse_bgm
+from bigraphs.notation.bgm.syntax import (
+    ControlLine,
+    Hole,
+    Line,
+    ModelLine,
+    NameLine,
+    Prefix,
+    PropertyLine,
+    RuleLine,
+    Term,
+    Wide,
+)
+from bigraphs.notation.bgm.terms import Terms, holes, names_in
+from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.shapes import faults
+from bigraphs.notation.big.syntax import MAX_SIZE, Span
+from bigraphs.properties import Property
+from bigraphs.signature import Control, Signature
+from bigraphs.system import Position, PriorityClass, Rule, System, SystemKind
+
+_ONE: Final = 1
+
+
+def read_bgm(text: str) -> System:
+    """Read a `.bgm` file; raises NotationError with all that does not make sense, or what does not parse.
+
+    All rules have one priority. Names declared with `%outer` (or `%name`) stand for themselves in rules, others
+    for any link; ports are in order, and `-` is a link with one end.
+    """
+    lines = parse_bgm(text)
+    findings = Findings(text)
+    found = _Reading(lines, findings).system()
+    findings.raise_any()
+    if found is None:
+        raise AssertionError("no system, and no mistake")
+    return found
+
+
+class _Reading:
+    """One file on its way to a system."""
+
+    def __init__(self, lines: Sequence[Line], findings: Findings) -> None:
+        self.lines = lines
+        self.findings = findings
+        controls = [line for line in lines if isinstance(line, ControlLine)]
+        self.refuse_again("control", [(line.name, line.offset) for line in controls])
+        for line in controls:
+            if line.arity > MAX_SIZE:
+                self.add("too-large", f"a node of more than {MAX_SIZE} ports", line.offset, len(line.name))
+                controls = []
+        kinds = {line.name: Control(line.name, line.arity, line.status) for line in controls}
+        self.terms = Terms(Signature(tuple(kinds.values())), findings)
+        self.declared = frozenset(line.name for line in lines if isinstance(line, NameLine))
+
+    def system(self) -> System | None:
+        """Return the system, if all is well."""
+        for line in self.lines:
+            if isinstance(line, NameLine) and line.inner:
+                self.add("initial", "a first state has no inner names", line.offset, len(line.name))
+        initial = self.initial([line for line in self.lines if isinstance(line, ModelLine)])
+        rules = tuple(self.rules())
+        properties = tuple(self.properties())
+        if len(self.findings) or initial is None:
+            return None
+        classes = (PriorityClass(rules),) if rules else ()
+        return System(SystemKind.BRS, self.terms.signature, initial, classes, properties=properties)
+
+    def add(self, code: str, message: str, offset: int, length: int = _ONE, hint: str = "") -> None:
+        self.findings.add(code, message, Span(offset, offset + length), hint)
+
+    def refuse_again(self, what: str, named: Sequence[tuple[str, int]]) -> None:
+        seen: set[str] = set()
+        for name, offset in named:
+            if name in seen:
+                self.add("name", f"{what} '{name}' is declared twice", offset, len(name))
+            seen.add(name)
+
+    def initial(self, models: Sequence[ModelLine]) -> Bigraph | None:
+        if len(models) != 1:
+            count = "no first state" if not models else f"{len(models)} first states"
+            self.add("system", f"the file has {count}", models[1].offset if models else 0)
+            return None
+        if any(self.no_holes(model.term, "a first state") for model in models):
+            return None
+        found = self.terms.bigraph(models[0].term, {}, self.declared)
+        return None if found is None else lean(found)
+
+    def no_holes(self, wide: Wide, what: str) -> bool:
+        """Note holes where there may be none; say whether there are any."""
+        found = holes(wide)
+        for _, hole in found:
+            self.add("site", f"{what} has no holes", hole.offset, 2)
+        return bool(found)
+
+    def rules(self) -> Iterator[Rule]:
+        lines = [line for line in self.lines if isinstance(line, RuleLine)]
+        self.refuse_again("rule", [(line.name, line.offset) for line in lines if line.name is not None])
+        taken = {line.name for line in lines}
+        fresh = (name for n in range(1, 2 * len(lines) + 1) if (name := f"rule{n}") not in taken)
+        for line in lines:
+            found = self.rule(line, line.name if line.name is not None else next(fresh))
+            if found is not None:
+                yield found
+
+    def rule(self, line: RuleLine, name: str) -> Rule | None:
+        redex, reactum = self.without_rest(line)
+        if not self.holes_fit(redex, reactum, line):
+            return None
+        sites = {hole.index: site for site, (_, hole) in enumerate(holes(redex))}
+        written = [hole for _, hole in holes(reactum)]
+        order = tuple(sites[hole.index] for hole in written)
+        used = names_in(redex) | (names_in(reactum) & self.declared)
+        for unknown in sorted(names_in(reactum) - used):
+            hint = f"declare it with '%outer {unknown}', or name it in the redex"
+            self.add("rule", f"the redex lacks the name '{unknown}' of the reactum", line.offset, hint=hint)
+        before = self.terms.bigraph(redex, sites, used)
+        after = self.terms.bigraph(_numbered(reactum), {n: n for n in range(len(written))}, used)
+        if before is None or after is None or not self.fitting(before, after, line):
+            return None
+        constants = frozenset(used & self.declared)
+        text = self.findings.text
+        start = text.rfind("\n", 0, line.offset)
+        position = Position(text.count("\n", 0, line.offset) + 1, line.offset - start)
+        return Rule(name, before, after, order, link_constants=constants, position=position)
+
+    def without_rest(self, line: RuleLine) -> tuple[Wide, Wide]:
+        """Leave out holes beside the redex that are beside the reactum, too: what is there stays as it is."""
+        redex, reactum = list(line.redex), list(line.reactum)
+        for region, place in enumerate(redex):
+            for hole in [term for term in place if isinstance(term, Hole)]:
+                there = reactum[region] if region < len(reactum) else ()
+                times = sum(other.index == hole.index for _, other in holes(line.reactum))
+                if times == 1 and hole in there:
+                    redex[region] = tuple(term for term in redex[region] if term != hole)
+                    reactum[region] = tuple(term for term in there if term != hole)
+        return tuple(redex), tuple(reactum)
+
+    def holes_fit(self, redex: Wide, reactum: Wide, line: RuleLine) -> bool:
+        before = len(self.findings)
+        seen: set[int] = set()
+        for place, hole in holes(redex):
+            if place < 0:
+                hint = "put it into a node, or leave it where it is"
+                message = f"${hole.index} is beside the redex, and does not stay there"
+                self.add("redex", message, hole.offset, 2, hint)
+            if hole.index in seen:
+                self.add("site", f"${hole.index} is in the redex twice", hole.offset, 2)
+            seen.add(hole.index)
+        for _, hole in holes(reactum):
+            if hole.index not in seen:
+                self.add("site", f"${hole.index} is not in the redex", hole.offset, 2)
+        if len(redex) != len(reactum):
+            message = f"the redex has {len(redex)} regions, the reactum {len(reactum)}"
+            self.add("rule", message, line.offset)
+        return len(self.findings) == before
+
+    def fitting(self, redex: Bigraph, reactum: Bigraph, line: RuleLine) -> bool:
+        before = len(self.findings)
+        for message, hint in faults(redex):
+            if "no port of the redex" not in message:  # a name that stands for itself is no other link
+                self.add("redex", message, line.offset, hint=hint)
+        return len(self.findings) == before and redex.outer == reactum.outer
+
+    def properties(self) -> Iterator[Property]:
+        lines = [line for line in self.lines if isinstance(line, PropertyLine)]
+        self.refuse_again("property", [(line.name, line.offset) for line in lines])
+        for line in lines:
+            found = queries.formula(line.query, self.terms, self.declared)
+            if found is not None:
+                yield Property(line.name, found)
+
+
+def _numbered(wide: Wide) -> Wide:
+    """Return the term with its holes numbered in the order written."""
+    count = 0
+
+    def term(each: Prefix | Hole) -> Prefix | Hole:
+        nonlocal count
+        if isinstance(each, Hole):
+            count += 1
+            return Hole(count - 1, each.offset)
+        return Prefix(each.control, each.ports, place(each.inside), each.offset)
+
+    def place(terms: Term) -> Term:
+        return tuple(map(term, terms))
+
+    return tuple(map(place, wide))

@@ -1,0 +1,87 @@
+"""Terms of BigMC to bigraphs: names are outer names, `-` is an edge of its own, holes are sites."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from bigraphs.bigraph import Bigraph, Link, Node, Place, assemble
+from bigraphs.notation.bgm.syntax import Hole, Prefix, Wide
+from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.syntax import MAX_SIZE, Span
+from bigraphs.signature import Signature
+
+
+@dataclass(frozen=True, slots=True)
+class Terms:
+    """The terms of one file, over its controls."""
+
+    signature: Signature
+    findings: Findings
+
+    def bigraph(self, wide: Wide, sites: Mapping[int, int], names: Iterable[str]) -> Bigraph | None:
+        """Return the bigraph of a term whose holes are these sites; None where a mistake has been noted.
+
+        `names` are outer names that it has at the least.
+        """
+        before = len(self.findings)
+        nodes: list[Node] = []
+        parents: list[list[Place]] = [[] for _ in sites]
+        outer, edges = set(names), 0
+        for place, term in walk(wide):
+            if isinstance(term, Hole):
+                parents[sites[term.index]].append(place)
+                continue
+            links: list[Link] = []
+            for name in self._ports(term):
+                links.append(edges if name is None else name)
+                edges += name is None
+            outer |= {link for link in links if isinstance(link, str)}
+            nodes.append(Node(term.control, None, tuple(links), (place,)))
+            if len(nodes) + edges > MAX_SIZE:
+                message = f"a bigraph of more than {MAX_SIZE} parts"
+                self.findings.add("too-large", message, Span(term.offset, term.offset + 1))
+                return None
+        if len(self.findings) > before:
+            return None
+        return assemble(
+            self.signature, nodes, regions=len(wide), sites=parents, edges=edges, outer_names=outer
+        )
+
+    def _ports(self, term: Prefix) -> tuple[str | None, ...]:
+        at = Span(term.offset, term.offset + len(term.control))
+        if term.control not in self.signature:
+            known = [control.name for control in self.signature.controls]
+            self.findings.unknown("control", term.control, at, known, "'%active' or '%passive'")
+            return ()
+        arity = self.signature[term.control].arity or 0
+        if term.ports and len(term.ports) != arity:
+            message = f"'{term.control}' has {arity} ports, this has {len(term.ports)} names"
+            self.findings.add("arity", message, at, "write '-' for a port that is not linked")
+        return term.ports or (None,) * arity
+
+
+def walk(wide: Wide) -> Iterator[tuple[Place, Prefix | Hole]]:
+    """Yield each node and hole with its parent, parents first; a node's number counts those before it."""
+    waiting: list[tuple[Place, Prefix | Hole]] = [
+        (~region, term) for region in reversed(range(len(wide))) for term in reversed(wide[region])
+    ]
+    count = 0
+    while waiting:
+        place, term = waiting.pop()
+        yield place, term
+        if isinstance(term, Prefix):
+            waiting.extend((count, child) for child in reversed(term.inside))
+            count += 1
+
+
+def holes(wide: Wide) -> list[tuple[Place, Hole]]:
+    """Return each hole with its parent, in the order written."""
+    return [(place, term) for place, term in walk(wide) if isinstance(term, Hole)]
+
+
+def names_in(wide: Wide) -> set[str]:
+    """Return the names on ports."""
+    return {
+        name for _, term in walk(wide) if isinstance(term, Prefix) for name in term.ports if name is not None
+    }

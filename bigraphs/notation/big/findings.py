@@ -1,0 +1,50 @@
+"""Mistakes gathered while a text is read, so that all of them can be told at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import Final
+
+from bigraphs.errors import NotationError
+from bigraphs.notation.big.syntax import Span
+
+MOST: Final = 100
+"""How many mistakes are told of one text."""
+
+
+class Findings:
+    """The mistakes found so far in one text; the same one in the same place counts once."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self._found: dict[tuple[int, str, str], NotationError] = {}
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    def add(self, code: str, message: str, span: Span, hint: str = "") -> None:
+        """Note a mistake."""
+        key = (span.start, code, message)
+        if key not in self._found and len(self._found) < MOST:
+            length = span.end - span.start
+            self._found[key] = NotationError(code, message, self.text, span.start, length=length, hint=hint)
+
+    def unknown(self, what: str, name: str, span: Span, known: Iterable[str], how: str = "") -> None:
+        """Note a name that is not declared, with the declared one that it resembles, or how it is declared."""
+        close = get_close_matches(name, sorted(known), n=1, cutoff=0.6)
+        hint = f"did you mean '{close[0]}'?" if close else f"declare it with {how or _KEYWORD[what]}"
+        self.add("name", f"unknown {what} '{name}'", span, hint)
+
+    def raise_any(self) -> None:
+        """Raise what was found, if anything was."""
+        if self._found:
+            raise NotationError.of(self._found.values())
+
+
+_KEYWORD: Final = {
+    "control": "'ctrl'",
+    "bigraph": "'big'",
+    "rule": "'react'",
+    "value": "'int', 'float' or 'string'",
+}

@@ -1,0 +1,175 @@
+"""Rules elaborated: both sides evaluated, their faces compared, weights and conditions looked at."""
+
+from __future__ import annotations
+
+import math
+
+from bigraphs.algebra import lean
+from bigraphs.bigraph import Bigraph
+from bigraphs.notation.big.declarations import ConditionTerm, ReactDeclaration
+from bigraphs.notation.big.expressions import Evaluation
+from bigraphs.notation.big.scope import Frame
+from bigraphs.notation.big.shapes import faults, pattern_of
+from bigraphs.notation.big.syntax import Expression, Span, ValueExpression
+from bigraphs.system import Condition, Position, Rule, SystemKind, Value, Where, call
+
+
+class Rules:
+    """Rules of one file; a system's kind decides what weights they have."""
+
+    def __init__(self, evaluation: Evaluation, kind: SystemKind | None) -> None:
+        self.evaluation = evaluation
+        self.scope = evaluation.scope
+        self.kind = kind
+        self._known: dict[str, Rule | None] = {}
+
+    def named(self, name: str, given: tuple[Value, ...], span: Span) -> Rule | None:
+        """Return a declared rule for some arguments, or None where a mistake has been noted."""
+        declaration = self._declaration(name, given, span)
+        if declaration is None:
+            return None
+        parameters = declaration.parameters
+        if parameters and not self.scope.fits(name, parameters, given, span, Frame()):
+            return None
+        key = call(name, given)
+        if key not in self._known:
+            self._known[key] = self.rule(declaration, given)
+        return self._known[key]
+
+    def _declaration(self, name: str, given: tuple[Value, ...], span: Span) -> ReactDeclaration | None:
+        found = self.scope.names.reacts.get(name)
+        if found is not None and found.arguments:
+            return self.scope.instance(self.scope.names.given_reacts[name], given, span)
+        return found if found is not None and len(found.parameters) == len(given) else None
+
+    def rule(self, react: ReactDeclaration, given: tuple[Value, ...]) -> Rule | None:
+        """Return the rule of a declaration for some arguments."""
+        frame = Frame().inside(react.name, react.parameters, given if react.parameters else ())
+        redex = self.evaluation.value(react.redex, frame)
+        reactum = self.evaluation.value(react.reactum, frame)
+        conditions = [self._condition(condition, frame) for condition in react.conditions]
+        weight = self._weight(react, frame)
+        if redex is None or reactum is None or not self._fitting(react, redex, reactum, frame):
+            return None
+        sites = react.instantiation if react.instantiation is not None else tuple(range(len(redex.sites)))
+        action = self.scope.names.actions.get(react.name)
+        return Rule(
+            react.name,
+            lean(redex),
+            lean(reactum),
+            sites,
+            weight,
+            action.name if action is not None and self.kind is SystemKind.NBRS else None,
+            self.reward(action.reward if action is not None else None),
+            tuple(condition for condition in conditions if condition is not None),
+            given,
+            position=self.position(react.span),
+        )
+
+    def reward(self, expression: ValueExpression | None) -> int | float:
+        """Return the reward of an action or a predicate, 0 if none is written."""
+        found = 0 if expression is None else self.scope.value(expression, Frame())
+        if expression is not None and (isinstance(found, str) or not _finite(found)):
+            self.scope.add("type", "a reward is a number", expression.span, Frame())
+        return found if isinstance(found, int | float) else 0
+
+    def position(self, span: Span) -> Position:
+        """Return lines and columns of a span."""
+        text = self.scope.findings.text
+        return Position(text.count("\n", 0, span.start) + 1, span.start - text.rfind("\n", 0, span.start))
+
+    def pattern(self, expression: Expression, frame: Frame) -> Bigraph | None:
+        """Return a pattern, of which only is asked whether it occurs."""
+        found = self.evaluation.value(expression, frame)
+        return None if found is None else self.as_pattern(found, expression.span, frame)
+
+    def as_pattern(self, bigraph: Bigraph, span: Span, frame: Frame) -> Bigraph | None:
+        """Return what of a bigraph decides whether it occurs."""
+        found = pattern_of(bigraph)
+        if not found.nodes:
+            self.scope.add("pattern", "this has no node, so it would always occur", span, frame)
+        elif found.inner_links:
+            self.scope.add("pattern", "a pattern has sites, but no inner names", span, frame)
+        else:
+            return found
+        return None
+
+    def _condition(self, condition: ConditionTerm, frame: Frame) -> Condition | None:
+        found = self.pattern(condition.pattern, frame)
+        return None if found is None else Condition(condition.positive, found, Where(condition.where))
+
+    def _fitting(self, react: ReactDeclaration, redex: Bigraph, reactum: Bigraph, frame: Frame) -> bool:
+        """Note what keeps the sides of a rule from making one."""
+        before = len(self.scope.findings)
+        for message, hint in faults(redex):
+            self.scope.add("redex", message, react.redex.span, frame, hint)
+        self._check_faces(react, redex, reactum, frame)
+        if reactum.inner_links:
+            name = reactum.inner_links[0][0]
+            self.scope.add("rule", f"the reactum has the inner name '{name}'", react.reactum.span, frame)
+        self._check_sites(react, len(redex.sites), len(reactum.sites), frame)
+        return len(self.scope.findings) == before
+
+    def _check_faces(self, react: ReactDeclaration, redex: Bigraph, reactum: Bigraph, frame: Frame) -> None:
+        at = react.reactum.span
+        if redex.regions != reactum.regions:
+            found = f"the redex has {_regions(redex.regions)}, the reactum {reactum.regions}"
+            self.scope.add("rule", found, at, frame, "write 1 for an empty region")
+        lost = sorted(set(redex.outer_names) - set(reactum.outer_names))
+        new = sorted(set(reactum.outer_names) - set(redex.outer_names))
+        if lost:
+            hint = f"to leave it without this end, write '| {{{lost[0]}}}' there"
+            self.scope.add("rule", f"the reactum lacks the name '{lost[0]}' of the redex", at, frame, hint)
+        if new:
+            hint = f"close it with /{new[0]}, or give it to the redex"
+            self.scope.add("rule", f"the redex lacks the name '{new[0]}' of the reactum", at, frame, hint)
+
+    def _check_sites(self, react: ReactDeclaration, given: int, wanted: int, frame: Frame) -> None:
+        sites = react.instantiation
+        if sites is None and given != wanted:
+            found = f"the redex has {_sites(given)}, the reactum {wanted}"
+            hint = "say with '@ [...]' what each site of the reactum holds"
+            self.scope.add("rule", found, react.reactum.span, frame, hint)
+        elif sites is not None and len(sites) != wanted:
+            found = f"the reactum has {_sites(wanted)}, the map speaks of {len(sites)}"
+            self.scope.add("rule", found, react.reactum.span, frame)
+        elif sites is not None and sites and max(sites) >= given:
+            found = f"the redex has {_sites(given)}, there is no site {max(sites)}"
+            self.scope.add("rule", found, react.reactum.span, frame, "count sites from 0")
+
+    def _weight(self, react: ReactDeclaration, frame: Frame) -> float | None:
+        if self.kind in (None, SystemKind.BRS):
+            return None
+        if react.weight is None:
+            kind = self.kind.value if self.kind else ""
+            hint = "write -[1]-> for the weight 1"
+            self.scope.add("weight", f"a rule of a {kind} has a weight", react.span, frame, hint)
+            return None
+        found = self.scope.value(react.weight, frame)
+        if found is None:
+            return None
+        wrong = _wrong_weight(found, self.kind)
+        if wrong:
+            self.scope.add("weight", wrong, react.weight.span, frame)
+            return None
+        return float(found)
+
+
+def _wrong_weight(weight: Value, kind: SystemKind | None) -> str:
+    if isinstance(weight, str):
+        return "a weight is a number, this is a string"
+    if kind is SystemKind.SBRS:
+        return "" if weight > 0 else f"a rate is more than 0, this is {weight}"
+    return "" if weight >= 0 and _finite(weight) else f"a weight is 0 or more, and finite, this is {weight}"
+
+
+def _finite(value: Value | None) -> bool:
+    return isinstance(value, int | float) and math.isfinite(value)
+
+
+def _regions(count: int) -> str:
+    return f"{count} region{'' if count == 1 else 's'}"
+
+
+def _sites(count: int) -> str:
+    return f"{count} site{'' if count == 1 else 's'}"

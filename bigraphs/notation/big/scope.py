@@ -1,0 +1,151 @@
+"""What names stand for while a file is elaborated: constants, controls, and where evaluation is at."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final, TypeVar
+
+from bigraphs.notation.big import values
+from bigraphs.notation.big.declarations import BigDeclaration, ControlDeclaration, ReactDeclaration
+from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.names import Names
+from bigraphs.notation.big.syntax import Ion, Span, ValueExpression, Variable
+from bigraphs.signature import Control
+from bigraphs.system import Value, call
+
+NESTED: Final = 100
+"""How deep constants, and calls of bigraphs, may use each other."""
+
+
+_Given = TypeVar("_Given", BigDeclaration, ReactDeclaration)
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """The declaration that is evaluated: `label` is its call, if it has parameters, `values` what they are."""
+
+    label: str = ""
+    values: Mapping[str, Value] = field(default_factory=dict)
+    depth: int = 0
+
+    def inside(self, name: str, parameters: Sequence[str], arguments: Sequence[Value]) -> Frame:
+        """Return the frame of a call from this one."""
+        given = dict(zip(parameters, arguments, strict=True))
+        return Frame(call(name, tuple(arguments)) if given else "", given, self.depth + 1)
+
+
+class Scope:
+    """Constants and controls of one file, each evaluated once, and the types that parameters have had."""
+
+    def __init__(self, names: Names, findings: Findings, given: Mapping[str, Value]) -> None:
+        self.names = names
+        self.findings = findings
+        self.constants: dict[str, Value | None] = dict(given)
+        self._types: dict[tuple[str, str], tuple[str, int]] = {}
+        self._under_way: set[str] = set()
+        self._instances: dict[tuple[type, str], dict[str, Any]] = {}
+        self._depth = 0
+
+    def add(self, code: str, message: str, span: Span, frame: Frame, hint: str = "") -> None:
+        """Note a mistake, and in which call it came up."""
+        where = f", in {frame.label}" if frame.label else ""
+        self.findings.add(code, message + where, span, hint)
+
+    def value(self, expression: ValueExpression, frame: Frame) -> Value | None:
+        """Return the value of an expression, or None where a mistake has been noted."""
+        return values.evaluate(expression, lambda name: self._variable(name, frame), self.findings)
+
+    def arguments(self, expressions: Sequence[ValueExpression], frame: Frame) -> tuple[Value, ...] | None:
+        """Return the values of arguments."""
+        found = [self.value(expression, frame) for expression in expressions]
+        known = tuple(value for value in found if value is not None)
+        return known if len(known) == len(found) else None
+
+    def _variable(self, variable: Variable, frame: Frame) -> Value | None:
+        if variable.name in frame.values:
+            return frame.values[variable.name]
+        return self.constant(variable.name)
+
+    def constant(self, name: str) -> Value | None:
+        """Return what a constant is; constants may use each other in any order."""
+        if name not in self.constants and name in self.names.constants:
+            declaration = self.names.constants[name]
+            self.constants[name] = None  # while it is under way
+            if self._depth >= NESTED:
+                message = f"constants use each other more than {NESTED} deep"
+                self.findings.add("too-deep", message, declaration.span)
+                return None
+            self._depth += 1
+            self._under_way.add(name)
+            found = values.evaluate(declaration.value, self._inner(declaration.name), self.findings)
+            self._under_way.discard(name)
+            self._depth -= 1
+            if found is not None:
+                self.constants[name] = values.typed(
+                    declaration.type, found, declaration.value.span, self.findings
+                )
+        return self.constants.get(name)
+
+    def _inner(self, of: str) -> values.Lookup:
+        def lookup(variable: Variable) -> Value | None:
+            if variable.name in self._under_way:
+                message = f"'{of}' needs '{variable.name}', which is not known before it"
+                self.findings.add("cycle", message, variable.span)
+            return self.constant(variable.name)
+
+        return lookup
+
+    def control(self, ion: Ion, frame: Frame) -> Control | None:
+        """Return the control of an ion, its parameters filled in."""
+        declaration = self.names.controls.get(ion.control)
+        given = self.arguments(ion.arguments, frame)
+        if declaration is None or given is None or len(given) != len(declaration.parameters):
+            return None
+        if not self.fits(ion.control, declaration.parameters, given, ion.span, frame):
+            return None
+        if declaration.arity not in (None, len(ion.links)):
+            return None
+        return control_of(declaration, given)
+
+    def instance(self, choices: Sequence[_Given], given: tuple[Value, ...], span: Span) -> _Given | None:
+        """Return what is declared for these very arguments, as `big b(1) = ...` is; note if nothing is."""
+        name = choices[0].name
+        if (type(choices[0]), name) not in self._instances:
+            self._instances[type(choices[0]), name] = self._by_call(choices)
+        found = self._instances[type(choices[0]), name].get(call(name, given))
+        if found is None:
+            self.findings.add("name", f"'{name}' is not given for these arguments", span)
+        return found
+
+    def _by_call(self, choices: Sequence[_Given]) -> dict[str, Any]:
+        table: dict[str, Any] = {}
+        for each in choices:
+            values_ = self.arguments(each.arguments, Frame())
+            written = "" if values_ is None else call(each.name, values_)
+            if written in table:
+                self.findings.add("name", f"'{written}' is declared twice", each.span)
+            table[written] = each
+        return table
+
+    def fits(
+        self, name: str, parameters: Sequence[str], given: Sequence[Value], span: Span, frame: Frame
+    ) -> bool:
+        """Check that each parameter has one type, wherever it is given a value."""
+        fitting = True
+        for parameter, value in zip(parameters, given, strict=True):
+            type_ = values.type_name(value)
+            line = self.findings.text.count("\n", 0, span.start) + 1
+            known, first = self._types.setdefault((name, parameter), (type_, line))
+            if known != type_:
+                written = f'"{value}"' if isinstance(value, str) else value
+                message = f"'{parameter}' of '{name}' is of type {known}, this is the {type_} {written}"
+                self.add("type", message, span, frame, f"line {first} gives it its type")
+                fitting = False
+        return fitting
+
+
+def control_of(declaration: ControlDeclaration, given: tuple[Value, ...]) -> Control:
+    """Return a declared control for some arguments."""
+    name = call(declaration.name, given)
+    return Control(name, declaration.arity, declaration.status, declaration.ordered)

@@ -1,0 +1,287 @@
+"""A whole `.big` file elaborated to a system."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import product
+from typing import Final
+
+from bigraphs.algebra import lean
+from bigraphs.bigraph import Bigraph
+from bigraphs.notation.big import values
+from bigraphs.notation.big.declarations import Call, ClassTerm, Model, ParameterDeclaration, SystemTerm
+from bigraphs.notation.big.expressions import Evaluation
+from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.names import Names, index
+from bigraphs.notation.big.parser import parse_model
+from bigraphs.notation.big.rules import Rules
+from bigraphs.notation.big.scope import Frame, Scope, control_of
+from bigraphs.notation.big.sorts import check_sorted, sorting_of
+from bigraphs.notation.big.survey import survey
+from bigraphs.notation.big.syntax import Arithmetic, Negated, Span, ValueExpression, Variable
+from bigraphs.signature import Signature
+from bigraphs.system import Action, Predicate, PriorityClass, Rule, System, SystemKind, Value
+
+MAX_INSTANCES: Final = 10_000
+"""How many rules and predicates a system has, those for each value of its parameters counted."""
+_ONE: Final = Span(0, 1)
+
+
+def read_system(text: str, *, constants: Mapping[str, Value] | None = None) -> System:
+    """Read a `.big` file that ends in a system; `constants` go before those that it declares.
+
+    Raises NotationError with all that does not make sense, or the first thing that does not parse.
+    """
+    model = parse_model(text)
+    findings = Findings(text)
+    found = _Systems(model, findings, constants or {}).system()
+    findings.raise_any()
+    if found is None:
+        raise AssertionError("no system, and no mistake")
+    return found
+
+
+class _Systems:
+    """One file on its way to a system."""
+
+    def __init__(self, model: Model, findings: Findings, constants: Mapping[str, Value]) -> None:
+        self.model = model
+        self.findings = findings
+        self.names = index(model, findings)
+        survey(model, self.names, findings, constants)
+        self.scope = Scope(self.names, findings, self.given(constants))
+        self.evaluation = Evaluation(self.scope)
+        kind = SystemKind(model.system.kind) if model.system is not None else None
+        self.rules = Rules(self.evaluation, kind)
+        self.ranges: dict[str, tuple[Value, ...]] = {}
+
+    def given(self, constants: Mapping[str, Value]) -> dict[str, Value]:
+        """Return constants as values of the types that they are declared with."""
+        found = dict(constants)
+        for name, value in constants.items():
+            declared = self.names.constants.get(name)
+            typed = values.typed(declared.type, value, declared.span, self.findings) if declared else value
+            found[name] = value if typed is None else typed
+        return found
+
+    def system(self) -> System | None:
+        """Return the system, if all is well; what is declared and not used is looked at, too."""
+        check_declared(self.names, self.scope, self.evaluation, self.rules)
+        sorting = sorting_of(self.model, self.names, self.findings)
+        term = self.model.system
+        if term is None:
+            hint = "end it with 'begin brs init ...; rules = [{...}]; end'"
+            self.findings.add("system", "the file has no system", _end(self.findings.text), hint)
+            return None
+        for parameter in term.parameters:
+            self.parameter(parameter)
+        initial = self.initial(term.init)
+        classes = [self.priority_class(each) for each in term.classes]
+        self.check_classes(term, classes)
+        predicates = [found for call in term.predicates for found in self.predicates(call)]
+        self.check_distinct([predicate.label for predicate in predicates], term.predicates)
+        if len(self.findings) or initial is None:
+            return None
+        actions = _actions(classes)
+        system = System(
+            SystemKind(term.kind),
+            Signature(),
+            initial,
+            tuple(classes),
+            tuple(predicates),
+            actions,
+            (),
+            sorting,
+        )
+        whole = with_signature(system, self.signature(system))
+        spans = {rule.name: rule.span for rule in self.names.all_reacts()}
+        check_sorted(whole, term.init.span, spans, self.findings)
+        return whole
+
+    def signature(self, system: System) -> Signature:
+        """Return the declared controls, and of parametrised ones those that are in the system."""
+        plain = [control_of(each, ()) for each in self.names.controls.values() if not each.parameters]
+        used = {node.control for bigraph in bigraphs_of(system) for node in bigraph.nodes}
+        given = [control for name, control in self.evaluation.controls.items() if name in used]
+        return Signature(tuple({control.name: control for control in (*plain, *given)}.values()))
+
+    def parameter(self, parameter: ParameterDeclaration) -> None:
+        """Evaluate what parameters of the system range over."""
+        found = [self.scope.value(value, Frame()) for value in parameter.values]
+        typed = [
+            None if value is None else values.typed(parameter.type, value, written.span, self.findings)
+            for value, written in zip(found, parameter.values, strict=True)
+        ]
+        known = [value for value in typed if value is not None]
+        if len(known) < len(typed):
+            return
+        chosen = self.ranged(known, parameter.span) if parameter.ranged else sorted(set(known))
+        for name in parameter.names:
+            if name in self.names.constants or name in self.names.bigs or name in self.names.reacts:
+                self.findings.add("name", f"'{name}' is declared twice", parameter.span)
+            elif len(chosen) == 1:
+                self.scope.constants[name] = chosen[0]
+            self.ranges[name] = tuple(chosen)
+
+    def ranged(self, bounds: list[Value], span: Span) -> list[Value]:
+        """Return `[first : step : last]`, the first value always."""
+        first, step, last = (value if isinstance(value, int | float) else 0 for value in bounds)
+        if step <= 0:
+            self.findings.add("number", f"a step is more than 0, this is {step}", span)
+            return [first]
+        if (last - first) / step >= MAX_INSTANCES:
+            self.findings.add("too-large", f"a range of more than {MAX_INSTANCES} values", span)
+            return [first]
+        found: list[Value] = [first]
+        value = first + step
+        while value <= last:
+            found.append(value)
+            value += step
+        return found
+
+    def initial(self, call: Call) -> Bigraph | None:
+        given = self.scope.arguments(call.arguments, Frame())
+        found = None if given is None else self.evaluation.named(call.name, given, call.span, Frame())
+        if found is not None and (found.sites or found.inner_links):
+            message = f"a first state is ground, '{call.name}' has {found.inner}"
+            self.findings.add("initial", message, call.span, "fill its sites with 1, close its inner names")
+        return None if found is None else lean(found)
+
+    def instances(self, call: Call) -> Iterator[tuple[Value, ...]]:
+        """Yield the arguments of a call for each value of the parameters in it.
+
+        The last comes first, as in BigraphER, where that decides between instantaneous rules.
+        """
+        names = sorted({name for value in call.arguments for name in _variables(value)} & set(self.ranges))
+        count = 1
+        for name in names:
+            count *= len(self.ranges[name])
+        if count > MAX_INSTANCES:
+            self.findings.add("too-large", f"more than {MAX_INSTANCES} instances of '{call.name}'", call.span)
+            return
+        for chosen in reversed(list(product(*(self.ranges[name] for name in names)))):
+            given = self.scope.arguments(call.arguments, Frame(values=dict(zip(names, chosen, strict=True))))
+            if given is not None:
+                yield given
+
+    def priority_class(self, term: ClassTerm) -> PriorityClass:
+        rules: list[Rule] = []
+        for call in term.rules:
+            found = [self.rules.named(call.name, given, call.span) for given in self.instances(call)]
+            rules.extend(rule for rule in found if rule is not None)
+        if len(rules) > MAX_INSTANCES:
+            self.findings.add("too-large", f"more than {MAX_INSTANCES} rules", term.span)
+        self.check_distinct([rule.label for rule in rules], term.rules)
+        return PriorityClass(tuple(rules), term.instantaneous)
+
+    def check_distinct(self, labels: list[str], calls: tuple[Call, ...]) -> None:
+        again = sorted(label for label, times in Counter(labels).items() if times > 1)
+        if again:
+            at = next((call.span for call in calls[::-1] if again[0].startswith(call.name)), _ONE)
+            self.findings.add("name", f"'{again[0]}' is listed twice", at, "it would count twice")
+
+    def check_classes(self, term: SystemTerm, classes: list[PriorityClass]) -> None:
+        if classes and all(each.instantaneous for each in classes):
+            hint = "put the rules between states into braces, {...}"
+            self.findings.add("system", "all classes are instantaneous", term.classes[0].span, hint)
+        for each, found in zip(term.classes, classes, strict=True):
+            for rule in found.rules:
+                self.check_kind(term, each, rule)
+
+    def check_kind(self, term: SystemTerm, each: ClassTerm, rule: Rule) -> None:
+        """Check that a rule is of its system's kind."""
+        endless = rule.weight == float("inf")
+        if term.kind == "sbrs" and endless != each.instantaneous and rule.weight is not None:
+            message = f"the rate of '{rule.label}' is {rule.weight}, its class is "
+            wanted = "instantaneous" if each.instantaneous else "not instantaneous"
+            hint = "rules in '(...)' have the rate inf, those in '{...}' a finite one"
+            self.findings.add("weight", message + wanted, each.span, hint)
+        in_action = rule.name in self.names.actions
+        if (term.kind == "nbrs") != in_action:
+            message = f"'{rule.name}' is in {'an' if in_action else 'no'} action, in a {term.kind}"
+            self.findings.add(
+                "system", message, each.span, "rules of an nbrs, and only those, are in actions"
+            )
+
+    def predicates(self, call: Call) -> Iterator[Predicate]:
+        for given in self.instances(call):
+            found = self.evaluation.named(call.name, given, call.span, Frame())
+            pattern = None if found is None else self.rules.as_pattern(found, call.span, Frame())
+            reward = None if call.reward is None else self.rules.reward(call.reward)
+            if pattern is not None:
+                yield Predicate(call.name, pattern, reward, given, self.rules.position(call.span))
+
+
+def check_declared(names: Names, scope: Scope, evaluation: Evaluation, rules: Rules) -> None:
+    """Evaluate every declaration without parameters, so that its mistakes are found even if nothing uses it."""
+    for name in names.constants:
+        scope.constant(name)
+    for big in names.all_bigs():
+        given = scope.arguments(big.arguments, Frame())
+        if not big.parameters and given is not None:
+            evaluation.named(big.name, given, big.span, Frame())
+    for react in names.all_reacts():
+        given = scope.arguments(react.arguments, Frame())
+        if not react.parameters and given is not None:
+            rules.named(react.name, given, react.span)
+
+
+def bigraphs_of(system: System) -> Iterator[Bigraph]:
+    """Yield every bigraph of a system."""
+    yield system.initial
+    for rule in system.rules():
+        yield rule.redex
+        yield rule.reactum
+        yield from (condition.pattern for condition in rule.conditions)
+    yield from (predicate.pattern for predicate in system.predicates)
+
+
+def with_signature(system: System, signature: Signature) -> System:
+    """Return a system all of whose bigraphs are over one signature."""
+
+    def widened(rule: Rule) -> Rule:
+        conditions = tuple(
+            replace(each, pattern=replace(each.pattern, signature=signature)) for each in rule.conditions
+        )
+        redex, reactum = (replace(side, signature=signature) for side in (rule.redex, rule.reactum))
+        return replace(rule, redex=redex, reactum=reactum, conditions=conditions)
+
+    return replace(
+        system,
+        signature=signature,
+        initial=replace(system.initial, signature=signature),
+        classes=tuple(replace(each, rules=tuple(map(widened, each.rules))) for each in system.classes),
+        predicates=tuple(
+            replace(each, pattern=replace(each.pattern, signature=signature)) for each in system.predicates
+        ),
+    )
+
+
+def _actions(classes: list[PriorityClass]) -> tuple[Action, ...]:
+    found = {
+        rule.action: Action(rule.action, rule.reward)
+        for each in classes
+        for rule in each.rules
+        if rule.action is not None
+    }
+    return tuple(found.values())
+
+
+def _variables(value: ValueExpression) -> Iterator[str]:
+    match value:
+        case Variable(name):
+            yield name
+        case Negated(operand):
+            yield from _variables(operand)
+        case Arithmetic(first, rest):
+            for operand in (first, *(operand for _, operand in rest)):
+                yield from _variables(operand)
+        case _:
+            pass
+
+
+def _end(text: str) -> Span:
+    end = len(text.rstrip())
+    return Span(max(0, end - 1), end)

@@ -1,0 +1,91 @@
+"""Declarations without a system, and single expressions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from bigraphs.bigraph import Bigraph
+from bigraphs.notation.big.declarations import BigDeclaration, ControlDeclaration
+from bigraphs.notation.big.expressions import Evaluation
+from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.names import Names, index
+from bigraphs.notation.big.parser import parse_expression, parse_model
+from bigraphs.notation.big.rules import Rules
+from bigraphs.notation.big.scope import Frame, Scope, control_of
+from bigraphs.notation.big.survey import Survey, survey
+from bigraphs.notation.big.syntax import NOWHERE, Number
+from bigraphs.notation.big.systems import check_declared
+from bigraphs.rules import ReactionRule
+from bigraphs.signature import Signature
+from bigraphs.sorting import base
+
+
+@dataclass(frozen=True, slots=True)
+class Theory:
+    """What a `.big` file declares without parameters: bigraphs and rules by name, in the order written."""
+
+    signature: Signature
+    bigraphs: tuple[tuple[str, Bigraph], ...]
+    rules: tuple[ReactionRule, ...]
+
+
+def read_theory(text: str) -> Theory:
+    """Read the declarations of a `.big` file, whose system is passed over; raises NotationError with all mistakes."""
+    findings = Findings(text)
+    model = replace(parse_model(text), system=None)
+    names = index(model, findings)
+    survey(model, names, findings)
+    scope = Scope(names, findings, {})
+    evaluation = Evaluation(scope)
+    rules = Rules(evaluation, None)
+    check_declared(names, scope, evaluation, rules)
+    findings.raise_any()
+    return _theory(names, evaluation, rules)
+
+
+def _theory(names: Names, evaluation: Evaluation, rules: Rules) -> Theory:
+    plain = [control_of(each, ()) for each in names.controls.values() if not each.parameters]
+    every = {control.name: control for control in (*plain, *evaluation.controls.values())}
+    signature = Signature(tuple(every.values()))
+    bigs = [big.name for big in names.bigs.values() if not big.parameters and not big.arguments]
+    found = [(name, evaluation.named(name, (), NOWHERE, Frame())) for name in bigs]
+    reacts = [react.name for react in names.reacts.values() if not react.parameters and not react.arguments]
+    known = [rule for name in reacts if (rule := rules.named(name, (), NOWHERE)) is not None]
+    return Theory(
+        signature,
+        tuple((name, replace(big, signature=signature)) for name, big in found if big is not None),
+        tuple(_widened(rule.reaction(), signature) for rule in known),
+    )
+
+
+def _widened(rule: ReactionRule, signature: Signature) -> ReactionRule:
+    redex, reactum = (replace(side, signature=signature) for side in (rule.redex, rule.reactum))
+    return replace(rule, redex=redex, reactum=reactum)
+
+
+def read_big(text: str, signature: Signature, known: Mapping[str, Bigraph] | None = None) -> Bigraph:
+    """Read one expression over a signature; `known` gives the bigraphs that it may name."""
+    expression = parse_expression(text)
+    findings = Findings(text)
+    names = _names_of(signature, known or {})
+    Survey(names, findings, frozenset()).expression(expression)
+    evaluation = Evaluation(Scope(names, findings, {}), known)
+    found = evaluation.value(expression, Frame())
+    findings.raise_any()
+    if found is None:
+        raise AssertionError("no bigraph, and no mistake")
+    return replace(found, signature=signature)
+
+
+def _names_of(signature: Signature, known: Mapping[str, Bigraph]) -> Names:
+    names = Names()
+    for control in signature.controls:
+        name = base(control.name)
+        count = control.name.count(",") + 1 if "(" in control.name else 0
+        parameters = tuple(f"p{place}" for place in range(count))
+        names.controls[name] = ControlDeclaration(
+            name, control.arity, control.status, control.ordered, parameters
+        )
+    names.bigs.update((name, BigDeclaration(name, Number(0))) for name in known)
+    return names

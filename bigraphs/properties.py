@@ -1,0 +1,172 @@
+"""Properties of states, in the terms of BigMC: patterns, sizes, and a look at the states before and after."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final, TypeAlias
+
+from bigraphs.bigraph import Bigraph
+from bigraphs.canonical import equal
+from bigraphs.matching import find_matches
+
+
+@dataclass(frozen=True, slots=True)
+class Matches:
+    """The pattern occurs; its names stand for any link, but `link_constants` for themselves."""
+
+    pattern: Bigraph
+    link_constants: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class Equal:
+    """The state is this one."""
+
+    state: Bigraph
+
+
+@dataclass(frozen=True, slots=True)
+class Terminal:
+    """No rule applies."""
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    """The other does not hold."""
+
+    operand: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Both:
+    """The two hold."""
+
+    left: Formula
+    right: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Either:
+    """One of the two holds."""
+
+    left: Formula
+    right: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class IfElse:
+    """What is to hold depends on whether the condition does."""
+
+    condition: Formula
+    then: Formula
+    otherwise: Formula
+
+
+class Scope(Enum):
+    """Which state is spoken of."""
+
+    THIS = "this"
+    PREDECESSOR = "pred"
+    """Every state from which a step leads here; nothing is asked of a first state."""
+    SUCCESSOR = "succ"
+    """Every state that a step leads to."""
+    TERMINAL = "terminal"
+    """This one, if no rule applies; nothing is asked of others."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scoped:
+    """The operand holds of the states in the scope; of those before and after, only patterns and sizes are known."""
+
+    scope: Scope
+    operand: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """The number of nodes of the states in a scope."""
+
+    scope: Scope = Scope.THIS
+
+
+@dataclass(frozen=True, slots=True)
+class Compare:
+    """`==`, `!=`, `<`, `<=`, `>` or `>=` between numbers of nodes, for all states that they may be of."""
+
+    symbol: str
+    left: Size | int
+    right: Size | int
+
+
+Formula: TypeAlias = Matches | Equal | Terminal | Not | Both | Either | IfElse | Scoped | Compare
+
+
+@dataclass(frozen=True, slots=True)
+class Property:
+    """A formula that is to hold in every state that can be reached."""
+
+    name: str
+    formula: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """A state with those one step before and after it."""
+
+    state: Bigraph
+    predecessors: tuple[Bigraph, ...] = ()
+    successors: tuple[Bigraph, ...] = ()
+
+
+_COMPARISONS: Final[Mapping[str, Callable[[int, int], bool]]] = {
+    "==": operator.eq,
+    "!=": operator.ne,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+
+
+def holds(formula: Formula, here: Situation) -> bool:
+    """Say whether a formula holds in a situation."""
+    match formula:
+        case Matches(pattern, constants):
+            return any(True for _ in find_matches(pattern, here.state, link_constants=constants))
+        case Equal(state):
+            return equal(state, here.state)
+        case Terminal():
+            return not here.successors
+        case Not(operand):
+            return not holds(operand, here)
+        case Both(left, right):
+            return holds(left, here) and holds(right, here)
+        case Either(left, right):
+            return holds(left, here) or holds(right, here)
+        case IfElse(condition, then, otherwise):
+            return holds(then if holds(condition, here) else otherwise, here)
+        case Scoped(Scope.THIS | Scope.TERMINAL as scope, operand):
+            return not _states(scope, here) or holds(operand, here)
+        case Scoped(scope, operand):
+            return all(holds(operand, Situation(state)) for state in _states(scope, here))
+        case Compare(symbol, left, right):
+            compare = _COMPARISONS[symbol]
+            return all(compare(one, other) for one in _sizes(left, here) for other in _sizes(right, here))
+
+
+def _states(scope: Scope, here: Situation) -> tuple[Bigraph, ...]:
+    return {
+        Scope.THIS: (here.state,),
+        Scope.PREDECESSOR: here.predecessors,
+        Scope.SUCCESSOR: here.successors,
+        Scope.TERMINAL: () if here.successors else (here.state,),
+    }[scope]
+
+
+def _sizes(size: Size | int, here: Situation) -> Iterable[int]:
+    if isinstance(size, int):
+        return (size,)
+    return [len(state.nodes) for state in _states(size.scope, here)]

@@ -1,0 +1,94 @@
+"""What is claimed of a transition system, decided: predicates and properties in every state, or in some."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+from bigraphs.errors import BigraphError
+from bigraphs.properties import Property, Situation, holds
+from bigraphs.transitions import TransitionSystem
+
+
+class Quantifier(Enum):
+    """In which states a predicate is claimed to occur."""
+
+    ALWAYS = "always"
+    NEVER = "never"
+    REACHABLE = "reachable"
+
+
+class Outcome(Enum):
+    """What became of a claim; *incomplete* if the states that were explored don't decide it."""
+
+    HOLDS = "holds"
+    VIOLATED = "violated"
+    INCOMPLETE = "incomplete"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What became of one claim, with the nearest state that shows it, if one does."""
+
+    claim: str
+    outcome: Outcome
+    state: int | None
+
+
+def predicate_verdict(system: TransitionSystem, quantifier: Quantifier, label: str) -> Verdict:
+    """Decide whether a predicate occurs always, never or ever; raises BigraphError if there is none of that label."""
+    labels = [predicate.label for predicate in system.system.predicates]
+    if label not in labels:
+        known = ", ".join(labels) or "none"
+        raise BigraphError("predicate", f"unknown predicate '{label}'", f"the predicates are {known}")
+    column = system.labels[labels.index(label)]
+    found = column.find(0 if quantifier is Quantifier.ALWAYS else 1)
+    state = None if found < 0 else found
+    claim = f"{quantifier.value} {label}"
+    if quantifier is Quantifier.REACHABLE:
+        return Verdict(
+            claim, Outcome.HOLDS if state is not None else _nothing(system, Outcome.VIOLATED), state
+        )
+    return Verdict(claim, Outcome.VIOLATED if state is not None else _nothing(system, Outcome.HOLDS), state)
+
+
+def deadlock_verdict(system: TransitionSystem) -> Verdict:
+    """Decide whether something can happen in every state."""
+    going = set(system.starts)
+    found = next((state for state in range(system.expanded) if state not in going), None)
+    outcome = Outcome.VIOLATED if found is not None else _nothing(system, Outcome.HOLDS)
+    return Verdict("no deadlock", outcome, found)
+
+
+def property_verdict(system: TransitionSystem, claim: Property) -> Verdict:
+    """Decide whether a property of a `.bgm` file holds in every state; states that were not expanded are left out."""
+    found = next(
+        (state for state, here in _situations(system) if not holds(claim.formula, here)),
+        None,
+    )
+    outcome = Outcome.VIOLATED if found is not None else _nothing(system, Outcome.HOLDS)
+    return Verdict(claim.name, outcome, found)
+
+
+def _nothing(system: TransitionSystem, outcome: Outcome) -> Outcome:
+    """Return what it means that nothing was found: nothing, unless all states were looked at."""
+    return outcome if system.complete else Outcome.INCOMPLETE
+
+
+def _situations(system: TransitionSystem) -> Iterator[tuple[int, Situation]]:
+    before: list[list[int]] = [[] for _ in range(len(system))]
+    after: list[list[int]] = [[] for _ in range(len(system))]
+    for start, target in zip(system.starts, system.targets, strict=True):
+        after[start].append(target)
+        before[target].append(start)
+    bigraphs = [system.state(state) for state in range(len(system))]
+    for state in range(system.expanded):
+        yield (
+            state,
+            Situation(
+                bigraphs[state],
+                tuple(bigraphs[other] for other in before[state]),
+                tuple(bigraphs[other] for other in after[state]),
+            ),
+        )

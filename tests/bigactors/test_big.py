@@ -1,0 +1,166 @@
+import json
+
+import pytest
+
+WALK = """\
+ctrl Room = 0; atomic ctrl Door = 1; atomic ctrl Robot = 0;
+big world = /a /b (Room.(Robot | Robot | Door{a}) | Room.(Door{a} | Door{b}) | Room.Door{b});
+react walk = Room.(Robot | Door{d} | id) || Room.(Door{d} | id)
+  --> Room.(Door{d} | id) || Room.(Robot | Door{d} | id);
+react burn = Room.(Robot | Robot | Robot | id) --> Room.(Robot | Robot | id) @ [0];
+big meeting = Room.(Robot | Robot | id);
+big crowd = Room.(Robot | Robot | Robot | id);
+begin brs
+  init world;
+  rules = [ {walk, burn} ];
+  preds = { meeting, crowd };
+end
+"""
+
+DECAY = """\
+float k = 2.;
+atomic ctrl A = 0; atomic ctrl B = 0;
+big start = A | A | A;
+big gone = B | B | B;
+react decay = A -[ k ]-> B;
+begin sbrs init start; rules = [ {decay} ]; preds = { gone }; end
+"""
+
+LAMPS = """\
+%active Lamp : 0;
+%passive On : 0;
+%passive Off : 0;
+Lamp.Off -> Lamp.On;
+Lamp.Off | Lamp.Off;
+%property dark !matches(Lamp.On | Lamp.On);
+%check
+"""
+
+
+@pytest.fixture
+def walk(missions):
+    (missions / "walk.big").write_text(WALK, encoding="utf-8")
+    (missions / "decay.big").write_text(DECAY, encoding="utf-8")
+    return missions
+
+
+@pytest.mark.usefixtures("walk")
+class TestBig:
+    def test_full_counts_states_and_names_rules_that_are_never_used(self, bigactors):
+        code, out, _ = bigactors("big", "full", "walk.big")
+        assert code == 0
+        assert out.startswith("walk.big: 4 states, 6 transitions, 11 occurrences, complete, ")
+        assert out.splitlines()[1:] == [
+            "  meeting occurs in 2",
+            "  crowd occurs in 0",
+            "  rules never used: burn",
+        ]
+
+    def test_a_limit_makes_it_incomplete(self, bigactors):
+        code, out, _ = bigactors("big", "full", "--max-states", "2", "walk.big")
+        assert code == 3
+        assert "incomplete: the limit of 2 states was reached" in out
+        assert bigactors("big", "check", "--never", "crowd", "--max-states", "2", "walk.big")[0] == 3
+
+    def test_full_writes_what_is_asked_for(self, bigactors, walk):
+        files = ["--html", "w.html", "--svg", "w.svg", "--dot", "w.dot", "--json", "w.json"]
+        code, _, err = bigactors("big", "full", *files, "--prism", "p", "--storm", "s", "walk.big")
+        assert code == 0
+        written = [line.removeprefix("  written: ") for line in err.splitlines()]
+        assert written == [
+            "w.html", "w.svg", "w.dot", "w.json", "p.tra", "p.lab", "p.csl", "p.srew", "p.trew", "s.tra", "s.lab",
+        ]  # fmt: skip
+        assert all((walk / name).read_text(encoding="utf-8") for name in written)
+
+    def test_data_goes_to_standard_output_alone(self, bigactors):
+        code, out, err = bigactors("big", "full", "--json", "-", "walk.big")
+        assert (code, err) == (0, "")
+        assert len(json.loads(out)["states"]) == 4
+
+    def test_a_predicate_that_fails_comes_with_a_shortest_run(self, bigactors):
+        code, out, _ = bigactors("big", "check", "--always", "meeting", "walk.big")
+        assert code == 1
+        assert "  ✗ always meeting: violated\n      a shortest run to state 1, 1 steps:\n" in out
+        assert "        1: --walk--> " in out
+
+    def test_what_holds_is_decided_by_looking_at_every_state(self, bigactors):
+        claims = ["--never", "crowd", "--reachable", "meeting", "--no-deadlock"]
+        code, out, _ = bigactors("big", "check", *claims, "--json", "-", "walk.big")
+        assert code == 0
+        assert [(each["claim"], each["outcome"]) for each in json.loads(out)["verdicts"]] == [
+            ("never crowd", "holds"),
+            ("reachable meeting", "holds"),
+            ("no deadlock", "holds"),
+        ]
+
+    def test_a_property_of_a_bgm_file_is_checked(self, bigactors, walk):
+        (walk / "lamps.bgm").write_text(LAMPS, encoding="utf-8")
+        code, out, _ = bigactors("big", "check", "lamps.bgm")
+        assert code == 1
+        assert "✗ dark: violated" in out
+        assert "2 steps" in out
+
+    def test_a_run_is_the_same_for_the_same_seed(self, bigactors):
+        one = bigactors("big", "sim", "--seed", "3", "--steps", "5", "walk.big")
+        assert one == bigactors("big", "sim", "--seed", "3", "--steps", "5", "walk.big")
+        assert one[0] == 0
+        assert len(one[1].splitlines()) == 6
+
+    def test_a_run_of_rates_has_times_and_ends_where_nothing_can_happen(self, bigactors):
+        code, out, _ = bigactors("big", "sim", "--json", "-", "decay.big")
+        run = json.loads(out)["run"]
+        assert code == 0
+        assert [stage["rule"] for stage in run] == [None, "decay", "decay", "decay"]
+        assert 0 == run[0]["time"] < run[1]["time"] < run[2]["time"] < run[3]["time"]
+        assert run[3]["labels"] == ["gone"]
+        assert len(run[1]["kept"]) == 2  # the third A has become another node
+        assert len(bigactors("big", "sim", "--until", "1e-9", "decay.big")[1].splitlines()) == 1
+
+    def test_a_constant_may_have_another_value(self, bigactors):
+        _, out, _ = bigactors("big", "full", "--const", "k=7", "--json", "-", "decay.big")
+        assert json.loads(out)["transitions"][0]["weight"] == 21
+
+    def test_validate_says_what_is_in_a_file(self, bigactors):
+        code, out, _ = bigactors("big", "validate", "walk.big")
+        assert code == 0
+        assert out.splitlines()[0] == "walk.big: a brs of 2 rules"
+        assert "  a class, one at a time: walk, burn" in out
+
+    def test_show_prints_and_draws_a_state(self, bigactors, walk):
+        code, out, _ = bigactors("big", "show", "--state", "1", "--output", "one.svg", "walk.big")
+        assert code == 0
+        assert out.startswith("state 1 = ")
+        assert (walk / "one.svg").read_text(encoding="utf-8").startswith("<?xml")
+
+    @pytest.mark.parametrize(
+        ("line", "message"),
+        [
+            (["check", "--never", "crowds", "walk.big"], "unknown predicate 'crowds'"),
+            (["check", "walk.big"], "there is nothing to check"),
+            (["show", "--state", "9", "walk.big"], "there is no state 9: there are 4"),
+            (["sim", "--until", "3", "walk.big"], "only an sbrs has times"),
+            (["full", "--html", "no/where.html", "walk.big"], "there is no such folder"),
+            (["full", "nothing.big"], "No such file"),
+            (["full", "--const", "k", "decay.big"], "is not NAME=VALUE"),
+            (["fulll", "walk.big"], "invalid choice"),
+        ],
+        ids=lambda value: "-".join(value) if isinstance(value, list) else "",
+    )
+    def test_mistakes_are_told(self, bigactors, line, message):
+        code, out, err = bigactors("big", *line)
+        assert (code, out if line[0] != "check" else "") == (2, "")
+        assert message in err
+        assert "Traceback" not in err
+
+    def test_a_system_that_ships_is_known_by_its_name(self, bigactors):
+        code, out, _ = bigactors("big", "full", "mobile_ambients")
+        assert code == 0
+        assert out.startswith("mobile_ambients: 4 states, 3 transitions, ")
+
+    def test_a_mistake_in_a_file_is_shown_where_it_is(self, bigactors, walk):
+        (walk / "bad.big").write_text(WALK.replace("Room.Door{b});", "Room.Dor{b});"), encoding="utf-8")
+        code, _, err = bigactors("big", "full", "bad.big")
+        assert code == 2
+        assert err.startswith("bad.big:2:")
+        assert "Dor" in err
+        assert "^" in err

@@ -1,0 +1,153 @@
+import math
+
+import pytest
+from big_files import read, rules, system
+
+from bigraphs.canonical import equal
+from bigraphs.errors import NotationError
+from bigraphs.notation import read_big, read_system
+from bigraphs.system import Action, Position, SystemKind, Where
+
+
+def test_a_rule_has_its_sides_map_and_conditions():
+    (rule,) = rules(
+        "react r = A.id || A.id --> A.id || A.1 @ [1] if !A.Z{x} in ctx, Z{x} in param;", rules="{r}"
+    )
+    assert (rule.name, rule.label, rule.instantiation, rule.weight) == ("r", "r", (1,), None)
+    assert [(each.positive, each.where) for each in rule.conditions] == [
+        (False, Where.CONTEXT),
+        (True, Where.PARAM),
+    ]
+    signature = rule.redex.signature
+    assert equal(rule.redex, read_big("A || A", signature))
+    assert equal(rule.conditions[0].pattern, read_big("A.Z{x}", signature))
+    assert rule.position == Position(2, 7)
+
+
+def test_parameters_range_over_sets_ranges_and_single_values():
+    declarations = "fun ctrl K(i, f) = 0; fun react r(i, f) = K(i, f) --> K(i + 1, f);"
+    found = rules(declarations, "int n = {3, 1, 3}; float f = [0.5 : 0.5 : 1.0];", rules="{r(n, f)}")
+    assert sorted(rule.label for rule in found) == ["r(1,0.5)", "r(1,1.0)", "r(3,0.5)", "r(3,1.0)"]
+    (one,) = rules(declarations, "int n = 2 * 3;", rules="{r(n, -1.5)}")
+    assert one.redex.nodes[0].control == "K(6,-1.5)"
+    assert one.reactum.nodes[0].control == "K(7,-1.5)"
+
+
+def test_the_last_value_of_a_parameter_comes_first_as_in_bigrapher():
+    declarations = "fun ctrl K(i) = 0; fun react r(i, j) = K(i) --> K(j);"
+    found = rules(declarations, "int b = {1, 2}; int a = {3, 4};", rules="{r(b, a)}")
+    assert [rule.parameters for rule in found] == [(2, 4), (1, 4), (2, 3), (1, 3)]
+
+
+def test_one_parameter_twice_has_one_value():
+    declarations = "fun ctrl K(i) = 0; fun react r(i, j) = K(i) --> K(j);"
+    found = rules(declarations, "int n = [1 : 1 : 3];", rules="{r(n, n + 1)}")
+    assert [rule.parameters for rule in found] == [(3, 4), (2, 3), (1, 2)]
+
+
+def test_strings_are_parameters_too():
+    found = read(
+        'fun ctrl K(w) = 0; string w = "one"; fun big p(w) = K(w);',
+        'string v = {"two", "b", "two"};',
+        preds="p(v), p(w)",
+    )
+    assert [predicate.label for predicate in found.predicates] == ['p("two")', 'p("b")', 'p("one")']
+
+
+def test_constants_are_evaluated_in_any_order_and_can_be_given():
+    text = system(
+        "int a = b - 1; int b = 2 ^ 10 / 3; float c = 7; fun ctrl K(x, y) = 0; big t = K(a, c).1;", init="t"
+    )
+    assert read_system(text).initial.nodes[0].control == "K(340,7.0)"
+    assert read_system(text, constants={"b": 5}).initial.nodes[0].control == "K(4,7.0)"
+
+
+def test_constants_that_are_given_must_be_there_and_of_their_type():
+    text = system("int a = 1; fun ctrl K(x, y) = 0; big t = K(a, b).1;", init="t")
+    assert read_system(text, constants={"b": 2.5}).initial.nodes[0].control == "K(1,2.5)"
+    with pytest.raises(NotationError, match=r"an int was expected, this is the float 2\.5"):
+        read_system(text, constants={"a": 2.5, "b": 1})
+    with pytest.raises(NotationError, match="no constant 'c' is in the file"):
+        read_system(text, constants={"b": 1, "c": 1})
+
+
+def test_whole_numbers_are_divided_towards_zero():
+    found = read("fun ctrl K(a, b, c) = 0; big t = K(-7 / 2, 7 / -2, 7 / 2.0).1;", init="t")
+    assert found.initial.nodes[0].control == "K(-3,-3,3.5)"
+
+
+def test_bigraphs_take_arguments_and_repeat():
+    found = read(
+        "fun ctrl K(i) = 0; fun big row(n, i) = par(n, K(i).1) | par(0, 1); fun big two(n) = ppar(2, row(n, 5));",
+        init="two(3)",
+    )
+    assert [node.control for node in found.initial.nodes] == ["K(5)"] * 6
+    assert found.initial.regions == 2
+
+
+def test_classes_keep_their_order_and_kind():
+    found = read("react r = Z{x} --> Z{x}; react q = A --> A;", rules="(q), {r}, {q}")
+    assert [(each.instantaneous, [rule.name for rule in each.rules]) for each in found.classes] == [
+        (True, ["q"]),
+        (False, ["r"]),
+        (False, ["q"]),
+    ]
+
+
+def test_weights_are_evaluated_and_mean_what_the_kind_says():
+    declarations = "float w = 2; fun react r(n) = Z{x} -[w / n]-> Z{x};"
+    (rule,) = rules(declarations, kind="sbrs", rules="{r(4)}")
+    assert rule.weight == 0.5
+    (fast,) = rules("react r = Z{x} -[inf]-> Z{x};\nreact q = A -[1]-> A;", kind="sbrs", rules="(r), {q}")[:1]
+    assert math.isinf(fast.weight)
+    (plain,) = rules(declarations, rules="{r(4)}")
+    assert plain.weight is None
+
+
+def test_actions_have_rewards_and_predicates_too():
+    found = read(
+        "action go[2 * 3] react r = Z{x} -[1]-> Z{x}; end action stay react q = A -[2]-> A; end",
+        kind="nbrs",
+        rules="{r, q}",
+        preds="s[4]",
+    )
+    assert found.kind is SystemKind.NBRS
+    assert found.actions == (Action("go", 6), Action("stay", 0))
+    assert [(rule.action, rule.reward, rule.weight) for rule in found.rules()] == [
+        ("go", 6, 1.0),
+        ("stay", 0, 2.0),
+    ]
+    assert [(predicate.name, predicate.reward) for predicate in found.predicates] == [("s", 4)]
+
+
+def test_the_signature_has_the_instances_that_are_used():
+    found = read("fun ctrl K(i) = 0; big t = K(1) || K(2); big u = K(3).1;", init="u")
+    assert [control.name for control in found.signature.controls] == ["A", "B", "K(3)", "Z"]
+    assert found.initial.signature is found.signature
+
+
+def test_passive_and_ordered_controls_are_read():
+    found = read(
+        "passive ordered fun ctrl P(i) = 2; ordered atomic ctrl O = 1; big t = P(1){x, x}.O{x};", init="t"
+    )
+    statuses = {control.name: (control.status, control.ordered) for control in found.signature.controls}
+    assert statuses["P(1)"] == ("passive", True)
+    assert statuses["O"] == ("atomic", True)
+
+
+def test_patterns_keep_only_what_decides_whether_they_occur():
+    found = read("big p = A.(id | id) | id | {v} || 1;", preds="p")
+    assert equal(found.predicates[0].pattern, read_big("A", found.signature))
+
+
+def test_idle_edges_are_left_out():
+    assert read("big t = /v (A.1 | {v});", init="t").initial.edges == 0
+
+
+def test_a_bigraph_for_given_arguments_goes_before_none():
+    found = read("fun ctrl K(i) = 0; big t(1) = K(1).1; big t(2) = K(2).1;", init="t(1 + 1)")
+    assert found.initial.nodes[0].control == "K(2)"
+
+
+def test_names_in_links_and_in_values_are_apart():
+    assert rules("fun ctrl K(a) = 1; fun react r(a) = K(a){a} --> K(a){a};", rules="{r(1)}")

@@ -1,0 +1,75 @@
+"""Claims decided on transition systems, complete and not."""
+
+import pytest
+
+from bigraphs.errors import BigraphError
+from bigraphs.exploration import explore
+from bigraphs.notation import read_bgm, read_system
+from bigraphs.verdicts import (
+    Outcome,
+    Quantifier,
+    deadlock_verdict,
+    predicate_verdict,
+    property_verdict,
+)
+
+COUNT = """
+atomic ctrl Tick = 0; atomic ctrl Tock = 0;
+big start = Tick | Tick | Tick;
+react next = Tick --> Tock;
+big over = Tock | Tock | Tock;
+big fresh = Tick;
+begin brs init start; rules = [ {next} ]; preds = { over, fresh }; end
+"""
+
+
+def counted(**limits):
+    return explore(read_system(COUNT), **limits)
+
+
+@pytest.mark.parametrize(
+    ("quantifier", "label", "outcome", "state"),
+    [
+        (Quantifier.ALWAYS, "fresh", Outcome.VIOLATED, 3),
+        (Quantifier.NEVER, "over", Outcome.VIOLATED, 3),
+        (Quantifier.REACHABLE, "over", Outcome.HOLDS, 3),
+    ],
+)
+def test_a_predicate_is_decided_by_the_nearest_state(quantifier, label, outcome, state):
+    found = predicate_verdict(counted(), quantifier, label)
+    assert (found.outcome, found.state) == (outcome, state)
+
+
+def test_what_was_not_looked_at_decides_nothing():
+    cut = counted(max_states=2)
+    assert predicate_verdict(cut, Quantifier.NEVER, "over").outcome is Outcome.INCOMPLETE
+    assert predicate_verdict(cut, Quantifier.REACHABLE, "over").outcome is Outcome.INCOMPLETE
+    assert predicate_verdict(cut, Quantifier.ALWAYS, "fresh").outcome is Outcome.INCOMPLETE
+    assert predicate_verdict(cut, Quantifier.REACHABLE, "fresh").outcome is Outcome.HOLDS
+    assert deadlock_verdict(cut).outcome is Outcome.INCOMPLETE
+
+
+def test_a_state_in_which_nothing_can_happen_is_a_deadlock():
+    assert (deadlock_verdict(counted()).outcome, deadlock_verdict(counted()).state) == (Outcome.VIOLATED, 3)
+
+
+def test_an_unknown_predicate_is_a_mistake():
+    with pytest.raises(BigraphError, match="unknown predicate 'overr'"):
+        predicate_verdict(counted(), Quantifier.NEVER, "overr")
+
+
+def test_properties_see_the_states_before_and_after():
+    text = """
+    %%active Box : 0; %%passive Full : 0; %%passive Empty : 0;
+    Box.Full -> Box.Empty;
+    Box.Full | Box.Full;
+    %%property kept %s;
+    %%check
+    """
+    held = explore(read_bgm(text % "size() == 4"))
+    assert property_verdict(held, held.system.properties[0]).outcome is Outcome.HOLDS
+    broken = explore(read_bgm(text % "!terminal()"))
+    verdict = property_verdict(broken, broken.system.properties[0])
+    assert (verdict.outcome, len(broken.path_to(verdict.state))) == (Outcome.VIOLATED, 3)
+    cut = explore(read_bgm(text % "size() == 4"), max_states=1)
+    assert property_verdict(cut, cut.system.properties[0]).outcome is Outcome.INCOMPLETE
