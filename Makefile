@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 
-.PHONY: demo test lint types fuzz bench-bigraphs docs clean
+.PHONY: demo live-demo test lint types fuzz bench-bigraphs docs clean
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -13,6 +13,9 @@ $(STAMP): pyproject.toml
 
 demo: $(STAMP)  ## check the shipped missions and draw them
 	$(BIN)/bigactors demo --out demo
+
+live-demo: $(STAMP)  ## fly a verified mission with a simulated plane and a replayed AIS feed, into live-demo/
+	$(BIN)/python -m bigactors.live_demo live-demo
 
 test: lint types $(STAMP)  ## everything that must hold
 	$(BIN)/python -m pytest -n 2 -q
@@ -34,4 +37,4 @@ docs: $(STAMP)  ## write the generated pages of docs/
 	$(BIN)/python -m bigactors.docs
 
 clean:
-	rm -rf $(VENV) demo dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) demo live-demo dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

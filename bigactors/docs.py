@@ -1,13 +1,16 @@
 """The generated pages of docs/: `python -m bigactors.docs` writes them, `--check` says whether they are stale."""
 
 import inspect
+import json
 import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from textwrap import dedent
+from typing import Any
 
+from adapters.recording.schemas import SCHEMAS
 from bigactors.arguments import make_parser
 from bigactors.files import make_folder, write_text
 from bigactors.terminal import safe_output, say
@@ -45,12 +48,38 @@ read is described in [json.md](json.md).
 """
 
 
+RECORDING_HEAD = """\
+# Recordings of live runs
+
+`bigactors run --record FILE.mcap` writes everything that comes in and that follows from it into one
+[MCAP](https://mcap.dev) file of JSON messages, without chunks: what was flushed is there whatever happens next, so that
+a run ended by `kill -9` leaves a readable recording, without an index at its end. What a vehicle is told (`commands`)
+is in the file before it is sent. Beside it, `FILE.tlog` has every MAVLink frame heard and said, as other ground
+stations read it. Log times are in nanoseconds since 1970 UTC.
+
+`bigactors replay FILE.mcap` runs the steps again through the rules: where they don't allow one, or where it leads to
+another configuration than it did (`digest`), the step is named and the exit code is 1. `run --resume FILE.mcap` goes on
+where a killed run was; `show --trace FILE.mcap --step K` draws any of its configurations.
+
+A step is the step of a trace ([trace.schema.json](trace.schema.json)). What the world decided is in `observed`: the
+cells of P that were written, each as `[cell, value]`. A cell is a list of words such as `["placement", "uav0"]`,
+`["channels", "uav0"]`, `["down", "wifi"]`, `["left", "uav0", "wifi"]`. A placement is `null` (absent),
+`{"at": {"ring": ...}, "altitude": [...]}` or `{"by": ..., "shape": ...}` (carried); a ring gives latitude and longitude
+in 1e-7 degree, with `of` and `anchor` where a polygon is another one, moved. Replayed, an `env` with an observation may
+write nothing but P, and nothing that is in transit; a `commit` places the vehicle where it was observed, and is a step
+only where the rule's premises hold there.
+
+The topics, and what their messages hold:
+"""
+
+
 def pages() -> dict[str, str]:
     """Return the generated pages by their file names."""
     return {
         "cli.md": "".join(cli_page()),
         "codes.md": f"{GENERATED}{CODES_HEAD}\n{code_table()}",
         "language.md": f"{GENERATED}{language_reference()}",
+        "recording.md": "".join(recording_page()),
         "rules.md": "".join(rules_page()),
     }
 
@@ -68,6 +97,25 @@ def rules_page() -> Iterator[str]:
         for rule in rules:
             summary, _, printed = dedent(inspect.getdoc(rule) or "").partition("\n\n")
             yield f"\n### {rule.__name__}\n\n{summary}\n\n```text\n{printed.strip()}\n```\n"
+
+
+def recording_page() -> Iterator[str]:
+    """Yield the schemas of recordings, topic by topic."""
+    yield f"{GENERATED}{RECORDING_HEAD}"
+    for topic, (name, schema) in SCHEMAS.items():
+        yield f"\n## {topic}: `{name}`\n\n{schema['description']}\n\n| member | type | |\n| --- | --- | --- |\n"
+        for member, of in schema["properties"].items():
+            required = "" if member in schema["required"] else " (optional)"
+            yield f"| `{member}`{required} | {_type(of)} | {of.get('description', '')} |\n"
+
+
+def _type(schema: dict[str, Any]) -> str:
+    if "const" in schema:
+        return f"`{json.dumps(schema['const'])}`"
+    if "enum" in schema:
+        return ", ".join(f"`{each}`" for each in schema["enum"])
+    kind = schema["type"]
+    return " or ".join(kind) if isinstance(kind, list) else str(kind)
 
 
 def cli_page() -> Iterator[str]:

@@ -2,13 +2,12 @@
 
 import hashlib
 from argparse import Namespace
-from dataclasses import fields, is_dataclass
 from importlib.resources import files as resources
 from pathlib import Path
-from typing import Any
 
 from bigactors import __version__
 from bigactors.mistakes import Mistake, suggestion
+from semantics.canonical import canonical
 from semantics.setting import Control, Scheduler
 from specs import Diagnostic, MissionError, Source
 from specs.elaboration import ElaboratedMission, Variation, load_mission
@@ -93,23 +92,3 @@ def digest_of(mission: ElaboratedMission) -> str:
     setting = (mission.setting.scheduler.value, mission.setting.control.value)
     said = "\0".join((__version__, mission.source.text, *setting, canonical(world)))
     return "sha256:" + hashlib.sha256(said.encode("utf-8", "surrogatepass")).hexdigest()
-
-
-def canonical(value: Any) -> str:
-    """Write a value so that equal values, and only those, are written alike in every process.
-
-    >>> canonical({("b",): frozenset({2, 1}), ("a",): None})
-    "{('a',): None, ('b',): {1, 2}}"
-    """
-    match value:
-        case dict():
-            return f"{{{', '.join(sorted(f'{canonical(key)}: {canonical(item)}' for key, item in value.items()))}}}"
-        case frozenset():
-            return f"{{{', '.join(sorted(map(canonical, value)))}}}"
-        case tuple():
-            return f"({', '.join(map(canonical, value))}{',' if len(value) == 1 else ''})"
-        case _ if is_dataclass(value) and not isinstance(value, type):
-            parts = (f"{each.name}={canonical(getattr(value, each.name))}" for each in fields(value))
-            return f"{type(value).__name__}({', '.join(parts)})"
-        case _:
-            return repr(value)

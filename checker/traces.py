@@ -7,14 +7,18 @@ from typing import Any
 
 from checker.exploration import Exploration
 from checker.inspections import is_unfair
+from semantics.canonical import digest_of_step
 from semantics.configuration import Configuration, Label, Transition
 from semantics.monitor import monitored
+from semantics.observed import Sight, steps_seen
+from semantics.plain import sight_json, sight_of
 from semantics.printing import print_changes
 from semantics.requests import Received
 from semantics.successors import expand
 
 SCHEMA = "bigactors.trace/1"
-"""The version of the step schema: schema, mission, digest, monitored, steps of label, choice and changes, and loop."""
+"""The version of the step schema: schema, mission, digest, monitored, steps of label, choice and changes, and loop;
+steps of live runs also say what was observed, when, and the digest of what they wrote."""
 
 MOST_STEPS = 1_000_000
 
@@ -27,11 +31,13 @@ class Step:
         label: What it is called.
         choice: Which of the successors of that label was taken, from 0.
         target: The configuration after it.
+        sight: What was observed, for a step that the world decided (live).
     """
 
     label: Label
     choice: int
     target: Configuration
+    sight: Sight | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,12 +159,17 @@ class ReplayError(Exception):
 def to_json(trace: Trace, mission: str, digest: str) -> dict[str, Any]:
     """Return a trace as plain data, in the step schema."""
     steps = [
-        {"label": str(step.label), "choice": step.choice, "changes": list(print_changes(source, step.target))}
-        for step, source in zip(trace.steps, trace.configurations, strict=False)
+        _step_json(source, step) for step, source in zip(trace.steps, trace.configurations, strict=False)
     ]
     remembering = trace.initial.setting.monitored
     data = {"schema": SCHEMA, "mission": mission, "digest": digest, "monitored": remembering, "steps": steps}
     return data if trace.loop is None else data | {"loop": trace.loop}
+
+
+def _step_json(source: Configuration, step: Step) -> dict[str, Any]:
+    observed = {} if step.sight is None else {"observed": sight_json(step.sight)}
+    changes = list(print_changes(source, step.target))
+    return {"label": str(step.label), "choice": step.choice, **observed, "changes": changes}
 
 
 def replay(initial: Configuration, data: Any) -> Trace:
@@ -173,14 +184,18 @@ def replay(initial: Configuration, data: Any) -> Trace:
         initial = monitored(initial)
     trace: list[Step] = []
     at = initial
-    for number, (label, choice) in enumerate(steps, 1):
-        found = candidates(at)
+    for number, (label, choice, sight, wrote) in enumerate(steps, 1):
+        found = candidates(at) if sight is None else tuple(steps_seen(at, sight))
         alike = [transition for transition in found if str(transition.label) == label]
         if choice >= len(alike):
             enabled = sorted({str(transition.label) for transition in found})
             raise ReplayError(number, label, enabled, _cause(len(alike)))
-        at = alike[choice].target
-        trace.append(Step(alike[choice].label, choice, at))
+        before, at = at, alike[choice].target
+        if wrote is not None and digest_of_step(before, at) != wrote:
+            raise ReplayError(
+                number, label, print_changes(before, at), "it leads to another configuration here"
+            )
+        trace.append(Step(alike[choice].label, choice, at, sight))
     return _closed(Trace(initial, tuple(trace), loop))
 
 
@@ -208,7 +223,7 @@ def _cause(alike: int) -> str:
     return "the mission, its scheduler or its environment may have changed since the trace was written"
 
 
-def _steps(data: Any) -> list[tuple[str, int]]:
+def _steps(data: Any) -> list[tuple[str, int, Sight | None, str | None]]:
     if not isinstance(data, dict) or data.get("schema") != SCHEMA:
         raise ValueError(f"this is no trace: it should be an object with 'schema': '{SCHEMA}'")
     steps = data.get("steps")
@@ -225,8 +240,13 @@ def _loop(data: Any) -> int | None:
     return loop
 
 
-def _step(number: int, step: Any) -> tuple[str, int]:
+def _step(number: int, step: Any) -> tuple[str, int, Sight | None, str | None]:
     label, choice = (step.get("label"), step.get("choice", 0)) if isinstance(step, dict) else (None, None)
     if not isinstance(label, str) or isinstance(choice, bool) or not isinstance(choice, int) or choice < 0:
         raise ValueError(f"step {number} should have a 'label' (a text) and a 'choice' (a number from 0)")
-    return label, choice
+    try:
+        sight = sight_of(step["observed"]) if "observed" in step else None
+    except ValueError as error:
+        raise ValueError(f"step {number}: {error}") from error
+    wrote = step.get("digest")
+    return label, choice, sight, wrote if isinstance(wrote, str) else None

@@ -4,8 +4,10 @@ from collections.abc import Iterable
 
 from bigraphs import Bigraph
 from physical import PhysicalProperty
+from semantics.cells import Changes
 from semantics.configuration import Configuration
 from semantics.initial import initial
+from semantics.logical_model import links_cell, parent_cell
 from semantics.physical_model import Carried, Placed, Placement
 from semantics.program import Program
 from semantics.setting import Setting
@@ -47,3 +49,13 @@ def placement_of(seen: PhysicalProperty) -> Placement:
 def abstraction(properties: Iterable[PhysicalProperty], signature: Signature) -> Bigraph:
     """Return A(P) as a bigraph: each node in its smallest total container, or in what carries it."""
     return world(properties, signature).structure.logical.bigraph()
+
+
+def as_it_is(c: Configuration) -> Configuration:
+    """Return a configuration in which L is A(P): what somebody would believe who sees everything."""
+    physical = c.structure.physical
+    slots: Changes = {}
+    for name in c.setting.kinds:
+        slots[parent_cell(name)] = physical.abstract_parent(name) if name in physical else None
+        slots[links_cell(name)] = physical.links(name) if name in physical else ()
+    return c.with_(slots)

@@ -6,7 +6,7 @@ from enum import Enum
 
 from semantics.cells import Changes
 from semantics.configuration import Configuration
-from semantics.drive import drive, unloaded
+from semantics.drive import Reach, drive, unloaded
 from semantics.logical_model import LogicalModel
 from semantics.physical_model import Carried, InTransit
 from semantics.reactions import Match, Reaction, is_active, is_full, matches, moved, relinked, stays_forest
@@ -91,10 +91,10 @@ def reacting(logical: LogicalModel, reaction: Reaction, match: Match) -> Changes
     return changes
 
 
-def commits(c: Configuration, fly: FLY) -> Realisation | None:
-    """Return what a flight comes to when it ends now, None where it can't."""
+def commits(c: Configuration, fly: FLY, reach: Reach | None = None) -> Realisation | None:
+    """Return what a flight comes to when it ends now, None where it can't; `reach` as `drive` has it."""
     obstacle = flight_obstacle(c, fly)
-    driven = None if obstacle else drive(c, c.setting, fly.reaction, fly.match)
+    driven = None if obstacle else drive(c, c.setting, fly.reaction, fly.match, reach)
     if driven is None:
         return None
     logical = reacting(c.structure.logical, fly.reaction, fly.match)

@@ -1,5 +1,6 @@
 """`drive(P, m(R'))`: make a reactum physically true, or say that it can't be done."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -23,22 +24,31 @@ class Driven:
     flying: tuple[tuple[Name, Name], ...]
 
 
-def drive(cells: Cells, setting: "Setting", reaction: Reaction, match: Match) -> Driven | None:
+Reach = Callable[[PhysicalModel, Name, Name], Placement | None]
+"""Where a node comes to stand that travels to a place: by computation, or as it was observed."""
+
+
+def drive(
+    cells: Cells, setting: "Setting", reaction: Reaction, match: Match, reach: Reach | None = None
+) -> Driven | None:
     """Return the P' in which m(R') is true, None where there is none.
 
     A node that changed parent is placed at the point nearest the new parent's centroid (the paper's waypoint) at which
     A(P') gives exactly that parent; what it carries goes along; a node put into a carrier is carried; what a carrier
     holds may be put where the carrier is, at once. A node that changed links has its channels changed.
+
+    Where `reach` is given, what travels is placed by it: live, P' is what was observed.
     """
+    travel = reach or _reach
     changes: Changes = {}
     flying: list[tuple[Name, Name]] = []
     for node, place in moved(reaction, match):
         before = PhysicalModel(Written(cells, changes), setting)
-        for way in (_put_down, _reach):
+        for way in (_put_down, travel):
             placement = way(before, node, place)
             if placement is not None and _arrives(before, node, place, placement):
                 changes |= before.placing(node, placement)
-                flying += [(node, place)] if way is _reach else []
+                flying += [(node, place)] if way is travel else []
                 break
         else:
             return None

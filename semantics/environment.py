@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from semantics.cells import Cell, Changes
 from semantics.physical_model import (
@@ -171,6 +172,23 @@ class Says:
     def words(self) -> tuple[str, ...]:
         """What may happen, in words."""
         return (f"{show(self.message, frozenset())} to {self.agent}",)
+
+
+@dataclass(frozen=True, slots=True)
+class Observed:
+    """What telemetry and feeds have shown: live, the environment allows it since it has happened.
+
+    Attributes:
+        words: What happened.
+        changes: The cells of P that it writes, sorted.
+    """
+
+    words: str
+    changes: tuple[tuple[Cell, Any], ...]
+
+    def effects(self, physical: PhysicalModel) -> Iterator[Effect]:  # noqa: ARG002 - as the clauses have it
+        """Yield what was observed."""
+        yield self.words, dict(self.changes)
 
 
 Clause = Drifts | Drops | Leaves | Appears | Vanishes | Says

@@ -276,6 +276,8 @@ class _Looking:
 
     def parent(self, name: Name) -> Name | None:
         """Return the parent of a node in A(P), as far as it was asked for: its own, or among children."""
+        if name == REGION:
+            return None
         if name in self.to("PARENT"):
             return self.physical.abstract_parent(name)
         return self.parent_among(name, self.to("CHILDREN"))

@@ -85,6 +85,9 @@ class Reaction:
     redex: Pattern
     reactum: Pattern
 
+    def __hash__(self) -> int:
+        return hash(self.text)  # which strings remember; requests are hashed with every step
+
     def __str__(self) -> str:
         return self.text
 
@@ -94,6 +97,9 @@ class Match:
     """m: what each variable of a redex stands for, sorted by variable."""
 
     binding: tuple[tuple[Term, Name], ...] = ()
+
+    def __hash__(self) -> int:
+        return hash(tuple(name for _, name in self.binding))
 
     def __getitem__(self, term: Name | Term) -> Name:
         return term if isinstance(term, str) else dict(self.binding)[term]

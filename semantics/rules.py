@@ -9,7 +9,8 @@ from collections.abc import Callable, Iterator
 from semantics.computation import compute, enter_case
 from semantics.configuration import Configuration, Label, Transition
 from semantics.control import Realisation, commits, realisations
-from semantics.environment import Clause, Says
+from semantics.drive import Reach
+from semantics.environment import Clause, Observed, Says
 from semantics.expressions import evaluated, name_in, query_of
 from semantics.provenance import NOTHING, Dependency
 from semantics.queries import evaluate, overlay
@@ -154,7 +155,7 @@ def command(c: Configuration, a: Name) -> Iterator[Transition]:
             yield Transition(Label("command", a, pending.request), target, served=pending)
 
 
-def commit(c: Configuration, a: Name) -> Iterator[Transition]:
+def commit(c: Configuration, a: Name, reach: Reach | None = None) -> Iterator[Transition]:
     """Arrive (`control timed`): with the place where it is now, and R as it still holds.
 
     FLY(a, m, R′) ∈ η, in line      R still matches, but for where the moved node is now
@@ -162,16 +163,17 @@ def commit(c: Configuration, a: Name) -> Iterator[Transition]:
     ──────────────────────────────────────────────────────────────────────────────  ⟨commit : FLY(a, m, R′)⟩
     ⟨α | (L, P, β, γ) | η⟩  →  ⟨α | (L[m(R) ↦ m(R′)], P′, β, γ) | η − FLY(a, m, R′)⟩
     """
+    # Live, `reach` places the vehicle where it was observed: P′ is what is, not what is computed.
     for pending in c.eta.in_line(a):
         if not isinstance(pending.request, FLY):  # premise: FLY(a, m, R′) ∈ η, in line
             continue
-        found: Realisation | None = commits(c, pending.request)  # premises: match, consistency, P′
+        found: Realisation | None = commits(c, pending.request, reach)  # premises: match, consistency, P′
         if found is not None:
             target = c.with_(found.physical, found.logical, c.eta.removing(pending))
             yield Transition(Label("commit", a, pending.request), target, served=pending)
 
 
-def env(c: Configuration, clause: Clause) -> Iterator[Transition]:
+def env(c: Configuration, clause: Clause | Observed) -> Iterator[Transition]:
     """Let the world change as the mission's environment says it may.
 
     the environment allows P → P′

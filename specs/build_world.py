@@ -28,6 +28,7 @@ from specs.diagnostics import Diagnostic
 
 SCHEDULERS = ("program_order", "unordered", "fcfs")
 CONTROL_MODES = ("atomic", "timed")
+FALLBACKS = ("hold", "return", "continue")
 
 
 class BuildWorld(Transformer[Token, s.Mission]):
@@ -199,6 +200,22 @@ class BuildWorld(Transformer[Token, s.Mission]):
 
     def steps(self, c: Children) -> s.Steps:
         return s.Steps(tuple(name(token) for token in c if token is not None), span=cover(c))
+
+    # --- live runs
+
+    def live(self, c: Children) -> s.Live:
+        return s.Live(nodes(c), span=cover(c))
+
+    def on_broken(self, c: Children) -> s.OnBroken:
+        return s.OnBroken(option("fallback", c[4], FALLBACKS), span=cover(c))
+
+    def time_limit(self, c: Children) -> s.TimeLimit:
+        request = None if c[0] is None else str(c[0])
+        agent = name(c[1]) if c[1].type == "NAME" else None
+        return s.TimeLimit(request, agent, c[3], option("fallback", c[5], FALLBACKS), span=cover(c))
+
+    def duration(self, c: Children) -> s.Duration:
+        return s.Duration(decimal(None, c[0]), str(c[1]), span=cover(c))
 
     # --- formulas
 

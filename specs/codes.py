@@ -12,7 +12,7 @@ RANGES: Final = {
     "LS3": "world and geometry",
     "LS4": "behaviour",
     "LS5": "reaction rules",
-    "LS6": "environment and checks",
+    "LS6": "environment, checks and live runs",
 }
 
 
@@ -410,8 +410,8 @@ class Code(Enum):
     REPEATED_SETTING = (
         "LS606",
         "said twice",
-        """`scheduler` and `control` are said once, and each property, channel drop and departure is named
-        once.""",
+        """`scheduler` and `control` are said once, and each property, channel drop, departure and
+        precaution is named once.""",
     )
     FORMULA_TOO_LARGE = (
         "LS607",
@@ -443,6 +443,12 @@ class Code(Enum):
         """`invariant` and `reachable` are about configurations one by one. `ltl` is about every run: `[]`, `<>`, X,
         U, R and W in any combination, `taken`, no A and no E. `ctl` is about the tree of runs: each operator of
         paths stands directly behind A or E. `env` and `say` are nobody's rules.""",
+    )
+
+    BAD_TIME_LIMIT = (
+        "LS612",
+        "time limit out of bounds",
+        """In the `live` section a request has more than no time, and a week at the most.""",
     )
 
     @property

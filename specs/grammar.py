@@ -26,6 +26,7 @@ SECTIONS: Final = frozenset(
         "environment",
         "scheduler",
         "check",
+        "live",
     ]
 )
 STATEMENTS: Final = frozenset(

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from specs import syntax as s
-from specs.writing import inner, listed, placed, shape, write
+from specs.writing import decimal, inner, listed, placed, shape, write
 
 WIDTH: Final = 100
 _STEP: Final = "  "
@@ -182,6 +182,7 @@ _BLOCKS: Final[dict[type[s.Node], Callable[..., None]]] = {
     s.Believes: _block(_head, "beliefs"),
     s.Environment: _block(_head, "clauses"),
     s.Check: _block(_head, "properties"),
+    s.Live: _block(_head, "precautions"),
 }
 
 # --- what stands on one line
@@ -263,6 +264,12 @@ def _returning(node: s.Drops | s.Leaves) -> str:
     return " and returns" if node.returns else ""
 
 
+def _time_limit(node: s.TimeLimit) -> str:
+    kind = f"{node.request} " if node.request else ""
+    who = write(node.agent) if node.agent else "anyone"
+    return f"{kind}{who} within {decimal(node.limit.value)} {node.limit.unit}: {node.fallback}"
+
+
 def _spawn(node: s.Spawn) -> list[str]:
     behaviour, host = write_call(node.behaviour), write(node.host)
     if node.name:
@@ -308,6 +315,8 @@ _PIECES: Final[dict[type[s.Node], Callable[..., list[str]]]] = {
     s.Vanishes: lambda node: [f"{write(node.entity)} vanishes"],
     s.Says: _says,
     s.Arrives: lambda node: [f"{write(node.entity)} arrives"],
+    s.OnBroken: lambda node: [f"on broken assumption: {node.fallback}"],
+    s.TimeLimit: lambda node: [_time_limit(node)],
     s.StandardProperty: lambda node: [node.name],
     s.Invariant: lambda node: [f"invariant {write(node.label)}:", write(node.formula)],
     s.Reachable: lambda node: [f"reachable {write(node.label)}:", write(node.formula)],

@@ -110,6 +110,7 @@ NODES: Final[dict[str, tuple[type[s.Node], ...]]] = {
         s.Fairness,
         s.Steps,
     ),
+    "Live runs": (s.Live, s.OnBroken, s.TimeLimit, s.Duration),
     "Formulas": (
         s.Inside,
         s.LinkedTo,
@@ -206,6 +207,13 @@ environment {
   tanker0 appears at point (37, -8.7) linked ais
   says "handover" to a at most 3 times
   uav0 arrives
+}
+""",
+    "Live runs": """\
+live {
+  on broken assumption: return
+  FLY a within 10 min: return
+  anyone within 1 min: continue
 }
 """,
     "Checks": """\

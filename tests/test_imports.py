@@ -34,7 +34,7 @@ LIBRARIES = {
     "aiohttp": ("adapters/web.py",),
     "serial_asyncio_fast": ("adapters/transport.py",),
     "zenoh": ("adapters/",),
-    "mcap": ("adapters/",),
+    "mcap": ("adapters/recording/mcap_files.py",),
     "nicegui": ("adapters/",),
     "hypothesis": ("semantics/strategies.py",),
     "matplotlib": ("bigraphs/drawing.py", "physical/drawing.py", "physical/map_", "bigactors/pictures/"),

@@ -44,6 +44,12 @@ def fill(parser: Parser) -> None:
         "steps through it",
     )
     parser.add_argument(
+        "--verdict",
+        metavar="FILE",
+        type=named,
+        help="write the verdict that `run` asks for (docs/live.md); of one mission, with --control timed",
+    )
+    parser.add_argument(
         "--violations",
         metavar="N",
         type=at_least_one,

@@ -4,17 +4,22 @@ from typing import Final
 
 from bigactors.arguments.common import varying
 from bigactors.arguments.parser import Command, Parser
-from bigactors.arguments.values import named
+from bigactors.arguments.values import identity, named, seconds
 
 DESCRIPTION: Final = """\
-Run a trace again through the rules, step by step. A step that they do not allow ends it with exit code 1,
-and what was enabled instead is shown."""
+Run a trace, or the recording of a live run, again through the rules, step by step. A step that they do not
+allow ends it with exit code 1, and what was enabled instead is shown.
+
+A telemetry log (.tlog) or an AIS recording is shown in the places of a mission: what changes in its bigraph,
+what its environment section does not say, and the bigraph at the end."""
 
 
 def fill(parser: Parser) -> None:
     """Add the arguments of `bigactors replay`."""
     parser.add_argument(
-        "trace", metavar="TRACE", help="a trace in JSON, as check --trace and simulate write it"
+        "trace",
+        metavar="TRACE",
+        help="a trace in JSON, as check --trace and simulate write it, or a recording that run --record wrote",
     )
     parser.add_argument(
         "--mission",
@@ -22,6 +27,21 @@ def fill(parser: Parser) -> None:
         type=named,
         help="replay it on this mission (default: the one that it names)",
     )
+    parser.add_argument(
+        "--speed",
+        metavar="X",
+        type=seconds,
+        help="print a recording X times as fast as it was (default: at once)",
+    )
+    parser.add_argument(
+        "--name",
+        metavar="IDENTITY=NAME",
+        action="append",
+        default=[],
+        type=identity,
+        help="what the mission calls who is in a recording of others: mavlink:1=uav0, mmsi:244660274=drifter0",
+    )
+    parser.add_argument("--step", action="store_true", help="wait for Enter before each step")
     varying(parser)
 
 
@@ -32,6 +52,8 @@ COMMAND = Command(
     (
         "bigactors replay traces/oil_spill/over_the_spill-witness/trace.json",
         "bigactors replay run.json --mission changed.mission",
+        "bigactors replay run.mcap --speed 10",
+        "bigactors replay flight.tlog --mission oil_spill --name mavlink:1=uav0",
     ),
     fill,
 )

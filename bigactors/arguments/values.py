@@ -103,3 +103,17 @@ def _number(text: str) -> float | None:
     except ValueError:
         return None
     return value if math.isfinite(value) else None
+
+
+def identity(word: str) -> tuple[str, str]:
+    """Read IDENTITY=NAME.
+
+    >>> identity("mmsi:244660274=drifter0")
+    ('mmsi:244660274', 'drifter0')
+    """
+    found = re.fullmatch(r"(\w+:\w+)=(\w+)", word)
+    if not found:
+        raise argparse.ArgumentTypeError(
+            f"'{word:.60}' is not IDENTITY=NAME, such as mmsi:244660274=drifter0"
+        )
+    return found[1], found[2]

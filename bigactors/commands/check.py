@@ -8,10 +8,12 @@ from pathlib import Path
 
 from bigactors.checking import Checked, Failed, check_missions
 from bigactors.exits import Exit, worst
-from bigactors.files import file_stem, make_folder
+from bigactors.files import check_writable, file_stem, make_folder, write_json
 from bigactors.missions import variation_of
+from bigactors.mistakes import Mistake
 from bigactors.outputs import outputs_of, write_outputs
 from bigactors.terminal import paint, say, tell
+from bigactors.verdict_files import verdict_json
 from checker import Engine, Limits, report_text
 from checker.coverage_report import coverage_text
 from checker.report import MARKS
@@ -35,6 +37,8 @@ def run(options: Namespace) -> Exit:
     limits = Limits(configurations=options.max_configurations, seconds=options.max_time)
     if options.trace:
         make_folder(options.trace)
+    if options.verdict:
+        _check_verdict(options)
     outputs = outputs_of(options)
     alone = any(output.to_standard_output for output in outputs)
     results: list[Checked | Failed] = []
@@ -45,6 +49,8 @@ def run(options: Namespace) -> Exit:
         if not alone:
             for line in report_lines(result, traces=not options.no_traces):
                 say(coloured(line))
+        if options.verdict and isinstance(result, Checked):
+            keep_verdict(result, options)
         if options.trace and isinstance(result, Checked):
             keep_evidence(result, options.trace, folders)
     code = worst(result.exit for result in results)
@@ -98,6 +104,19 @@ def coloured(line: str) -> str:
         return line
     colour = SIGNS.get(found[1], "red")
     return f"  {paint(found[1], colour, sys.stdout)} {line[4:]}"
+
+
+def _check_verdict(options: Namespace) -> None:
+    if len(options.files) > 1:
+        raise Mistake("--verdict writes the verdict of one mission", "check the missions one by one")
+    check_writable(options.verdict)
+
+
+def keep_verdict(checked: Checked, options: Namespace) -> None:
+    """Write the verdict on a mission, and say so."""
+    data = verdict_json(checked, options.engine or "by size")
+    write_json(options.verdict, data)
+    tell(f"  verdict: {'holds' if data['holds'] else 'does not hold'}, written to {options.verdict}")
 
 
 def keep_evidence(checked: Checked, folder: str, taken: set[str]) -> None:

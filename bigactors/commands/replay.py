@@ -1,15 +1,24 @@
-"""`bigactors replay`: a trace run again through the rules."""
+"""`bigactors replay`: a trace or a recording run again through the rules."""
 
+import sys
+import time
 from argparse import Namespace
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from textwrap import indent
 from typing import Any
 
+from adapters.recording.reading import Recording, is_recording
 from bigactors.exits import Exit
-from bigactors.files import read_json
+from bigactors.files import read_bytes, read_json
+from bigactors.foreign import TELEMETRY, watched
 from bigactors.missions import digest_of, open_mission, shipped_missions, variation_of
 from bigactors.mistakes import Mistake
-from bigactors.terminal import say, tell
+from bigactors.recordings import mission_of, open_recording, trace_of
+from bigactors.terminal import is_terminal, paint, say, tell
+from bigraphs import draw_text
 from checker import ReplayError, Trace, print_loop, print_trace, replay
+from semantics.abstraction import as_it_is
 from semantics.monitor import monitored
 from semantics.printing import print_configuration
 from specs.elaboration import ElaboratedMission, Variation
@@ -17,12 +26,18 @@ from specs.elaboration import ElaboratedMission, Variation
 
 def run(options: Namespace) -> Exit:
     """Replay a trace and print it; a step that the rules do not allow ends it."""
+    if is_foreign(options.trace):
+        return show_foreign(options)
     try:
         mission, trace = read_trace(options.trace, options.mission, variation_of(options))
     except ReplayError as error:
         tell(f"{options.trace}: {error}")
         return Exit.VIOLATED
-    for line in print_trace(trace):
+    recording = open_recording(options.trace) if is_recording(options.trace) else None
+    if recording is not None:
+        _introduce(recording)
+    times = () if recording is None else tuple(message.time for message in recording.of("steps"))
+    for line in paced(trace, times, options.speed, stepwise=options.step):
         say(line)
     say(f"c{len(trace)} = {print_configuration(trace.configurations[-1])}")
     again = f", and {print_loop(trace)}" if trace.loop is not None else ""
@@ -30,13 +45,38 @@ def run(options: Namespace) -> Exit:
     return Exit.HOLDS
 
 
+def is_foreign(path: str) -> bool:
+    """Tell whether a file is neither a trace nor a recording of ours: a telemetry log, or AIS."""
+    first = read_bytes(path, 64).lstrip()[:1]
+    return path.endswith(TELEMETRY) or (first != b"" and first in b"!$\\#")
+
+
+def show_foreign(options: Namespace) -> Exit:
+    """Print what a recording of others shows of a mission's world, and the bigraph that it ends in."""
+    if options.mission is None:
+        hint = "say in which mission's places it is to be seen: --mission FILE"
+        raise Mistake("this is no trace of ours", hint, options.trace)
+    mission = open_mission(options.mission, variation_of(options))
+    shown = watched(options.trace, mission, dict(options.name))
+    for line in paced(shown.trace, shown.times, options.speed, stepwise=options.step):
+        say(line)
+    for finding in shown.findings:
+        tell(finding.message, "not as the mission says:")
+    say(f"c{len(shown.trace)} shows")
+    say(indent(draw_text(as_it_is(shown.trace.configurations[-1]).structure.logical.bigraph()), "  "))
+    say(f"{options.trace}: {shown.positions:,} positions, {len(shown.trace)} changes of the bigraph")
+    return Exit.HOLDS
+
+
 def read_trace(path: str, mission_file: str | None, variation: Variation) -> tuple[ElaboratedMission, Trace]:
-    """Return the mission of a trace and the trace, replayed; warn where it was written of another mission.
+    """Return the mission of a trace or recording and the trace, replayed; warn where it was written of another mission.
 
     Raises:
         Mistake: The file holds no trace, or its mission cannot be read.
         ReplayError: The mission does not allow it.
     """
+    if is_recording(path):
+        return _read_recording(path, mission_file, variation)
     data = read_json(path)
     named = data.get("mission") if isinstance(data, dict) else None
     if mission_file is None and not isinstance(named, str):
@@ -48,6 +88,35 @@ def read_trace(path: str, mission_file: str | None, variation: Variation) -> tup
         return mission, replay(start, data)
     except ValueError as error:
         raise Mistake(str(error), place=path) from error
+
+
+def _read_recording(
+    path: str, mission_file: str | None, variation: Variation
+) -> tuple[ElaboratedMission, Trace]:
+    recording = open_recording(path)
+    mission = mission_of(recording) if mission_file is None else open_mission(mission_file, variation)
+    _warn_of_another(path, recording.run, mission, mission_file or str(recording.run["mission"]))
+    return mission, trace_of(recording, mission)
+
+
+def _introduce(recording: Recording) -> None:
+    if recording.run.get("verified") is not True:
+        tell(paint("nothing was verified of this run", "red", sys.stderr), "!")
+    if recording.torn:
+        tell("the recording has no end: the run was killed")
+
+
+def paced(trace: Trace, times: Sequence[float], speed: float | None, *, stepwise: bool) -> Iterator[str]:
+    """Yield the lines of a trace: at once, at a multiple of the speed it was recorded at, or step by step."""
+    step = -1
+    for line in print_trace(trace):
+        if line.startswith("c"):
+            step += 1
+            if stepwise and is_terminal(sys.stdin):
+                sys.stdin.readline()
+            elif speed is not None and 0 < step < len(times):
+                time.sleep(max(0.0, (times[step] - times[step - 1]) / speed))
+        yield line
 
 
 def _beside(trace: str, mission: str) -> str:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
 from semantics.configuration import Configuration
 from semantics.initial import initial
+from semantics.precautions import Precautions
 from semantics.propositions import Property
 from semantics.setting import Setting
 from semantics.signature import Name
@@ -22,6 +23,7 @@ from specs.elaboration.controls import Ground, check_controls
 from specs.elaboration.environment import appearing_channels, elaborate_environment
 from specs.elaboration.files import Library
 from specs.elaboration.findings import Findings
+from specs.elaboration.live import elaborate_live
 from specs.elaboration.names import Names
 from specs.elaboration.places import check_nesting, elaborate_mobility, fixed_entities
 from specs.elaboration.rules import elaborate_rules
@@ -45,6 +47,7 @@ class ElaboratedMission:
         notes: What a verdict has to say beside its results.
         fixed: Entities whose place neither agents nor the environment can ever change.
         spans: Where each name is declared, by sort (entity, kind, channel, agent, rule, behaviour) and name.
+        precautions: What is done when a live run goes otherwise.
     """
 
     name: str
@@ -55,6 +58,7 @@ class ElaboratedMission:
     notes: tuple[str, ...]
     fixed: frozenset[Name]
     spans: Mapping[tuple[str, str], s.Span]
+    precautions: Precautions = field(default_factory=Precautions)
 
     def line(self, sort: str, name: str) -> int:
         """Return the line in which a name is declared, from 1; 0 where none is."""
@@ -88,6 +92,7 @@ def elaborate(
     scheduler, control = elaborate_scheduler(mission, names), elaborate_control(mission, names)
     scheduler, control = variation.scheduler or scheduler, variation.control or control
     properties = elaborate_checks(mission, names, bodies)
+    precautions = elaborate_live(mission, names)
     _stop(names.findings)
     setting = Setting(
         names.signature,
@@ -107,7 +112,7 @@ def elaborate(
     _stop(names.findings)
     called = mission.name.text if mission.name is not None else Path(source.name).stem
     return ElaboratedMission(
-        called, source, setting, first, properties, tuple(world.notes), fixed, dict(names.spans)
+        called, source, setting, first, properties, tuple(world.notes), fixed, dict(names.spans), precautions
     )
 
 

@@ -73,6 +73,7 @@ from specs.syntax.formulas import (
     Stored,
     Waiting,
 )
+from specs.syntax.live import Duration, Live, OnBroken, Precaution, TimeLimit
 from specs.syntax.nodes import (
     NOWHERE,
     Name,
@@ -191,6 +192,7 @@ __all__ = [
     "DriftsAmong",
     "DriftsWithin",
     "Drops",
+    "Duration",
     "Enabled",
     "Ended",
     "Entity",
@@ -219,6 +221,7 @@ __all__ = [
     "Let",
     "LinkedTo",
     "LiteralPattern",
+    "Live",
     "Loop",
     "Match",
     "MessagePattern",
@@ -232,6 +235,7 @@ __all__ = [
     "ObservationPattern",
     "Observe",
     "OfKind",
+    "OnBroken",
     "Parameter",
     "PathOperation",
     "PathPrefix",
@@ -241,6 +245,7 @@ __all__ = [
     "Placement",
     "Point",
     "Polygon",
+    "Precaution",
     "Present",
     "Progress",
     "Property",
@@ -269,6 +274,7 @@ __all__ = [
     "Taken",
     "TemporalProperty",
     "TextLiteral",
+    "TimeLimit",
     "TruthLiteral",
     "TupleLiteral",
     "TuplePattern",

@@ -8,6 +8,7 @@ from typing import TypeAlias, TypeVar
 from specs.syntax.actions import RuleBody
 from specs.syntax.expressions import Expression, TextLiteral
 from specs.syntax.formulas import Formula
+from specs.syntax.live import Live
 from specs.syntax.nodes import Name, Node
 from specs.syntax.statements import Statement
 from specs.syntax.temporal import Progress, TemporalProperty
@@ -209,6 +210,7 @@ Declaration: TypeAlias = (
     | Scheduler
     | ControlMode
     | Check
+    | Live
 )
 
 D = TypeVar("D", bound=Node)

@@ -39,6 +39,7 @@ SHIPPED: dict[str, Expected] = {
     "rendezvous": Expected(18_051, 73_275, witnesses={"all meet": 55}),
     "search_and_deploy": Expected(76, 121, witnesses={"deployed": 13}),
     "smartphone": Expected(15, 16, witnesses={"delivered": 12}),
+    "spill_watch": Expected(1_684, 5_389, witnesses={"home": 36, "over the spill": 13}),
     "surveillance": Expected(153, 663, witnesses={"an alarm is raised": 6}),
     "takeover": Expected(630, 2_214, witnesses={"landed after an emergency": 25}),
     "tanker": Expected(56, 125, witnesses={"both drifters deployed": 14}),

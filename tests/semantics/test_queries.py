@@ -179,3 +179,8 @@ def test_an_observation_answers_what_was_asked_and_no_more():
     c = mission(["base", "area", "sea", "u0", "u1"], beliefs=Beliefs({"u1": "area"}))
     after = learn(c, look(c, of("PARENT", "u0"))).structure.logical
     assert after.parent("u1") == "area"
+
+
+def test_what_is_linked_to_the_parent_of_the_region_is_the_region():
+    c = mission(["sea", "u0"], channels={"u0": ["w"]})
+    assert "sea" in look(c, of("LINKED_TO CHILDREN PARENT PARENT PARENT", "u0")).shown

@@ -192,6 +192,13 @@ properties = st.one_of(
     st.builds(s.Invariant, strings, formulas),
     st.builds(s.Reachable, strings, formulas),
 )
+fallbacks = st.sampled_from(["hold", "return", "continue"])
+durations = st.builds(s.Duration, st.sampled_from([0.0, 1.5, 90.0]), st.sampled_from(["s", "min", "h"]))
+requests = st.sampled_from(["OBS", "CTR", "FLY", "SND", "MGR"])
+precautions = st.one_of(
+    st.builds(s.OnBroken, fallbacks),
+    st.builds(s.TimeLimit, maybe(requests), maybe(names), durations, fallbacks),
+)
 kinds = st.builds(s.Kind, names, tuples(names), tuples(names), st.booleans(), st.booleans())
 declarations = st.one_of(
     st.builds(s.Signature, tuples(kinds)),
@@ -204,6 +211,7 @@ declarations = st.one_of(
     st.sampled_from(["program_order", "unordered", "fcfs"]).map(s.Scheduler),
     st.sampled_from(["atomic", "timed"]).map(s.ControlMode),
     st.builds(s.Check, tuples(properties)),
+    st.builds(s.Live, tuples(precautions)),
 )
 missions = st.builds(s.Mission, maybe(names), tuples(declarations))
 

@@ -1,0 +1,35 @@
+"""The live loop: one configuration, moved by the rules that were checked, as telemetry and feeds let it.
+
+`advance` is the pure core: a state, what came in, and a time give the next state, the steps taken, and what vehicles
+are to be told. `LiveRun` is the loop around it. Neither knows MAVLink, AIS or a file format.
+"""
+
+from adapters.live.core import advance, is_over, resumed, started, watch
+from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, Watcher
+from adapters.live.saying import NobodyListens, listening, say
+from adapters.live.state import Batch, Finding, Heard, LiveState, LiveStep, Plan, Saying, Turn
+
+__all__ = [
+    "Batch",
+    "Ending",
+    "Finding",
+    "Heard",
+    "LiveRun",
+    "LiveState",
+    "LiveStep",
+    "NobodyListens",
+    "NotAsAssumed",
+    "NotHeard",
+    "Plan",
+    "PluginFailed",
+    "Saying",
+    "Turn",
+    "Watcher",
+    "advance",
+    "is_over",
+    "listening",
+    "resumed",
+    "say",
+    "started",
+    "watch",
+]

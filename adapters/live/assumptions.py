@@ -1,0 +1,79 @@
+"""The monitor: whether what the world does is what the mission's environment section says it may do.
+
+A verdict rests on that section. What was seen is compared by its relations: an entity may stand where it contains, and
+is contained by, the same as in one of the placements that the mission lists, in the world as it is now.
+"""
+
+from __future__ import annotations
+
+from adapters.live.sightings import Fences, contents
+from adapters.live.state import Plan
+from semantics.configuration import Configuration
+from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Vanishes
+from semantics.physical_model import Placement
+from semantics.signature import Name
+
+Relations = tuple[frozenset[Name], frozenset[Name]]
+"""What contains an entity, and what it contains."""
+
+
+def broken_by_place(plan: Plan, c: Configuration, entity: Name, seen: Placement | None) -> str:
+    """Return the assumption that breaks when an entity is seen somewhere, nothing if the mission allows it."""
+    before = c.structure.physical.placement(entity)
+    if seen is None:
+        allowed = _clause(plan, Vanishes, entity) is not None
+        return "" if allowed else f"{entity} is not seen any more; the mission does not say that it vanishes"
+    now = relations(c, entity, seen)
+    if before is None:
+        return _broken_by_appearing(plan, c, entity, now)
+    drift = _clause(plan, Drifts, entity)
+    listed = drift.placements if isinstance(drift, Drifts) else ()
+    first = plan.first.structure.physical.placement(entity)
+    if now in [relations(c, entity, place) for place in (before, first, *listed) if place is not None]:
+        return ""
+    where = f"{entity} is in {', '.join(sorted(now[0])) or 'none of the places'}"
+    if now[1]:
+        where += f" and contains {', '.join(sorted(now[1]))}"
+    if isinstance(drift, Drifts):
+        return f"{where}; the mission lets it drift among {', '.join(drift.names)}"
+    return f"{where}; the mission does not say that it drifts, and nobody sent it"
+
+
+def _broken_by_appearing(plan: Plan, c: Configuration, entity: Name, now: Relations) -> str:
+    where = ", ".join(sorted(now[0])) or "none of the places"
+    if entity not in plan.first.setting.kinds:
+        return f"{entity} ({c.setting.kind(entity)}) is in {where}; the mission names no such entity"
+    clause = _clause(plan, Appears, entity)
+    first = plan.first.structure.physical.placement(entity)  # what is heard again may be where it was
+    places = (
+        *([first] if first is not None else ()),
+        *(clause.placements if isinstance(clause, Appears) else ()),
+    )
+    allowed = [relations(c, entity, place) for place in places]
+    return (
+        ""
+        if now in allowed
+        else f"{entity} appears in {where}; the mission does not say that it appears there"
+    )
+
+
+def relations(c: Configuration, entity: Name, placement: Placement) -> Relations:
+    """Return what contains an entity that stands so, and what it contains, in the world as it is."""
+    physical = c.structure.physical
+    around = Fences(c).holders(entity, c.setting.kind(entity), placement)
+    return around, contents(physical, entity, placement)
+
+
+def _clause(plan: Plan, sort: type[Clause], entity: Name) -> Clause | None:
+    found = (clause for clause in plan.first.setting.environment if isinstance(clause, sort))
+    return next((clause for clause in found if getattr(clause, "entity", None) == entity), None)
+
+
+def clause_of_leaving(plan: Plan, entity: Name, channel: Name) -> Leaves | Drops | None:
+    """Return the clause by which an entity may be off a channel, or come back to it."""
+    for clause in plan.first.setting.environment:
+        if isinstance(clause, Leaves) and (clause.entity, clause.channel) == (entity, channel):
+            return clause
+        if isinstance(clause, Drops) and clause.channel == channel:
+            return clause
+    return None

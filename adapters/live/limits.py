@@ -1,0 +1,62 @@
+"""Time limits: requests that wait longer than the mission says, and what is done then."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from adapters.live.serving import in_turn
+from adapters.live.state import Waiting
+from adapters.live.turning import Turning
+from semantics.precautions import Fallback, TimeLimit
+from semantics.requests import SND
+from semantics.signature import Name
+
+
+def check_limits(turning: Turning) -> None:
+    """Report the requests that have waited too long, and fall back as the mission says."""
+    limits = turning.plan.precautions.limits
+    if not limits:
+        return
+    _note_heads(turning)
+    for agent, waiting in sorted(turning.heads.items()):
+        kind = type(waiting.request).__name__
+        for limit in (each for each in limits if each.covers(kind, waiting.request.agent)):
+            _check(turning, agent, waiting, limit)
+
+
+def _note_heads(turning: Turning) -> None:
+    """Remember since when each request is at the head of its agent's line, and each message on its way."""
+    found = {}
+    for pending in in_turn(turning.c):
+        request = pending.request
+        key = f"{request.agent} {request}" if isinstance(request, SND) else request.agent
+        known = turning.heads.get(key)
+        same = known is not None and known.request == request
+        found[key] = known if known is not None and same else Waiting(request, turning.now)
+    turning.heads = found
+
+
+def _check(turning: Turning, key: str, waiting: Waiting, limit: TimeLimit) -> None:
+    due = waiting.since + limit.seconds
+    if limit.seconds in waiting.late:
+        return
+    if turning.now < due:
+        turning.wake(due)
+        return
+    agent = waiting.request.agent
+    message = (
+        f"{waiting.request} waits for {turning.now - waiting.since:.0f} s, longer than {limit.seconds:g} s"
+    )
+    turning.find("late", agent, message, limit.fallback.value)
+    turning.heads[key] = replace(turning.heads[key], late=(*turning.heads[key].late, limit.seconds))
+    if limit.fallback is not Fallback.CONTINUE:
+        turning.grounded.add(agent)
+        turning.fall_back(limit.fallback, _vehicles(turning, agent))
+
+
+def _vehicles(turning: Turning, agent: Name) -> tuple[Name, ...]:
+    """Return the vehicles that an agent's request is about: what it has sent, else its host."""
+    sent = {entity for entity, order in turning.orders.items() if order.agent == agent}
+    sent |= {entity for entity, order in turning.handing.items() if order.agent == agent}
+    host = {turning.c.alpha.host(agent)} if agent in turning.c.alpha else set()
+    return tuple(sorted(sent or host & turning.plan.vehicles.keys()))

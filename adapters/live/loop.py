@@ -1,0 +1,290 @@
+"""The loop: plugins publish into it, `advance` moves the configuration, commands go out, and nothing blocks it.
+
+Of positions that come in between two turns the newest of each entity counts; reports and sayings are all kept.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from adapters.live.core import advance, is_over, watch
+from adapters.live.state import Answer, Batch, Finding, Heard, LiveState, Plan, Saying, Turn
+from adapters.plugin import Aged, Command, Plugin, Published, Refused, Rejected, Report
+
+GATHER = 0.004
+"""Seconds for which arrivals are gathered before the next turn."""
+
+SLICE = 3
+"""How many steps are taken before the loop looks at what has come in meanwhile."""
+
+IDLE = 0.5
+"""Seconds after which there is a turn though nothing has come in: what is too old leaves P."""
+
+MOST_SAYINGS = 1_000
+"""How many sayings may wait; more are refused, and whoever says them is told."""
+
+
+class Watcher(Protocol):
+    """Who looks on: a terminal, a recording, a test. Called in the loop's thread, in this order for each turn."""
+
+    def arrived(self, heard: Heard, now: float) -> None:
+        """See something come in."""
+
+    def reported(self, report: Report, now: float) -> None:
+        """See what a plugin reports."""
+
+    def turned(self, turn: Turn, now: float) -> None:
+        """See what a turn came to, before its commands are sent."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How a run ended: a reason in words, and the last state."""
+
+    reason: str
+    state: LiveState
+
+
+class NotAsAssumed(Exception):
+    """The world does not satisfy the mission's environment section when the run is to begin.
+
+    Attributes:
+        findings: What is otherwise.
+    """
+
+    def __init__(self, findings: Sequence[Finding]) -> None:
+        super().__init__("; ".join(finding.message for finding in findings))
+        self.findings = tuple(findings)
+
+
+class NotHeard(Exception):
+    """Vehicles of the mission were not heard before the run was to begin.
+
+    Attributes:
+        vehicles: Which.
+    """
+
+    def __init__(self, vehicles: Sequence[str]) -> None:
+        super().__init__(f"nothing was heard of {', '.join(vehicles)}")
+        self.vehicles = tuple(vehicles)
+
+
+class PluginFailed(Exception):
+    """A plugin ended with an error; the message says which, and why."""
+
+
+@dataclass(slots=True)
+class Inbox:
+    """What has come in since the last turn, newest positions only."""
+
+    watchers: Sequence[Watcher]
+    now: Callable[[], float]
+    awake: asyncio.Event = field(default_factory=asyncio.Event)
+    heard: dict[tuple[str, str], Heard] = field(default_factory=dict)
+    reports: list[Report] = field(default_factory=list)
+    sayings: list[tuple[Saying, asyncio.Future[Answer]]] = field(default_factory=list)
+
+    def publish(self, plugin: str, published: Published) -> None:
+        """Take what a plugin publishes; what it said before of the same entity is not needed any more."""
+        heard, now = Heard(plugin, published), self.now()
+        for watcher in self.watchers:
+            watcher.arrived(heard, now)
+        self.heard[plugin, _entity(published)] = heard
+        self.awake.set()
+
+    def report(self, report: Report) -> None:
+        """Take what a plugin reports."""
+        now = self.now()
+        for watcher in self.watchers:
+            watcher.reported(report, now)
+        self.reports.append(report)
+        self.awake.set()
+
+    def say(self, agent: str, message: str) -> asyncio.Future[Answer]:
+        """Take what someone says; the answer comes with the next turn."""
+        saying = Saying(agent, message, len(self.sayings))
+        answer: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
+        if len(self.sayings) >= MOST_SAYINGS:
+            answer.set_result(Answer(saying, "too much is being said at once; say it again"))
+        else:
+            self.sayings.append((saying, answer))
+            self.awake.set()
+        return answer
+
+    def take(self) -> tuple[Batch, list[asyncio.Future[Answer]]]:
+        """Return what has come in, and forget it."""
+        said = tuple(saying for saying, _ in self.sayings)
+        batch = Batch(tuple(self.heard.values()), tuple(self.reports), said)
+        answers = [answer for _, answer in self.sayings]
+        self.heard, self.reports, self.sayings = {}, [], []
+        self.awake.clear()
+        return batch, answers
+
+
+def _entity(published: Published) -> str:
+    return published.property.entity if isinstance(published, Aged) else published.entity
+
+
+@dataclass(frozen=True, slots=True)
+class Ear:
+    """The `World` of one plugin."""
+
+    plugin: str
+    inbox: Inbox
+
+    def publish(self, published: Published) -> None:
+        """Take what is known of an entity now."""
+        self.inbox.publish(self.plugin, published)
+
+    def now(self) -> float:
+        """Return the time."""
+        return self.inbox.now()
+
+    def report(self, report: Report) -> None:
+        """Take a report."""
+        self.inbox.report(report)
+
+
+class Clock:
+    """The time in seconds since 1970 UTC that never goes back: the event loop's, begun at the system's."""
+
+    def __init__(self) -> None:
+        self._offset = time.time() - asyncio.get_running_loop().time()
+
+    def __call__(self) -> float:
+        """Return the time."""
+        return self._offset + asyncio.get_running_loop().time()
+
+
+class LiveRun:
+    """One run of a mission with plugins: `begin` waits for the world, `go` flies."""
+
+    def __init__(
+        self, plan: Plan, state: LiveState, plugins: Sequence[Plugin], watchers: Sequence[Watcher] = ()
+    ) -> None:
+        self.plan = plan
+        self.state = state
+        self.clock = Clock()
+        self.inbox = Inbox(tuple(watchers), self.clock)
+        self._watchers = tuple(watchers)
+        self._plugins = tuple(plugins)
+        self._orders: asyncio.Queue[Command] = asyncio.Queue()
+        self._tasks: list[asyncio.Task[None]] = []
+
+    async def __aenter__(self) -> LiveRun:
+        for plugin in self._plugins:
+            ear = Ear(plugin.name, self.inbox)
+            self._tasks.append(asyncio.create_task(plugin.run(ear), name=plugin.name))
+        self._tasks.append(asyncio.create_task(self._telling(), name="orders"))
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+
+    # --- beginning
+
+    async def begin(self, patience: float, *, forced: bool = False) -> None:
+        """Wait until every vehicle is heard and the world is as the mission's environment section has it.
+
+        Raises:
+            NotHeard: A vehicle was not heard in time.
+            NotAsAssumed: The world is otherwise, and the run is not forced.
+        """
+        until = self.clock() + patience
+        while missing := sorted(set(self.plan.vehicles) - set(self.state.seen)):
+            if self.clock() >= until:
+                raise NotHeard(missing)
+            await self._next(0.1)
+            batch, answers = self.inbox.take()
+            turn = watch(self.plan, self.state, batch, self.clock())
+            self._refuse(answers)
+            broken = [finding for finding in turn.findings if finding.kind == "broken assumption"]
+            if broken and not forced:
+                raise NotAsAssumed(broken)
+            self._take(turn)
+        if forced:
+            self.state = self.state.with_(
+                suspended=False
+            )  # who flies unverified has been told what is otherwise
+        for order in (*self.state.orders.values(), *self.state.handing.values()):
+            self._orders.put_nowait(
+                order.command
+            )  # of a run that is resumed: its vehicles have been compared
+
+    def _refuse(self, answers: list[asyncio.Future[Answer]]) -> None:
+        for answer in answers:
+            answer.set_result(Answer(Saying("", ""), "the mission has not begun"))
+
+    # --- going
+
+    async def go(self, until: Callable[[LiveState], bool] = is_over, seconds: float | None = None) -> Ending:
+        """Turn until nothing will happen any more, or for some seconds."""
+        end = None if seconds is None else self.clock() + seconds
+        again: float | None = self.clock()
+        while True:
+            await self._next(self._patience(again, end))
+            turn = self._turn()
+            again = turn.again
+            if until(self.state):
+                return Ending("the mission has ended", self.state)
+            if end is not None and self.clock() >= end:
+                return Ending("the time is over", self.state)
+
+    def _patience(self, again: float | None, end: float | None) -> float:
+        due = [at for at in (again, end) if at is not None]
+        return max(0.0, min([IDLE, *(at - self.clock() for at in due)]))
+
+    def _turn(self) -> Turn:
+        batch, answers = self.inbox.take()
+        turn = advance(self.plan, self.state, batch, self.clock(), SLICE)
+        self._take(turn)
+        for answer, said in zip(turn.answers, answers, strict=True):
+            if not said.done():  # who asked may have gone
+                said.set_result(answer)
+        for command in turn.commands:
+            self._orders.put_nowait(command)
+        return turn
+
+    def _take(self, turn: Turn) -> None:
+        self.state = turn.state
+        now = self.clock()
+        for watcher in self._watchers:
+            watcher.turned(turn, now)
+
+    async def _next(self, patience: float) -> None:
+        """Wait until something comes in, and a moment longer for what comes with it."""
+        self._check_plugins()
+        await asyncio.sleep(0)
+        try:
+            await asyncio.wait_for(self.inbox.awake.wait(), patience)
+        except TimeoutError:
+            return
+        await asyncio.sleep(GATHER)
+
+    def _check_plugins(self) -> None:
+        for task in self._tasks:
+            if task.done() and not task.cancelled() and (error := task.exception()) is not None:
+                if isinstance(error, OSError | ValueError):
+                    raise PluginFailed(f"{task.get_name()}: {error}") from error
+                raise error
+
+    # --- commands
+
+    async def _telling(self) -> None:
+        """Tell vehicles what they shall do, one after the other; what is refused is reported."""
+        while True:
+            command = await self._orders.get()
+            owner = next((plugin for plugin in self._plugins if plugin.owns(command.entity)), None)
+            try:
+                if owner is None:
+                    raise Refused(f"no vehicle takes commands as {command.entity}")
+                await owner.command(command)
+            except Refused as refused:
+                reason = f"{refused.reason}{f' ({refused.hint})' if refused.hint else ''}"
+                self.inbox.report(Rejected(command.request, command.entity, self.clock(), reason))

@@ -1,0 +1,65 @@
+"""From requests to what vehicles are told, and when what they were told is done."""
+
+from __future__ import annotations
+
+from adapters.plugin import GoTo, HandOver
+from physical import waypoint
+from semantics.configuration import Configuration
+from semantics.control import Realisation, commits
+from semantics.physical_model import Carried, InTransit, Placed, placement_cell
+from semantics.reactions import CONTROL_AUTHORITY, relinked
+from semantics.requests import CTR, FLY
+from semantics.signature import Name
+
+
+def destination(c: Configuration, found: Realisation, node: Name, place: Name, request: str) -> GoTo | None:
+    """Return the command to go into a place as it is now, or to what is to carry the node.
+
+    The waypoint of a place is its centroid; where that is inside something that would swallow the vehicle, the point
+    that `drive` found is told instead.
+    """
+    spot = found.physical.get(placement_cell(node))
+    target = c.structure.physical.position(place)
+    if target is None or spot is None:
+        return None
+    if isinstance(spot, Carried):
+        return GoTo(request, node, target.geometry, None, place)
+    assert isinstance(spot, Placed)
+    central = spot.geometry.is_point and spot.geometry == waypoint(target.geometry)
+    return GoTo(request, node, target.geometry if central else waypoint(spot.geometry), spot.altitude, place)
+
+
+def renewed(c: Configuration, fly: FLY, told: GoTo) -> GoTo | None:
+    """Return the command again with the place where it is now, None where it is the same or can't be known."""
+    found = commits(c, fly)
+    transit = c.structure.physical.placement(told.entity)
+    if found is None or not isinstance(transit, InTransit):
+        return None
+    command = destination(c, found, told.entity, transit.to, told.request)
+    return command if command != told else None
+
+
+def hand_overs(
+    c: Configuration, request: CTR, found: Realisation, vehicles: frozenset[Name]
+) -> tuple[HandOver, ...]:
+    """Return what vehicles have to confirm before a link change is true: changes of control authority."""
+    told = []
+    for node, lost, gained in relinked(request.reaction, found.match, c.structure.logical):
+        leave, join = _authority(lost), _authority(gained)
+        if node in vehicles and leave and join:
+            told.append(HandOver("", node, leave, join))
+    return tuple(told)
+
+
+def _authority(channels: frozenset[Name]) -> Name:
+    return next((each for each in sorted(channels) if is_authority(each)), "")
+
+
+def is_authority(channel: Name) -> bool:
+    """Tell whether a channel says who commands a vehicle: what autopilots confirm."""
+    return channel.partition(":")[0] == CONTROL_AUTHORITY
+
+
+def is_done(told: HandOver, channels: tuple[Name, ...]) -> bool:
+    """Tell whether the channels that a vehicle was seen on are those after a hand-over."""
+    return told.join in channels and told.leave not in channels

@@ -1,0 +1,101 @@
+"""Saying something to an agent of a running mission: a Unix socket, a line of JSON each way."""
+
+from __future__ import annotations
+
+import asyncio
+import errno
+import json
+import os
+import stat
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager, suppress
+from pathlib import Path
+from typing import Final
+
+MOST_BYTES: Final = 16_384
+PATIENCE: Final = 5.0
+
+Listener = Callable[[str, str], Awaitable[str]]
+"""Takes an agent and a message, and returns why it was not said, nothing if it was."""
+
+
+class NobodyListens(Exception):
+    """No mission runs there, or it does not answer; the message says which."""
+
+
+@asynccontextmanager
+async def listening(path: Path, listener: Listener) -> AsyncIterator[None]:
+    """Listen at a path that only its user may use; raises OSError where that cannot be.
+
+    What a killed run has left there is replaced; a run that listens there is not.
+    """
+    if await _is_taken(path):
+        raise FileExistsError(errno.EEXIST, "another run listens there", str(path))
+    if path.exists() and stat.S_ISSOCK(path.lstat().st_mode):
+        path.unlink()
+
+    async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        with suppress(OSError, ValueError, TimeoutError, asyncio.IncompleteReadError):
+            line = await asyncio.wait_for(reader.readuntil(), PATIENCE)
+            writer.write(json.dumps({"refusal": await _answer(line, listener)}).encode() + b"\n")
+            await writer.drain()
+        writer.close()
+
+    mask = os.umask(0o177)
+    try:
+        server = await asyncio.start_unix_server(serve, path, limit=MOST_BYTES)
+    finally:
+        os.umask(mask)
+    try:
+        async with server:
+            yield
+    finally:
+        path.unlink(missing_ok=True)
+
+
+async def _is_taken(path: Path) -> bool:
+    try:
+        await _exchange(path, b"{}\n")
+    except NobodyListens:
+        return False
+    return True
+
+
+async def _answer(line: bytes, listener: Listener) -> str:
+    try:
+        match json.loads(line):
+            case {"agent": str(agent), "message": str(message)}:
+                return await listener(agent, message)
+    except (ValueError, RecursionError):
+        pass
+    return "this is no saying: an object with 'agent' and 'message' was expected"
+
+
+async def say(path: Path, agent: str, message: str) -> str:
+    """Say something to an agent of the run that listens at a path; return why it was not taken, nothing if it was.
+
+    Raises:
+        NobodyListens: No run does, or it does not answer.
+    """
+    line = json.dumps({"agent": agent, "message": message}).encode() + b"\n"
+    if len(line) > MOST_BYTES:
+        return f"a message of more than {MOST_BYTES:,} bytes"
+    match json.loads(await _exchange(path, line)):
+        case {"refusal": str(refusal)}:
+            return refusal
+    raise NobodyListens(f"what listens at {path} is no run of bigactors")
+
+
+async def _exchange(path: Path, line: bytes) -> bytes:
+    try:
+        reader, writer = await asyncio.open_unix_connection(path, limit=MOST_BYTES)
+    except OSError as error:
+        raise NobodyListens(f"no mission runs at {path}: {error.strerror or error}") from error
+    try:
+        writer.write(line)
+        await writer.drain()
+        return await asyncio.wait_for(reader.readuntil(), PATIENCE)
+    except (TimeoutError, asyncio.IncompleteReadError, asyncio.LimitOverrunError, OSError) as error:
+        raise NobodyListens(f"the run at {path} does not answer") from error
+    finally:
+        writer.close()

@@ -1,0 +1,74 @@
+"""Which step is next: agents go on in turn and at their pace, requests are served first come, first served."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from adapters.live.state import Pace
+from semantics.configuration import Configuration, Transition
+from semantics.eta import Pending
+from semantics.extension import migrate, rcv_msg, req_mgr, req_snd, snd, spawn
+from semantics.requests import CTR, FLY, MGR, OBS, READY, SND
+from semantics.rules import Rule, actuate, command, fun, rcv_obs, req_ctr, req_obs, sense
+from semantics.signature import Name
+
+OWN: tuple[Rule, ...] = (fun, req_obs, rcv_obs, req_ctr, req_snd, rcv_msg, req_mgr, spawn)
+"""The rules by which an agent goes on by itself; they take no turn."""
+
+SERVING: dict[type, tuple[Rule, ...]] = {
+    OBS: (sense,),
+    CTR: (actuate, command),
+    SND: (snd,),
+    MGR: (migrate,),
+}
+"""What serves a request. A flight ends when it is seen to end, without a turn."""
+
+STEPS_PER_SECOND = 8.0
+"""How fast an agent may go on: one that looks again and again looks about twice a second, and keeps nobody from it."""
+
+PATIENCE = 0.02
+"""Seconds for which an agent that is too fast waits at least."""
+
+BURST = 100.0
+"""How many steps an agent may take at once."""
+
+
+def own_steps(c: Configuration, a: Name) -> tuple[Transition, ...]:
+    """Return what an agent can do by itself; raises Fault where its computation fails."""
+    found = (transition for rule in OWN for transition in rule(c, a))
+    return tuple(dict.fromkeys(found))
+
+
+def in_turn(c: Configuration) -> Iterator[Pending]:
+    """Yield what may be served in the order asked: the head of each agent's line, and all messages."""
+    headed: set[Name] = set()
+    for pending in c.eta.all():
+        request = pending.request
+        if isinstance(request, SND):
+            yield pending
+        elif not isinstance(request, READY) and request.agent not in headed:
+            headed.add(request.agent)
+            yield pending
+
+
+def served(c: Configuration, pending: Pending) -> tuple[Transition, ...]:
+    """Return the transitions that serve a request where it stands."""
+    rules = SERVING.get(type(pending.request), ())
+    found = (transition for rule in rules for transition in rule(c, pending.request.agent))
+    return tuple(
+        dict.fromkeys(t for t in found if t.served is not None and t.served.position == pending.position)
+    )
+
+
+def flights(c: Configuration) -> Iterator[FLY]:
+    """Yield the flights that may end: those at the heads of their lines."""
+    for pending in in_turn(c):
+        if isinstance(pending.request, FLY):
+            yield pending.request
+
+
+def refilled(pace: Pace | None, now: float) -> Pace:
+    """Return an agent's pace as of now."""
+    if pace is None:
+        return Pace(BURST, now)
+    return Pace(min(BURST, pace.tokens + max(0.0, now - pace.at) * STEPS_PER_SECOND), now)

@@ -1,0 +1,144 @@
+"""From what plugins publish to where entities are: newest first, within time limits, and as P has it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+from adapters.live.state import Heard, Sighting
+from adapters.plugin import Aged, Gone
+from physical import Geometry, PhysicalError, translate_to
+from semantics.configuration import Configuration
+from semantics.physical_model import Carried, PhysicalModel, Placed, Placement, encloses
+from semantics.setting import Setting
+from semantics.signature import Name
+
+MOST_AHEAD = 5.0
+"""Seconds by which a time stamp may lie in the future: clocks differ."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """A message that is not taken, and why."""
+
+    entity: Name
+    reason: str
+
+
+def sighting_of(
+    heard: Heard, known: Sighting | None, vehicles: Mapping[Name, str], now: float
+) -> Sighting | Refusal | None:
+    """Return what a message makes known of its entity, None where something newer is known."""
+    published = heard.published
+    said = published.property if isinstance(published, Aged) else published
+    owner = vehicles.get(said.entity)
+    if owner is not None and owner != heard.plugin:
+        return Refusal(
+            said.entity, f"'{heard.plugin}' speaks of {said.entity}, which is the vehicle of '{owner}'"
+        )
+    time = now if said.time is None else said.time
+    if not math.isfinite(time) or time > now + MOST_AHEAD:
+        return Refusal(
+            said.entity, f"'{heard.plugin}' gives a time {time - now:.0f} s ahead for {said.entity}"
+        )
+    if known is not None and time < known.time:
+        return None
+    if isinstance(said, Gone):
+        return None if known is None else Sighting(known.property, time, -math.inf)
+    until = time + published.time_to_live if isinstance(published, Aged) else math.inf
+    return Sighting(said, time, until) if until > now else None
+
+
+def placement_seen(c: Configuration, shape: Placed | None, sighting: Sighting) -> Placement | None:
+    """Return where P has an entity that was seen so, None where its shape has no place there.
+
+    A point seen of what the mission gives an extent is where its centre is; a band of altitudes counts only for what
+    the mission gives one.
+    """
+    said = sighting.property
+    geometry = said.geometry
+    if shape is not None and geometry.is_point and not shape.geometry.is_point:
+        try:
+            geometry = _moved(shape.geometry, geometry)
+        except PhysicalError:
+            return None
+    banded = shape is not None and shape.altitude is not None
+    placed = Placed(geometry, (said.altitude or shape.altitude) if shape is not None and banded else None)
+    by = said.carried_by
+    return Carried(by, placed) if by is not None and by in c.setting.kinds else placed
+
+
+def _moved(shape: Geometry, to: Geometry) -> Geometry:
+    return translate_to(shape, to)
+
+
+# --- relations ----------------------------------------------------------------------------------------
+
+Bounds = tuple[int, int, int, int]
+
+
+@lru_cache(maxsize=1 << 12)
+def bounds(geometry: Geometry) -> Bounds | None:
+    """Return the south, north, west and east of a polygon, None for one across the antimeridian."""
+    norths, easts = zip(*geometry.ring, strict=True)
+    wide = max(easts) - min(easts) > 1_800_000_000
+    return None if wide else (min(norths), max(norths), min(easts), max(easts))
+
+
+Fence = tuple[Name, Placed, Bounds | None]
+"""A place that stands somewhere, with its bounds."""
+
+
+class Fences:
+    """The places of one configuration: what contains an entity that stands somewhere."""
+
+    def __init__(self, c: Configuration) -> None:
+        self.c = c
+        self._of: dict[str, list[Fence]] = {}
+
+    def holders(self, entity: Name, kind: str, placement: Placement | None) -> frozenset[Name]:
+        """Return all that contains or carries an entity that stands so: what A(P) knows of where it is."""
+        if placement is None:
+            return frozenset()
+        if isinstance(placement, Carried):
+            return frozenset({placement.by})
+        assert isinstance(placement, Placed)
+        north, east = placement.geometry.ring[0]
+        found = []
+        for place, position, limits in self._fences(kind):
+            if limits and not (limits[0] < north < limits[1] and limits[2] < east < limits[3]):
+                continue  # most places are passed over here
+            if place != entity and encloses(position, placement):
+                found.append(place)
+        return frozenset(found)
+
+    def _fences(self, kind: str) -> list[Fence]:
+        if kind not in self._of:
+            physical = self.c.structure.physical
+            placed = ((name, physical.placement(name)) for name in places_for(self.c.setting, kind))
+            self._of[kind] = [
+                (name, at, bounds(at.geometry))
+                for name, at in placed
+                if isinstance(at, Placed) and not at.geometry.is_point
+            ]
+        return self._of[kind]
+
+
+@lru_cache(maxsize=1 << 10)
+def places_for(setting: Setting, kind: str) -> tuple[Name, ...]:
+    """Return the names of all that may contain an entity of a kind, of one that the mission has no entity of too."""
+    signature = setting.signature
+    return tuple(sorted(name for name, of in setting.kinds.items() if kind in signature[of].contains))
+
+
+def contents(physical: PhysicalModel, place: Name, placement: Placement | None) -> frozenset[Name]:
+    """Return what a place contains if it stands so; what is in transit is nowhere."""
+    if not isinstance(placement, Placed) or placement.geometry.is_point:
+        return frozenset()
+    setting = physical.setting
+    holding = setting.signature[setting.kind(place)].contains
+    among = (name for name in physical.entities() if name != place and setting.kind(name) in holding)
+    positions = ((name, physical.position(name)) for name in among if physical.transit(name) is None)
+    return frozenset(name for name, at in positions if at is not None and encloses(placement, at))

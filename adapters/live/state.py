@@ -1,0 +1,221 @@
+"""The state of a live run, and what moves it: frozen values, no clock, no input or output."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from adapters.plugin import Command, GoTo, HandOver, Published, Report
+from physical import PhysicalProperty
+from semantics.configuration import Configuration, Transition
+from semantics.observed import Sight
+from semantics.precautions import Precautions
+from semantics.requests import Request
+from semantics.signature import Name
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """What stays the same in a live run.
+
+    Attributes:
+        first: The mission's first configuration, under `control timed` and `fcfs`.
+        vehicles: For each entity that takes commands, the plugin that owns it.
+        precautions: What the mission says of broken assumptions and time limits.
+        strict: Whether turns are kept while a vehicle confirms a hand-over: the verdict is one under `fcfs` only.
+    """
+
+    first: Configuration
+    vehicles: Mapping[Name, str] = field(default_factory=dict)
+    precautions: Precautions = field(default_factory=Precautions)
+    strict: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """The newest that is known of an entity, and until when it may stand in P."""
+
+    property: PhysicalProperty
+    time: float
+    until: float
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """What a vehicle was told, and not confirmed as yet.
+
+    Attributes:
+        command: What it was told last.
+        agent: Whose request it serves.
+        since: When it was first told.
+    """
+
+    command: GoTo | HandOver
+    agent: Name
+    since: float
+
+
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """The request at the head of an agent's line: since when it is there, and which limits it has passed."""
+
+    request: Request
+    since: float
+    late: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """How many steps of its own an agent may take at once, as of a time."""
+
+    tokens: float
+    at: float
+
+
+@dataclass(frozen=True, slots=True)
+class LiveState:
+    """Where a live run is.
+
+    Attributes:
+        configuration: ⟨α | S | η⟩.
+        seen: The newest of each entity that the mission names or has admitted.
+        expires: No sighting is too old before.
+        orders: Where each vehicle in flight was told to go.
+        handing: Which hand-over each vehicle was told, and has not confirmed.
+        lost: Vehicles whose link is lost.
+        idle: Agents that cannot go on by themselves: they wait for an observation, a message, or for ever.
+        quiet: The configuration in which nothing more could be served, None if that is not known.
+        heads: What stands at the head of each agent's line.
+        paces: How fast each agent may go on.
+        suspended: Whether controls are served no more: an assumption broke.
+        grounded: Agents of which no control is served any more: a request of theirs took too long.
+        failed: Agents whose computation failed.
+        reported: What was reported already, and is not again.
+        last: The agent that went on last: the next turn begins with the one after it.
+        number: How many steps were taken.
+        told: How many orders were given.
+    """
+
+    configuration: Configuration
+    seen: Mapping[Name, Sighting] = field(default_factory=dict)
+    expires: float = math.inf
+    orders: Mapping[Name, Order] = field(default_factory=dict)
+    handing: Mapping[Name, Order] = field(default_factory=dict)
+    lost: frozenset[Name] = frozenset()
+    idle: frozenset[Name] = frozenset()
+    quiet: Configuration | None = None
+    heads: Mapping[Name, Waiting] = field(default_factory=dict)
+    paces: Mapping[Name, Pace] = field(default_factory=dict)
+    suspended: bool = False
+    grounded: frozenset[Name] = frozenset()
+    failed: frozenset[Name] = frozenset()
+    reported: frozenset[str] = frozenset()
+    last: Name = ""
+    number: int = 0
+    told: int = 0
+
+    def with_(self, **changes: object) -> LiveState:
+        """Return the state with some of its attributes changed."""
+        return replace(self, **changes)  # type: ignore[arg-type]  # names are checked by replace itself
+
+
+# --- what comes in ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """Something that a plugin published."""
+
+    plugin: str
+    published: Published
+
+
+@dataclass(frozen=True, slots=True)
+class Saying:
+    """A message from someone outside to an agent; `number` names it in the answer."""
+
+    agent: Name
+    message: str
+    number: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """All that came in since the last turn, in its order."""
+
+    heard: tuple[Heard, ...] = ()
+    reports: tuple[Report, ...] = ()
+    sayings: tuple[Saying, ...] = ()
+
+
+# --- what comes out -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class LiveStep:
+    """One committed transition.
+
+    Attributes:
+        number: From 1.
+        source: The configuration before it.
+        transition: The transition.
+        choice: Which of the transitions of that label it is, from 0.
+        sight: What was observed, where the world decided.
+        time: When.
+    """
+
+    number: int
+    source: Configuration
+    transition: Transition
+    choice: int
+    sight: Sight | None
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """Something that the operator has to know.
+
+    Attributes:
+        kind: `broken assumption`, `refused`, `lost link`, `link restored`, `late`, `blocked`, `failed`, `trouble`.
+        about: The entity or agent.
+        message: One line.
+        time: When.
+        fallback: What is done about it: `hold`, `return`, or nothing.
+    """
+
+    kind: str
+    about: str
+    message: str
+    time: float
+    fallback: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What came of a saying: an empty text if it was said, else why it was not."""
+
+    saying: Saying
+    refusal: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """What one turn of the loop came to.
+
+    Attributes:
+        state: The state after it.
+        steps: The transitions, in their order.
+        commands: What vehicles are to be told now.
+        findings: What the operator has to know.
+        answers: What came of what was said.
+        again: When to turn again though nothing comes in; None if nothing waits for time to pass.
+    """
+
+    state: LiveState
+    steps: tuple[LiveStep, ...] = ()
+    commands: tuple[Command, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    answers: tuple[Answer, ...] = ()
+    again: float | None = None

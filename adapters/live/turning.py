@@ -1,0 +1,288 @@
+"""The working copy of a turn: takes steps, lets agents go on, serves their requests, gives orders."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import replace
+
+from adapters.live.orders import destination, hand_overs, is_done
+from adapters.live.serving import PATIENCE, STEPS_PER_SECOND, in_turn, own_steps, refilled, served
+from adapters.live.sightings import Fences, placement_seen
+from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Pace, Plan, Turn
+from adapters.plugin import Command, HandOver, Hold, Return
+from semantics.configuration import Transition
+from semantics.control import Realisation, obstacle, realisations
+from semantics.eta import Pending
+from semantics.expressions import Fault
+from semantics.observed import Sight
+from semantics.physical_model import Carried, Placed, Placement
+from semantics.precautions import Fallback
+from semantics.requests import CTR, FLY, SND
+from semantics.signature import Name
+
+
+class Turning:
+    """A turn being made; what it gathers becomes the next state."""
+
+    def __init__(self, plan: Plan, state: LiveState, now: float) -> None:
+        self.plan = plan
+        self.now = now
+        self.before = state
+        self.c = state.configuration
+        self.seen = dict(state.seen)
+        self.expires = state.expires
+        self.orders = dict(state.orders)
+        self.handing = dict(state.handing)
+        self.lost = set(state.lost)
+        self.idle = set(state.idle)
+        self.heads = dict(state.heads)
+        self.paces = dict(state.paces)
+        self.suspended = state.suspended
+        self.grounded = set(state.grounded)
+        self.failed = set(state.failed)
+        self.reported = set(state.reported)
+        self.told = state.told
+        self.quiet = state.quiet
+        self.last = state.last
+        self.fences = Fences(self.c)
+        self.steps: list[LiveStep] = []
+        self.commands: list[Command] = []
+        self.findings: list[Finding] = []
+        self.answers: list[Answer] = []
+        self.again = math.inf
+
+    # --- what comes of it
+
+    def turn(self) -> Turn:
+        """Return what the turn came to."""
+        state = LiveState(
+            self.c,
+            self.seen,
+            self.expires,
+            self.orders,
+            self.handing,
+            frozenset(self.lost),
+            frozenset(self.idle),
+            self.quiet,
+            self.heads,
+            self.paces,
+            self.suspended,
+            frozenset(self.grounded),
+            frozenset(self.failed),
+            frozenset(self.reported),
+            self.last,
+            self.before.number + len(self.steps),
+            self.told,
+        )
+        gathered = (tuple(self.steps), tuple(self.commands), tuple(self.findings), tuple(self.answers))
+        return Turn(state, *gathered, again=None if self.again == math.inf else self.again)
+
+    def find(self, kind: str, about: Name, message: str, fallback: str = "", *, once: bool = False) -> bool:
+        """Report something; what is to be reported once is not again."""
+        if once:
+            if message in self.reported:
+                return False
+            self.reported.add(message)
+        self.findings.append(Finding(kind, about, message, self.now, fallback))
+        return True
+
+    def wake(self, at: float) -> None:
+        """Turn again at a time, though nothing may come in."""
+        self.again = min(self.again, at)
+
+    # --- steps
+
+    def take(self, transition: Transition, alike: tuple[Transition, ...], sight: Sight | None = None) -> None:
+        """Take a step; `alike` are all that could be taken by that rule here."""
+        word = str(transition.label)
+        choice = [each for each in alike if str(each.label) == word].index(transition)
+        number = self.before.number + len(self.steps) + 1
+        self.steps.append(LiveStep(number, self.c, transition, choice, sight, self.now))
+        agent, request = transition.label.agent, transition.label.about
+        if agent is not None:
+            self.idle.discard(agent)
+        if agent is not None and transition.served is not None and not isinstance(request, SND):
+            self.heads.pop(agent, None)
+        if isinstance(request, SND):
+            self.idle.discard(request.to)
+        if transition.label.rule == "spawn":
+            self.idle.discard(str(request))
+        self.c = transition.target
+
+    def observe(self, sight: Sight, found: Iterator[Transition]) -> bool:
+        """Take the step that an observation makes, if it makes one."""
+        alike = tuple(found)
+        if alike:
+            self.take(alike[0], alike, sight)
+        return bool(alike)
+
+    # --- going on
+
+    def go_on(self, most: int) -> None:
+        """Let every agent take a step in turn and serve one request, until nothing more can be done now."""
+        left = most
+        while left > 0:
+            taken = self._own_steps(left)
+            taken += self.serve()
+            if not taken:
+                return
+            left -= taken
+        self.wake(self.now)
+
+    def _own_steps(self, most: int) -> int:
+        """Let agents take one step each, those first who come after the last that took one."""
+        going = [a for a in self.c.alpha.names() if a not in self.idle and a not in self.failed]
+        first = bisect_right(going, self.last)
+        taken = 0
+        for a in going[first:] + going[:first]:
+            if taken >= most:
+                break
+            taken += self.own_step(a)
+            self.last = a
+        return taken
+
+    def own_step(self, a: Name) -> bool:
+        """Let an agent take one step of its own, if its pace allows one."""
+        pace = refilled(self.paces.get(a), self.now)
+        if pace.tokens < 1:
+            self.wake(self.now + max(PATIENCE, (1 - pace.tokens) / STEPS_PER_SECOND))
+            return False
+        try:
+            found = own_steps(self.c, a)
+        except Fault as fault:
+            self.failed.add(a)
+            self.find("failed", a, f"the computation of {a} fails: {fault}")
+            return False
+        if not found:
+            self.idle.add(a)
+            return False
+        self.paces[a] = Pace(pace.tokens - 1, self.now)
+        self.take(found[(self.before.number + len(self.steps)) % len(found)], found)
+        return True
+
+    def serve(self) -> bool:
+        """Serve the first request that can be, in the order asked."""
+        if self.quiet is self.c:
+            return False
+        for pending in tuple(in_turn(self.c)):
+            found, held = self.allowed(pending)
+            if found:
+                self.take(found[0], found)
+                return True
+            if held and self.plan.strict:
+                return False
+        self.quiet = self.c
+        return False
+
+    def allowed(self, pending: Pending) -> tuple[tuple[Transition, ...], bool]:
+        """Return what serves a request now, and whether it only waits for a vehicle to confirm."""
+        request = pending.request
+        if isinstance(request, FLY):
+            return (), False
+        found = served(self.c, pending)
+        if not isinstance(request, CTR):
+            return found, False
+        if self.suspended or request.agent in self.grounded:
+            return (), False
+        if not found:
+            self._blocked(request)
+            return (), False
+        way = next(way for way in realisations(self.c, request) if not (way.flying and way.waits(self.c)))
+        return self._controlled(request, way, found)
+
+    def _blocked(self, request: CTR) -> None:
+        reason = obstacle(self.c, request)
+        if reason is not None:
+            self.find("blocked", request.agent, f"{request} is {reason.value}; it stays pending", once=True)
+
+    def _controlled(
+        self, request: CTR, way: Realisation, found: tuple[Transition, ...]
+    ) -> tuple[tuple[Transition, ...], bool]:
+        """Give the orders that a control takes, and return it once it may be taken."""
+        for node, _ in way.flying:
+            if not self._hears(node):
+                return (), False
+        if way.flying:
+            for node, place in way.flying:
+                going = destination(self.c, way, node, place, self.request_of(request.agent))
+                if going is None:
+                    return (), False
+                self.orders[node] = Order(going, request.agent, self.now)
+                self.commands.append(going)
+            return found, False
+        vehicles = frozenset(self.plan.vehicles)
+        waiting = [told for told in hand_overs(self.c, request, way, vehicles) if not self._confirmed(told)]
+        for told in waiting:
+            self._hand_over(told, request.agent)
+        if waiting:
+            return (), True
+        for told in hand_overs(self.c, request, way, vehicles):
+            self.handing.pop(told.entity, None)
+        return found, False
+
+    def _hears(self, node: Name) -> bool:
+        if node not in self.plan.vehicles:
+            self.find(
+                "blocked", node, f"no vehicle takes commands as {node}: say --vehicle {node}=...", once=True
+            )
+            return False
+        return node in self.seen and node not in self.lost
+
+    def _confirmed(self, told: HandOver) -> bool:
+        sighting = self.seen.get(told.entity)
+        return sighting is not None and is_done(told, sighting.property.channels)
+
+    def _hand_over(self, told: HandOver, agent: Name) -> None:
+        known = self.handing.get(told.entity)
+        if known is None and self._hears(told.entity):
+            command = replace(told, request=self.request_of(agent))
+            self.handing[told.entity] = Order(command, agent, self.now)
+            self.commands.append(command)
+
+    def request_of(self, agent: Name) -> str:
+        """Name one more order of an agent."""
+        self.told += 1
+        return f"{agent}-{self.told}"
+
+    # --- flights
+
+    def shape(self, entity: Name) -> Placed | None:
+        """Return the shape that the mission gives an entity."""
+        placement = self.plan.first.structure.physical.placement(entity)
+        if isinstance(placement, Carried):
+            return placement.shape
+        return placement if isinstance(placement, Placed) else None
+
+    def around(self, entity: Name, kind: str, placement: Placement | None) -> frozenset[Name]:
+        """Return what contains an entity that stands somewhere, in the world as it is now."""
+        if self.fences.c is not self.c:
+            self.fences = Fences(self.c)
+        return self.fences.holders(entity, kind, placement)
+
+    def where_seen(self, entity: Name) -> Placement | None:
+        """Return where an entity was seen last, as P would have it."""
+        sighting = self.seen.get(entity)
+        return None if sighting is None else placement_seen(self.c, self.shape(entity), sighting)
+
+    # --- falling back
+
+    def fall_back(self, fallback: Fallback, entities: tuple[Name, ...]) -> None:
+        """Tell vehicles what the mission says that they do when something went otherwise."""
+        if fallback is Fallback.CONTINUE:
+            return
+        for entity in entities:
+            request = self.request_of("fallback")
+            told = Hold(request, entity) if fallback is Fallback.HOLD else Return(request, entity)
+            self.commands.append(told)
+
+    def breaks(self, assumption: str, about: Name) -> None:
+        """Say that an assumption broke, and do what the mission says is done then."""
+        fallback = self.plan.precautions.on_broken
+        if (
+            self.find("broken assumption", about, assumption, fallback.value, once=True)
+            and not self.suspended
+        ):
+            self.suspended = fallback is not Fallback.CONTINUE
+            self.fall_back(fallback, tuple(sorted(self.plan.vehicles)))

@@ -1,0 +1,261 @@
+"""Taking the world in: sightings become `env` and `commit`, reports become findings, sayings become `say`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from adapters.live.assumptions import broken_by_place, clause_of_leaving
+from adapters.live.flying import arrive, renew
+from adapters.live.orders import is_authority
+from adapters.live.sightings import Fences, Refusal, placement_seen, sighting_of
+from adapters.live.state import Answer, Heard, Saying, Sighting
+from adapters.live.turning import Turning
+from adapters.plugin import Accepted, Aged, Arrived, LinkLost, LinkRestored, Rejected, Report, Trouble
+from semantics.cells import Cell
+from semantics.environment import Appears, Leaves, Says
+from semantics.extension import say
+from semantics.observed import Sight, admitting, happening
+from semantics.physical_model import Carried, Placed, Placement, channels_cell, placement_cell
+from semantics.rules import env
+from semantics.signature import REGION, Name
+from semantics.values import show
+
+MOST_NEWCOMERS = 1_000
+"""How many entities that nobody announced are taken in."""
+
+
+def hear(turning: Turning, heard: Iterable[Heard]) -> None:
+    """Take in what plugins published: of each entity the newest."""
+    changed: dict[Name, None] = {}
+    for each in heard:
+        name = _merge(turning, each)
+        if name is not None:
+            changed[name] = None
+    for entity in changed:
+        _place(turning, entity)
+    if turning.now >= turning.expires:
+        _expire(turning)
+
+
+def _merge(turning: Turning, heard: Heard) -> Name | None:
+    published = heard.published
+    entity = published.property.entity if isinstance(published, Aged) else published.entity
+    found = sighting_of(heard, turning.seen.get(entity), turning.plan.vehicles, turning.now)
+    if isinstance(found, Refusal):
+        turning.find("trouble", found.entity, found.reason, once=True)
+        return None
+    if found is None:
+        return None
+    if entity not in turning.c.setting.kinds and not _comes_in(turning, found):
+        return None
+    if entity not in turning.seen:
+        turning.quiet = None  # commands may wait for it to be heard
+    turning.seen[entity] = found
+    turning.expires = min(turning.expires, found.until)
+    return entity
+
+
+def _comes_in(turning: Turning, found: Sighting) -> bool:
+    """Tell whether what nobody announced is of a kind that the mission knows, and in one of its places."""
+    kind, c = found.property.kind, turning.c
+    if kind not in c.setting.signature.kinds:
+        return False
+    at = placement_seen(c, None, found)
+    if not isinstance(at, Placed) or not turning.around(found.property.entity, kind, at):
+        return False
+    known = len(c.setting.kinds) - len(turning.plan.first.setting.kinds)
+    if known >= MOST_NEWCOMERS:
+        message = f"more than {MOST_NEWCOMERS:,} entities that nobody announced; others are left out"
+        turning.find("trouble", "", message, once=True)
+        return False
+    return True
+
+
+# --- places -------------------------------------------------------------------------------------------
+
+
+def _place(turning: Turning, entity: Name) -> None:
+    if turning.seen[entity].until <= turning.now:
+        return
+    here = turning.c.structure.physical.placement(entity)
+    if entity in turning.plan.vehicles:
+        _rechannel(turning, entity)
+    if turning.c.structure.physical.transit(entity) is not None:
+        if not isinstance(here, Carried):
+            arrive(turning, entity)
+        return
+    seen = placement_seen(turning.c, turning.shape(entity), turning.seen[entity])
+    if seen is None or seen == here or (isinstance(here, Carried) and isinstance(seen, Placed)):
+        return
+    if not _same_place(turning, entity, here, seen):
+        _move(turning, entity, here, seen)
+
+
+def _same_place(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> bool:
+    """Tell whether two points are one to A(P): where exactly a point is, nothing rests on."""
+    if not isinstance(here, Placed) or not isinstance(seen, Placed) or not seen.geometry.is_point:
+        return False
+    kind = turning.c.setting.kind(entity)
+    return here.geometry.is_point and turning.around(entity, kind, here) == turning.around(entity, kind, seen)
+
+
+def _move(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> None:
+    said = turning.seen[entity].property
+    admits = {} if entity in turning.c.setting.kinds else {entity: said.kind}
+    there = admitting(turning.c, admits)
+    broken = broken_by_place(turning.plan, there, entity, seen)
+    writes: dict[Cell, object] = {placement_cell(entity): seen}
+    if here is None:
+        writes[channels_cell(entity)] = _channels_of_newcomer(turning, entity)
+    around = sorted(Fences(there).holders(entity, there.setting.kind(entity), seen))
+    verb = "appears in" if here is None else "is seen in"
+    sight = Sight(f"{entity} {verb} {', '.join(around) or REGION}", writes, admits)
+    if turning.observe(sight, happening(turning.c, sight)):
+        if broken:
+            turning.breaks(broken, entity)
+        if not (isinstance(seen, Placed) and seen.geometry.is_point):
+            renew(turning, entity)
+
+
+def _channels_of_newcomer(turning: Turning, entity: Name) -> tuple[Name, ...]:
+    clauses = turning.plan.first.setting.environment
+    appears = (clause for clause in clauses if isinstance(clause, Appears) and clause.entity == entity)
+    clause = next(appears, None)
+    if clause is not None:
+        return tuple(sorted(clause.channels))
+    return turning.plan.first.structure.physical.channels(entity)
+
+
+def _expire(turning: Turning) -> None:
+    """Take out of P what was not heard for longer than its time to live."""
+    old = sorted(name for name, sighting in turning.seen.items() if sighting.until <= turning.now)
+    for entity in old:
+        del turning.seen[entity]
+        physical = turning.c.structure.physical
+        if entity in physical and physical.transit(entity) is None and physical.carrier(entity) is None:
+            _vanish(turning, entity)
+    turning.expires = min((sighting.until for sighting in turning.seen.values()), default=math.inf)
+
+
+def _vanish(turning: Turning, entity: Name) -> None:
+    broken = broken_by_place(turning.plan, turning.c, entity, None)
+    gone = sorted({entity, *turning.c.structure.physical.cargo(entity)})
+    writes: dict[Cell, object] = {placement_cell(name): None for name in gone}
+    writes |= {channels_cell(name): () for name in gone}
+    sight = Sight(f"{entity} vanishes", writes)
+    if turning.observe(sight, happening(turning.c, sight)) and broken:
+        turning.breaks(broken, entity)
+
+
+# --- channels -----------------------------------------------------------------------------------------
+
+
+def _rechannel(turning: Turning, entity: Name) -> None:
+    """Compare whose authority a vehicle was seen under with P; what a hand-over is about is left to the rules."""
+    said = frozenset(filter(is_authority, turning.seen[entity].property.channels))
+    physical = turning.c.structure.physical
+    known = frozenset(filter(is_authority, physical.links(entity)))
+    if said == known or entity not in physical:
+        return
+    if entity in turning.handing:
+        turning.quiet = None
+        return
+    for channel in sorted(known - said):
+        off_channel(turning, entity, channel, f"{entity} is not on {channel} any more")
+    for channel in sorted(said - known):
+        _on_channel(turning, entity, channel)
+
+
+def off_channel(turning: Turning, entity: Name, channel: Name, what: str) -> None:
+    """Take an entity off a channel, by the clause that says so if there is one."""
+    clause = clause_of_leaving(turning.plan, entity, channel)
+    physical = turning.c.structure.physical
+    if clause is not None:
+        found = [t for t in env(turning.c, clause) if not str(t.label).endswith("returns⟩")]
+        found = [t for t in found if "returns" not in str(t.label.about)]
+        if found:
+            turning.take(found[0], tuple(found))
+        return
+    kept = tuple(each for each in physical.channels(entity) if each != channel)
+    sight = Sight(f"{entity} is off {channel}", {channels_cell(entity): kept})
+    if turning.observe(sight, happening(turning.c, sight)):
+        turning.breaks(f"{what}; the mission does not say that it leaves it, or that it drops", entity)
+
+
+def _on_channel(turning: Turning, entity: Name, channel: Name) -> None:
+    clause, physical = clause_of_leaving(turning.plan, entity, channel), turning.c.structure.physical
+    if clause is not None:
+        found = [t for t in env(turning.c, clause) if "returns" in str(t.label.about)]
+        if found:
+            turning.take(found[0], tuple(found))
+            return
+    on = tuple(sorted({*physical.channels(entity), channel}))
+    writes: dict[Cell, object] = {channels_cell(entity): on}
+    if isinstance(clause, Leaves):
+        writes[clause.left] = False
+    elif clause is not None:
+        writes["down", channel] = False
+    sight = Sight(f"{entity} is on {channel}", writes)
+    if turning.observe(sight, happening(turning.c, sight)):
+        turning.breaks(
+            f"{entity} is on {channel}; nobody handed it there, and nothing says that it returns", entity
+        )
+
+
+# --- reports and sayings ------------------------------------------------------------------------------
+
+
+def note(turning: Turning, report: Report) -> None:
+    """Take in what a plugin reports; nothing is committed by it."""
+    match report:
+        case Accepted() | Arrived():
+            pass  # recorded; positions decide
+        case Rejected(request, entity, _, reason):
+            turning.find(
+                "refused", entity, f"{entity} refuses {request}: {reason}; the request stays pending"
+            )
+        case LinkLost(entity, _, since):
+            _lose(turning, entity, since)
+        case LinkRestored(entity, _, rebooted):
+            _restore(turning, entity, rebooted=rebooted)
+        case Trouble(source, _, what, detail, count):
+            turning.find(
+                "trouble", source, f"{source}: {what} ({count:,} times){': ' if detail else ''}{detail}"
+            )
+
+
+def _lose(turning: Turning, entity: Name, since: float) -> None:
+    if entity in turning.lost:
+        return
+    turning.lost.add(entity)
+    turning.find("lost link", entity, f"nothing was heard of {entity} for {turning.now - since:.0f} s")
+    for channel in filter(is_authority, turning.c.structure.physical.links(entity)):
+        off_channel(turning, entity, channel, f"the link to {entity} over {channel} is lost")
+
+
+def _restore(turning: Turning, entity: Name, *, rebooted: bool) -> None:
+    turning.lost.discard(entity)
+    turning.quiet = None
+    turning.find("link restored", entity, f"{entity} is heard again{', rebooted' if rebooted else ''}")
+    order = turning.orders.get(entity)
+    if rebooted and order is not None and not turning.suspended and order.agent not in turning.grounded:
+        turning.commands.append(order.command)
+
+
+def say_to(turning: Turning, saying: Saying) -> None:
+    """Put a message into a mailbox, if the mission says that somebody may say it, and not too often."""
+    agents = turning.c.alpha
+    clauses = [each for each in turning.c.setting.environment if isinstance(each, Says)]
+    for clause in clauses:
+        if clause.agent == saying.agent and saying.message in (clause.message, show(clause.message)):
+            found = tuple(say(turning.c, clause))
+            if found:
+                turning.take(found[0], found)
+                turning.idle.discard(clause.agent)
+                turning.answers.append(Answer(saying))
+                return
+    left = [f"{show(each.message)} to {each.agent}" for each in clauses if turning.c.read(each.counter)]
+    who = "" if saying.agent in agents else f"there is no bigActor '{saying.agent:.60}'; "
+    what = f"what may be said now: {', '.join(left)}" if left else "nothing may be said any more"
+    turning.answers.append(Answer(saying, f"{who}the mission does not say that this is said; {what}"))

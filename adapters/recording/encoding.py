@@ -1,0 +1,88 @@
+"""What is recorded as plain data: arrivals, steps, commands, reports."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+from adapters.live.state import Finding, Heard, LiveStep
+from adapters.plugin import Aged, Command, Gone, Report
+from physical import Band, Geometry, PhysicalProperty
+from semantics.canonical import digest_of_step
+from semantics.plain import sight_json
+
+
+def arrival_json(heard: Heard) -> dict[str, Any]:
+    """Return what a plugin published as plain data."""
+    published = heard.published
+    if isinstance(published, Gone):
+        said = {"entity": published.entity, "time": published.time, "gone": True, "source": published.source}
+        return {"plugin": heard.plugin, **said}
+    if isinstance(published, Aged):
+        return {**_property(heard.plugin, published.property), "time_to_live": published.time_to_live}
+    return _property(heard.plugin, published)
+
+
+def _property(plugin: str, said: PhysicalProperty) -> dict[str, Any]:
+    data: dict[str, Any] = {
+        "plugin": plugin,
+        "entity": said.entity,
+        "kind": said.kind,
+        "ring": said.geometry.ring,
+    }
+    if said.altitude is not None:
+        data["altitude"] = [said.altitude.low, said.altitude.high]
+    if said.channels:
+        data["channels"] = said.channels
+    if said.carried_by is not None:
+        data["carried_by"] = said.carried_by
+    if said.time is not None:
+        data["time"] = said.time
+    if said.velocity is not None:
+        data["velocity"] = [said.velocity.speed, said.velocity.course]
+    return data
+
+
+def step_json(step: LiveStep) -> dict[str, Any]:
+    """Return a step as plain data: as traces have it, with its number and the digest of what it wrote."""
+    transition = step.transition
+    data: dict[str, Any] = {"number": step.number, "label": str(transition.label), "choice": step.choice}
+    if step.sight is not None:
+        data["observed"] = sight_json(step.sight)
+    if transition.shown:
+        data["shown"] = transition.shown
+    return {**data, "digest": digest_of_step(step.source, transition.target)}
+
+
+def command_json(command: Command) -> dict[str, Any]:
+    """Return what a vehicle is told as plain data."""
+    return {"command": type(command).__name__, **_fields(command)}
+
+
+def report_json(report: Report) -> dict[str, Any]:
+    """Return what a plugin reported as plain data."""
+    return {"report": type(report).__name__, **_fields(report)}
+
+
+def finding_json(finding: Finding, verdicts: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Return what the operator was told as plain data."""
+    return {**_fields(finding), **({"verdicts": verdicts} if verdicts else {})}
+
+
+def _fields(value: Any) -> dict[str, Any]:
+    named = (
+        ("ring" if each.name == "place" else each.name, getattr(value, each.name)) for each in fields(value)
+    )
+    return {name: _plain(part) for name, part in named if part is not None}
+
+
+def _plain(value: Any) -> Any:
+    match value:
+        case Geometry():
+            return value.ring
+        case Band():
+            return [value.low, value.high]
+        case tuple():
+            return [_plain(each) for each in value]
+        case _:
+            return value

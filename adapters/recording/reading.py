@@ -1,0 +1,74 @@
+"""Reading a recording: its run, its steps as a trace, what it was told, in the order written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from adapters.recording.mcap_files import Message, Reading, RecordingError
+from adapters.recording.schemas import VERSION
+
+MOST_MESSAGES = 20_000_000
+MAGIC = b"\x89MCAP0\r\n"
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """A recording as it was read.
+
+    Attributes:
+        run: What was flown.
+        messages: All others, in the order written; arrivals only where they were asked for.
+        torn: Whether it has no end: the run was killed.
+    """
+
+    run: dict[str, Any]
+    messages: tuple[Message, ...]
+    torn: bool
+
+    def of(self, topic: str) -> tuple[Message, ...]:
+        """Return the messages of a topic."""
+        return tuple(message for message in self.messages if message.topic == topic)
+
+    def trace(self, schema: str) -> dict[str, Any]:
+        """Return the steps as a trace, in the step schema."""
+        steps = [{**message.data, "changes": [], "time": message.time} for message in self.of("steps")]
+        known = {"schema": schema, "mission": self.run["mission"], "digest": self.run["digest"]}
+        return {**known, "monitored": False, "steps": steps}
+
+
+def is_recording(path: str) -> bool:
+    """Tell whether a file is MCAP, by its first bytes."""
+    try:
+        with open(path, "rb") as file:
+            return file.read(len(MAGIC)) == MAGIC
+    except (OSError, ValueError):
+        return False
+
+
+def read_recording(path: Path, *, arrivals: bool = False) -> Recording:
+    """Return what a file holds; raises RecordingError for one that is no recording of a run, OSError."""
+    reading = Reading()
+    run: dict[str, Any] | None = None
+    kept: list[Message] = []
+    for number, message in enumerate(reading.messages(path)):
+        if number > MOST_MESSAGES:
+            raise RecordingError(f"it has more than {MOST_MESSAGES:,} messages")
+        if not isinstance(message.data, dict):
+            raise RecordingError(f"a message of '{message.topic:.40}' is no object")
+        if message.topic == "run" and run is None:
+            run = message.data
+        elif arrivals or message.topic != "arrivals":
+            kept.append(message)
+    return Recording(_checked(run), tuple(kept), reading.torn)
+
+
+def _checked(run: dict[str, Any] | None) -> dict[str, Any]:
+    if run is None:
+        raise RecordingError("it records no run of a mission")
+    if run.get("schema") != f"bigactors.run/{VERSION}":
+        raise RecordingError(f"its schema is {run.get('schema')!r:.60}, not 'bigactors.run/{VERSION}'")
+    if not all(isinstance(run.get(key), str) for key in ("mission", "text", "digest")):
+        raise RecordingError("its run does not say what was flown")
+    return run

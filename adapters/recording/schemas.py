@@ -1,0 +1,145 @@
+"""What the messages of a recording hold: JSON schemas, one a topic; docs/recording.md prints them."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+VERSION: Final = 1
+
+_TEXT: Final = {"type": "string"}
+_NUMBER: Final = {"type": "number"}
+_TEXTS: Final = {"type": "array", "items": _TEXT}
+_RING: Final = {
+    "type": "array",
+    "description": "Latitude and longitude of each vertex in 1e-7 degree; one vertex for a point.",
+    "items": {"type": "array", "items": {"type": "integer"}, "minItems": 2, "maxItems": 2},
+}
+_OBSERVED: Final = {
+    "type": "object",
+    "description": "What the world decided: the cells of P that were written, as [cell, value].",
+    "required": ["words", "writes"],
+    "properties": {
+        "words": _TEXT,
+        "writes": {"type": "array", "items": {"type": "array", "minItems": 2, "maxItems": 2}},
+        "admits": {
+            "type": "object",
+            "description": "Entities that the mission does not name, with their kinds.",
+        },
+    },
+}
+
+
+def _object(description: str, required: tuple[str, ...], **properties: Any) -> dict[str, Any]:
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "description": description,
+        "type": "object",
+        "required": list(required),
+        "properties": properties,
+    }
+
+
+RUN: Final = _object(
+    "The run: what is flown, and with which right.",
+    ("schema", "mission", "text", "digest", "version", "verified", "vehicles"),
+    schema={"const": f"bigactors.run/{VERSION}"},
+    mission={**_TEXT, "description": "The mission's file or name, as it was given."},
+    text={**_TEXT, "description": "The mission."},
+    folder={**_TEXT, "description": "Where the files that the mission names were looked for."},
+    sources={"type": "object", "description": "What was read in the place of files that the mission names."},
+    digest={**_TEXT, "description": "Of the mission as it runs, under fcfs and timed control."},
+    version=_TEXT,
+    verified={"type": "boolean", "description": "False for a run that was forced with --unverified."},
+    verdict={"type": ["object", "null"], "description": "The verdict file on which it rests."},
+    strict={"type": "boolean", "description": "Whether turns were kept while vehicles confirmed hand-overs."},
+    vehicles={"type": "object", "description": "For each vehicle the plugin that it was."},
+    resumes={"type": ["string", "null"], "description": "The recording that it goes on from."},
+)
+
+ARRIVAL: Final = _object(
+    "Something that a plugin published: a physical property, or that an entity is gone.",
+    ("plugin", "entity"),
+    plugin=_TEXT,
+    entity=_TEXT,
+    kind=_TEXT,
+    ring=_RING,
+    altitude={
+        "type": "array",
+        "items": _NUMBER,
+        "description": "Lowest and highest, metres above sea level.",
+    },
+    channels=_TEXTS,
+    carried_by=_TEXT,
+    time={**_NUMBER, "description": "When it was so, in seconds since 1970 UTC."},
+    velocity={"type": "array", "items": _NUMBER, "description": "Metres a second, degrees from true north."},
+    time_to_live=_NUMBER,
+    gone={"const": True},
+)
+
+STEP: Final = _object(
+    "A transition, as the step of a trace (docs/trace.schema.json) has it.",
+    ("number", "label", "choice", "digest"),
+    number={"type": "integer", "minimum": 1},
+    label={**_TEXT, "description": "The transition, such as ⟨sense : OBS(a, ALL)⟩."},
+    choice={"type": "integer", "minimum": 0},
+    observed=_OBSERVED,
+    shown={**_TEXTS, "description": "What `display` showed."},
+    digest={**_TEXT, "description": "Of the cells that it wrote, with their values."},
+)
+
+COMMAND: Final = _object(
+    "What a vehicle is told: written before it is sent.",
+    ("command", "request", "entity"),
+    command={"enum": ["GoTo", "Follow", "HandOver", "Hold", "Return"]},
+    request=_TEXT,
+    entity=_TEXT,
+    ring=_RING,
+    altitude={"type": "array", "items": _NUMBER},
+    name=_TEXT,
+    leave=_TEXT,
+    join=_TEXT,
+)
+
+REPORT: Final = _object(
+    "What a plugin reported of a request, a link or its input.",
+    ("report",),
+    report={"enum": ["Accepted", "Arrived", "Rejected", "LinkLost", "LinkRestored", "Trouble"]},
+    request=_TEXT,
+    entity=_TEXT,
+    reason=_TEXT,
+    what=_TEXT,
+    detail=_TEXT,
+    source=_TEXT,
+)
+
+SAYING: Final = _object(
+    "What someone outside said to an agent, and why it was not taken, if it was not.",
+    ("agent", "message", "refusal"),
+    agent=_TEXT,
+    message=_TEXT,
+    refusal=_TEXT,
+)
+
+FINDING: Final = _object(
+    "What the operator was told: a broken assumption, a refusal, a lost link, a request that takes too long.",
+    ("kind", "about", "message"),
+    kind=_TEXT,
+    about=_TEXT,
+    message=_TEXT,
+    fallback=_TEXT,
+    verdicts={**_TEXTS, "description": "The properties whose verdicts rest on what broke."},
+)
+
+END: Final = _object("How the run ended.", ("reason",), reason=_TEXT)
+
+SCHEMAS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
+    "run": (f"bigactors.run/{VERSION}", RUN),
+    "arrivals": (f"bigactors.arrival/{VERSION}", ARRIVAL),
+    "steps": (f"bigactors.step/{VERSION}", STEP),
+    "commands": (f"bigactors.command/{VERSION}", COMMAND),
+    "reports": (f"bigactors.plugin_report/{VERSION}", REPORT),
+    "sayings": (f"bigactors.saying/{VERSION}", SAYING),
+    "findings": (f"bigactors.finding/{VERSION}", FINDING),
+    "end": (f"bigactors.end/{VERSION}", END),
+}
+"""For each topic the name of its schema, and the schema."""

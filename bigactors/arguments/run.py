@@ -1,0 +1,143 @@
+"""The arguments of `bigactors run`."""
+
+import argparse
+import re
+from typing import Final
+
+from bigactors.arguments.common import MISSION
+from bigactors.arguments.parser import Command, Parser
+from bigactors.arguments.values import identity, named, seconds, substitute
+
+DESCRIPTION: Final = """\
+Fly a mission: the rules that were checked move one configuration, as telemetry and feeds let them. It begins only with
+a verdict under 'control timed' that everything holds, of exactly this mission (check --verdict), and in a world as the
+mission's environment section has it. What breaks an assumption, is refused or takes too long is said at once.
+
+exit codes:
+  0  the mission came to its end
+  1  an assumption broke, or the world was otherwise at the beginning
+  2  a mistake in the input, no verdict, a vehicle that is not heard
+  3  it was stopped before its end"""
+
+ADDRESS: Final = "udp:127.0.0.1:14550"
+
+
+def fill(parser: Parser) -> None:
+    """Add the arguments of `bigactors run`."""
+    parser.add_argument("file", metavar="FILE", help=MISSION)
+    parser.add_argument(
+        "--vehicle",
+        metavar="NAME[:ID]=ADDRESS",
+        action="append",
+        default=[],
+        type=vehicle,
+        help=f"the vehicle NAME, with its MAVLink system id, is at ADDRESS, such as uav0={ADDRESS}; may be repeated",
+    )
+    parser.add_argument(
+        "--feed",
+        metavar="KIND=ADDRESS",
+        action="append",
+        default=[],
+        type=feed,
+        help="positions come from ADDRESS, such as ais=udp:10110 or ais=file:harbour.nmea; the kinds are ais, "
+        "places, detections and locations; may be repeated",
+    )
+    parser.add_argument(
+        "--station",
+        metavar="NAME=ID",
+        action="append",
+        default=[],
+        type=station,
+        help="the MAVLink system id of a ground station (default: 255, 254, ... in the order of their names)",
+    )
+    parser.add_argument(
+        "--name",
+        metavar="IDENTITY=NAME",
+        action="append",
+        default=[],
+        type=identity,
+        help="what the mission calls a transponder, such as mmsi:244660274=drifter0; may be repeated",
+    )
+    parser.add_argument(
+        "--record",
+        metavar="FILE",
+        type=named,
+        help="record everything into FILE (MCAP), and every MAVLink frame into a tlog beside it",
+    )
+    parser.add_argument(
+        "--resume",
+        metavar="FILE",
+        type=named,
+        help="go on where the run that was recorded in FILE was killed; vehicles are compared first",
+    )
+    parser.add_argument(
+        "--verdict", metavar="FILE", type=named, help="the verdict (default: beside the mission, or here)"
+    )
+    parser.add_argument("--unverified", action="store_true", help="fly without a verdict, and say so")
+    parser.add_argument("--for", metavar="SECONDS", dest="duration", type=seconds, help="end after SECONDS")
+    parser.add_argument(
+        "--wait",
+        metavar="SECONDS",
+        type=seconds,
+        default=60.0,
+        help="wait so long for every vehicle to be heard (default 60)",
+    )
+    parser.add_argument("--socket", metavar="FILE", type=named, help="where `bigactors say` reaches it")
+    parser.add_argument(
+        "--source",
+        metavar="NAME=FILE",
+        action="append",
+        default=[],
+        type=substitute,
+        help='read FILE where the mission says from "NAME"; may be repeated',
+    )
+
+
+def vehicle(word: str) -> tuple[str, int | None, str]:
+    """Read NAME[:ID]=ADDRESS.
+
+    >>> vehicle("uav0:3=udp:14550"), vehicle("uav0=udp:14550")
+    (('uav0', 3, 'udp:14550'), ('uav0', None, 'udp:14550'))
+    """
+    found = re.fullmatch(r"(\w+)(?::([0-9]{1,3}))?=(.+)", word)
+    if not found:
+        raise argparse.ArgumentTypeError(f"'{word:.60}' is not NAME[:ID]=ADDRESS, such as uav0={ADDRESS}")
+    return found[1], None if found[2] is None else int(found[2]), found[3]
+
+
+def feed(word: str) -> tuple[str, str]:
+    """Read KIND=ADDRESS.
+
+    >>> feed("ais=udp:10110")
+    ('ais', 'udp:10110')
+    """
+    kind, _, address = word.partition("=")
+    if not (kind and address):
+        raise argparse.ArgumentTypeError(f"'{word:.60}' is not KIND=ADDRESS, such as ais=udp:10110")
+    return kind, address
+
+
+def station(word: str) -> tuple[str, int]:
+    """Read NAME=ID.
+
+    >>> station("gcs0=255")
+    ('gcs0', 255)
+    """
+    found = re.fullmatch(r"(\w+)=([0-9]{1,3})", word)
+    if not found or not 0 < int(found[2]) < 256:
+        raise argparse.ArgumentTypeError(
+            f"'{word:.60}' is not NAME=ID, such as gcs0=255; ids are from 1 to 255"
+        )
+    return found[1], int(found[2])
+
+
+COMMAND = Command(
+    "run",
+    "fly a mission that was checked",
+    DESCRIPTION,
+    (
+        f"bigactors run oil_spill.mission --vehicle uav0={ADDRESS} --feed ais=udp:10110 --record run.mcap",
+        f"bigactors run oil_spill.mission --vehicle uav0={ADDRESS} --resume run.mcap --record more.mcap",
+    ),
+    fill,
+)

@@ -1,0 +1,26 @@
+"""The arguments of `bigactors say`."""
+
+from bigactors.arguments.parser import Command, Parser
+from bigactors.arguments.values import named
+
+
+def fill(parser: Parser) -> None:
+    """Add the arguments of `bigactors say`."""
+    parser.add_argument("agent", metavar="AGENT", help="a bigActor of the running mission")
+    parser.add_argument("message", metavar="MESSAGE", help="what its environment section says may be said")
+    parser.add_argument(
+        "--socket",
+        metavar="FILE",
+        type=named,
+        help="where the mission listens (default: the only one that runs)",
+    )
+
+
+COMMAND = Command(
+    "say",
+    "say something to a bigActor of a running mission",
+    "Put a message into the mailbox of a bigActor, as the mission's environment section says that someone may:\n"
+    "what it does not say is refused, with what may be said instead.",
+    ("bigactors say op handover",),
+    fill,
+)

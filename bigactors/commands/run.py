@@ -1,0 +1,190 @@
+"""`bigactors run`: a verified mission, flown."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+import time
+from argparse import Namespace
+from collections.abc import Iterator, Sequence
+from contextlib import AsyncExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from adapters.live.core import resumed, started
+from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, Watcher
+from adapters.live.saying import listening
+from adapters.live.state import Finding, LiveState, Plan
+from adapters.plugin import Plugin
+from adapters.recording.mcap_files import RecordingError
+from adapters.recording.writing import Recorder
+from bigactors import __version__
+from bigactors.exits import Exit
+from bigactors.missions import digest_of, locate, open_mission
+from bigactors.mistakes import Mistake, unreadable
+from bigactors.plugins import plugins_of
+from bigactors.recordings import Resumed, resume
+from bigactors.sockets import socket_of
+from bigactors.terminal import paint, say, tell
+from bigactors.verdict_files import Licence, find_verdict, licence_for
+from bigactors.watchers import Log, Tape, Terminal
+from semantics.setting import Control, Scheduler
+from specs.elaboration import ElaboratedMission, Variation
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """All that is known of a run before it begins.
+
+    Attributes:
+        options: What the command line says.
+        mission: The mission as it runs, under fcfs and timed control.
+        licence: The verdict that it rests on, None for a run that was forced.
+        plan: What stays the same.
+        state: Where it begins.
+        plugins: Its vehicles and feeds.
+        resumed: The run that it goes on from.
+        log: What takes every frame.
+    """
+
+    options: Namespace
+    mission: ElaboratedMission
+    licence: Licence | None
+    plan: Plan
+    state: LiveState
+    plugins: tuple[Plugin, ...]
+    resumed: Resumed | None
+    log: Log | None = None
+
+    def resting(self, finding: Finding) -> tuple[str, ...]:
+        """Return the properties whose verdicts rest on a broken assumption: all that were decided by exploring."""
+        broken = finding.kind == "broken assumption" and self.licence is not None
+        return self.licence.resting if broken and self.licence is not None else ()
+
+
+def run(options: Namespace) -> Exit:
+    """Fly a mission, if there is a verdict that everything holds."""
+    flight = prepare(options)
+    terminal = Terminal(flight.resting)
+    try:
+        with record(flight) as tape:
+            ending = asyncio.run(fly(flight, (terminal, *([tape] if tape else []))))
+    except (NotAsAssumed, NotHeard, PluginFailed) as error:
+        return _not_begun(error)
+    except KeyboardInterrupt:
+        tell("interrupted: vehicles go on as they were told last")
+        return Exit.INCOMPLETE
+    say(f"{ending.reason} after {ending.state.number} steps")
+    if terminal.broken:
+        return Exit.VIOLATED
+    return Exit.HOLDS if ending.reason == "the mission has ended" else Exit.INCOMPLETE
+
+
+def prepare(options: Namespace) -> Flight:
+    """Read everything, and refuse what cannot be flown; raises Mistake."""
+    sources = {name: Path(file) for name, file in options.source}
+    live = Variation(Scheduler.FCFS, Control.TIMED, sources)
+    mission = open_mission(options.file, live)
+    licence = _licence(options, live)
+    log = None if options.record is None else Log(Path(options.record).with_suffix(".tlog"))
+    plugins, owners = plugins_of(options, mission, log)
+    strict = licence is not None and licence.scheduler is Scheduler.FCFS
+    plan = Plan(mission.initial, owners, mission.precautions, strict)
+    before = None if options.resume is None else resume(options.resume, mission)
+    state = started(plan)
+    if before is not None:
+        state = resumed(plan, before.configuration, before.steps, before.orders, time.time())
+    return Flight(options, mission, licence, plan, state, plugins, before, log)
+
+
+def _licence(options: Namespace, live: Variation) -> Licence | None:
+    name = options.file
+    path = find_verdict(str(locate(name)), options.verdict)
+    if options.unverified:
+        warning = "nothing was verified of this run: --unverified"
+        tell(paint(warning, "red", sys.stderr), "!")
+        return None
+    if path is None:
+        hint = f"bigactors check --control timed --verdict {Path(name).stem}.verdict.json {name}, or --unverified"
+        raise Mistake("there is no verdict that this mission holds", hint, name)
+    return licence_for(name, path, live)
+
+
+@contextmanager
+def record(flight: Flight) -> Iterator[Tape | None]:
+    """Record what happens inside, and how it ended, if a recording is asked for."""
+    tape = _tape(flight)
+    reason = "the run has ended"
+    try:
+        yield tape
+    except BaseException as error:
+        reason = str(error) or type(error).__name__
+        raise
+    finally:
+        if tape is not None:
+            tape.recorder.close(reason, time.time())
+        if flight.log is not None:
+            flight.log.close()
+
+
+def _tape(flight: Flight) -> Tape | None:
+    path = flight.options.record
+    if path is None:
+        return None
+    try:
+        recorder = Recorder(Path(path), run_json(flight), time.time())
+    except RecordingError as error:
+        raise Mistake(str(error), place=path) from error
+    except OSError as error:
+        raise unreadable(path, error) from error
+    if flight.resumed is not None:
+        recorder.copy(flight.resumed.messages)
+    return Tape(recorder, flight.resting)
+
+
+def run_json(flight: Flight) -> dict[str, Any]:
+    """Return what is flown, and with which right, as plain data."""
+    options, mission = flight.options, flight.mission
+    return {
+        "mission": options.file,
+        "text": mission.source.text,
+        "folder": str(locate(options.file).absolute().parent),
+        "sources": {name: str(Path(file).absolute()) for name, file in options.source},
+        "digest": digest_of(mission),
+        "version": __version__,
+        "verified": flight.licence is not None,
+        "verdict": None if flight.licence is None else flight.licence.data,
+        "strict": flight.plan.strict,
+        "vehicles": dict(flight.plan.vehicles),
+        "resumes": options.resume,
+    }
+
+
+async def fly(flight: Flight, watchers: Sequence[Watcher]) -> Ending:
+    """Begin and go; raises what `LiveRun` raises."""
+    options = flight.options
+    async with AsyncExitStack() as stack:
+        live = await stack.enter_async_context(LiveRun(flight.plan, flight.state, flight.plugins, watchers))
+
+        async def listener(agent: str, message: str) -> str:
+            return (await live.inbox.say(agent, message)).refusal
+
+        path = socket_of(flight.mission.name, options.socket)
+        try:
+            await stack.enter_async_context(listening(path, listener))
+        except OSError as error:
+            raise Mistake(error.strerror or str(error), "give another with --socket", str(path)) from error
+        await live.begin(options.wait, forced=options.unverified)
+        say(f"{flight.mission.name} begins; bigactors say AGENT MESSAGE reaches it at {path}")
+        return await live.go(seconds=options.duration)
+
+
+def _not_begun(error: Exception) -> Exit:
+    if isinstance(error, NotAsAssumed):
+        for finding in error.findings:
+            tell(finding.message, "not as the mission says:")
+        tell("the run has not begun: put the world or the mission right, or give --unverified")
+        return Exit.VIOLATED
+    hint = "is the address right, and the vehicle switched on?" if isinstance(error, NotHeard) else ""
+    raise Mistake(str(error), hint) from error

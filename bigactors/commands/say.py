@@ -1,0 +1,24 @@
+"""`bigactors say`: a message to a bigActor of a running mission."""
+
+import asyncio
+from argparse import Namespace
+
+from adapters.live.saying import NobodyListens
+from adapters.live.saying import say as send
+from bigactors.exits import Exit
+from bigactors.mistakes import Mistake
+from bigactors.sockets import only_socket
+from bigactors.terminal import say
+
+
+def run(options: Namespace) -> Exit:
+    """Say it, and print what came of it."""
+    path = only_socket(options.socket)
+    try:
+        refusal = asyncio.run(send(path, options.agent, options.message))
+    except NobodyListens as error:
+        raise Mistake(str(error), "is the mission running?") from error
+    if refusal:
+        raise Mistake(refusal, "the environment section of the mission says what may be said")
+    say(f"said to {options.agent}: {options.message}")
+    return Exit.HOLDS

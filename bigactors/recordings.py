@@ -1,0 +1,81 @@
+"""Recordings of live runs as missions with traces: replayed, and gone on from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from adapters.recording.mcap_files import Message, RecordingError
+from adapters.recording.reading import Recording, read_recording
+from bigactors.missions import as_mistake, digest_of
+from bigactors.mistakes import Mistake, unreadable
+from checker import ReplayError, Trace, replay
+from checker.traces import SCHEMA
+from semantics.configuration import Configuration
+from semantics.setting import Control, Scheduler
+from specs import MissionError, Source
+from specs.elaboration import ElaboratedMission, Variation, elaborate
+from specs.parser import parse
+
+
+def open_recording(path: str) -> Recording:
+    """Return what a file holds; raises Mistake."""
+    try:
+        return read_recording(Path(path))
+    except RecordingError as error:
+        raise Mistake(str(error), place=path) from error
+    except OSError as error:
+        raise unreadable(path, error) from error
+
+
+def mission_of(recording: Recording) -> ElaboratedMission:
+    """Return the mission that was flown: its text is in the recording, files that it names are where they were."""
+    run = recording.run
+    sources = run.get("sources")
+    found = {name: Path(str(file)) for name, file in sources.items()} if isinstance(sources, dict) else {}
+    live = Variation(Scheduler.FCFS, Control.TIMED, found)
+    source = Source(run["mission"], run["text"])
+    try:
+        return elaborate(parse(source), source, Path(str(run.get("folder", "."))), live)
+    except MissionError as error:
+        raise as_mistake(error) from error
+
+
+def trace_of(recording: Recording, mission: ElaboratedMission) -> Trace:
+    """Return the steps of a recording, run again through the rules; raises ReplayError, Mistake."""
+    try:
+        return replay(mission.initial, recording.trace(SCHEMA))
+    except ValueError as error:
+        raise Mistake(str(error)) from error
+
+
+@dataclass(frozen=True, slots=True)
+class Resumed:
+    """A run that another goes on from.
+
+    Attributes:
+        configuration: Where it was.
+        steps: How many steps it took.
+        orders: How many orders it gave.
+        messages: Its steps, to be recorded again.
+    """
+
+    configuration: Configuration
+    steps: int
+    orders: int
+    messages: tuple[Message, ...]
+
+
+def resume(path: str, mission: ElaboratedMission) -> Resumed:
+    """Return where a recorded run was; raises Mistake for one of another mission."""
+    recording = open_recording(path)
+    if recording.run["digest"] != digest_of(mission):
+        raise Mistake(
+            "it records another mission, or another version flew it", "resume it with what it records", path
+        )
+    try:
+        trace = trace_of(recording, mission)
+    except ReplayError as error:
+        raise Mistake(f"it cannot be resumed: {error}", place=path) from error
+    orders = recording.of("commands")
+    return Resumed(trace.configurations[-1], len(trace), len(orders), recording.of("steps"))

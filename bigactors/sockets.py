@@ -1,0 +1,50 @@
+"""Where running missions listen for what is said to them: sockets in a folder that is their user's alone."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+from bigactors.files import file_stem
+from bigactors.mistakes import Mistake
+
+LONGEST = 100
+"""The most bytes of a socket's path; systems refuse longer ones."""
+
+
+def folder() -> Path:
+    """Return the folder of this user's sockets, made if it is not there; raises Mistake where it is another's."""
+    runtime = os.environ.get("XDG_RUNTIME_DIR")
+    path = Path(runtime) / "bigactors" if runtime else Path(f"/tmp/bigactors-{os.getuid()}")
+    try:
+        path.mkdir(mode=0o700, parents=True, exist_ok=True)
+        found = path.lstat()
+    except OSError as error:
+        raise Mistake(error.strerror or str(error), "give a path with --socket", str(path)) from error
+    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or stat.S_IMODE(found.st_mode) & 0o077:
+        raise Mistake("the folder is not this user's alone", "give a path with --socket", str(path))
+    return path
+
+
+def socket_of(mission: str, given: str | None) -> Path:
+    """Return where a mission listens."""
+    path = Path(given) if given is not None else folder() / f"{file_stem(mission)}.sock"
+    if len(os.fsencode(path.absolute())) > LONGEST:
+        raise Mistake(
+            f"the path of a socket has at most {LONGEST} bytes", "give a shorter one: --socket", str(path)
+        )
+    return path
+
+
+def only_socket(given: str | None) -> Path:
+    """Return the socket given, else that of the only mission that runs; raises Mistake."""
+    if given is not None:
+        return Path(given)
+    found = sorted(path for path in folder().iterdir() if path.suffix == ".sock")
+    if len(found) == 1:
+        return found[0]
+    if not found:
+        raise Mistake("no mission runs here", "start one with `bigactors run`, or give its --socket")
+    names = ", ".join(map(str, found))
+    raise Mistake(f"{len(found)} missions run here: {names}", "say which: --socket FILE")

@@ -1,0 +1,147 @@
+"""Verdict files: what `check` decided of exactly one mission, and what `run` asks for before anything flies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from bigactors import __version__
+from bigactors.checking import Checked
+from bigactors.files import read_json
+from bigactors.missions import digest_of, open_mission
+from bigactors.mistakes import Mistake
+from semantics.canonical import digest
+from semantics.physical_model import placement_cell
+from semantics.setting import Control, Scheduler
+from specs.elaboration import ElaboratedMission, Variation
+
+SCHEMA = "bigactors.verdict/1"
+"""The version of the schema of verdict files (docs/verdict.md)."""
+
+SUFFIX = ".verdict.json"
+
+PARTS = {
+    "text": "the mission's text",
+    "places": "the places that never move",
+    "entities": "the entities that are declared",
+    "environment": "the environment section",
+}
+"""What a verdict is bound to, part by part, and how each is called."""
+
+
+def verdict_json(checked: Checked, engine: str) -> dict[str, Any]:
+    """Return the verdict on a mission as plain data."""
+    report, mission = checked.report, checked.mission
+    return {
+        "schema": SCHEMA,
+        "mission": checked.name,
+        "version": __version__,
+        "engine": engine,
+        "scheduler": mission.setting.scheduler.value,
+        "control": mission.setting.control.value,
+        "digest": checked.digest,
+        "parts": parts_of(mission),
+        "holds": report.exit_code == 0,
+        "complete": report.complete,
+        "configurations": report.configurations,
+        "transitions": report.transitions,
+        "properties": [
+            {
+                "name": verdict.property.name,
+                "kind": verdict.property.kind,
+                "verdict": verdict.outcome.value,
+                "note": verdict.note,
+                "rests_on": "text" if verdict.note.startswith("by ownership") else "environment",
+            }
+            for verdict in report.verdicts
+        ],
+    }
+
+
+def parts_of(mission: ElaboratedMission) -> dict[str, str]:
+    """Return a digest of each part that a verdict is bound to."""
+    setting, first = mission.setting, mission.initial
+    places = {name: first.read(placement_cell(name)) for name in mission.fixed}
+    entities = {name: (kind, first.read(("channels", name))) for name, kind in setting.kinds.items()}
+    moving = {name: first.read(placement_cell(name)) for name in setting.kinds if name not in mission.fixed}
+    return {
+        "text": digest(mission.source.text),
+        "places": digest(places),
+        "entities": digest((entities, moving, setting.signature.kinds)),
+        "environment": digest((setting.environment, setting.arriving)),
+    }
+
+
+@dataclass(frozen=True, slots=True)
+class Licence:
+    """The verdict that a run rests on.
+
+    Attributes:
+        path: The file.
+        data: What it says.
+        resting: The properties whose verdicts rest on the environment section.
+        scheduler: The scheduler under which it was decided.
+    """
+
+    path: str
+    data: dict[str, Any]
+    resting: tuple[str, ...]
+    scheduler: Scheduler
+
+
+def find_verdict(mission: str, given: str | None) -> str | None:
+    """Return the path of a mission's verdict file: the one given, else the one beside it, else the one here."""
+    if given is not None:
+        return given
+    path = Path(mission)
+    for candidate in (path.with_suffix(SUFFIX), Path(path.stem + SUFFIX)):
+        if candidate.is_file():
+            return str(candidate)
+    return None
+
+
+def licence_for(name: str, path: str, variation: Variation) -> Licence:
+    """Return the verdict of a file as the right to run a mission; raises Mistake with what stands against it."""
+    data = read_json(path)
+    scheduler = _scheduler_of(data, path)
+    mission = open_mission(name, Variation(scheduler, Control.TIMED, variation.sources))
+    differing = _differing(data, mission)
+    if differing:
+        raise Mistake(f"the verdict is of another mission: {differing}", _hint(name, path), path)
+    if data.get("holds") is not True or data.get("complete") is not True:
+        raise Mistake(
+            "the verdict is not that everything holds", f"bigactors check {name} says what fails", path
+        )
+    properties = data.get("properties")
+    listed = properties if isinstance(properties, list) else []
+    resting = tuple(str(each.get("name")) for each in listed if each.get("rests_on") == "environment")
+    return Licence(path, data, resting, scheduler)
+
+
+def _scheduler_of(data: Any, path: str) -> Scheduler:
+    if not isinstance(data, dict) or data.get("schema") != SCHEMA:
+        raise Mistake(f"this is no verdict: it should be an object with 'schema': '{SCHEMA}'", place=path)
+    if data.get("control") != Control.TIMED.value:
+        hint = "vehicles take time: check the mission with --control timed"
+        raise Mistake("the verdict was reached under 'control atomic'", hint, path)
+    try:
+        return Scheduler(data.get("scheduler"))
+    except ValueError:
+        raise Mistake("the verdict names no scheduler", place=path) from None
+
+
+def _differing(data: dict[str, Any], mission: ElaboratedMission) -> str:
+    """Return what of a mission is not as it was when the verdict was reached."""
+    if data.get("version") != __version__:
+        return f"it was reached by version {data.get('version')!s:.40}, this is {__version__}"
+    known = data.get("parts")
+    parts = known if isinstance(known, dict) else {}
+    others = [called for part, called in PARTS.items() if parts.get(part) != parts_of(mission)[part]]
+    if others:
+        return f"changed since: {', '.join(others)}"
+    return "" if data.get("digest") == digest_of(mission) else "its digest is another"
+
+
+def _hint(name: str, path: str) -> str:
+    return f"check it again: bigactors check --control timed --verdict {path} {name}"

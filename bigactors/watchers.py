@@ -1,0 +1,106 @@
+"""Who looks on while a mission flies: the operator's terminal, and the recording."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import BinaryIO
+
+from adapters.live.state import Finding, Heard, Turn
+from adapters.mavlink.tlog import entry
+from adapters.plugin import Report
+from adapters.recording.writing import Recorder
+from bigactors.terminal import paint, say, tell
+
+TOLD = frozenset({"env", "say", "command", "commit", "actuate", "migrate", "spawn"})
+"""The rules whose steps an operator is shown; the others are in the recording."""
+
+Resting = Callable[[Finding], tuple[str, ...]]
+"""Returns the properties whose verdicts rest on what a finding says is otherwise."""
+
+
+@dataclass(slots=True)
+class Terminal:
+    """Prints what happens: steps that change the world, what agents display, what is otherwise than it should be.
+
+    Attributes:
+        resting: Which verdicts rest on what broke.
+        broken: Whether an assumption broke.
+    """
+
+    resting: Resting
+    broken: bool = field(default=False)
+    began: float | None = None
+
+    def arrived(self, heard: Heard, now: float) -> None:
+        """Print nothing: positions come all the time."""
+
+    def reported(self, report: Report, now: float) -> None:
+        """Print nothing: what matters of it becomes a finding."""
+
+    def turned(self, turn: Turn, now: float) -> None:
+        """Print what a turn came to."""
+        self.began = now if self.began is None else self.began
+        for step in turn.steps:
+            label = step.transition.label
+            if label.rule in TOLD:
+                say(f"{step.time - self.began:8.1f} s  {label}")
+            for text in step.transition.shown:
+                say(f"{step.time - self.began:8.1f} s  {label.agent}: {text}")
+        for finding in turn.findings:
+            self._tell(finding)
+        sys.stdout.flush()
+
+    def _tell(self, finding: Finding) -> None:
+        tell(finding.message, f"{finding.kind}:")
+        if finding.kind == "broken assumption":
+            self.broken = True
+            verdicts = self.resting(finding)
+            if verdicts:
+                tell(f"  these verdicts rest on it: {', '.join(verdicts)}")
+        if finding.fallback:
+            done = {"hold": "vehicles hold", "return": "vehicles return"}.get(
+                finding.fallback, "the mission goes on"
+            )
+            tell(f"  {paint(done, 'yellow', sys.stderr)}, as the mission says")
+
+
+@dataclass(frozen=True, slots=True)
+class Tape:
+    """Writes everything into a recording."""
+
+    recorder: Recorder
+    resting: Resting
+
+    def arrived(self, heard: Heard, now: float) -> None:
+        """Record an arrival."""
+        self.recorder.arrival(heard, now)
+
+    def reported(self, report: Report, now: float) -> None:
+        """Record a report."""
+        self.recorder.report(report, now)
+
+    def turned(self, turn: Turn, now: float) -> None:
+        """Record a turn: its commands are on file before they are sent."""
+        self.recorder.turn(turn, now, self.resting)
+
+
+class Log:
+    """A telemetry log: every frame heard and said, with its time, as other ground stations read it."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._file: BinaryIO | None = None
+
+    def __call__(self, time: float, frame: bytes) -> None:
+        """Write a frame at once: what was written survives the process."""
+        if self._file is None:
+            self._file = self._path.open("ab", buffering=0)
+        self._file.write(entry(time, frame))
+
+    def close(self) -> None:
+        """End the log."""
+        if self._file is not None:
+            self._file.close()

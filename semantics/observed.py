@@ -1,0 +1,91 @@
+"""Steps that the world decides: what was observed makes `env` and `commit` happen, and is kept to make them again.
+
+Live, nobody computes where a vehicle or a spill is. An observation names cells of P with what was seen there; the
+rules are those that were checked, and say whether it is a step.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from semantics.cells import NAMES, Cell, Changes
+from semantics.configuration import Configuration, Transition
+from semantics.drive import Reach
+from semantics.environment import Observed
+from semantics.logical_model import links_cell, parent_cell
+from semantics.physical_model import Carried, PhysicalModel, Placement, channels_cell, placement_cell
+from semantics.rules import commit, env
+from semantics.signature import Name
+
+WRITABLE = frozenset({"placement", "channels", "left", "down"})
+"""What an observation may write: P, and what the environment's clauses remember of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sight:
+    """What was observed at once.
+
+    Attributes:
+        words: What happened, as labels of `env` say it.
+        writes: Cells of P with what was seen there.
+        admits: The kinds of entities that the mission does not name, and that have come into sight.
+    """
+
+    words: str
+    writes: Mapping[Cell, Any] = field(default_factory=dict)
+    admits: Mapping[Name, str] = field(default_factory=dict)
+
+
+def happening(c: Configuration, sight: Sight) -> Iterator[Transition]:
+    """Yield the `env` of an observation; what is under command is nobody's but `commit`'s to place."""
+    there = admitting(c, sight.admits)
+    if all(_is_free(there, cell) for cell in sight.writes):
+        yield from env(there, Observed(sight.words, tuple(sorted(sight.writes.items(), key=_by_cell))))
+
+
+def arriving(c: Configuration, a: Name, sight: Sight) -> Iterator[Transition]:
+    """Yield the `commit` of an agent's flight that ends where it was observed."""
+    yield from commit(c, a, reaching(sight.writes))
+
+
+def steps_seen(c: Configuration, sight: Sight) -> Iterator[Transition]:
+    """Yield all that an observation may mean: what happens by itself, and the ends of flights."""
+    yield from happening(c, sight)
+    if not sight.admits:
+        for agent in c.alpha.names():
+            yield from arriving(c, agent, sight)
+
+
+def reaching(writes: Mapping[Cell, Any]) -> Reach:
+    """Return what places a traveller where it was seen, nowhere where it was not."""
+
+    def reach(_physical: PhysicalModel, node: Name, place: Name) -> Placement | None:
+        placement: Placement | None = writes.get(placement_cell(node))
+        return None if isinstance(placement, Carried) and placement.by != place else placement
+
+    return reach
+
+
+def admitting(c: Configuration, kinds: Mapping[Name, str]) -> Configuration:
+    """Return the configuration in a setting that names more entities, which are absent from L and P as yet."""
+    new = {name: kind for name, kind in sorted(kinds.items()) if name not in c.setting.kinds}
+    if not new:
+        return c
+    cells: Changes = {NAMES: tuple(sorted({*c.setting.kinds, *new}))}
+    for name in new:
+        cells |= {
+            placement_cell(name): None,
+            channels_cell(name): (),
+            parent_cell(name): None,
+            links_cell(name): (),
+        }
+    return Configuration(c.setting.with_(kinds={**c.setting.kinds, **new}), c.state.with_(cells))
+
+
+def _is_free(c: Configuration, cell: Cell) -> bool:
+    known = cell[0] in WRITABLE and (cell[0] == "down" or cell[1] in c.setting.kinds)
+    return known and not (cell[0] == "placement" and c.structure.physical.transit(cell[1]) is not None)
+
+
+def _by_cell(item: tuple[Cell, Any]) -> Cell:
+    return item[0]

@@ -1,0 +1,47 @@
+"""The live phase: precautions for live runs."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from semantics.precautions import Fallback, Precautions, TimeLimit
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.names import Names
+
+LONGEST: Final = 7 * 24 * 3600.0
+
+
+def elaborate_live(mission: s.Mission, names: Names) -> Precautions:
+    """Return the precautions of a mission: vehicles hold on a broken assumption where nothing else is said."""
+    written = [item for section in mission.each(s.Live) for item in section.precautions]
+    on_broken = [item for item in written if isinstance(item, s.OnBroken)]
+    limits = [item for item in written if isinstance(item, s.TimeLimit)]
+    for again in on_broken[1:]:
+        message = "'on broken assumption' is said twice"
+        names.findings.add(Code.REPEATED_SETTING, again, message, "leave one of the two out")
+    fallback = Fallback(on_broken[0].fallback) if on_broken else Fallback.HOLD
+    return Precautions(fallback, tuple(_limit(item, names) for item in _different(limits, names)))
+
+
+def _limit(node: s.TimeLimit, names: Names) -> TimeLimit:
+    if node.agent is not None:
+        names.agent(node.agent)
+    if not 0 < node.limit.seconds <= LONGEST:
+        message = f"a time limit of {node.limit.value:g} {node.limit.unit}"
+        names.findings.add(
+            Code.BAD_TIME_LIMIT, node.limit, message, "give it more than 0 s, and at most 168 h"
+        )
+    agent = None if node.agent is None else node.agent.text
+    return TimeLimit(node.request, agent, node.limit.seconds, Fallback(node.fallback))
+
+
+def _different(limits: list[s.TimeLimit], names: Names) -> list[s.TimeLimit]:
+    seen: set[tuple[str | None, str | None, float]] = set()
+    for node in limits:
+        key = (node.request, None if node.agent is None else node.agent.text, node.limit.seconds)
+        if key in seen:
+            message = "this time limit is said twice"
+            names.findings.add(Code.REPEATED_SETTING, node, message, "leave one of the two out")
+        seen.add(key)
+    return limits

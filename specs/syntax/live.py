@@ -1,0 +1,55 @@
+"""The `live` section: what is done when a live run goes otherwise than it was checked, or takes too long."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from specs.syntax.nodes import Name, Node
+
+
+@dataclass(frozen=True, slots=True)
+class Duration(Node):
+    """`90 s`, `10 min`, `1.5 h`: `unit` is `s`, `min` or `h`."""
+
+    value: float
+    unit: str
+
+    @property
+    def seconds(self) -> float:
+        """The duration in seconds."""
+        return self.value * {"s": 1, "min": 60, "h": 3600}[self.unit]
+
+
+@dataclass(frozen=True, slots=True)
+class OnBroken(Node):
+    """`on broken assumption: return`: hold (the default), return or continue.
+
+    What vehicles do when the world does what the environment section does not say.
+    """
+
+    fallback: str
+
+
+@dataclass(frozen=True, slots=True)
+class TimeLimit(Node):
+    """`FLY a within 10 min: return`, `anyone within 1 min: continue`.
+
+    How long a request of an agent may stand at the head of its line, and what is done then; `OBS`, `CTR`, `FLY`, `SND`
+    or `MGR` may say which.
+    """
+
+    request: str | None
+    agent: Name | None
+    limit: Duration
+    fallback: str
+
+
+Precaution: TypeAlias = OnBroken | TimeLimit
+
+
+@dataclass(frozen=True, slots=True)
+class Live(Node):
+    """`live { ... }`: precautions for live runs; nothing of it changes what is checked."""
+
+    precautions: tuple[Precaution, ...]

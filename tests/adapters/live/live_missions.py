@@ -1,0 +1,81 @@
+"""Missions on which live runs are tested, and what plugins would tell of them."""
+
+from pathlib import Path
+
+from adapters.live.core import advance, started
+from adapters.live.state import Batch, Heard, Plan
+from physical import PhysicalProperty, point
+from semantics.precautions import Precautions
+from semantics.setting import Control, Scheduler
+from specs.diagnostics import Source
+from specs.elaboration import Variation, elaborate
+from specs.parser import parse
+
+LIVE = Variation(Scheduler.FCFS, Control.TIMED)
+
+TOUR = """
+signature {
+  kind Location contains Location, Vessel, UAV, Station
+  kind UAV driven
+  kind Vessel
+  kind Station
+}
+world {
+  west0: Location = box (37.02, -8.64) (37.00, -8.66)
+  east0: Location = box (37.02, -8.60) (37.00, -8.62)
+  gcs0: Station = point (37.05, -8.63) linked control:gcs0
+  gcs1: Station = point (37.06, -8.63) linked control:gcs1
+  uav0: UAV = point (37.01, -8.65) linked control:gcs0
+  boat0: Vessel = point (37.03, -8.63)
+}
+"""
+
+WEST, EAST, BETWEEN = (37.01, -8.65), (37.01, -8.61), (37.01, -8.63)
+
+
+def mission(text, name="tour.mission"):
+    source = Source(name, text)
+    return elaborate(parse(source), source, Path(), LIVE)
+
+
+def plan_of(text, precautions=None, strict=False):
+    first = mission(text).initial
+    return Plan(first, {"uav0": "autopilot"}, precautions or Precautions(), strict)
+
+
+def seen(entity, at, time, plugin="autopilot", kind="UAV", channels=("control:gcs0",), **more):
+    said = PhysicalProperty(entity, kind, point(*at), channels=channels, time=time, source=plugin, **more)
+    return Heard(plugin, said)
+
+
+def boat(at, time, name="boat0"):
+    return seen(name, at, time, "ais", "Vessel", ())
+
+
+class Run:
+    """A live run in which the test is the world."""
+
+    def __init__(self, plan):
+        self.plan, self.state = plan, started(plan)
+        self.steps, self.commands, self.findings, self.answers = [], [], [], []
+        self.again = None
+
+    def turn(self, now, *heard, reports=(), sayings=()):
+        turn = advance(self.plan, self.state, Batch(heard, tuple(reports), tuple(sayings)), now)
+        self.state, self.again = turn.state, turn.again
+        self.steps += turn.steps
+        self.commands += turn.commands
+        self.findings += turn.findings
+        self.answers += turn.answers
+        return turn
+
+    @property
+    def labels(self):
+        return [str(step.transition.label) for step in self.steps]
+
+    @property
+    def rules(self):
+        return [step.transition.label.rule for step in self.steps]
+
+    def kinds(self):
+        return [finding.kind for finding in self.findings]

@@ -1,0 +1,388 @@
+from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
+
+from adapters.live.core import resumed, watch
+from adapters.live.state import Batch, Heard, Plan, Saying
+from adapters.plugin import Aged, Gone, GoTo, HandOver, Hold, LinkLost, LinkRestored, Rejected, Return
+from physical import PhysicalProperty, polygon
+from semantics.physical_model import InTransit, Placed
+from semantics.precautions import Fallback, Precautions, TimeLimit
+from semantics.requests import FLY
+from semantics.successors import expand
+
+GO = """
+BigActor a hosted_at uav0 with_behavior {
+  control(MOVE_HOST_TO east0)
+  observe(CHILDREN(east0))
+  react { case obs => display(obs) }
+}
+"""
+
+
+def test_nothing_is_commanded_before_the_vehicle_is_heard():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0)
+    assert run.rules == ["req_ctr", "req_obs"]
+    assert run.commands == []
+    run.turn(1.0, seen("uav0", WEST, 1.0))
+    assert run.rules[2:] == ["command"]
+    assert [(type(told), told.entity, told.name) for told in run.commands] == [(GoTo, "uav0", "east0")]
+
+
+def test_a_flight_is_committed_where_it_was_seen_to_end_and_not_before():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(1.0, seen("uav0", BETWEEN, 1.0))
+    physical = run.state.configuration.structure.physical
+    assert "commit" not in run.rules
+    assert isinstance(physical.placement("uav0"), InTransit)
+    run.turn(2.0, seen("uav0", (37.011, -8.611), 2.0))
+    assert run.rules[-4:] == ["commit", "sense", "rcv_obs", "fun"]
+    placement = run.state.configuration.structure.physical.placement("uav0")
+    assert isinstance(placement, Placed)
+    assert placement.geometry.vertices == ((37.011, -8.611),)
+    assert run.state.configuration.structure.logical.parent("uav0") == "east0"
+    assert run.state.orders == {}
+
+
+def test_what_is_displayed_is_what_was_seen():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(2.0, seen("uav0", EAST, 2.0))
+    assert [text for step in run.steps for text in step.transition.shown] == ["{east0, uav0}"]
+
+
+def test_every_step_is_one_that_the_rules_allow():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(2.0, seen("uav0", EAST, 2.0))
+    for step in run.steps:
+        if step.sight is None:
+            assert step.transition in expand(step.source).transitions
+
+
+def test_a_position_that_changes_no_relation_is_no_step():
+    run = Run(plan_of(TOUR))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    before = run.state.configuration
+    run.turn(1.0, seen("uav0", (37.011, -8.651), 1.0), boat((37.031, -8.631), 1.0))
+    assert run.steps == []
+    assert run.state.configuration is before
+
+
+def test_of_two_positions_the_newer_wins_in_either_order():
+    for first, second in ((1.0, 2.0), (2.0, 1.0)):
+        run = Run(plan_of(TOUR))
+        run.turn(3.0, seen("uav0", WEST, first), seen("uav0", (37.012, -8.652), second))
+        assert run.state.seen["uav0"].time == 2.0
+
+
+def test_a_time_stamp_far_in_the_future_is_refused():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 3600.0))
+    assert run.state.seen == {}
+    assert run.kinds() == ["trouble"]
+
+
+def test_another_feed_may_not_speak_of_a_vehicle():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(1.0, seen("uav0", EAST, 1.0, plugin="ais"))
+    assert "commit" not in run.rules
+    assert run.kinds() == ["trouble"]
+
+
+# --- assumptions ---------------------------------------------------------------------------------------
+
+
+def test_a_boat_that_the_mission_lets_stand_still_breaks_an_assumption_when_it_drifts():
+    run = Run(plan_of(TOUR))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(1.0, boat(EAST, 1.0))
+    assert run.labels == ["⟨env : boat0 is seen in east0⟩"]
+    assert run.kinds() == ["broken assumption"]
+    assert [type(told) for told in run.commands] == [Hold]
+    assert run.state.suspended
+
+
+def test_a_drift_that_the_mission_allows_breaks_nothing():
+    run = Run(plan_of(TOUR + "environment { boat0 drifts among point (37.005, -8.605) }"))
+    run.turn(1.0, boat(EAST, 1.0))
+    assert run.rules == ["env"]
+    assert run.findings == []
+
+
+def test_after_a_broken_assumption_no_control_is_served():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, boat(EAST, 0.0))
+    run.turn(1.0, seen("uav0", WEST, 1.0))
+    assert "command" not in run.rules
+
+
+def test_the_mission_may_say_that_it_goes_on():
+    run = Run(plan_of(TOUR + GO, Precautions(Fallback.CONTINUE)))
+    run.turn(0.0, boat(EAST, 0.0))
+    run.turn(1.0, seen("uav0", WEST, 1.0))
+    assert run.kinds() == ["broken assumption"]
+    assert "command" in run.rules
+
+
+def test_an_entity_that_nobody_announced_is_seen_and_reported():
+    run = Run(plan_of(TOUR + GO, Precautions(Fallback.CONTINUE)))
+    run.turn(0.0, boat(EAST, 0.0, "mmsi123"))
+    assert run.labels[0] == "⟨env : mmsi123 appears in east0⟩"
+    assert run.kinds() == ["broken assumption"]
+    run.turn(1.0, seen("uav0", WEST, 1.0))
+    run.turn(2.0, seen("uav0", EAST, 2.0))
+    assert [text for step in run.steps for text in step.transition.shown] == ["{east0, mmsi123, uav0}"]
+
+
+def test_what_is_in_none_of_the_places_is_nobodys_business():
+    run = Run(plan_of(TOUR))
+    run.turn(0.0, boat((40.0, -8.0), 0.0, "mmsi123"))
+    assert (run.steps, run.findings, run.state.seen) == ([], [], {})
+
+
+def test_a_spill_takes_its_shape_along():
+    text = TOUR.replace("kind Vessel\n", "kind Vessel\n kind OilSpill contains UAV\n").replace(
+        "contains Location, Vessel", "contains Location, OilSpill, Vessel"
+    )
+    spill = "oilSpill0: OilSpill = circle (37.01, -8.61) radius 300 m\n  uav0"
+    run = Run(plan_of(text.replace("uav0", spill, 1)))
+    ring = polygon([(37.008, -8.652), (37.012, -8.652), (37.012, -8.648), (37.008, -8.648)])
+    run.turn(0.0, seen("oilSpill0", EAST, 0.0, "camera", "OilSpill", ()))
+    assert run.steps == []
+    run.turn(1.0, Heard("camera", PhysicalProperty("oilSpill0", "OilSpill", ring, time=1.0)))
+    physical = run.state.configuration.structure.physical
+    assert physical.abstract_parent("uav0") == "oilSpill0"
+    assert run.kinds() == ["broken assumption"]
+
+
+# --- hand-over, links, refusals -------------------------------------------------------------------------
+
+HAND = (
+    TOUR + "BigActor op hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1)\n observe(LINKED_TO_HOST) }"
+)
+
+
+def test_a_hand_over_is_true_once_the_vehicle_shows_it():
+    run = Run(plan_of(HAND))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    assert [(told.leave, told.join) for told in run.commands if isinstance(told, HandOver)] == [
+        ("control:gcs0", "control:gcs1")
+    ]
+    assert "actuate" not in run.rules
+    run.turn(1.0, seen("uav0", WEST, 1.0))
+    assert "actuate" not in run.rules
+    run.turn(2.0, seen("uav0", WEST, 2.0, channels=("control:gcs1",)))
+    assert run.rules[-2:] == ["actuate", "sense"]
+    assert run.findings == []
+    assert run.state.configuration.structure.logical.links("uav0") == ("control:gcs1",)
+    assert run.state.handing == {}
+
+
+def test_while_a_vehicle_confirms_a_hand_over_others_are_served_unless_the_verdict_is_one_under_fcfs():
+    both = HAND + "BigActor z hosted_at gcs1 with_behavior { observe(ALL) }"
+    loose, strict = Run(plan_of(both)), Run(plan_of(both, strict=True))
+    for run in (loose, strict):
+        run.turn(0.0, seen("uav0", WEST, 0.0))
+    assert "sense" in loose.rules
+    assert "sense" not in strict.rules
+
+
+def test_a_vehicle_under_another_authority_breaks_an_assumption():
+    run = Run(plan_of(TOUR))
+    run.turn(0.0, seen("uav0", WEST, 0.0, channels=("control:gcs1",)))
+    assert run.kinds()[0] == "broken assumption"
+
+
+def test_a_channel_that_may_drop_drops_and_returns_with_the_link():
+    run = Run(plan_of(TOUR + "environment { control:gcs0 drops and returns }"))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(9.0, reports=[LinkLost("uav0", 9.0, 0.0)])
+    assert run.labels == ["⟨env : control:gcs0 drops⟩"]
+    run.turn(12.0, seen("uav0", WEST, 12.0), reports=[LinkRestored("uav0", 12.0)])
+    assert run.labels[1:] == ["⟨env : control:gcs0 returns⟩"]
+    assert run.kinds() == ["lost link", "link restored"]
+
+
+def test_a_refused_command_stays_pending():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    request = run.commands[0].request
+    run.turn(1.0, reports=[Rejected(request, "uav0", 1.0, "not armed")])
+    assert run.kinds() == ["refused"]
+    (pending, *_) = run.state.configuration.eta.all()
+    assert isinstance(pending.request, FLY)
+
+
+def test_a_flight_that_takes_too_long_falls_back_and_is_never_committed():
+    late = Precautions(limits=(TimeLimit("FLY", "a", 60.0, Fallback.RETURN),))
+    run = Run(plan_of(TOUR + GO, late))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    assert run.again == 60.0
+    run.turn(61.0, seen("uav0", BETWEEN, 61.0))
+    assert run.kinds() == ["late"]
+    assert [type(told) for told in run.commands] == [GoTo, Return]
+    run.turn(62.0, seen("uav0", EAST, 62.0))
+    assert "commit" not in run.rules
+    assert len(run.findings) == 1
+
+
+# --- sayings --------------------------------------------------------------------------------------------
+
+TALK = (
+    TOUR
+    + """
+BigActor op hosted_at gcs0 with_behavior { loop { react { case "go" => display("gone") } } }
+environment { says "go" to op at most once }
+"""
+)
+
+
+def test_what_the_mission_says_may_be_said_is_heard_and_not_too_often():
+    run = Run(plan_of(TALK))
+    run.turn(0.0)
+    run.turn(1.0, sayings=[Saying("op", "go"), Saying("op", "go"), Saying("nobody", "stop")])
+    assert run.rules == ["say", "rcv_msg", "fun"]
+    assert [bool(answer.refusal) for answer in run.answers] == [False, True, True]
+    assert [step.transition.shown for step in run.steps][-1] == ("gone",)
+
+
+def test_an_agent_that_never_waits_does_not_keep_others_from_going_on():
+    text = TOUR + (
+        "BigActor a hosted_at gcs0 with_behavior { loop { observe(ALL)\n react { case x => skip } } }\n"
+        "BigActor b hosted_at gcs0 with_behavior { observe(ALL)\n react { case x => display(x) } }"
+    )
+    run = Run(plan_of(text))
+    run.turn(0.0)
+    assert any(step.transition.label.agent == "b" and step.transition.shown for step in run.steps)
+    taken = len(run.steps)
+    assert taken < 400
+    assert 0.0 < run.again < 0.2
+    run.turn(0.01)
+    assert len(run.steps) <= taken + 3
+
+
+# --- places that move ---
+
+SPILL = (
+    TOUR.replace("kind Vessel\n", "kind Vessel\n kind OilSpill contains UAV\n")
+    .replace("contains Location, Vessel", "contains Location, OilSpill, Vessel")
+    .replace("  uav0: UAV", "  oilSpill0: OilSpill = circle (37.01, -8.61) radius 300 m\n  uav0: UAV")
+)
+
+
+def test_a_vehicle_is_sent_on_where_its_place_has_drifted_to():
+    text = SPILL + (
+        "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO oilSpill0) }\n"
+        "environment { oilSpill0 drifts among circle (37.012, -8.612) radius 300 m }"
+    )
+    run = Run(plan_of(text))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    drifted = seen("oilSpill0", (37.013, -8.613), 1.0, "camera", "OilSpill", ())
+    run.turn(1.0, drifted)
+    first, second = run.commands
+    assert first.request == second.request
+    assert first.place != second.place
+    assert run.findings == []
+    run.turn(2.0, seen("uav0", (37.0135, -8.6135), 2.0))
+    assert run.rules[-1] == "commit"
+
+
+def test_a_place_that_drifts_over_a_waiting_vehicle_lets_it_arrive():
+    text = SPILL + (
+        "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO oilSpill0) }\n"
+        "environment { oilSpill0 drifts among circle (37.012, -8.612) radius 300 m }"
+    )
+    run = Run(plan_of(text))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(1.0, seen("uav0", (37.0139, -8.6139), 1.0))
+    assert "commit" not in run.rules
+    run.turn(2.0, seen("oilSpill0", (37.013, -8.613), 2.0, "camera", "OilSpill", ()))
+    assert run.rules[-1] == "commit"
+
+
+def test_what_is_too_old_leaves_p_and_so_does_what_is_said_to_be_gone():
+    run = Run(plan_of(TOUR + "environment { boat0 vanishes }"))
+    run.turn(0.0, Heard("ais", Aged(boat((37.03, -8.63), 0.0).published, 60.0)))
+    run.turn(59.0)
+    assert run.steps == []
+    run.turn(61.0)
+    assert run.labels == ["⟨env : boat0 vanishes⟩"]
+    assert run.findings == []
+    run.turn(62.0, boat((37.03, -8.63), 62.0))
+    assert run.labels[1:] == ["⟨env : boat0 appears in region⟩"]
+    run.turn(63.0, Heard("ais", Gone("boat0", 63.0, "ais")))
+    assert run.labels[2:] == ["⟨env : boat0 vanishes⟩"]
+
+
+def test_a_vehicle_in_flight_that_is_not_heard_stays_in_transit():
+    run = Run(plan_of(TOUR + GO))
+    heard = seen("uav0", WEST, 0.0)
+    run.turn(0.0, Heard("autopilot", Aged(heard.published, 30.0)))
+    run.turn(100.0)
+    assert isinstance(run.state.configuration.structure.physical.placement("uav0"), InTransit)
+    run.turn(101.0, seen("uav0", EAST, 101.0))
+    assert "commit" in run.rules
+
+
+# --- two at once ---
+
+
+def test_a_rule_that_moves_two_is_committed_when_both_are_there():
+    two = TOUR.replace("  boat0:", "  uav1: UAV = point (37.012, -8.65) linked control:gcs1\n  boat0:")
+    text = two + (
+        "rule both { west0.(uav0[a] | uav1[b] | $0) || east0.$1 -> west0.$0 || east0.(uav0[a] | uav1[b] | $1) }\n"
+        "BigActor a hosted_at uav0 with_behavior { control(both()) }"
+    )
+    plan = plan_of(text)
+    run = Run(Plan(plan.first, {"uav0": "autopilot", "uav1": "autopilot"}))
+    other = ("control:gcs1",)
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    assert run.commands == []
+    run.turn(1.0, seen("uav1", (37.012, -8.65), 1.0, channels=other))
+    assert sorted(told.entity for told in run.commands) == ["uav0", "uav1"]
+    run.turn(2.0, seen("uav0", EAST, 2.0))
+    assert "commit" not in run.rules
+    run.turn(3.0, seen("uav1", (37.012, -8.612), 3.0, channels=other))
+    assert run.rules[-1] == "commit"
+    assert run.state.orders == {}
+    assert run.findings == []
+
+
+# --- resuming -------------------------------------------------------------------------------------------
+
+
+def after_a_crash(run):
+    resumed_run = Run(run.plan)
+    resumed_run.state = resumed(run.plan, run.state.configuration, run.state.number, run.state.told, 100.0)
+    return resumed_run
+
+
+def test_a_flight_that_ended_while_nobody_looked_is_committed_and_not_told_again():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    again = after_a_crash(run)
+    turn = watch(again.plan, again.state, Batch((seen("uav0", EAST, 101.0),)), 101.0)
+    assert [step.transition.label.rule for step in turn.steps] == ["commit"]
+    assert turn.state.orders == {}
+    assert turn.commands == ()
+
+
+def test_a_flight_that_goes_on_is_still_ordered_after_a_crash():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    again = after_a_crash(run)
+    assert again.state.orders["uav0"].command.place == run.state.orders["uav0"].command.place
+    again.turn(101.0, seen("uav0", BETWEEN, 101.0))
+    assert again.commands == []
+
+
+def test_a_hand_over_that_was_done_while_nobody_looked_is_no_broken_assumption():
+    run = Run(plan_of(HAND))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    again = after_a_crash(run)
+    again.turn(101.0, seen("uav0", WEST, 101.0, channels=("control:gcs1",)))
+    assert again.findings == []
+    assert "actuate" in again.rules
+    assert again.commands == []

@@ -1,0 +1,207 @@
+import asyncio
+import stat
+
+import pytest
+from live_missions import BETWEEN, EAST, TOUR, WEST, plan_of
+
+from adapters.live.core import started
+from adapters.live.loop import LiveRun, NotAsAssumed, NotHeard, PluginFailed
+from adapters.live.saying import NobodyListens, listening, say
+from adapters.plugin import Aged, GoTo, HandOver, LinkLost, Refused
+from physical import PhysicalProperty, centroid, point
+
+GO = """
+BigActor a hosted_at uav0 with_behavior {
+  control(MOVE_HOST_TO east0)
+  observe(CHILDREN(east0))
+  react { case obs => display(obs) }
+}
+"""
+
+
+class Vehicle:
+    """A vehicle in the same process that goes where it is told, in three steps."""
+
+    name = "autopilot"
+
+    def __init__(self, at=WEST, refuses="", pace=0.02):
+        self.at, self.refuses, self.pace = at, refuses, pace
+        self.channels = ("control:gcs0",)
+        self.told, self.way = [], []
+
+    async def run(self, world):
+        while True:
+            if self.way:
+                self.at = self.way.pop(0)
+            said = PhysicalProperty("uav0", "UAV", point(*self.at), channels=self.channels, time=world.now())
+            world.publish(Aged(said, 5.0))
+            await asyncio.sleep(self.pace)
+
+    async def command(self, command):
+        if self.refuses:
+            raise Refused(self.refuses)
+        self.told.append(command)
+        if isinstance(command, GoTo):
+            self.way = [BETWEEN, BETWEEN, centroid(command.place).vertices[0]]
+        elif isinstance(command, HandOver):
+            self.channels = (command.join,)
+
+    def owns(self, entity):
+        return entity == "uav0"
+
+
+class Looker:
+    def __init__(self):
+        self.steps, self.findings, self.arrivals = [], [], 0
+
+    def arrived(self, _heard, _now):
+        self.arrivals += 1
+
+    def reported(self, report, _now):
+        pass
+
+    def turned(self, turn, _now):
+        self.steps += turn.steps
+        self.findings += turn.findings
+
+    def shown(self):
+        return [text for step in self.steps for text in step.transition.shown]
+
+
+def fly(text, vehicle, seconds=3.0, **more):
+    looker = Looker()
+
+    async def flying():
+        plan = plan_of(text)
+        async with LiveRun(plan, started(plan), [vehicle], [looker]) as run:
+            await run.begin(1.0, **more)
+            return await run.go(seconds=seconds)
+
+    return asyncio.run(flying()), looker
+
+
+def test_a_mission_flies_to_its_end():
+    vehicle = Vehicle()
+    ending, looker = fly(TOUR + GO, vehicle)
+    assert ending.reason == "the mission has ended"
+    assert looker.shown() == ["{east0, uav0}"]
+    assert vehicle.at == pytest.approx(EAST, abs=1e-4)
+    assert [type(told) for told in vehicle.told] == [GoTo]
+
+
+def test_what_is_refused_is_reported_and_stays_pending():
+    ending, looker = fly(TOUR + GO, Vehicle(refuses="not armed"), seconds=0.3)
+    assert ending.reason == "the time is over"
+    assert [finding.kind for finding in looker.findings] == ["refused"]
+    assert "commit" not in [step.transition.label.rule for step in looker.steps]
+
+
+def test_a_hand_over_is_confirmed_by_the_vehicle():
+    text = TOUR + "BigActor op hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }"
+    ending, looker = fly(text, Vehicle())
+    assert ending.state.configuration.structure.logical.links("uav0") == ("control:gcs1",)
+    assert looker.findings == []
+
+
+def test_a_run_begins_only_when_its_vehicles_are_heard():
+    class Silent(Vehicle):
+        async def run(self, _world):
+            await asyncio.sleep(60)
+
+    async def flying():
+        plan = plan_of(TOUR + GO)
+        async with LiveRun(plan, started(plan), [Silent()]) as run:
+            await run.begin(0.15)
+
+    with pytest.raises(NotHeard, match="uav0"):
+        asyncio.run(flying())
+
+
+def test_a_run_begins_only_where_the_mission_says_that_it_does():
+    with pytest.raises(NotAsAssumed, match="uav0 is in east0"):
+        fly(TOUR + GO, Vehicle(at=EAST))
+    ending, _ = fly(TOUR, Vehicle(at=EAST), forced=True)
+    assert ending.reason == "the mission has ended"
+
+
+def test_a_plugin_that_fails_ends_the_run_with_its_reason():
+    class Failing(Vehicle):
+        async def run(self, _world):
+            raise OSError("address already in use")
+
+    with pytest.raises(PluginFailed, match="autopilot: address already in use"):
+        fly(TOUR, Failing())
+
+
+def test_reports_are_never_dropped_and_of_positions_the_newest_counts():
+    class Chatty(Vehicle):
+        async def run(self, world):
+            for number in range(500):
+                said = PhysicalProperty("uav0", "UAV", point(37.01, -8.65 + number * 1e-6), time=world.now())
+                world.publish(PhysicalProperty(**{**_fields(said), "channels": ("control:gcs0",)}))
+                world.report(LinkLost("uav0", world.now(), world.now()))
+            await asyncio.sleep(60)
+
+    _, looker = fly(TOUR, Chatty(), seconds=0.1, forced=True)
+    assert looker.arrivals == 500
+    assert len(looker.findings) >= 1
+
+
+def _fields(said):
+    return {name: getattr(said, name) for name in ("entity", "kind", "geometry", "time")}
+
+
+# --- saying ---------------------------------------------------------------------------------------------
+
+
+async def _talk(path, *messages):
+    async def listener(agent, message):
+        await asyncio.sleep(0)
+        return "" if message == "go" else f"{agent} is not told {message}"
+
+    async with listening(path, listener):
+        mode = stat.S_IMODE(path.stat().st_mode)
+        return mode, [await say(path, "op", message) for message in messages]
+
+
+def test_only_the_user_may_say_something_to_a_run(tmp_path):
+    mode, answers = asyncio.run(_talk(tmp_path / "run.sock", "go", "stop"))
+    assert mode == 0o600
+    assert answers == ["", "op is not told stop"]
+    assert not (tmp_path / "run.sock").exists()
+
+
+def test_where_no_mission_runs_nobody_listens(tmp_path):
+    with pytest.raises(NobodyListens, match="no mission runs"):
+        asyncio.run(say(tmp_path / "run.sock", "op", "go"))
+
+
+def test_a_second_run_does_not_take_the_first_ones_place(tmp_path):
+    path = tmp_path / "run.sock"
+
+    async def both():
+        async with listening(path, _nothing):
+            await _talk(path, "go")
+
+    with pytest.raises(FileExistsError, match="another run"):
+        asyncio.run(both())
+
+
+async def _nothing(_agent, _message):
+    return ""
+
+
+def test_what_is_no_saying_is_refused(tmp_path):
+    path = tmp_path / "run.sock"
+
+    async def babble():
+        async with listening(path, _nothing):
+            answers = []
+            for line in (b"hello\n", b"[]\n", b'{"agent": 1}\n', b"[" * 5000 + b"\n"):
+                reader, writer = await asyncio.open_unix_connection(path)
+                writer.write(line)
+                answers.append(await reader.readline())
+                writer.close()
+            return answers
+
+    assert all(b"no saying" in answer for answer in asyncio.run(babble()))

@@ -1,0 +1,194 @@
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import jsonschema
+import pytest
+from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, mission, plan_of, seen
+
+from adapters.plugin import Accepted, Aged, Gone
+from adapters.recording.encoding import arrival_json
+from adapters.recording.mcap_files import RecordingError
+from adapters.recording.reading import is_recording, read_recording
+from adapters.recording.schemas import SCHEMAS
+from adapters.recording.writing import Recorder
+from checker import ReplayError, replay, to_json
+from checker.traces import SCHEMA
+from physical import Band, PhysicalProperty, Velocity, box
+from semantics.precautions import Fallback, Precautions
+
+from adapters.live.state import Heard  # isort: skip
+
+FLIGHT = (
+    TOUR
+    + """
+BigActor a hosted_at uav0 with_behavior {
+  control(MOVE_HOST_TO east0)
+  observe(CHILDREN(east0))
+  react { case obs => display(obs) }
+}
+"""
+)
+HEADER = {
+    "mission": "tour.mission",
+    "text": FLIGHT,
+    "digest": "sha256:0",
+    "version": "0",
+    "verified": False,
+    "vehicles": {"uav0": "autopilot"},
+}
+
+
+def fly(recorder):
+    run = Run(plan_of(FLIGHT, Precautions(Fallback.CONTINUE)))
+    arrivals = (
+        [seen("uav0", WEST, 0.0), boat((37.04, -8.7), 0.0)],
+        [seen("uav0", BETWEEN, 1.0), boat(EAST, 1.0, "mmsi1")],
+        [seen("uav0", EAST, 2.0)],
+    )
+    for now, heard in enumerate(arrivals):
+        for each in heard:
+            recorder.arrival(each, float(now))
+        recorder.report(Accepted("a-1", "uav0", float(now)), float(now))
+        recorder.turn(run.turn(float(now), *heard), float(now), lambda _finding: ("deadlock_freedom",))
+    return run
+
+
+@pytest.fixture
+def recorded(tmp_path):
+    path = tmp_path / "run.mcap"
+    recorder = Recorder(path, HEADER, 0.0)
+    run = fly(recorder)
+    recorder.close("done", 3.0)
+    return path, run
+
+
+def test_a_recording_replays_to_the_same_configurations(recorded):
+    path, run = recorded
+    recording = read_recording(path)
+    assert is_recording(str(path))
+    assert not recording.torn
+    trace = replay(mission(FLIGHT).initial, recording.trace(SCHEMA))
+    assert trace.configurations[-1] == run.state.configuration
+    assert [step.target for step in trace.steps] == [step.transition.target for step in run.steps]
+
+
+def test_a_live_run_is_a_trace_like_any_other(recorded):
+    path, _ = recorded
+    data = read_recording(path).trace(SCHEMA)
+    schema = json.loads(Path("docs/trace.schema.json").read_text())
+    schema["properties"]["digest"] = {"type": "string"}
+    jsonschema.validate(data, schema)
+    again = replay(mission(FLIGHT).initial, data)
+    assert replay(mission(FLIGHT).initial, to_json(again, "tour", "sha256:0")) == again
+
+
+def test_every_message_is_as_its_schema_says(recorded):
+    path, _ = recorded
+    recording = read_recording(path, arrivals=True)
+    assert {message.topic for message in recording.messages} >= {
+        "arrivals",
+        "steps",
+        "commands",
+        "findings",
+        "end",
+    }
+    for message in recording.messages:
+        jsonschema.validate(message.data, SCHEMAS[message.topic][1])
+
+
+@pytest.mark.parametrize(
+    ("spoil", "says"),
+    [
+        (lambda steps: steps.pop(0), "step 1"),
+        (lambda steps: steps.append(steps[0]), "is not enabled"),
+        (lambda steps: steps[-1].update(digest="sha256:1"), "another configuration"),
+    ],
+)
+def test_a_recording_that_the_rules_do_not_allow_names_the_step(recorded, spoil, says):
+    data = read_recording(recorded[0]).trace(SCHEMA)
+    spoil(data["steps"])
+    with pytest.raises(ReplayError, match=says):
+        replay(mission(FLIGHT).initial, data)
+
+
+def test_a_flight_that_was_not_seen_to_end_is_no_commit(recorded):
+    data = read_recording(recorded[0]).trace(SCHEMA)
+    number, commit = next((n, s) for n, s in enumerate(data["steps"], 1) if s["label"].startswith("⟨commit"))
+    commit["observed"]["writes"][0][1]["at"]["ring"] = [[370100000, -86300000]]
+    with pytest.raises(ReplayError, match=f"step {number}"):
+        replay(mission(FLIGHT).initial, data)
+
+
+def test_what_is_no_observation_is_no_trace(recorded):
+    data = read_recording(recorded[0]).trace(SCHEMA)
+    for spoilt in (
+        {"words": "x", "writes": [[["parent", "uav0"], "east0"]]},
+        {"words": 1},
+        [],
+        {"words": "", "writes": 3},
+    ):
+        data["steps"][0]["observed"] = spoilt
+        with pytest.raises(ValueError, match="step 1"):
+            replay(mission(FLIGHT).initial, data)
+
+
+@pytest.mark.parametrize("cut", [0.3, 0.6, 0.9, 0.999])
+def test_a_torn_recording_is_read_up_to_its_end(recorded, cut):
+    path, _ = recorded
+    data = path.read_bytes()
+    path.write_bytes(data[: int(len(data) * cut)])
+    try:
+        recording = read_recording(path)
+    except RecordingError as error:
+        assert cut == 0.3, error  # noqa: PT017 - only where not even the run was written
+        return
+    assert recording.torn
+    replay(mission(FLIGHT).initial, recording.trace(SCHEMA))
+
+
+KILLED = """
+import os, signal, sys
+sys.path[:0] = ["tests/adapters/live"]
+from pathlib import Path
+from test_recording import HEADER, Recorder, fly
+recorder = Recorder(Path(sys.argv[1]), HEADER, 0.0)
+fly(recorder)
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_a_run_killed_with_kill_9_leaves_a_readable_recording(tmp_path):
+    path = tmp_path / "killed.mcap"
+    environment = {**os.environ, "PYTHONPATH": "."}
+    ended = subprocess.run([sys.executable, "-c", KILLED, str(path)], env=environment, check=False)
+    assert ended.returncode == -signal.SIGKILL
+    recording = read_recording(path)
+    assert recording.torn
+    trace = replay(mission(FLIGHT).initial, recording.trace(SCHEMA))
+    assert trace.configurations[-1].structure.logical.parent("uav0") == "east0"
+
+
+@pytest.mark.parametrize("data", [b"", b"\x89MCAP0\r\n", b"hello", b"\x89MCAP0\r\n" + bytes(range(256)) * 9])
+def test_what_is_no_recording_is_refused(tmp_path, data):
+    path = tmp_path / "x.mcap"
+    path.write_bytes(data)
+    with pytest.raises(RecordingError):
+        read_recording(path)
+
+
+@pytest.mark.parametrize(
+    "published",
+    [
+        PhysicalProperty("a", "UAV", box((1, 2), (3, 4)), Band(1, 2), ("c",), "b", 5.0, "p", Velocity(1, 2)),
+        Aged(PhysicalProperty("a", "UAV", box((1, 2), (3, 4)), time=5.0, source="p"), 60.0),
+        Gone("a", 5.0, "p"),
+    ],
+)
+def test_an_arrival_is_as_its_schema_says(published):
+    data = json.loads(json.dumps(arrival_json(Heard("p", published))))
+    jsonschema.validate(data, SCHEMAS["arrivals"][1])
+    assert (data["plugin"], data["entity"], data["time"]) == ("p", "a", 5.0)

@@ -1,0 +1,103 @@
+"""What `bigactors run` and `say` refuse, and how they say it."""
+
+import os
+import stat
+
+import pytest
+
+from bigactors.cli import main
+from bigactors.mistakes import Mistake
+from bigactors.sockets import folder, only_socket, socket_of
+
+UAV = "--vehicle=uav0=udp:127.0.0.1:0"
+
+
+@pytest.fixture
+def there(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "runtime"))
+    (tmp_path / "runtime").mkdir(mode=0o700)
+    return tmp_path
+
+
+@pytest.mark.usefixtures("there")
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ([], "vehicles that are not given: uav0"),
+        (["--vehicle=uav9=udp:127.0.0.1:0"], "no entity 'uav9'"),
+        (["--vehicle=gcs0=udp:127.0.0.1:0"], "'gcs0' is no vehicle"),
+        (["--vehicle=uav0=carrier-pigeon"], "no way to connect"),
+        ([UAV, "--feed=radar=udp:1"], "no feed 'radar'"),
+        ([UAV, "--feed=ais=file:"], "no path"),
+        ([UAV, "--station=gcs9=3"], "no channel 'control:gcs9'"),
+        ([UAV, "--name=mmsi:1=a", "--name=mmsi:2=a"], "would be called a"),
+        ([UAV, "--resume=nowhere.mcap"], "No such file"),
+        ([UAV, "--record=nowhere/run.mcap"], "No such file"),
+        (["--vehicle=uav0"], "not NAME[:ID]=ADDRESS"),
+    ],
+)
+def test_what_cannot_be_flown_is_a_mistake_that_says_why(capsys, more, says):
+    assert main(["run", "oil_spill", "--unverified", *more]) == 2
+    assert says in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("there")
+def test_without_a_verdict_run_says_how_to_get_one(capsys):
+    assert main(["run", "oil_spill", UAV]) == 2
+    told = capsys.readouterr().err
+    assert "no verdict" in told
+    assert "bigactors check --control timed --verdict oil_spill.verdict.json oil_spill" in told
+
+
+def test_a_vehicle_that_is_not_heard_ends_the_run_and_its_recording(there, capsys):
+    assert main(["run", "oil_spill", UAV, "--unverified", "--wait", "0.2", "--record", "run.mcap"]) == 2
+    told = capsys.readouterr().err
+    assert "nothing was verified of this run" in told
+    assert "nothing was heard of uav0" in told
+    assert main(["replay", "run.mcap"]) == 0
+    shown = capsys.readouterr()
+    assert "nothing was verified of this run" in shown.err
+    assert "0 steps replayed on oil_spill" in shown.out
+    assert not list((there / "runtime" / "bigactors").iterdir())
+
+
+@pytest.mark.usefixtures("there")
+def test_where_no_mission_runs_nothing_can_be_said(capsys):
+    assert main(["say", "op", "go"]) == 2
+    assert "no mission runs here" in capsys.readouterr().err
+
+
+def test_sockets_lie_in_a_folder_of_the_users_own(there):
+    assert stat.S_IMODE(folder().stat().st_mode) == 0o700
+    path = socket_of("oil spill/../x", None)
+    assert path.parent == there / "runtime" / "bigactors"
+    path.touch()
+    assert only_socket(None) == path
+    (path.parent / "other.sock").touch()
+    with pytest.raises(Mistake, match="2 missions run here"):
+        only_socket(None)
+    os.chmod(path.parent, 0o755)
+    with pytest.raises(Mistake, match="not this user's alone"):
+        folder()
+
+
+def test_a_path_too_long_for_a_socket_is_a_mistake():
+    with pytest.raises(Mistake, match="at most 100 bytes"):
+        socket_of("m", "/tmp/" + "x" * 200)
+
+
+def test_what_is_no_recording_is_a_mistake(there, capsys):
+    (there / "x.mcap").write_bytes(b"\x89MCAP0\r\n" + b"x" * 100)
+    assert main(["replay", "x.mcap"]) == 2
+    assert "no recording" in capsys.readouterr().err
+
+
+def test_an_ais_recording_of_others_is_shown_in_the_places_of_a_mission(capsys):
+    path = "specs/missions/harbour_watch.nmea"
+    assert main(["replay", path]) == 2
+    assert "--mission" in capsys.readouterr().err
+    assert main(["replay", path, "--mission", "harbour_watch"]) == 0
+    shown = capsys.readouterr()
+    assert "⟨env : mmsi244999004 is seen in basin0, marina0⟩" in shown.out
+    assert "78 positions, 4 changes of the bigraph" in shown.out

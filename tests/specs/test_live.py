@@ -1,0 +1,41 @@
+from pathlib import Path
+
+from semantics.precautions import Fallback, Precautions, TimeLimit
+from specs.diagnostics import Source
+from specs.elaboration import elaborate
+from specs.parser import parse
+
+WORLD = "signature { kind P } world { p0: P = point (1, 1) } BigActor a hosted_at p0 with_behavior { skip }"
+
+
+def precautions_of(text):
+    source = Source("m", WORLD + text)
+    return elaborate(parse(source), source, Path()).precautions
+
+
+def test_without_a_live_section_vehicles_hold_when_an_assumption_breaks():
+    assert precautions_of("") == Precautions(Fallback.HOLD, ())
+
+
+def test_precautions_are_read_in_the_order_written():
+    text = "live { on broken assumption: return FLY a within 1.5 min: return; anyone within 1 h: continue }"
+    assert precautions_of(text) == Precautions(
+        Fallback.RETURN,
+        (TimeLimit("FLY", "a", 90.0, Fallback.RETURN), TimeLimit(None, None, 3600.0, Fallback.CONTINUE)),
+    )
+
+
+def test_precautions_change_nothing_that_is_checked():
+    def first(text):
+        source = Source("m", WORLD + text)
+        return elaborate(parse(source), source, Path()).initial
+
+    assert first("") == first("live { a within 1 s: return }")
+
+
+def test_a_limit_covers_the_requests_that_it_is_about():
+    limit = TimeLimit("FLY", "a", 1.0, Fallback.HOLD)
+    assert limit.covers("FLY", "a")
+    assert not limit.covers("CTR", "a")
+    assert not limit.covers("FLY", "b")
+    assert TimeLimit(None, None, 1.0, Fallback.HOLD).covers("CTR", "b")
