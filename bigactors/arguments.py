@@ -26,6 +26,9 @@ Of several missions the gravest counts: 4, then 2, 1, 3, 0."""
 FORMATS: Final = ("json", "junit", "sarif", "github")
 """What `check --output` writes; `github` are the annotations of GitHub Actions."""
 
+REDUCTIONS: Final = ("por", "symmetry")
+"""What `check --reduce` takes."""
+
 MISSION: Final = "a mission file, or the name of a mission that ships with bigactors, such as oil_spill"
 
 
@@ -159,6 +162,14 @@ def _check(parser: Parser) -> None:
         choices=("learned", "reference"),
         default="learned",
         help="how it explores; verdicts are the same",
+    )
+    parser.add_argument(
+        "--reduce",
+        metavar="NAMES",
+        type=reductions,
+        default=(),
+        help="visit less, where that is sound: por (partial-order reduction), symmetry, or por,symmetry "
+        "(docs/reduction.md)",
     )
     _varying(parser)
 
@@ -395,6 +406,15 @@ def substitute(word: str) -> tuple[str, str]:
             f"'{word:.60}' is not NAME=FILE, such as harbour_watch.nmea=marina.nmea"
         )
     return name, file
+
+
+def reductions(text: str) -> tuple[str, ...]:
+    """Read names of reductions, separated by commas."""
+    names = tuple(dict.fromkeys(text.split(",")))
+    for name in names:
+        if name not in REDUCTIONS:
+            raise argparse.ArgumentTypeError(f"'{name:.60}' is none of {', '.join(REDUCTIONS)}")
+    return names
 
 
 def at_least_one(text: str) -> int:

@@ -9,7 +9,7 @@ from bigactors.missions import digest_of, open_mission
 from bigactors.mistakes import Mistake, describe_bug
 from bigactors.progress import watching
 from bigactors.terminal import tell
-from checker import Engine, Limits, Report, check, report_json
+from checker import Engine, Limits, Reduction, RefusedError, Report, check, report_json
 from specs.elaboration import ElaboratedMission, Variation
 
 FAILURE_SCHEMA = "bigactors.failure/1"
@@ -67,14 +67,24 @@ class Failed:
 
 
 def check_mission(
-    name: str, limits: Limits, variation: Variation, engine: Engine = Engine.LEARNED
+    name: str,
+    limits: Limits,
+    variation: Variation,
+    engine: Engine = Engine.LEARNED,
+    reduce: tuple[Reduction, ...] = (),
 ) -> Checked | Failed:
     """Check one mission; what goes wrong is told on the standard error and returned."""
     try:
         mission = open_mission(name, variation)
         with watching(mission.name) as watch:
-            report = check(mission.initial, mission.properties, limits, watch, mission.notes, engine)
+            report = check(
+                mission.initial, mission.properties, limits, watch, mission.notes, engine, reduce=reduce
+            )
         return Checked(name, mission, digest_of(mission), report, watch.interrupted)
+    except RefusedError as refused:
+        mistake = Mistake(str(refused), "check it without, or with the other reduction alone", name)
+        tell(str(mistake))
+        return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
     except Mistake as mistake:
         tell(str(mistake))
         return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
@@ -86,7 +96,11 @@ def check_mission(
 
 
 def check_missions(
-    names: list[str], limits: Limits, variation: Variation, engine: Engine
+    names: list[str],
+    limits: Limits,
+    variation: Variation,
+    engine: Engine,
+    reduce: tuple[Reduction, ...] = (),
 ) -> Iterator[Checked | Failed]:
     """Check missions in turn; after an interruption the others are not begun."""
     interrupted = False
@@ -94,7 +108,7 @@ def check_missions(
         if interrupted:
             yield Failed(name, Exit.INCOMPLETE, "not begun")
             continue
-        result = check_mission(name, limits, variation, engine)
+        result = check_mission(name, limits, variation, engine, reduce)
         interrupted = result.interrupted
         yield result
 

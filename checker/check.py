@@ -8,6 +8,8 @@ from checker.findings import Collected, Finding
 from checker.inspections import Computation, DeadlockFreedom, Invariant, LocalConsistency, Reachability
 from checker.ownership import owned
 from checker.races import ControlRaces, StaleObservationRaces
+from checker.reduction.reducer import Reduced, reducing
+from checker.reduction.refusals import Reduction
 from checker.traces import Trace, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Violation
 from semantics.configuration import Configuration
@@ -17,20 +19,29 @@ from semantics.propositions import Property
 Reporter = Callable[[Progress], None]
 
 
-def check(
+def check(  # noqa: PLR0913  # what a user may vary, each by name
     initial: Configuration,
     properties: Iterable[Property],
     limits: Limits | None = None,
     report: Reporter | None = None,
     notes: tuple[str, ...] = (),
     engine: Engine = Engine.LEARNED,
+    *,
+    reduce: Iterable[Reduction] = (),
 ) -> Report:
     """Explore everything that is reachable and decide the properties.
 
     Race-freedom is first looked for in the text (by ownership); where that doesn't settle it, the mission is explored
     once more with what observations rest on remembered. Configurations are counted without that memory.
+
+    Raises:
+        RefusedError: A reduction is unsound for the mission, or nothing in it allows one. Properties that it is
+            unsound for are not decided, unless something was found against them.
     """
-    return _Check(initial, tuple(properties), limits or Limits(), report, engine).run(notes)
+    asked = tuple(properties)
+    formulas = [each.formula for each in asked if each.kind in ("invariant", "reachable")]
+    reducer = reducing(initial, reduce, formulas)
+    return _Check(initial, asked, limits or Limits(), report, engine, reducer).run(notes)
 
 
 class _Check:
@@ -41,12 +52,14 @@ class _Check:
         limits: Limits,
         report: Reporter | None,
         engine: Engine,
+        reducer: Reduced | None,
     ) -> None:
         self.initial = initial
         self.properties = properties
         self.limits = limits
         self.report = report
         self.engine = engine
+        self.reducer = reducer
         self.deadlock = DeadlockFreedom()
         self.consistency = LocalConsistency()
         self.computation = Computation()
@@ -65,8 +78,9 @@ class _Check:
     def run(self, notes: tuple[str, ...]) -> Report:
         races = (self.races,) if self.searching else ()
         inspections: tuple[Inspect, ...] = (self.deadlock, self.consistency, self.computation, *races)
-        self.found = self.explore(self.initial, (*inspections, *self.formulas.values()), self.limits)
-        if self.searching:
+        looking = (*inspections, *self.formulas.values())
+        self.found = self.explore(self.initial, looking, self.limits, self.reducer)
+        if self.searching and not any(map(self.refused, self.properties)):
             self.remembered = self.search()
         later = self.remembered.bounds if self.remembered else []
         return Report(
@@ -78,10 +92,18 @@ class _Check:
             rules=dict(sorted(self.found.rules.items())),
             notes=notes,
             seconds=self.found.seconds + (self.remembered.seconds if self.remembered else 0.0),
+            reduced=tuple(map(str, self.reducer.names)) if self.reducer else (),
+            allowed=self.found.allowed,
         )
 
-    def explore(self, start: Configuration, inspections: tuple[Inspect, ...], limits: Limits) -> Exploration:
-        return explore(start, inspections, limits, self.report, engine=self.engine)
+    def explore(
+        self,
+        start: Configuration,
+        inspections: tuple[Inspect, ...],
+        limits: Limits,
+        reducer: Reduced | None = None,
+    ) -> Exploration:
+        return explore(start, inspections, limits, self.report, engine=self.engine, reduce=reducer)
 
     def search(self) -> Exploration | None:
         """Explore once more, with memory and in the time that is left; None where the user has asked for the end."""
@@ -92,8 +114,23 @@ class _Check:
         remembered.bounds = [f"{bound}, in the search for stale observations" for bound in remembered.bounds]
         return remembered
 
+    def refused(self, asked: Property) -> str | None:
+        """Return why a reduction leaves a property undecided, None where it does not."""
+        if asked.kind == "race_freedom" and self.owned:
+            return None  # decided without a search
+        return self.reducer.refuses(asked) if self.reducer else None
+
     def decide(self, asked: Property) -> Verdict:
-        """Return the verdict on one property."""
+        """Return the verdict on one property: what a reduction may have lost is not said to hold."""
+        reason = self.refused(asked)
+        if reason is None:
+            return self.decided(asked)
+        found = self.decided(asked)
+        note = f"not decided under this reduction: {reason}"
+        return found if found.outcome is Outcome.VIOLATED else Verdict(asked, Outcome.INCOMPLETE, note=note)
+
+    def decided(self, asked: Property) -> Verdict:
+        """Return what the exploration says of a property."""
         match asked.kind:
             case "race_freedom":
                 return self.decide_races(asked)

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Protocol
 
 from checker.learned import Learner
 from semantics.configuration import Configuration, Label, Transition
@@ -55,6 +56,25 @@ class Engine(Enum):
     LEARNED = "learned"
 
 
+class Reducer(Protocol):
+    """What lets an exploration visit less: see `checker.reduction`."""
+
+    @property
+    def putting_off(self) -> bool:
+        """Whether steps are put off: then a trace need not be a shortest one."""
+
+    def representative(self, c: Configuration) -> Configuration:
+        """Return the configuration that stands for one."""
+
+    def choose(
+        self, c: Configuration, expansion: Expansion, later: Callable[[Transition], bool]
+    ) -> tuple[Transition, ...]:
+        """Return the transitions to be followed; `later` tells of one whether its target is yet to be expanded."""
+
+    def run_to(self, found: "Exploration", number: int) -> tuple[Transition, ...]:
+        """Return a run of the rules from the initial configuration to what a visited one stands for."""
+
+
 Inspect = Callable[[int, Configuration, Expansion], None]
 """What looks at each configuration as it is expanded, given its number."""
 
@@ -73,6 +93,9 @@ class Exploration:
         bounds: The limits that were met; empty where the exploration is complete.
         seconds: How long it took.
         rule_runs: How often an actor's rules were run in Python, where they were learned.
+        allowed: How many transitions the visited configurations allow; more than `transitions` where it was reduced.
+        reducer: What made it visit less, None where it visited everything.
+        start: What it started from, where another configuration stands for it.
     """
 
     configurations: list[Configuration]
@@ -84,6 +107,9 @@ class Exploration:
     bounds: list[str] = field(default_factory=list)
     seconds: float = 0.0
     rule_runs: int | None = None
+    allowed: int = 0
+    reducer: Reducer | None = None
+    start: Configuration | None = None
 
     @property
     def complete(self) -> bool:
@@ -98,13 +124,15 @@ class Exploration:
         return tuple(reversed(path))
 
 
-def explore(
+def explore(  # noqa: PLR0913  # what a user may vary, each by name
     initial: Configuration,
     inspect: Iterable[Inspect] = (),
     limits: Limits | None = None,
     report: Callable[[Progress], None] | None = None,
     every: float = 0.5,
     engine: Engine = Engine.LEARNED,
+    *,
+    reduce: Reducer | None = None,
 ) -> Exploration:
     """Visit everything that is reachable, breadth-first.
 
@@ -115,8 +143,11 @@ def explore(
         report: Called about once in `every` seconds.
         every: Seconds.
         engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
+        reduce: What lets it visit less.
     """
     explorer = _Explorer(initial, tuple(inspect), limits or Limits(), report, every)
+    if reduce is not None:
+        explorer.reduce_by(reduce)
     if engine is Engine.LEARNED:
         explorer.learner = Learner()
         explorer.allowed = explorer.learner.expand
@@ -139,7 +170,15 @@ class _Explorer:
         self.report = report
         self.every = every
         self.allowed: Callable[[Configuration], Expansion] = expand
+        self.represent: Callable[[Configuration], Configuration] = _itself
         self.learner: Learner | None = None
+
+    def reduce_by(self, reducer: Reducer) -> None:
+        start = self.found.configurations[0]
+        first = reducer.representative(start)
+        self.found = Exploration([first], reducer=reducer, start=start)
+        self.numbers = {first: 0}
+        self.represent = reducer.representative
 
     def run(self) -> Exploration:
         started = time.monotonic()
@@ -171,21 +210,32 @@ class _Explorer:
         if crowded(configuration, self.limits.pending):
             self.bound(f"more than {self.limits.pending} requests or messages of one agent pending")
             return
-        for transition in expansion.transitions:
+        self.found.allowed += len(expansion.transitions)
+        for transition in self.chosen(number, configuration, expansion):
             self.follow(number, transition)
+
+    def chosen(self, number: int, c: Configuration, expansion: Expansion) -> tuple[Transition, ...]:
+        """Return the transitions to be followed. Expansion is in the order of numbers: the later has the greater."""
+        if self.found.reducer is None:
+            return expansion.transitions
+        numbers, represent = self.numbers, self.represent
+        return self.found.reducer.choose(
+            c, expansion, lambda each: numbers.get(represent(each.target), number + 1) > number
+        )
 
     def follow(self, number: int, transition: Transition) -> None:
         found, label = self.found, transition.label
         found.transitions += 1
         found.rules[label.rule] += 1
-        if transition.target in self.numbers:
+        target = self.represent(transition.target)
+        if target in self.numbers:
             return
         most = self.limits.configurations
         if most is not None and len(found.configurations) >= most:
             self.bound(f"the limit of {most:,} configurations")
             return
-        self.numbers[transition.target] = len(found.configurations)
-        found.configurations.append(transition.target)
+        self.numbers[target] = len(found.configurations)
+        found.configurations.append(target)
         found.origins.append(number)
         found.labels.append(label)
         found.depths.append(found.depths[number] + 1)
@@ -200,6 +250,10 @@ class _Explorer:
         return Progress(
             total, found.transitions, found.depths[number], total - number, number / max(seconds, 1e-9)
         )
+
+
+def _itself(c: Configuration) -> Configuration:
+    return c
 
 
 def crowded(c: Configuration, most: int) -> bool:

@@ -34,10 +34,10 @@ NOTHING_EXAMINED = {
 
 def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[str]:
     """Yield a report line by line."""
-    size = (
-        f"{report.configurations:,} configurations, {report.transitions:,} transitions, depth {report.depth}"
-    )
-    yield f"{name}: {size}, {'complete' if report.complete else 'INCOMPLETE'}, {report.seconds:.2f} s"
+    size = f"{report.configurations:,} configurations, {_followed(report)} transitions, depth {report.depth}"
+    searched = f", reduced by {' and '.join(report.reduced)}" if report.reduced else ""
+    complete = "complete" if report.complete else "INCOMPLETE"
+    yield f"{name}: {size}, {complete}{searched}, {report.seconds:.2f} s"
     for bound in report.bounds:
         yield f"  stopped at {bound}: what lies beyond was not explored"
     width = max((len(verdict.property.name) for verdict in report.verdicts), default=0)
@@ -45,6 +45,12 @@ def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[s
         yield from _verdict(verdict, width, traces=traces)
     yield "  rules: " + (", ".join(f"{rule} {count:,}" for rule, count in report.rules.items()) or "none")
     yield from (f"  note: {note}" for note in report.notes)
+
+
+def _followed(report: Report) -> str:
+    if not report.reduced:
+        return f"{report.transitions:,}"
+    return f"{report.transitions:,} of {report.allowed:,}"
 
 
 def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
@@ -79,7 +85,7 @@ def _steps(count: int) -> str:
 def _violation(violation: Violation, *, traces: bool) -> Iterator[str]:
     yield f"      {violation.kind}: {violation.message}"
     yield from (f"        {detail}" for detail in violation.details)
-    yield f"      a shortest trace, {_steps(len(violation.trace))}{':' if traces else ''}"
+    yield f"      {violation.trace.called}, {_steps(len(violation.trace))}{':' if traces else ''}"
     if traces:
         yield from (f"        {line}" for line in print_trace(violation.trace))
 
@@ -96,6 +102,8 @@ def report_json(name: str, digest: str, report: Report, control: Control) -> dic
         "configurations": report.configurations,
         "transitions": report.transitions,
         "depth": report.depth,
+        "reduced": list(report.reduced),
+        "transitions_allowed": report.allowed,
         "exit_code": report.exit_code,
         "properties": [_property_json(name, digest, verdict) for verdict in report.verdicts],
         "rules": dict(report.rules),

@@ -32,7 +32,7 @@ class Issue:
         asked: The line of the property, where there is one.
         identity: What makes it the same issue in another run, though lines have moved.
         details: More lines.
-        trace: A shortest run that ends in it.
+        trace: A run that ends in it.
     """
 
     level: Level
@@ -131,7 +131,7 @@ def issue_text(issue: Issue) -> str:
     lines = [issue.message, *(f"  {detail}" for detail in issue.details)]
     if issue.trace is not None:
         lines.append(
-            f"a shortest trace, {len(issue.trace):,} {'step' if len(issue.trace) == 1 else 'steps'}:"
+            f"{issue.trace.called}, {len(issue.trace):,} {'step' if len(issue.trace) == 1 else 'steps'}:"
         )
         lines += [f"  {line}" for line in print_trace(issue.trace)]
     return "\n".join(lines)

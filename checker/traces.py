@@ -1,11 +1,11 @@
 """Traces: runs in the paper's notation, that replay step by step."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from checker.exploration import Exploration
+from checker.exploration import Exploration, Reducer
 from semantics.configuration import Configuration, Label, Transition
 from semantics.monitor import monitored
 from semantics.printing import print_changes
@@ -34,10 +34,22 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """A run from the initial configuration."""
+    """A run from the initial configuration.
+
+    Attributes:
+        initial: Where it begins.
+        steps: Its steps.
+        shortest: Whether no other run to its end is shorter; not known where steps were put off (`--reduce por`).
+    """
 
     initial: Configuration
     steps: tuple[Step, ...] = ()
+    shortest: bool = field(default=True, compare=False)
+
+    @property
+    def called(self) -> str:
+        """What it is called in a report."""
+        return "a shortest trace" if self.shortest else "a trace"
 
     def __len__(self) -> int:
         return len(self.steps)
@@ -50,7 +62,8 @@ class Trace:
     def extended(self, transition: Transition) -> "Trace":
         """Return the trace with one more step."""
         source = self.configurations[-1]
-        return Trace(self.initial, (*self.steps, step_of(source, transition.label, transition.target)))
+        steps = (*self.steps, step_of(source, transition.label, transition.target))
+        return Trace(self.initial, steps, self.shortest)
 
 
 def step_of(source: Configuration, label: Label, target: Configuration) -> Step:
@@ -67,7 +80,9 @@ def candidates(source: Configuration) -> tuple[Transition, ...]:
 
 
 def trace_to(found: Exploration, number: int) -> Trace:
-    """Return a shortest trace to a configuration of an exploration."""
+    """Return a trace to a configuration of an exploration: a shortest one, unless steps were put off."""
+    if found.reducer is not None:
+        return _unfolded(found, found.reducer, number)
     path = found.path(number)
     steps = []
     for source, target in pairwise(path):
@@ -75,6 +90,15 @@ def trace_to(found: Exploration, number: int) -> Trace:
         assert label is not None
         steps.append(step_of(found.configurations[source], label, found.configurations[target]))
     return Trace(found.configurations[0], tuple(steps))
+
+
+def _unfolded(found: Exploration, reducer: Reducer, number: int) -> Trace:
+    """Return the run of the mission itself to what a configuration of a reduced exploration stands for."""
+    initial = found.configurations[0] if found.start is None else found.start
+    trace = Trace(initial, (), not reducer.putting_off)
+    for transition in reducer.run_to(found, number):
+        trace = trace.extended(transition)
+    return trace
 
 
 def print_trace(trace: Trace, *, changes: bool = True) -> Iterator[str]:

@@ -62,6 +62,8 @@ class Report:
         rules: How many transitions each inference rule has.
         notes: What is to be known of the verdicts.
         seconds: How long it took.
+        reduced: What let it visit less, by name; then counts are those of what was visited.
+        allowed: How many transitions the visited configurations allow, followed or not.
     """
 
     verdicts: tuple[Verdict, ...]
@@ -72,6 +74,8 @@ class Report:
     rules: Mapping[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     seconds: float = 0.0
+    reduced: tuple[str, ...] = ()
+    allowed: int = 0
 
     @property
     def complete(self) -> bool:

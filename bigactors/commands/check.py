@@ -12,7 +12,7 @@ from bigactors.files import file_stem, make_folder
 from bigactors.missions import variation_of
 from bigactors.outputs import outputs_of, write_outputs
 from bigactors.terminal import paint, say, tell
-from checker import Engine, Limits, report_text
+from checker import Engine, Limits, Reduction, report_text
 from checker.report import MARKS
 from checker.verdicts import Outcome
 from semantics.successors import rules_of
@@ -38,7 +38,8 @@ def run(options: Namespace) -> Exit:
     alone = any(output.to_standard_output for output in outputs)
     results: list[Checked | Failed] = []
     folders: set[str] = set()
-    for result in check_missions(options.files, limits, variation_of(options), Engine(options.engine)):
+    engine, reduce = Engine(options.engine), tuple(map(Reduction, options.reduce))
+    for result in check_missions(options.files, limits, variation_of(options), engine, reduce):
         results.append(result)
         if not alone:
             for line in report_lines(result, traces=not options.no_traces):
