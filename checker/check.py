@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from checker.exploration import INTERRUPTION, Engine, Exploration, Inspect, Limits, Progress, explore
-from checker.findings import Collected, Finding
+from checker.findings import Collected
 from checker.inspections import Computation, DeadlockFreedom, Invariant, LocalConsistency, Reachability
 from checker.ownership import owned
 from checker.races import ControlRaces, StaleObservationRaces
@@ -198,17 +198,18 @@ class _Check:
 
     def violations(self, collected: Collected, found: Exploration) -> tuple[Violation, ...]:
         return tuple(
-            Violation(each.kind, each.message, _trace(found, each), each.details)
+            Violation(each.kind, told(each.message), trace, tuple(map(told, each.details)))
             for each in collected.first.values()
+            for trace, told in [(trace_to(found, each.at, each.by), _teller(found, each.at))]
         )
 
     def witness(self, collected: Collected, found: Exploration) -> Trace | None:
         if collected.example is None:
             return None
-        trace = trace_to(found, collected.example)
-        return trace.extended(collected.example_by) if collected.example_by else trace
+        return trace_to(found, collected.example, collected.example_by)
 
 
-def _trace(found: Exploration, finding: Finding) -> Trace:
-    trace = trace_to(found, finding.at)
-    return trace.extended(finding.by) if finding.by else trace
+def _teller(found: Exploration, number: int) -> Callable[[str], str]:
+    """Return what puts the names of the run in the place of those of the configuration that stands for its end."""
+    reducer = found.reducer
+    return str if reducer is None else lambda text: reducer.told(found, number, text)

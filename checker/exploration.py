@@ -71,8 +71,13 @@ class Reducer(Protocol):
     ) -> tuple[Transition, ...]:
         """Return the transitions to be followed; `later` tells of one whether its target is yet to be expanded."""
 
-    def run_to(self, found: "Exploration", number: int) -> tuple[Transition, ...]:
-        """Return a run of the rules from the initial configuration to what a visited one stands for."""
+    def run_to(
+        self, found: "Exploration", number: int, by: Transition | None = None
+    ) -> tuple[Transition, ...]:
+        """Return a run of the rules to what a visited configuration stands for, and then `by`."""
+
+    def told(self, found: "Exploration", number: int, text: str) -> str:
+        """Return what is said of a visited configuration as it is said of the one that the run leads to."""
 
 
 Inspect = Callable[[int, Configuration, Expansion], None]

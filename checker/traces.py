@@ -79,24 +79,25 @@ def candidates(source: Configuration) -> tuple[Transition, ...]:
     return expansion.transitions + expansion.out_of_turn
 
 
-def trace_to(found: Exploration, number: int) -> Trace:
+def trace_to(found: Exploration, number: int, by: Transition | None = None) -> Trace:
     """Return a trace to a configuration of an exploration: a shortest one, unless steps were put off."""
     if found.reducer is not None:
-        return _unfolded(found, found.reducer, number)
+        return _unfolded(found, found.reducer, number, by)
     path = found.path(number)
     steps = []
     for source, target in pairwise(path):
         label = found.labels[target]
         assert label is not None
         steps.append(step_of(found.configurations[source], label, found.configurations[target]))
-    return Trace(found.configurations[0], tuple(steps))
+    trace = Trace(found.configurations[0], tuple(steps))
+    return trace if by is None else trace.extended(by)
 
 
-def _unfolded(found: Exploration, reducer: Reducer, number: int) -> Trace:
+def _unfolded(found: Exploration, reducer: Reducer, number: int, by: Transition | None) -> Trace:
     """Return the run of the mission itself to what a configuration of a reduced exploration stands for."""
     initial = found.configurations[0] if found.start is None else found.start
     trace = Trace(initial, (), not reducer.putting_off)
-    for transition in reducer.run_to(found, number):
+    for transition in reducer.run_to(found, number, by):
         trace = trace.extended(transition)
     return trace
 

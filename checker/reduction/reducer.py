@@ -1,11 +1,13 @@
 """What an exploration is given to visit less: partial-order reduction, symmetry, or both."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 
 from checker.exploration import Exploration
 from checker.reduction.ample import Ample, Proviso
 from checker.reduction.refusals import Reduction, refusal, refuse_partial_order
+from checker.reduction.renaming import Renaming
+from checker.reduction.symmetry import Symmetry
 from semantics.configuration import Configuration, Transition
 from semantics.propositions import Property, Proposition
 from semantics.successors import Expansion, expand
@@ -22,7 +24,7 @@ class Reduced:
         self,
         initial: Configuration,
         reductions: Iterable[Reduction],
-        formulas: Iterable[Proposition] = (),
+        formulas: Sequence[Proposition] = (),
         proviso: Proviso = Proviso.SOME,
     ) -> None:
         asked = set(reductions)
@@ -31,6 +33,7 @@ class Reduced:
         if Reduction.POR in asked:
             refuse_partial_order(initial)
             self.ample = Ample(initial, formulas, proviso)
+        self.symmetry = Symmetry(initial, formulas) if Reduction.SYMMETRY in asked else None
 
     @property
     def putting_off(self) -> bool:
@@ -43,7 +46,7 @@ class Reduced:
 
     def representative(self, c: Configuration) -> Configuration:
         """Return the configuration that stands for one."""
-        return c
+        return c if self.symmetry is None else self.symmetry.representative(c)
 
     def choose(
         self, c: Configuration, expansion: Expansion, later: Callable[[Transition], bool]
@@ -51,19 +54,51 @@ class Reduced:
         """Return the transitions to be followed."""
         return expansion.transitions if self.ample is None else self.ample.choose(c, expansion, later)
 
-    def run_to(self, found: Exploration, number: int) -> tuple[Transition, ...]:
-        """Return a run of the rules from the initial configuration to what a visited one stands for."""
-        steps = []
-        path = found.path(number)
-        for source, target in pairwise(path):
+    def run_to(self, found: Exploration, number: int, by: Transition | None = None) -> tuple[Transition, ...]:
+        """Return a run of the rules to what a visited configuration stands for, and then `by`."""
+        steps, real, renaming = self._unfold(found, number)
+        if by is not None:
+            steps.append(self._really(by, real, renaming))
+        return tuple(steps)
+
+    def told(self, found: Exploration, number: int, text: str) -> str:
+        """Return what is said of a visited configuration as it is said of the one that the run leads to."""
+        return text if self.symmetry is None else self._unfold(found, number)[2].inverse.text(text)
+
+    def _unfold(self, found: Exploration, number: int) -> tuple[list[Transition], Configuration, Renaming]:
+        """Return the run, its end, and the renaming that leads from there to the visited configuration."""
+        real = found.configurations[0] if found.start is None else found.start
+        renaming = self._sorting(real)
+        steps: list[Transition] = []
+        for source, target in pairwise(found.path(number)):
             label, after = found.labels[target], found.configurations[target]
             allowed = expand(found.configurations[source]).transitions
-            steps.append(next(each for each in allowed if (each.label, each.target) == (label, after)))
-        return tuple(steps)
+            taken = next(t for t in allowed if t.label == label and self.representative(t.target) == after)
+            steps.append(self._really(taken, real, renaming))
+            real = steps[-1].target
+            renaming = self._sorting(taken.target).after(renaming)
+        return steps, real, renaming
+
+    def _sorting(self, c: Configuration) -> Renaming:
+        return Renaming() if self.symmetry is None else self.symmetry.sorting(c)[0]
+
+    def _really(self, taken: Transition, real: Configuration, renaming: Renaming) -> Transition:
+        """Return the step of a real run that a step of what stands for its end is."""
+        if self.symmetry is None:
+            return taken
+        target = renaming.inverse.configuration(taken.target)
+        label = renaming.inverse.text(str(taken.label))
+        alike = [each for each in candidates(expand(real)) if each.target == target]
+        return next((each for each in alike if str(each.label) == label), alike[0])
+
+
+def candidates(expansion: Expansion) -> tuple[Transition, ...]:
+    """Return all transitions, those out of turn last."""
+    return expansion.transitions + expansion.out_of_turn
 
 
 def reducing(
-    initial: Configuration, reductions: Iterable[Reduction], formulas: Iterable[Proposition]
+    initial: Configuration, reductions: Iterable[Reduction], formulas: Sequence[Proposition]
 ) -> Reduced | None:
     """Return what reduces an exploration, None where nothing is asked for; raises RefusedError."""
     asked = tuple(reductions)
