@@ -3,7 +3,8 @@
     python benchmarks/rendezvous.py [--most N] [ROBOTS ...]
 
 Five robots are `rendezvous.mission`, as it ships. The full search is left out where it is known to visit more than N
-configurations, and given up there otherwise (default 2,000,000; with 0 there is none); its counts are asserted where they are known.
+configurations, and given up there otherwise (default 2,000,000; with 0 there is none). Its counts are asserted where
+they are known.
 """
 
 import argparse
