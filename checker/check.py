@@ -157,7 +157,10 @@ class _Check:
 
     def decide_deadlock(self, asked: Property) -> Verdict:
         late = self.deadlock.arrival.first.get("not arrived")
-        note = f"{late.message}; declare that it arrives, or check arrival" if late else ""
+        if late is None:
+            return self.verdict(asked, self.deadlock.collected)
+        message = _teller(self.found, late.at)(late.message)
+        note = f"{message}; declare that it arrives, or check arrival"
         return self.verdict(asked, self.deadlock.collected, note)
 
     def decide_reachable(self, asked: Property) -> Verdict:

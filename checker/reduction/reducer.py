@@ -5,7 +5,7 @@ from itertools import pairwise
 
 from checker.exploration import Exploration
 from checker.reduction.ample import Ample, Proviso
-from checker.reduction.refusals import Reduction, refusal, refuse_partial_order
+from checker.reduction.refusals import Reduction, refusal, refuse_partial_order, refuse_symmetry
 from checker.reduction.renaming import Renaming
 from checker.reduction.symmetry import Symmetry
 from semantics.configuration import Configuration, Transition
@@ -33,7 +33,10 @@ class Reduced:
         if Reduction.POR in asked:
             refuse_partial_order(initial)
             self.ample = Ample(initial, formulas, proviso)
-        self.symmetry = Symmetry(initial, formulas) if Reduction.SYMMETRY in asked else None
+        self.symmetry: Symmetry | None = None
+        if Reduction.SYMMETRY in asked:
+            refuse_symmetry(initial)
+            self.symmetry = Symmetry(initial, formulas)
 
     @property
     def putting_off(self) -> bool:

@@ -51,6 +51,19 @@ def refusal(reduction: Reduction, asked: Property) -> str | None:
     return f"it is not known to be kept for properties of the kind '{asked.kind}'"
 
 
+def refuse_symmetry(c: Configuration) -> None:
+    """Refuse symmetry where what observations rest on is remembered: that is explored in full.
+
+    Raises:
+        RefusedError: It would be unsound.
+    """
+    if c.setting.monitored:
+        reason = (
+            "what observations rest on is remembered by name; stale observations are searched for in full"
+        )
+        raise RefusedError(Reduction.SYMMETRY, reason)
+
+
 def refuse_partial_order(c: Configuration) -> None:
     """Refuse partial-order reduction for missions in which the order of all requests matters.
 

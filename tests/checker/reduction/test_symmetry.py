@@ -18,6 +18,7 @@ from checker.reduction.symmetry import Symmetry
 from checker.traces import replay, to_json
 from semantics import Scheduler
 from semantics.configuration import Configuration
+from semantics.monitor import monitored
 from semantics.propositions import HasPending, Inside
 from semantics.setting import Control
 from semantics.successors import expand
@@ -138,6 +139,11 @@ def test_it_is_refused_where_a_property_names_one_of_them():
     initial = mission(LOOKS).initial
     with pytest.raises(RefusedError, match="a property tells them apart: robot1 in room0"):
         Symmetry(initial, [Inside("robot1", "room0")])
+
+
+def test_it_is_refused_where_what_observations_rest_on_is_remembered():
+    with pytest.raises(RefusedError, match="remembered by name"):
+        Reduced(monitored(mission(LOOKS).initial), SYMMETRY)
 
 
 def test_a_property_of_all_of_them_tells_nobody_apart():
