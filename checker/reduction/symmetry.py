@@ -13,7 +13,8 @@ from itertools import combinations, groupby, permutations, product
 from math import factorial, prod
 from typing import Any
 
-from checker.reduction.alike import UNLIKE_TEXTS, Pairing, Unlike, is_invariant, ordered, transposition
+from checker.reduction.alike import UNLIKE_TEXTS, Pairing, Unlike, is_invariant, transposition
+from checker.reduction.order import ordered
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.reduction.renaming import Renaming, mentioned, spelled
 from semantics.cells import AGENTS, NAMES, Cell, Row
