@@ -9,7 +9,7 @@ from bigactors.missions import digest_of, open_mission
 from bigactors.mistakes import Mistake, describe_bug
 from bigactors.progress import watching
 from bigactors.terminal import tell
-from checker import Engine, Limits, Report, check, report_json
+from checker import Engine, Limits, Reduction, RefusedError, Report, check, report_json
 from checker.findings import MOST_VIOLATIONS
 from specs.elaboration import ElaboratedMission, Variation
 
@@ -67,14 +67,23 @@ class Failed:
         }
 
 
+@dataclass(frozen=True, slots=True)
+class How:
+    """How missions are checked: what `check` takes by name."""
+
+    engine: Engine | None = None
+    violations: int = MOST_VIOLATIONS
+    reduce: tuple[Reduction, ...] = ()
+
+
 def check_mission(
     name: str,
     limits: Limits,
     variation: Variation,
-    engine: Engine | None = None,
-    violations: int = MOST_VIOLATIONS,
+    how: How | None = None,
 ) -> Checked | Failed:
     """Check one mission; what goes wrong is told on the standard error and returned."""
+    how = how or How()
     try:
         mission = open_mission(name, variation)
         with watching(mission.name) as watch:
@@ -84,10 +93,15 @@ def check_mission(
                 limits,
                 watch,
                 mission.notes,
-                engine,
-                violations=violations,
+                how.engine,
+                violations=how.violations,
+                reduce=how.reduce,
             )
         return Checked(name, mission, digest_of(mission), report, watch.interrupted)
+    except RefusedError as refused:
+        mistake = Mistake(str(refused), "check it without, or with the other reduction alone", name)
+        tell(str(mistake))
+        return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
     except Mistake as mistake:
         tell(str(mistake))
         return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
@@ -99,7 +113,7 @@ def check_mission(
 
 
 def check_missions(
-    names: list[str], limits: Limits, variation: Variation, engine: Engine | None, violations: int
+    names: list[str], limits: Limits, variation: Variation, how: How | None = None
 ) -> Iterator[Checked | Failed]:
     """Check missions in turn; after an interruption the others are not begun."""
     interrupted = False
@@ -107,7 +121,7 @@ def check_missions(
         if interrupted:
             yield Failed(name, Exit.INCOMPLETE, "not begun")
             continue
-        result = check_mission(name, limits, variation, engine, violations)
+        result = check_mission(name, limits, variation, how)
         interrupted = result.interrupted
         yield result
 

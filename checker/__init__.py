@@ -6,6 +6,7 @@ It knows the calculus by `semantics.successors` alone: nothing of files, vehicle
 from checker.check import check
 from checker.exploration import Engine, Exploration, Limits, Progress, explore
 from checker.ownership import owned
+from checker.reduction import Reduction, RefusedError
 from checker.report import report_json, report_text
 from checker.traces import ReplayError, Step, Trace, print_loop, print_trace, replay, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
@@ -16,6 +17,8 @@ __all__ = [
     "Limits",
     "Outcome",
     "Progress",
+    "Reduction",
+    "RefusedError",
     "ReplayError",
     "Report",
     "Step",

@@ -15,10 +15,12 @@ from checker.exploration import (
     explore,
     time_met,
 )
-from checker.findings import MOST_VIOLATIONS, Collected, Finding
+from checker.findings import MOST_VIOLATIONS, Collected
 from checker.inspections import Computation, DeadlockFreedom, Invariant, LocalConsistency, Reachability
 from checker.ownership import owned
 from checker.races import ControlRaces, StaleObservationRaces
+from checker.reduction.reducer import Reduced, reducing
+from checker.reduction.refusals import Reduction, RefusedError
 from checker.traces import Trace, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Violation
 from checker.visited import Visited
@@ -43,6 +45,10 @@ PATIENCE = 1.0
 """Seconds after which a mission that the reference explorer has not got through is given to the fast one."""
 
 
+PATIENCE = 1.0
+"""Seconds after which a mission that the reference explorer has not got through is given to the fast one."""
+
+
 def check(  # noqa: PLR0913 - each says one thing of a check
     initial: Configuration,
     properties: Iterable[Property],
@@ -52,6 +58,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     engine: Engine | None = None,
     *,
     violations: int = MOST_VIOLATIONS,
+    reduce: Iterable[Reduction] = (),
 ) -> Report:
     """Explore everything that is reachable and decide the properties.
 
@@ -66,21 +73,31 @@ def check(  # noqa: PLR0913 - each says one thing of a check
         notes: What the report is to say besides.
         engine: How to explore; by default whichever is quicker for the mission's size.
         violations: Of each property so many different ones are shown at the most, each with a shortest trace.
+        reduce: What may let it visit less: the reference explorer, the only one that reduces.
+
+    Raises:
+        RefusedError: A reduction is unsound for the mission, or nothing in it allows one. Properties that it is
+            unsound for are not decided, unless something was found against them.
     """
-    given, limits = tuple(properties), limits or Limits()
-    if engine is not None:
-        return _Check(initial, given, limits, report, engine, violations).run(notes)
-    if limits.seconds is None or limits.seconds > PATIENCE:
-        quick = replace(limits, seconds=PATIENCE)
-        tried = _Check(initial, given, quick, report, Engine.REFERENCE, violations).run(notes)
-        if not any(bound.startswith(time_met(PATIENCE)) for bound in tried.bounds):
-            return tried
-        return _Check(initial, given, limits, report, Engine.FAST, violations).run(notes)
-    return _Check(initial, given, limits, report, Engine.REFERENCE, violations).run(notes)
+    asked, limits = tuple(properties), limits or Limits()
+    formulas = [each.formula for each in asked if each.kind in ("invariant", "reachable")]
+    reducer = reducing(initial, reduce, formulas)
+    if reducer is not None and engine is Engine.FAST:
+        raise RefusedError(reducer.names[0], "the fast explorer does not reduce; leave --engine out")
+
+    def run(engine: Engine, limits: Limits) -> Report:
+        return _Check(initial, asked, limits, report, engine, violations, reducer).run(notes)
+
+    impatient = limits.seconds is None or limits.seconds > PATIENCE
+    if engine is None and reducer is None and impatient:
+        tried = run(Engine.REFERENCE, replace(limits, seconds=PATIENCE))
+        late = any(bound.startswith(time_met(PATIENCE)) for bound in tried.bounds)
+        return run(Engine.FAST, limits) if late else tried
+    return run(engine or Engine.REFERENCE, limits)
 
 
 class _Check:
-    def __init__(
+    def __init__(  # noqa: PLR0913, PLR0917  # what `check` was told
         self,
         initial: Configuration,
         properties: tuple[Property, ...],
@@ -88,6 +105,7 @@ class _Check:
         report: Reporter | None,
         engine: Engine,
         most: int,
+        reducer: Reduced | None,
     ) -> None:
         self.initial = initial
         self.properties = properties
@@ -95,6 +113,7 @@ class _Check:
         self.report = report
         self.engine = engine
         self.most = most
+        self.reducer = reducer
         self.visited = Visited()
         self.deadlock = DeadlockFreedom(most)
         self.consistency = LocalConsistency(most)
@@ -124,7 +143,7 @@ class _Check:
         )
         everything = (*inspections, *self.formulas.values())
         self.found = self.explore(self.initial, everything, self.limits, edges=bool(self.temporal))
-        if self.searching:
+        if self.searching and not any(map(self.refused, self.properties)):
             self.remembered = self.search()
         later = self.remembered.bounds if self.remembered else []
         return Report(
@@ -136,13 +155,18 @@ class _Check:
             rules=dict(sorted(self.found.rules.items())),
             notes=notes,
             seconds=self.found.seconds + (self.remembered.seconds if self.remembered else 0.0),
-            coverage=coverage(self.initial, self.visited, complete=self.found.complete),
+            coverage=coverage(self.initial, self.visited, complete=self.found.complete and not self.reducer),
+            reduced=tuple(map(str, self.reducer.names)) if self.reducer else (),
+            allowed=self.found.allowed,
         )
 
     def explore(
         self, start: Configuration, inspections: tuple[Inspect, ...], limits: Limits, *, edges: bool = False
     ) -> Exploration:
-        return explore(start, inspections, limits, self.report, engine=self.engine, edges=edges)
+        reducer = self.reducer if start is self.initial else None
+        return explore(
+            start, inspections, limits, self.report, engine=self.engine, edges=edges, reduce=reducer
+        )
 
     def search(self) -> Exploration | None:
         """Explore once more, with memory and in the time that is left; None where the user has asked for the end."""
@@ -153,8 +177,23 @@ class _Check:
         remembered.bounds = [f"{bound}, in the search for stale observations" for bound in remembered.bounds]
         return remembered
 
+    def refused(self, asked: Property) -> str | None:
+        """Return why a reduction leaves a property undecided, None where it does not."""
+        if asked.kind == "race_freedom" and self.owned:
+            return None  # decided without a search
+        return self.reducer.refuses(asked) if self.reducer else None
+
     def decide(self, asked: Property) -> Verdict:
-        """Return the verdict on one property."""
+        """Return the verdict on one property: what a reduction may have lost is not said to hold."""
+        reason = self.refused(asked)
+        if reason is None:
+            return self.decided(asked)
+        found = self.decided(asked)
+        note = f"not decided under this reduction: {reason}"
+        return found if found.outcome is Outcome.VIOLATED else Verdict(asked, Outcome.INCOMPLETE, note=note)
+
+    def decided(self, asked: Property) -> Verdict:
+        """Return what the exploration says of a property."""
         match asked.kind:
             case "race_freedom":
                 return self.decide_races(asked)
@@ -200,7 +239,10 @@ class _Check:
 
     def decide_deadlock(self, asked: Property) -> Verdict:
         late = next(iter(self.deadlock.arrival.first.values()), None)
-        note = f"{late.message}; declare that it arrives, or check arrival" if late else ""
+        if late is None:
+            return self.verdict(asked, self.deadlock.collected)
+        message = _teller(self.found, late.at)(late.message)
+        note = f"{message}; declare that it arrives, or check arrival"
         return self.verdict(asked, self.deadlock.collected, note)
 
     def decide_invariant(self, asked: Property) -> Verdict:
@@ -256,15 +298,17 @@ class _Check:
 
     def violations(self, collected: Collected, found: Exploration) -> tuple[Violation, ...]:
         return tuple(
-            Violation(each.kind, each.message, _trace(found, each), each.details, each.subject)
+            Violation(
+                each.kind, told(each.message), trace, tuple(map(told, each.details)), told(each.subject)
+            )
             for each in collected.chosen()
+            for trace, told in [(trace_to(found, each.at, each.by), _teller(found, each.at))]
         )
 
     def witness(self, collected: Collected, found: Exploration) -> Trace | None:
         if collected.example is None:
             return None
-        trace = trace_to(found, collected.example)
-        return trace.extended(collected.example_by) if collected.example_by else trace
+        return trace_to(found, collected.example, collected.example_by)
 
 
 def _shown(violations: tuple[Violation, ...], most: int) -> tuple[Violation, ...]:
@@ -275,6 +319,7 @@ def _shown(violations: tuple[Violation, ...], most: int) -> tuple[Violation, ...
     return tuple(each for each in shortest if each in kept[:most])
 
 
-def _trace(found: Exploration, finding: Finding) -> Trace:
-    trace = trace_to(found, finding.at)
-    return trace.extended(finding.by) if finding.by else trace
+def _teller(found: Exploration, number: int) -> Callable[[str], str]:
+    """Return what puts the names of the run in the place of those of the configuration that stands for its end."""
+    reducer = found.reducer
+    return str if reducer is None else lambda text: reducer.told(found, number, text)

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from checker.edges import Edges
 from semantics.configuration import Configuration, Transition
@@ -59,6 +59,30 @@ class Engine(Enum):
     FAST = "fast"
 
 
+class Reducer(Protocol):
+    """What lets an exploration visit less: see `checker.reduction`."""
+
+    @property
+    def putting_off(self) -> bool:
+        """Whether steps are put off: then a trace need not be a shortest one."""
+
+    def representative(self, c: Configuration) -> Configuration:
+        """Return the configuration that stands for one."""
+
+    def choose(
+        self, c: Configuration, expansion: Expansion, later: Callable[[Transition], bool]
+    ) -> tuple[Transition, ...]:
+        """Return the transitions to be followed; `later` tells of one whether its target is yet to be expanded."""
+
+    def run_to(
+        self, found: "Exploration", number: int, by: Transition | None = None
+    ) -> tuple[Transition, ...]:
+        """Return a run of the rules to what a visited configuration stands for, and then `by`."""
+
+    def told(self, found: "Exploration", number: int, text: str) -> str:
+        """Return what is said of a visited configuration as it is said of the one that the run leads to."""
+
+
 Inspect = Callable[[int, Configuration, Expansion], None]
 """What looks at each configuration as it is expanded, given its number."""
 
@@ -79,6 +103,9 @@ class Exploration:
         rule_runs: How often an actor's rules were run in Python, where they were learned.
         edges: Every transition, where they were asked for and the reference explorer kept them.
         survey: What the fast explorer can be asked; None of the reference explorer.
+        allowed: How many transitions the visited configurations allow; more than `transitions` where it was reduced.
+        reducer: What made it visit less, None where it visited everything.
+        start: What it started from, where another configuration stands for it.
     """
 
     configurations: Sequence[Configuration]
@@ -92,6 +119,9 @@ class Exploration:
     rule_runs: int | None = None
     edges: Edges | None = None
     survey: "Survey | None" = None
+    allowed: int = 0
+    reducer: Reducer | None = None
+    start: Configuration | None = None
 
     @property
     def complete(self) -> bool:
@@ -119,6 +149,7 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
     engine: Engine = Engine.REFERENCE,
     *,
     edges: bool = False,
+    reduce: Reducer | None = None,
 ) -> Exploration:
     """Visit everything that is reachable, breadth-first.
 
@@ -130,6 +161,7 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
         every: Seconds.
         engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
         edges: Whether every transition is kept, as temporal properties need; the fast explorer finds them again.
+        reduce: What lets it visit less; only the reference explorer can.
     """
     if engine is Engine.FAST:
         from checker.fast.explorer import explore_fast  # noqa: PLC0415  # numba takes its time to load
@@ -137,6 +169,8 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
         return explore_fast(initial, tuple(inspect), limits or Limits(), report, every)
     explorer = _Explorer(initial, tuple(inspect), limits or Limits(), report, every)
     explorer.found.edges = Edges() if edges else None
+    if reduce is not None:
+        explorer.reduce_by(reduce)
     return explorer.run()
 
 
@@ -158,6 +192,13 @@ class _Explorer:
         self.limits = limits
         self.report = report
         self.every = every
+        self.represent: Callable[[Configuration], Configuration] = _itself
+
+    def reduce_by(self, reducer: Reducer) -> None:
+        self.found.reducer, self.found.start = reducer, self.configurations[0]
+        self.configurations[0] = reducer.representative(self.configurations[0])
+        self.numbers = {self.configurations[0]: 0}
+        self.represent = reducer.representative
 
     def run(self) -> Exploration:
         started = time.monotonic()
@@ -192,24 +233,35 @@ class _Explorer:
             self.bound(crowd_met(self.limits.pending))
             self.missing(number)
         else:
-            for transition in expansion.transitions:
+            self.found.allowed += len(expansion.transitions)
+            for transition in self.chosen(number, configuration, expansion):
                 self.follow(number, transition)
         if self.found.edges is not None:
             self.found.edges.close()
+
+    def chosen(self, number: int, c: Configuration, expansion: Expansion) -> tuple[Transition, ...]:
+        """Return the transitions to be followed. Expansion is in the order of numbers: the later has the greater."""
+        if self.found.reducer is None:
+            return expansion.transitions
+        numbers, represent = self.numbers, self.represent
+        return self.found.reducer.choose(
+            c, expansion, lambda each: numbers.get(represent(each.target), number + 1) > number
+        )
 
     def follow(self, number: int, transition: Transition) -> None:
         found, label = self.found, transition.label
         found.transitions += 1
         found.rules[label.rule] += 1
-        target = self.numbers.get(transition.target)
+        reached = self.represent(transition.target)
+        target = self.numbers.get(reached)
         if target is None:
             most = self.limits.configurations
             if most is not None and len(self.configurations) >= most:
                 self.bound(limit_met(most))
                 self.missing(number)
                 return
-            target = self.numbers[transition.target] = len(self.configurations)
-            self.configurations.append(transition.target)
+            target = self.numbers[reached] = len(self.configurations)
+            self.configurations.append(reached)
             self.origins.append(number)
             self.depths.append(self.depths[number] + 1)
         if found.edges is not None:
@@ -242,6 +294,10 @@ def time_met(seconds: float) -> str:
 def crowd_met(most: int) -> str:
     """Say that more is pending than is followed."""
     return f"more than {most} requests or messages of one agent pending"
+
+
+def _itself(c: Configuration) -> Configuration:
+    return c
 
 
 def crowded(c: Configuration, most: int) -> bool:

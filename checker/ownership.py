@@ -23,6 +23,7 @@ from semantics.expressions import (
     TupleOf,
     Variable,
 )
+from semantics.program import Program
 from semantics.reactions import Pattern, Reaction, Term
 from semantics.setting import Scheduler
 from semantics.signature import Name
@@ -115,23 +116,8 @@ class _Text:
             number = waiting.pop()
             if number not in seen:
                 seen.add(number)
-                waiting.extend(self._leads_to(self.program.statements[number]))
+                waiting.extend(leads_to(self.program, self.program.statements[number]))
         return tuple(self.program.statements[number] for number in sorted(seen))
-
-    def _leads_to(self, statement: Statement) -> Iterator[int]:
-        match statement:
-            case If(_, then, otherwise):
-                yield from (*then, *otherwise)
-            case While(_, body) | Loop(body) | ForEach(_, _, body) | ChooseFrom(_, _, body):
-                yield from body
-            case For(_, _, each):
-                yield each
-            case Choose(alternatives):
-                yield from (number for block in alternatives for number in block)
-            case React(cases) | Match(_, cases):
-                yield from (number for case in cases for number in case.body)
-            case Call(behaviour):
-                yield from self.program.behaviours[behaviour].body
 
     @cached_property
     def host(self) -> Name:
@@ -247,6 +233,23 @@ class _Text:
             yield ("links", ANY)
         if isinstance(inner, QueryOf):
             yield from self._asked(inner, tests)
+
+
+def leads_to(program: Program, statement: Statement) -> Iterator[int]:
+    """Yield the statements that stand in a statement, or in the behaviour that it calls."""
+    match statement:
+        case If(_, then, otherwise):
+            yield from (*then, *otherwise)
+        case While(_, body) | Loop(body) | ForEach(_, _, body) | ChooseFrom(_, _, body):
+            yield from body
+        case For(_, _, each):
+            yield each
+        case Choose(alternatives):
+            yield from (number for block in alternatives for number in block)
+        case React(cases) | Match(_, cases):
+            yield from (number for case in cases for number in case.body)
+        case Call(behaviour):
+            yield from program.behaviours[behaviour].body
 
 
 def expressions_of(statement: Statement) -> Iterable[Expression]:

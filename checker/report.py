@@ -37,10 +37,10 @@ NOTHING_EXAMINED = {
 
 def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[str]:
     """Yield a report line by line."""
-    size = (
-        f"{report.configurations:,} configurations, {report.transitions:,} transitions, depth {report.depth}"
-    )
-    yield f"{name}: {size}, {'complete' if report.complete else 'INCOMPLETE'}, {report.seconds:.2f} s"
+    size = f"{report.configurations:,} configurations, {_followed(report)} transitions, depth {report.depth}"
+    searched = f", reduced by {' and '.join(report.reduced)}" if report.reduced else ""
+    complete = "complete" if report.complete else "INCOMPLETE"
+    yield f"{name}: {size}, {complete}{searched}, {report.seconds:.2f} s"
     for bound in report.bounds:
         yield f"  stopped at {bound}: what lies beyond was not explored"
     width = max((len(verdict.property.name) for verdict in report.verdicts), default=0)
@@ -48,6 +48,12 @@ def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[s
         yield from _verdict(verdict, width, traces=traces)
     yield "  rules: " + (", ".join(f"{rule} {count:,}" for rule, count in report.rules.items()) or "none")
     yield from (f"  note: {note}" for note in report.notes)
+
+
+def _followed(report: Report) -> str:
+    if not report.reduced:
+        return f"{report.transitions:,}"
+    return f"{report.transitions:,} of {report.allowed:,}"
 
 
 def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
@@ -111,6 +117,8 @@ def report_json(name: str, digest: str, report: Report, control: Control) -> dic
         "configurations": report.configurations,
         "transitions": report.transitions,
         "depth": report.depth,
+        "reduced": list(report.reduced),
+        "transitions_allowed": report.allowed,
         "exit_code": report.exit_code,
         "properties": [_property_json(name, digest, verdict) for verdict in report.verdicts],
         "rules": dict(report.rules),

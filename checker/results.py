@@ -35,7 +35,7 @@ class Issue:
         asked: The line of the property, where there is one.
         identity: What makes it the same issue in another run, though lines have moved.
         details: More lines.
-        trace: A shortest run that ends in it.
+        trace: A run that ends in it.
     """
 
     level: Level

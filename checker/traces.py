@@ -1,11 +1,11 @@
 """Traces: runs in the paper's notation, that replay step by step."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from checker.exploration import Exploration
+from checker.exploration import Exploration, Reducer
 from checker.inspections import is_unfair
 from semantics.canonical import digest_of_step
 from semantics.configuration import Configuration, Label, Transition
@@ -49,11 +49,18 @@ class Trace:
         steps: What is done.
         loop: The number of the configuration from which the run repeats for ever: the last is the same. If it is the
             last itself, nothing has to happen there, and the run stays. None where the run is not for ever.
+        shortest: Whether no other run to its end is shorter; not known where steps were put off (`--reduce por`).
     """
 
     initial: Configuration
     steps: tuple[Step, ...] = ()
     loop: int | None = None
+    shortest: bool = field(default=True, compare=False)
+
+    @property
+    def called(self) -> str:
+        """What it is called in a report."""
+        return "a shortest trace" if self.shortest else "a trace"
 
     def __len__(self) -> int:
         return len(self.steps)
@@ -66,7 +73,8 @@ class Trace:
     def extended(self, transition: Transition) -> "Trace":
         """Return the trace with one more step."""
         source = self.configurations[-1]
-        return Trace(self.initial, (*self.steps, step_of(source, transition.label, transition.target)))
+        steps = (*self.steps, step_of(source, transition.label, transition.target))
+        return Trace(self.initial, steps, shortest=self.shortest)
 
 
 def step_of(source: Configuration, label: Label, target: Configuration) -> Step:
@@ -96,10 +104,22 @@ def candidates(source: Configuration) -> tuple[Transition, ...]:
     return expansion.transitions + expansion.out_of_turn
 
 
-def trace_to(found: Exploration, number: int) -> Trace:
-    """Return a shortest trace to a configuration of an exploration."""
+def trace_to(found: Exploration, number: int, by: Transition | None = None) -> Trace:
+    """Return a trace to a configuration of an exploration: a shortest one, unless steps were put off."""
+    if found.reducer is not None:
+        return _unfolded(found, found.reducer, number, by)
     run = [found.configurations[each] for each in found.path(number)]
-    return Trace(run[0], tuple(step_between(source, target) for source, target in pairwise(run)))
+    trace = Trace(run[0], tuple(step_between(source, target) for source, target in pairwise(run)))
+    return trace if by is None else trace.extended(by)
+
+
+def _unfolded(found: Exploration, reducer: Reducer, number: int, by: Transition | None) -> Trace:
+    """Return the run of the mission itself to what a configuration of a reduced exploration stands for."""
+    initial = found.configurations[0] if found.start is None else found.start
+    trace = Trace(initial, (), shortest=not reducer.putting_off)
+    for transition in reducer.run_to(found, number, by):
+        trace = trace.extended(transition)
+    return trace
 
 
 def print_trace(trace: Trace, *, changes: bool = True) -> Iterator[str]:
@@ -128,7 +148,7 @@ def print_length(trace: Trace) -> str:
     """Print what a trace is, and how long."""
     steps = "1 step" if len(trace) == 1 else f"{len(trace):,} steps"
     if trace.loop is None:
-        return f"a shortest trace, {steps}"
+        return f"{trace.called}, {steps}"
     if trace.loop == len(trace):
         return f"a run of {steps}, at whose end it stays for ever"
     return f"a run of {steps}, {_last(len(trace) - trace.loop)} repeated for ever"

@@ -77,6 +77,8 @@ class Report:
         notes: What is to be known of the verdicts.
         seconds: How long it took.
         coverage: What was reached of the mission's text.
+        reduced: What let it visit less, by name; then counts are those of what was visited.
+        allowed: How many transitions the visited configurations allow, followed or not.
     """
 
     verdicts: tuple[Verdict, ...]
@@ -88,6 +90,8 @@ class Report:
     notes: tuple[str, ...] = ()
     seconds: float = 0.0
     coverage: Coverage | None = None
+    reduced: tuple[str, ...] = ()
+    allowed: int = 0
 
     @property
     def complete(self) -> bool:

@@ -2,7 +2,7 @@
 
 from bigactors.arguments.common import EXITS, MISSION, varying
 from bigactors.arguments.parser import Command, Parser
-from bigactors.arguments.values import FORMATS, at_least_one, named, output, seconds
+from bigactors.arguments.values import FORMATS, at_least_one, named, output, reductions, seconds
 
 
 def fill(parser: Parser) -> None:
@@ -62,6 +62,14 @@ def fill(parser: Parser) -> None:
         "--engine",
         choices=("reference", "fast"),
         help="how it explores; verdicts are the same (default: whichever is quicker for the mission's size)",
+    )
+    parser.add_argument(
+        "--reduce",
+        metavar="NAMES",
+        type=reductions,
+        default=(),
+        help="visit less, where that is sound: por (partial-order reduction), symmetry, or por,symmetry "
+        "(docs/reduction.md)",
     )
     varying(parser)
 

@@ -117,3 +117,20 @@ def identity(word: str) -> tuple[str, str]:
             f"'{word:.60}' is not IDENTITY=NAME, such as mmsi:244660274=drifter0"
         )
     return found[1], found[2]
+
+
+REDUCTIONS: Final = ("por", "symmetry")
+"""What `check --reduce` takes."""
+
+
+def reductions(text: str) -> tuple[str, ...]:
+    """Read names of reductions, separated by commas.
+
+    >>> reductions("por,symmetry")
+    ('por', 'symmetry')
+    """
+    names = tuple(dict.fromkeys(text.split(",")))
+    for name in names:
+        if name not in REDUCTIONS:
+            raise argparse.ArgumentTypeError(f"'{name:.60}' is none of {', '.join(REDUCTIONS)}")
+    return names

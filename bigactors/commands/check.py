@@ -6,7 +6,7 @@ from argparse import Namespace
 from collections.abc import Iterator
 from pathlib import Path
 
-from bigactors.checking import Checked, Failed, check_missions
+from bigactors.checking import Checked, Failed, How, check_missions
 from bigactors.exits import Exit, worst
 from bigactors.files import check_writable, file_stem, make_folder, write_json
 from bigactors.missions import variation_of
@@ -14,7 +14,7 @@ from bigactors.mistakes import Mistake
 from bigactors.outputs import outputs_of, write_outputs
 from bigactors.terminal import paint, say, tell
 from bigactors.verdict_files import verdict_json
-from checker import Engine, Limits, report_text
+from checker import Engine, Limits, Reduction, report_text
 from checker.coverage_report import coverage_text
 from checker.report import MARKS
 from checker.verdicts import Outcome
@@ -43,8 +43,9 @@ def run(options: Namespace) -> Exit:
     alone = any(output.to_standard_output for output in outputs)
     results: list[Checked | Failed] = []
     folders: set[str] = set()
-    engine, most = options.engine and Engine(options.engine), options.violations
-    for result in check_missions(options.files, limits, variation_of(options), engine, most):
+    engine = options.engine and Engine(options.engine)
+    how = How(engine, options.violations, tuple(map(Reduction, options.reduce)))
+    for result in check_missions(options.files, limits, variation_of(options), how):
         results.append(result)
         if not alone:
             for line in report_lines(result, traces=not options.no_traces):

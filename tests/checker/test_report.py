@@ -235,6 +235,8 @@ def test_the_data_say_what_the_report_says():
         "configurations": 10,
         "transitions": 12,
         "depth": 4,
+        "reduced": [],
+        "transitions_allowed": 12,
         "exit_code": 1,
         "rules": {"actuate": 6, "req_ctr": 6},
         "rules_never_used": [

@@ -1,0 +1,223 @@
+"""What an actor may do next, and what it may ever do: footprints as functions of a few cells' values.
+
+An agent is several actors, since it doesn't wait for what it has asked: its *program* (what is left of it to run), its
+*line* (of which the first request may be served), and each *request* that stands in no line. A clause of the
+environment is one. What an actor may do before it has moved itself depends on its agent's code, requests and host
+alone, whatever others do; and so does a bound of all that may come of it.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from functools import lru_cache
+from itertools import product
+from math import prod
+from typing import NamedTuple
+
+from checker.reduction.bounds import Bounds
+from checker.reduction.footprints import Footprints
+from checker.reduction.messages import Known, message_of
+from checker.reduction.roles import Roles
+from checker.reduction.slots import NOTHING, Footprint, joined
+from semantics.agents import Code, code_cell, host_cell
+from semantics.cells import Cell
+from semantics.configuration import Configuration, Transition
+from semantics.environment import Says
+from semantics.eta import line_cell, sends_cell
+from semantics.expressions import Fault
+from semantics.reactions import Reaction
+from semantics.requests import CTR, FLY, MGR, OBS, READY, SND, Received, Request
+from semantics.setting import Scheduler
+from semantics.signature import Name
+from semantics.statements import ControlBy, Migrate, Observe, React, Send, Spawn, Statement
+
+Requests = tuple[Request, ...]
+
+MOST_INSTANCES = 5_000
+"""A control whose arguments may come to more combinations than these is taken for one that may change anything."""
+
+InLine = Observe | ControlBy | Migrate
+"""Statements whose requests stand in line, where there is one."""
+
+EVERYTHING = Footprint(-1, -1, -1)
+"""All slots, those not yet numbered too."""
+
+
+class Actor(NamedTuple):
+    """Who moves by itself.
+
+    Attributes:
+        kind: `program`, `line`, `request` or `clause`.
+        owner: The agent; of a clause its number.
+        request: Which request it is.
+    """
+
+    kind: str
+    owner: Name | int
+    request: Request | None = None
+
+
+class Acting(NamedTuple):
+    """What an actor may do: before it has moved, all that may come of it, and of that, what passes by its own line."""
+
+    now: Footprint
+    ever: Footprint
+    aside: Footprint
+
+
+class Actors:
+    """The footprints of a mission's actors; c must be the configuration that the exploration starts in."""
+
+    def __init__(self, c: Configuration) -> None:
+        self.setting = c.setting
+        self.program = c.setting.program
+        self.ordered = c.setting.scheduler is not Scheduler.UNORDERED
+        bounds = Bounds(c)
+        self.roles = Roles(bounds)
+        self.footprints = Footprints(bounds, self.roles)
+        self._forget()
+        self.footprints.settle(joined([*map(self.clause, self.setting.environment), *self._lives(c)]))
+        self._forget()  # what was bounded before it was known what is settled
+
+    def _forget(self) -> None:
+        self.of_agent = lru_cache(maxsize=1 << 16)(self._agent)
+        self._of_request = lru_cache(maxsize=1 << 16)(self._request)
+        self._of_statement = lru_cache(maxsize=1 << 14)(self._statement)
+        self._of_code = lru_cache(maxsize=1 << 14)(self._code)
+        self._of_reaction = lru_cache(maxsize=1 << 14)(self.footprints.control)
+        self.clause = lru_cache(maxsize=None)(self.footprints.clause)
+
+    def _lives(self, c: Configuration) -> Iterator[Footprint]:
+        for agent in self.roles.agents:
+            pending = (
+                [self._of_request(agent, each.request) for each in c.eta.of(agent)]
+                if agent in c.alpha
+                else []
+            )
+            yield joined([*pending, *(self._of_statement(agent, n) for n in self.roles[agent].statements)])
+
+    # --- of a configuration -----------------------------------------------------------------------------------
+
+    def local(self, agent: Name) -> tuple[Cell, ...]:
+        """Return the cells that decide who an agent's actors are, and what they may do."""
+        return (code_cell(agent), line_cell(agent), sends_cell(agent), host_cell(agent))
+
+    def of(self, c: Configuration) -> dict[Actor, Acting]:
+        """Return the actors of a configuration, with what they may do.
+
+        It depends on the configuration by the cells of `local` of each agent, by the agents that there are and by the
+        counters of what may be said; by nothing else.
+        """
+        found: dict[Actor, Acting] = {}
+        for agent in c.alpha.names():
+            code, line, sends, host = (c.read(cell) for cell in self.local(agent))
+            found.update(self.of_agent(agent, code, line, sends or (), host))
+        for number, clause in enumerate(c.setting.environment):
+            if not isinstance(clause, Says) or c.read(clause.counter):
+                does = self.clause(clause)
+                found[Actor("clause", number)] = Acting(does, does, does)
+        return found
+
+    def actor_of(self, transition: Transition) -> Actor:
+        """Return which of an agent's actors a transition belongs to."""
+        label = transition.label
+        assert label.agent is not None
+        if isinstance(label.about, str | Received):
+            return Actor("program", label.agent)
+        ordered = self.ordered and not isinstance(label.about, SND)
+        return Actor("line", label.agent) if ordered else Actor("request", label.agent, label.about)
+
+    # --- of the values of an agent's cells --------------------------------------------------------------------
+
+    def _agent(
+        self, agent: Name, code: Code, line: Requests, sends: Requests, host: Name
+    ) -> dict[Actor, Acting]:
+        asked = [each for each in (*line, *sends) if not isinstance(each, READY)]
+        in_line = [each for each in asked if self.ordered and not isinstance(each, SND)]
+        found: dict[Actor, Acting] = {}
+        for request in asked:
+            if request not in in_line:
+                ever = self._of_request(agent, request)
+                found[Actor("request", agent, request)] = Acting(
+                    self._serve(agent, request, {host}), ever, ever
+                )
+        if in_line:
+            ever = joined(self._of_request(agent, request) for request in in_line)
+            found[Actor("line", agent)] = Acting(self._serve(agent, in_line[0], {host}), ever, ever)
+        if code:
+            told = self.ordered and any(isinstance(each, READY) for each in line)
+            ever, aside = self._of_code(agent, code)
+            found[Actor("program", agent)] = Acting(self._next(agent, code[0], told), ever, aside)
+        return found
+
+    def _next(self, agent: Name, number: int, told: bool) -> Footprint:
+        """Bound the rules that take an agent's next step; where it is told what it asked first, no more can matter."""
+        statement = self.program.statements[number]
+        here = self.footprints.slots.footprint([("host", agent)])
+        if isinstance(statement, React):
+            return here | self.footprints.waiting(agent, number, told)
+        return here | self.footprints.spawn() if isinstance(statement, Spawn) else here
+
+    def _code(self, agent: Name, code: Code) -> tuple[Footprint, Footprint]:
+        """Return what may come of code, and what of it may come before the agent's line has moved."""
+        reach = self.roles.reach(code)
+        born = self.roles.descendants(reach)
+        theirs = joined(self._of_statement(each, n) for each in born for n in self.roles[each].statements)
+        here = self.footprints.slots.footprint([("host", agent)])  # any step may ask for HOST
+        free = (each for each in reach if not isinstance(self.program.statements[each], InLine))
+        aside = joined([here, theirs, *(self._of_statement(agent, each) for each in free)])
+        return aside | joined(self._of_statement(agent, each) for each in reach), aside
+
+    def _request(self, agent: Name, request: Request) -> Footprint:
+        return self._serve(agent, request, self.roles[agent].hosts)
+
+    def _serve(self, agent: Name, request: Request, hosts: Iterable[Name]) -> Footprint:
+        match request:
+            case OBS(_, query):
+                return self.footprints.sense(query) | self.footprints.telling(agent)
+            case CTR(_, reaction) | FLY(_, reaction, _):
+                return self._of_reaction(agent, reaction)
+            case SND(_, to, message):
+                there = to in self.roles.agents
+                return self.footprints.post(agent, hosts, to, Known(message)) if there else NOTHING
+            case MGR(_, to):
+                return self.footprints.migrate(agent, hosts, to)
+            case _:
+                return NOTHING
+
+    def _statement(self, agent: Name, number: int) -> Footprint:
+        """Return what comes of a statement itself, not of those that stand in it."""
+        statement: Statement = self.program.statements[number]
+        hosts = self.roles[agent].hosts
+        match statement:
+            case Observe(query):
+                return self.footprints.sense(self.roles.query(agent, query)) | self.footprints.telling(agent)
+            case ControlBy():
+                return self._control(agent, statement)
+            case Send(message, to):
+                receivers = self.roles.receivers(agent, to)
+                return joined(
+                    self.footprints.post(agent, hosts, each, message_of(message)) for each in receivers
+                )
+            case Migrate(host):
+                entities = self.roles.entities(agent, host)
+                return joined(self.footprints.migrate(agent, hosts, each) for each in entities)
+            case Spawn():
+                return self.footprints.spawn()
+            case React():
+                return self.footprints.wary(agent, number)
+            case _:
+                return NOTHING
+
+    def _control(self, agent: Name, statement: ControlBy) -> Footprint:
+        arguments = (self.roles.entities(agent, each) for each in statement.arguments)
+        several: list[Sequence[Name]] = [sorted(self.roles[agent].hosts), *arguments]
+        if prod(map(len, several)) > MOST_INSTANCES:
+            return EVERYTHING
+        make = self.program.reactions[statement.name]
+        return joined(self._of_reaction(agent, each) for each in _instances(make, several))
+
+
+def _instances(make: Callable[..., Reaction], several: list[Sequence[Name]]) -> Iterator[Reaction]:
+    for chosen in product(*several):
+        with suppress(Fault):  # not every name is one that the command takes
+            yield make(*chosen)

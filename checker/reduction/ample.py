@@ -1,0 +1,93 @@
+"""Partial-order reduction: of the steps that a configuration allows, as many as must be followed.
+
+Steps of different actors that have nothing to do with each other are followed in one order only. docs/reduction.md
+says why nothing is lost by it, and which properties it is refused for.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from enum import Enum
+
+from checker.inspections import is_unfair
+from checker.reduction.actors import Acting, Actor, Actors
+from checker.reduction.visible import Eyes
+from semantics.configuration import Configuration, Transition
+from semantics.propositions import Proposition
+from semantics.successors import Expansion, by_clause
+
+Later = Callable[[Transition], bool]
+"""Whether the configuration that a transition leads to is expanded after the one that it starts from."""
+
+
+class Proviso(Enum):
+    """What keeps a step from being put off for ever."""
+
+    SOME = "some"
+    """One of the steps followed leads to what is expanded later: enough for what is decided in configurations."""
+
+    ALL = "all"
+    """All of them do, so every cycle has a configuration that is expanded in full: what LTL without next needs."""
+
+
+class Ample:
+    """Chooses ample sets within one mission."""
+
+    def __init__(
+        self, initial: Configuration, formulas: Iterable[Proposition] = (), proviso: Proviso = Proviso.SOME
+    ) -> None:
+        self.actors = Actors(initial)
+        self.eyes = Eyes(initial, formulas)
+        self.enough = any if proviso is Proviso.SOME else all
+
+    def choose(self, c: Configuration, expansion: Expansion, later: Later) -> tuple[Transition, ...]:
+        """Return the transitions to be followed: an ample set, or all where none is known."""
+        everything = expansion.transitions
+        for chosen in self.candidates(c, expansion):
+            if self.is_ample(c, chosen) and self.enough(map(later, chosen)):
+                return chosen
+        return everything
+
+    def is_ample(self, c: Configuration, chosen: tuple[Transition, ...]) -> bool:
+        """Tell whether no property sees any of the steps, and one of them must be taken some time."""
+        if any(self.eyes.differ(c, each.target) for each in chosen):
+            return False
+        return any(each.label.agent is not None and not is_unfair(c, each) for each in chosen)
+
+    def candidates(self, c: Configuration, expansion: Expansion) -> list[tuple[Transition, ...]]:
+        """Return the steps of persistent sets of actors that leave some step out, the smallest first."""
+        if len(expansion.transitions) < 2:
+            return []
+        movable = dict.fromkeys(self.actors.actor_of(each) for each in expansion.by_agents)
+        sets = dict.fromkeys(persistent(self.actors.of(c), movable))
+        found = (self.steps_of(c, expansion, actors) for actors in sets)
+        return sorted((each for each in found if len(each) < len(expansion.transitions)), key=len)
+
+    def steps_of(
+        self, c: Configuration, expansion: Expansion, actors: frozenset[Actor]
+    ) -> tuple[Transition, ...]:
+        """Return the transitions of some actors, in the order of the expansion."""
+        clauses = (c.setting.environment[int(each.owner)] for each in actors if each.kind == "clause")
+        around = {step for clause in clauses for step in by_clause(c, clause)}
+        ours = [step for step in expansion.by_agents if self.actors.actor_of(step) in actors]
+        return (*ours, *(step for step in expansion.by_environment if step in around))
+
+
+def persistent(acting: Mapping[Actor, Acting], seeds: Iterable[Actor]) -> Iterator[frozenset[Actor]]:
+    """Yield for each seed the least set around it such that nothing outside ever disturbs what is inside may do now."""
+    for seed in seeds:
+        inside = {seed}
+        waiting = [seed]
+        while waiting:
+            actor = waiting.pop()
+            joining = [other for other in acting if other not in inside and _disturbed(acting, actor, other)]
+            inside.update(joining)
+            waiting += joining
+        yield frozenset(inside)
+
+
+def _disturbed(acting: Mapping[Actor, Acting], actor: Actor, other: Actor) -> bool:
+    """Tell whether another actor may ever disturb what an actor may do now.
+
+    What an agent asks next is served after what stands in its line already.
+    """
+    behind = actor.kind == "line" and other == Actor("program", actor.owner)
+    return acting[actor].now.disturbs(acting[other].aside if behind else acting[other].ever)

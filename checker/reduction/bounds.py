@@ -1,0 +1,94 @@
+"""Bounds: what may ever hold, carry or contain what in a mission, from its kinds and the world that it starts in."""
+
+from collections.abc import Callable, Iterable
+from functools import cache
+
+from semantics.configuration import Configuration
+from semantics.environment import Appears, Drops
+from semantics.physical_model import Carried, InTransit
+from semantics.signature import REGION, Name
+
+Names = frozenset[Name]
+
+
+class Bounds:
+    """What may ever be: larger than what will be, and never smaller.
+
+    Attributes:
+        names: Every entity.
+        known: The nodes of L at first; a node never leaves L.
+        channels: The channels that may drop.
+        cyclic: Nodes that may ever lie on a cycle of L, were it not broken.
+        passive: Whether nothing reacts in some kind of place.
+    """
+
+    def __init__(self, initial: Configuration) -> None:
+        setting = initial.setting
+        self.initial = initial
+        self.setting = setting
+        self.names: Names = frozenset(setting.kinds)
+        self.known: Names = frozenset(initial.structure.logical.nodes())
+        self.channels = frozenset(each.channel for each in setting.environment if isinstance(each, Drops))
+        self.passive = any(setting.signature[kind].passive for kind in setting.kinds.values())
+        self.carriers = cache(self._carriers)
+        self.holders = cache(self._holders)
+        self.around: Callable[[Name], Names] = cache(lambda name: reached([name], self.holders))
+        self.aboard: Callable[[Name], Names] = cache(self._aboard)
+        self.believable = cache(self._believable)
+        self.above: Callable[[Name], Names] = cache(
+            lambda name: reached(self.believable(name), self.believable)
+        )
+        self.cyclic: Names = frozenset(name for name in self.names if name in self.above(name))
+
+    def _carriers(self, name: Name) -> Names:
+        """Return what may carry an entity: what its kind says, where it is at first, and where it may appear."""
+        setting = self.setting
+        found = {other for other in self.names if setting.carries(other, name)}
+        first = self.initial.structure.physical.placement(name)
+        appearing = (
+            p
+            for each in setting.environment
+            if isinstance(each, Appears) and each.entity == name
+            for p in each.placements
+        )
+        found.update(placement.by for placement in (first, *appearing) if isinstance(placement, Carried))
+        return frozenset(found)
+
+    def _holders(self, name: Name) -> Names:
+        """Return what may be the parent of an entity in A(P), or where it may fly to; the region left out."""
+        first = self.initial.structure.physical.placement(name)
+        flying = {first.to} & self.names if isinstance(first, InTransit) else set[Name]()
+        return self.carriers(name).union(self.setting.containers(self.setting.kind(name)), flying)
+
+    def _aboard(self, name: Name) -> Names:
+        """Return what an entity may carry, at any depth."""
+        return frozenset(
+            other for other in self.names if name in reached(self.carriers(other), self.carriers)
+        )
+
+    def _believable(self, name: Name) -> Names:
+        """Return what L may ever have as an entity's parent; the region left out."""
+        believed = self.initial.structure.logical.parent(name)
+        return self.holders(name) | (
+            {believed} & self.names if believed not in (None, REGION) else frozenset()
+        )
+
+    def inside(self, place: Name) -> Names:
+        """Return what may be a child of a place, or of the region, in A(P)."""
+        return frozenset(name for name in self.names if place == REGION or place in self.holders(name))
+
+    def believed_inside(self, place: Name) -> Names:
+        """Return what may be a child of a place in L."""
+        return frozenset(name for name in self.names if place in self.believable(name))
+
+
+def reached(start: Iterable[Name], lead: Callable[[Name], Names]) -> Names:
+    """Return what a relation leads to from some names, these included."""
+    seen: set[Name] = set()
+    waiting = list(start)
+    while waiting:
+        name = waiting.pop()
+        if name not in seen:
+            seen.add(name)
+            waiting += lead(name)
+    return frozenset(seen)

@@ -1,0 +1,315 @@
+"""Footprints of what actors may do: queries, reactions, messages, migrations, and the environment's clauses.
+
+Static and larger than any run: they are derived from the text, the kinds and the first configuration, never from what
+a run was seen to read. Each function names the rule whose reads and writes it bounds.
+"""
+
+from collections.abc import Iterable, Iterator
+
+from checker.reduction.bounds import Bounds, Names
+from checker.reduction.messages import Known, Message, wakes
+from checker.reduction.roles import Roles
+from checker.reduction.slots import NOTHING, Footprint, Slot, Slots
+from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
+from semantics.physical_model import Carried
+from semantics.queries import All, Nodes, Query
+from semantics.reactions import LinkTerm, NodeTerm, NodeVariable, PlaceTerm, PlaceVariable, Reaction
+from semantics.setting import Scheduler
+from semantics.signature import REGION, Name
+from semantics.statements import React
+
+AGENTS: Slot = ("agents",)
+
+
+class Footprints:
+    """What may be read and written, within the bounds of one mission."""
+
+    def __init__(self, bounds: Bounds, roles: Roles) -> None:
+        self.bounds = bounds
+        self.roles = roles
+        self.slots = Slots()
+        self.wakes = wakes(bounds.setting.program)
+        statements = enumerate(bounds.setting.program.statements)
+        self.reacts = tuple(number for number, each in statements if isinstance(each, React))
+        self.settled = 0
+        """Bits of L that no look can change: see `settle`."""
+
+    # --- what rules ask of P and L ----------------------------------------------------------------------------
+
+    def where(self, names: Iterable[Name]) -> Iterator[Slot]:
+        """Yield what decides where entities are, and what holds them."""
+        for name in names:
+            yield from (("placement", each) for each in self.bounds.around(name))
+
+    def there(self, names: Iterable[Name]) -> Iterator[Slot]:
+        """Yield what decides whether entities have an image in P."""
+        return (("present", name) for name in names)
+
+    def connected(self, names: Iterable[Name]) -> Iterator[Slot]:
+        """Yield what decides on which links entities are in A(P)."""
+        for name in names:
+            yield from (("channels", name), ("present", name))
+        yield from (("down", channel) for channel in self.bounds.channels)
+
+    def linked(self, hosts: Iterable[Name], others: Iterable[Name]) -> Footprint:
+        """Bound `extension.linked`: whether one of some hosts shares a link with one of others, in L and in P."""
+        ours, theirs = frozenset(hosts), frozenset(others)
+        if len(ours) == 1 and ours == theirs:
+            return NOTHING
+        both = ours | theirs
+        return self.slots.footprint((*self.connected(both), *(("links", name) for name in both)))
+
+    # --- rules ------------------------------------------------------------------------------------------------
+
+    def sense(self, query: Query) -> Footprint:
+        """Bound `sense`: what a query looks at, and what of L ⊕ L_q it may change."""
+        looking = _Looking(self, query)
+        merges = self.slots.bits(looking.merges) & ~self.settled
+        cyclic = self.slots.bits(("parent", name) for name in self.bounds.cyclic)
+        breaking = cyclic if merges & cyclic else 0
+        return Footprint(self.slots.bits(looking.reads) | breaking, breaking, merges & ~breaking)
+
+    def control(self, agent: Name, reaction: Reaction) -> Footprint:
+        """Bound `actuate`, `command` and `commit` of a reaction, and `control.obstacle`."""
+        return _Reacting(self, reaction).footprint() | self.slots.footprint([("host", agent)])
+
+    def post(self, agent: Name, hosts: Iterable[Name], to: Name, message: Message) -> Footprint:
+        """Bound `snd`: the message is put into one mailbox if hosts are linked."""
+        reads = [("host", agent), ("host", to), *([] if to in self.roles.first else [AGENTS])]
+        delivered = self.slots.footprint(reads, merges=self.mail(to, message))
+        return delivered | self.linked(hosts, self.roles[to].hosts)
+
+    def mail(self, to: Name, message: Message) -> Iterator[Slot]:
+        """Yield what a message in a mailbox may change: which `react` of the receiver's it may wake, or make fail."""
+        for number in self.wakes(message):
+            yield from (("mail", to, number), ("fault", to, number))
+
+    def migrate(self, agent: Name, hosts: Iterable[Name], to: Name) -> Footprint:
+        """Bound `migrate`."""
+        return self.linked(hosts, {to}) | self.slots.footprint(writes=[("host", agent)])
+
+    def waiting(self, agent: Name, react: int, told: bool) -> Footprint:
+        """Bound `rcv_msg` and `rcv_obs`, but for the agent's own cells: what else it may get.
+
+        Args:
+            agent: Who waits.
+            react: Where.
+            told: Whether the observation that it gets first is there.
+        """
+        return self.slots.footprint([("mail", agent, react), *([] if told else [("ready", agent)])])
+
+    def telling(self, agent: Name) -> Footprint:
+        """Bound what `sense` does to its agent: an observation more to receive."""
+        faults = (("fault", agent, number) for number in self.reacts)
+        unordered = self.bounds.setting.scheduler is Scheduler.UNORDERED
+        return self.slots.footprint(merges=[("ready", agent), *(faults if unordered else ())])
+
+    def wary(self, agent: Name, react: int) -> Footprint:
+        """Bound what may hinder a `react` later: a guard that fails on one message hides those after it."""
+        statement = self.bounds.setting.program.statements[react]
+        guarded = isinstance(statement, React) and any(case.guard is not None for case in statement.cases)
+        return self.slots.footprint([("fault", agent, react)]) if guarded else NOTHING
+
+    def spawn(self) -> Footprint:
+        """Bound `spawn`, but for what the new agent does."""
+        return self.slots.footprint([AGENTS], [AGENTS])
+
+    # --- the environment --------------------------------------------------------------------------------------
+
+    def clause(self, clause: Clause) -> Footprint:
+        """Bound `env` and `say` of one clause."""
+        match clause:
+            case Drifts(entity):
+                return self.slots.footprint([("placement", entity)], [("placement", entity)])
+            case Drops(channel):
+                return self.slots.footprint([("down", channel)], [("down", channel)])
+            case Leaves(entity, channel):
+                own: list[Slot] = [("channels", entity), ("left", entity, channel)]
+                return self.slots.footprint([("present", entity), *own], own)
+            case Appears(entity, placements):
+                by = (placement.by for placement in placements if isinstance(placement, Carried))
+                return self.slots.footprint(self.there([entity, *by]), self._all_of([entity]))
+            case Vanishes(entity):
+                gone = {entity, *self.bounds.aboard(entity)}
+                return self.slots.footprint((*self.there([entity]), *self.where(gone)), self._all_of(gone))
+            case Says(message, agent):
+                reads = [] if agent in self.roles.first else [AGENTS]
+                return self.slots.footprint(reads, merges=self.mail(agent, Known(message)))
+
+    def _all_of(self, names: Iterable[Name]) -> Iterator[Slot]:
+        for name in names:
+            yield from (("placement", name), ("present", name), ("channels", name))
+
+    # --- what never changes -----------------------------------------------------------------------------------
+
+    def settle(self, everything: Footprint) -> None:
+        """Note what a look cannot change: where L has what A(P) has, and neither is ever written by anyone.
+
+        Args:
+            everything: What all actors may ever do.
+        """
+        logical, physical = self.bounds.initial.structure.logical, self.bounds.initial.structure.physical
+        for name in self.bounds.names & self.bounds.known:
+            if name not in physical:
+                continue
+            place: Slot = ("parent", name)
+            agree = logical.parent(name) == physical.abstract_parent(name) and name not in self.bounds.cyclic
+            if agree and not everything.writes & self.slots.bits([place, *self.where([name])]):
+                self.settled |= self.slots.bits([place])
+            links: Slot = ("links", name)
+            agree = logical.links(name) == physical.links(name)
+            if agree and not everything.writes & self.slots.bits([links, *self.connected([name])]):
+                self.settled |= self.slots.bits([links])
+
+
+class _Looking:
+    """What the evaluation of one query may read, and which slots of L may change by what it shows."""
+
+    def __init__(self, of: Footprints, query: Query) -> None:
+        self.of = of
+        self.bounds = of.bounds
+        self.reads: set[Slot] = set()
+        self.merges: set[Slot] = set()
+        self.show(self.ask(query))
+
+    def show(self, names: Iterable[Name]) -> None:
+        """Let what is shown and was no node of L become one."""
+        for name in set(names) - self.bounds.known - {REGION}:
+            self.merges |= {("parent", name), ("known", name)}
+
+    def ask(self, query: Query) -> Names:
+        """Return all that a query may denote."""
+        if isinstance(query, Nodes):
+            self.reads.update(self.of.there(query.names))
+            return frozenset(query.names) & self.bounds.names
+        if isinstance(query, All):
+            self.everything()
+            return self.bounds.names
+        answer = {
+            "PARENT": self.parent,
+            "CHILDREN": self.children,
+            "LINKED_TO": self.linked_to,
+            "HOSTED_AT": self.hosted_at,
+        }[query.operator]
+        found = [answer(name) for name in sorted(self.ask(query.of))]
+        return frozenset[Name]().union(*found)
+
+    def everything(self) -> None:
+        self.reads.update(self.of.there(self.bounds.names))
+        for name in (REGION, *sorted(self.bounds.names)):
+            self.children(name)
+            self.linked_to(name)
+
+    def parent(self, name: Name) -> Names:
+        if name == REGION:
+            return frozenset({REGION})
+        self.reads.update((*self.of.where([name]), *self.of.there([name])))
+        self.merges.add(("parent", name))
+        places = self.bounds.holders(name)
+        self.show({name, *places})
+        return places | {REGION}
+
+    def children(self, place: Name) -> Names:
+        inside = self.bounds.inside(place)
+        self.reads.update((*self.of.where(inside), *self.of.there(inside)))
+        self.merges.update(("parent", name) for name in inside | self.bounds.believed_inside(place))
+        self.show(inside | {place})
+        return inside | {place}
+
+    def linked_to(self, name: Name) -> Names:
+        if name == REGION:
+            return frozenset({REGION})
+        self.reads.update(self.of.connected(self.bounds.names))
+        self.merges.update(("links", each) for each in self.bounds.names)
+        self.show(self.bounds.names)
+        return self.bounds.names
+
+    def hosted_at(self, _: Name) -> Names:
+        self.reads.update([AGENTS, *(("host", agent) for agent in self.of.roles.agents)])
+        return frozenset()
+
+
+class _Reacting:
+    """What serving a control may read and write, for any match of its redex."""
+
+    def __init__(self, of: Footprints, reaction: Reaction) -> None:
+        self.of = of
+        self.bounds = of.bounds
+        self.redex, self.reactum = reaction.redex, reaction.reactum
+        self.nodes = frozenset[Name]().union(*map(self.nodes_of, (*self.redex.nodes, *self.reactum.nodes)))
+        self.reads: set[Slot] = set()
+        self.writes: set[Slot] = set()
+
+    def footprint(self) -> Footprint:
+        """Return it."""
+        self.matching()
+        self.placing()
+        self.relinking()
+        return self.of.slots.footprint(self.reads, self.writes)
+
+    def nodes_of(self, term: NodeTerm) -> Names:
+        """Return the nodes that a term may stand for."""
+        if not isinstance(term, NodeVariable):
+            return frozenset({term})
+        kinds = self.bounds.setting.kinds
+        return frozenset(name for name in self.bounds.names if term.kind in (None, kinds[name]))
+
+    def places_of(self, place: PlaceTerm, node: Name) -> Names:
+        """Return the places that a term may stand for, around a node."""
+        if not isinstance(place, PlaceVariable):
+            return self.nodes_of(place)
+        bound = (self.nodes_of(term) for term, where in self.redex.parents if where == place)
+        around = frozenset({node}).union(*bound) & self.bounds.names
+        return frozenset[Name]().union(*map(self.bounds.believable, around))
+
+    def matching(self) -> None:
+        """Bound `matches`, `is_active`, `is_full` and consistency: what R uses, in L and in P."""
+        self.reads.update(("known", name) for name in self.nodes)
+        self.reads.update(self.of.there(self.nodes))
+        for pattern in (self.redex, self.reactum):
+            for term, place in pattern.parents:
+                self.parents(term, place)
+            for link in pattern.links:
+                self.links(link)
+            for closed in pattern.closed:
+                self.full(self.nodes_of(closed))
+        if self.bounds.passive:
+            above = frozenset[Name]().union(*map(self.bounds.above, self.nodes & self.bounds.names))
+            self.reads.update(("parent", name) for name in self.nodes | above)
+
+    def parents(self, term: NodeTerm, place: PlaceTerm) -> None:
+        for node in self.nodes_of(term) & self.bounds.names:
+            self.reads.add(("parent", node))
+            places = self.places_of(place, node) & self.bounds.names
+            self.reads.update(self.of.where({node, *places}))
+
+    def links(self, link: tuple[LinkTerm, NodeTerm]) -> None:
+        nodes = self.nodes_of(link[1])
+        self.reads.update(("links", node) for node in nodes)
+        self.reads.update(self.of.connected(nodes))
+
+    def full(self, places: Names) -> None:
+        for place in places:
+            self.reads.update(("parent", name) for name in self.bounds.believed_inside(place))
+            inside = self.bounds.inside(place)
+            self.reads.update((*self.of.where(inside), *self.of.there(inside)))
+
+    def placing(self) -> None:
+        """Bound `moved`, `stays_forest` and `drive`: who may be moved, and where to."""
+        pairs = [pair for pair in self.reactum.parents if pair not in self.redex.parents]
+        moving = frozenset[Name]().union(*(self.nodes_of(node) for node, _ in pairs)) & self.bounds.names
+        places = frozenset[Name]().union(
+            *(self.places_of(place, each) for node, place in pairs for each in self.nodes_of(node) & self.bounds.names)
+        ) & self.bounds.names  # fmt: skip
+        for node in moving:
+            self.writes |= {("parent", node), ("placement", node)}
+            self.reads.update(self.of.where({node, *self.bounds.aboard(node)}))
+        above = places.union(*map(self.bounds.above, places))
+        if above & moving:
+            self.reads.update(("parent", name) for name in above)
+
+    def relinking(self) -> None:
+        """Bound `relinked`: whose links and channels may be changed."""
+        changed = set(self.redex.links) ^ set(self.reactum.links)
+        for node in frozenset[Name]().union(*(self.nodes_of(node) for _, node in changed)):
+            self.writes |= {("links", node), ("channels", node)}

@@ -1,0 +1,77 @@
+"""Messages as far as the text tells them, and which `react` may take which."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from semantics.expressions import Expression, Literal, TupleOf
+from semantics.patterns import Anything, Elements, Exactly, Pattern, bind
+from semantics.program import Program
+from semantics.queries import Observation
+from semantics.statements import React
+from semantics.values import Value
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """A message that is this value."""
+
+    value: Value
+
+
+@dataclass(frozen=True, slots=True)
+class Tuple:
+    """A message that is a tuple of as many parts."""
+
+    parts: tuple["Message", ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """A message of which the text says nothing."""
+
+
+Message = Known | Tuple | Unknown
+
+
+def message_of(expression: Expression) -> Message:
+    """Return what the text tells of a message."""
+    match expression:
+        case Literal(value):
+            return Known(value)
+        case TupleOf(items):
+            return Tuple(tuple(map(message_of, items)))
+        case _:
+            return Unknown()
+
+
+def may_take(pattern: Pattern, message: Message) -> bool:
+    """Tell whether a pattern may take a message."""
+    match message:
+        case Known(value):
+            return bind(pattern, value) is not None
+        case Unknown():
+            return True
+        case Tuple(parts):
+            return _may_take_tuple(pattern, parts)
+
+
+def _may_take_tuple(pattern: Pattern, parts: tuple[Message, ...]) -> bool:
+    match pattern:
+        case Anything(_, of):
+            return of != "observation"
+        case Exactly(value):
+            return isinstance(value, tuple) and not isinstance(value, Observation)
+        case Elements(items):
+            return len(items) == len(parts) and all(map(may_take, items, parts))
+
+
+def wakes(program: Program) -> Callable[[Message], tuple[int, ...]]:
+    """Return the function from a message to the `react` statements, by number, some case of which may take it."""
+    reacts = [(number, each) for number, each in enumerate(program.statements) if isinstance(each, React)]
+
+    def woken(message: Message) -> tuple[int, ...]:
+        return tuple(
+            number for number, react in reacts if any(may_take(case.pattern, message) for case in react.cases)
+        )
+
+    return woken

@@ -1,0 +1,80 @@
+"""What reductions are called, and what they are refused for, with the reason."""
+
+from enum import Enum
+
+from semantics.configuration import Configuration
+from semantics.propositions import Property
+from semantics.setting import Scheduler
+
+
+class Reduction(Enum):
+    """A way of exploring less."""
+
+    POR = "por"
+    SYMMETRY = "symmetry"
+
+    def __str__(self) -> str:
+        return self.value
+
+
+class RefusedError(ValueError):
+    """A reduction that would be unsound for a mission, or that nothing in it allows; says why.
+
+    Attributes:
+        reduction: Which one.
+        reason: Why.
+    """
+
+    def __init__(self, reduction: Reduction, reason: str) -> None:
+        super().__init__(f"the reduction '{reduction}' is refused: {reason}")
+        self.reduction = reduction
+        self.reason = reason
+
+
+PRESERVED = frozenset(
+    {"local_consistency", "deadlock_freedom", "arrival", "computation", "invariant", "reachable"}
+)
+"""The kinds of properties that are decided in single configurations, and of which no reduction loses any."""
+
+RACES = (
+    "what an observation rests on is changed by every control of another bigActor, so that the order of any two steps "
+    "may matter; a control race that is met is reported all the same"
+)
+
+
+def refusal(reduction: Reduction, asked: Property) -> str | None:
+    """Return why a property is not decided under a reduction, None where it is."""
+    if asked.kind in PRESERVED or (reduction is Reduction.SYMMETRY and asked.kind == "race_freedom"):
+        return None
+    if asked.kind == "race_freedom":
+        return RACES
+    return f"it is not known to be kept for properties of the kind '{asked.kind}'"
+
+
+def refuse_symmetry(c: Configuration) -> None:
+    """Refuse symmetry where what observations rest on is remembered: that is explored in full.
+
+    Raises:
+        RefusedError: It would be unsound.
+    """
+    if c.setting.monitored:
+        reason = (
+            "what observations rest on is remembered by name; stale observations are searched for in full"
+        )
+        raise RefusedError(Reduction.SYMMETRY, reason)
+
+
+def refuse_partial_order(c: Configuration) -> None:
+    """Refuse partial-order reduction for missions in which the order of all requests matters.
+
+    Raises:
+        RefusedError: It would be unsound.
+    """
+    if c.setting.scheduler is Scheduler.FCFS:
+        reason = (
+            "under 'scheduler fcfs' all requests stand in one queue, so no two of them are independent; "
+            "check it under program_order: what holds of all runs there holds under fcfs too"
+        )
+        raise RefusedError(Reduction.POR, reason)
+    if c.setting.monitored:
+        raise RefusedError(Reduction.POR, RACES)

@@ -1,0 +1,184 @@
+"""Renamings: what another naming of agents and entities makes of a configuration, value by value.
+
+A renaming is a permutation of names, and of the statements and variables of agents whose texts are alike. What is kept
+sorted by name is sorted anew.
+"""
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields, is_dataclass
+from functools import cached_property
+from typing import Any
+
+from physical import Geometry
+from semantics.cells import AGENTS, NAMES, Cell, Changes, Row
+from semantics.configuration import Configuration
+from semantics.physical_model import Carried, InTransit, Placed
+from semantics.queries import All, Nodes, Observation, Of, Swept
+from semantics.reactions import LinkVariable, Match, NodeVariable, Pattern, PlaceVariable, Reaction
+from semantics.requests import request_key
+from semantics.setting import Scheduler
+from semantics.values import Truth, order_key
+
+WORD = re.compile(r"[^\W\d]\w*")
+
+FIXED = (int, Truth, Geometry, Placed, All, NodeVariable, PlaceVariable, LinkVariable, type(None))
+"""What holds no names."""
+
+
+@dataclass(frozen=True)
+class Renaming:
+    """A permutation of what is interchangeable; what it doesn't list stays.
+
+    Attributes:
+        names: Of agents and entities.
+        numbers: Of statements.
+        variables: Of variables.
+        cells: Of cells that are named by a number (`says`).
+    """
+
+    names: Mapping[str, str] = field(default_factory=dict)
+    numbers: Mapping[int, int] = field(default_factory=dict)
+    variables: Mapping[str, str] = field(default_factory=dict)
+    cells: Mapping[Cell, Cell] = field(default_factory=dict)
+
+    @cached_property
+    def inverse(self) -> "Renaming":
+        """The renaming that undoes it."""
+        return Renaming(*({after: before for before, after in part.items()} for part in self.parts))
+
+    @property
+    def parts(self) -> tuple[Mapping[Any, Any], ...]:
+        """Its four permutations."""
+        return (self.names, self.numbers, self.variables, self.cells)
+
+    def after(self, first: "Renaming") -> "Renaming":
+        """Return the renaming that does another first, then this one."""
+        together = (
+            {each: mine.get(its.get(each, each), its.get(each, each)) for each in {**its, **mine}}
+            for mine, its in zip(self.parts, first.parts, strict=True)
+        )
+        return Renaming(*together)
+
+    # --- cells and configurations -----------------------------------------------------------------------------
+
+    def cell(self, cell: Cell) -> Cell:
+        """Return the cell that another becomes."""
+        return self.cells[cell] if cell in self.cells else (cell[0], *(self.name(part) for part in cell[1:]))
+
+    def configuration(self, c: Configuration) -> Configuration:
+        """Return what it makes of a configuration; its setting must be invariant."""
+        assert isinstance(c.state, Row)
+        unordered = c.setting.scheduler is Scheduler.UNORDERED
+        changes: Changes = {}
+        for cell, value in c.state.items():
+            changes[self.cell(cell)] = self.content(cell, value, unordered=unordered)
+        return c.with_(changes)
+
+    def content(self, cell: Cell, value: Any, *, unordered: bool) -> Any:
+        """Return what it makes of the value of a cell."""
+        what = cell[0]
+        if what == "code":
+            return tuple(self.numbers.get(number, number) for number in value)
+        if what == "store":
+            held = ((self.variables.get(name, name), self.value(kept)) for name, kept in value)
+            return tuple(sorted(held, key=lambda item: item[0]))
+        if cell in (AGENTS, NAMES):
+            return tuple(sorted(map(self.name, value)))
+        if what == "mailbox":
+            return tuple(sorted(map(self.value, value), key=order_key))
+        if what == "sends" or (what == "line" and unordered):
+            return tuple(sorted(map(self.value, value), key=request_key))
+        return self.value(value)
+
+    # --- values -----------------------------------------------------------------------------------------------
+
+    def name(self, name: str) -> str:
+        """Return what a name becomes."""
+        return self.names.get(name, name)
+
+    def text(self, text: str) -> str:
+        """Return a text with the names in it renamed."""
+        return WORD.sub(lambda word: self.name(word[0]), text)
+
+    def value(self, value: Any) -> Any:
+        """Return what it makes of a value, a request, a query, a placement."""
+        if isinstance(value, str):
+            return self.name(value)
+        if isinstance(value, FIXED):
+            return value
+        if isinstance(value, tuple) and not hasattr(value, "_fields"):
+            return tuple(map(self.value, value))
+        if isinstance(value, frozenset):
+            return frozenset(map(self.value, value))
+        return SPECIAL.get(type(value), _each_field)(self, value)
+
+
+def _each_field(renaming: Renaming, value: Any) -> Any:
+    if not is_dataclass(value) or isinstance(value, type):
+        raise TypeError(f"a renaming does not know {type(value).__name__}")
+    make: Callable[..., Any] = type(value)
+    return make(*(renaming.value(getattr(value, each.name)) for each in fields(value)))
+
+
+def _sorted(renaming: Renaming, names: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(sorted(map(renaming.name, names)))
+
+
+def _observation(renaming: Renaming, seen: Observation) -> Observation:
+    swept = seen.swept
+    return Observation.of(
+        _sorted(renaming, seen.shown),
+        _sorted(renaming, seen.agents),
+        map(renaming.value, seen.relations),
+        Swept(_sorted(renaming, swept.places), _sorted(renaming, swept.nodes), swept.links),
+    )
+
+
+SPECIAL: Mapping[type, Callable[[Renaming, Any], Any]] = {
+    Observation: _observation,
+    Nodes: lambda renaming, query: Nodes(_sorted(renaming, query.names)),
+    Of: lambda renaming, query: Of(query.operator, renaming.value(query.of)),
+    Carried: lambda renaming, placement: Carried(renaming.name(placement.by), placement.shape),
+    InTransit: lambda renaming, placement: InTransit(placement.origin, renaming.name(placement.to)),
+    Match: lambda renaming, match: Match(tuple((term, renaming.name(name)) for term, name in match.binding)),
+    Reaction: lambda renaming, each: Reaction(
+        renaming.text(each.text), renaming.value(each.redex), renaming.value(each.reactum)
+    ),
+    Pattern: _each_field,
+}
+"""What is not renamed field by field."""
+
+
+def spelled(value: Any) -> str:
+    """Return a text that tells values apart and is the same in every process."""
+    if isinstance(value, frozenset):
+        return "{" + ",".join(sorted(map(spelled, value))) + "}"
+    if isinstance(value, tuple) and not hasattr(value, "_fields"):
+        return "(" + ",".join(map(spelled, value)) + ")"
+    if is_dataclass(value) and not isinstance(value, Geometry):
+        inner = ",".join(spelled(getattr(value, each.name)) for each in fields(value))
+        return f"{type(value).__name__}({inner})"
+    return repr(value)
+
+
+class _Noting(Renaming):
+    """Renames nothing, and notes the names that it meets."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        object.__setattr__(self, "met", set())
+
+    met: set[str]
+
+    def name(self, name: str) -> str:
+        """Note a name."""
+        self.met.add(name)
+        return name
+
+
+def mentioned(value: Any, among: frozenset[str]) -> frozenset[str]:
+    """Return which of some names occur in a value."""
+    noting = _Noting()
+    noting.value(value)
+    return among.intersection(noting.met)

@@ -1,0 +1,212 @@
+"""Roles: where each agent may come to in the program, what its variables may name, and where it may be hosted.
+
+A least fixpoint over the text, not over runs: an agent's variables hold the names that any statement it may come to
+may give them. What is not a constant, a host or a place in which something was seen may be any name.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from checker.ownership import leads_to
+from checker.reduction.bounds import Bounds, Names, reached
+from semantics.expressions import (
+    Apply,
+    Expression,
+    Host,
+    Literal,
+    QueryOf,
+    Self,
+    SetOf,
+    Variable,
+)
+from semantics.patterns import variables
+from semantics.queries import All, Nodes, Of, Query
+from semantics.requests import MGR
+from semantics.signature import REGION, Name
+from semantics.statements import (
+    Assign,
+    Call,
+    ChooseFrom,
+    For,
+    ForEach,
+    Match,
+    Migrate,
+    React,
+    Spawn,
+    Statement,
+)
+from semantics.values import Truth
+
+
+@dataclass(slots=True)
+class Role:
+    """What is known of one agent.
+
+    Attributes:
+        statements: The numbers of those that it may come to.
+        hosts: Where it may be hosted.
+        named: For each variable the names that it may hold; None for any.
+    """
+
+    statements: set[int] = field(default_factory=set)
+    hosts: set[Name] = field(default_factory=set)
+    named: dict[str, Names | None] = field(default_factory=dict)
+
+
+class Roles:
+    """The roles of all agents that there are or may be spawned.
+
+    Attributes:
+        first: The agents that are there at first: no agent ever leaves.
+    """
+
+    def __init__(self, bounds: Bounds) -> None:
+        self.bounds = bounds
+        self.program = bounds.setting.program
+        self.roles: dict[Name, Role] = {}
+        alpha = bounds.initial.alpha
+        self.first: Names = frozenset(alpha.names())
+        for agent in alpha.names():
+            moving = (p.request.host for p in bounds.initial.eta.of(agent) if isinstance(p.request, MGR))
+            held = {variable: _spelled(value) for variable, value in alpha.store(agent)}
+            self.roles[agent] = Role(set(self.reach(alpha.code(agent))), {alpha.host(agent), *moving}, held)
+        while self._grow():
+            pass
+
+    def __getitem__(self, agent: Name) -> Role:
+        return self.roles[agent]
+
+    @property
+    def agents(self) -> tuple[Name, ...]:
+        """Every agent that may ever be, sorted."""
+        return tuple(sorted(self.roles))
+
+    def reach(self, code: Iterable[int]) -> frozenset[int]:
+        """Return the statements that code may come to; those of whom it spawns not included."""
+        seen: set[int] = set()
+        waiting = list(code)
+        while waiting:
+            number = waiting.pop()
+            if number not in seen:
+                seen.add(number)
+                waiting.extend(leads_to(self.program, self.program.statements[number]))
+        return frozenset(seen)
+
+    def descendants(self, reach: Iterable[int]) -> Names:
+        """Return whom these statements may spawn, and whom those may spawn, and so on."""
+        return reached(self._spawned(reach), lambda agent: self._spawned(self.roles[agent].statements))
+
+    def _spawned(self, numbers: Iterable[int]) -> Names:
+        statements = (self.program.statements[number] for number in numbers)
+        return frozenset(each.name for each in statements if isinstance(each, Spawn))
+
+    # --- what expressions may name ----------------------------------------------------------------------------
+
+    def names(self, agent: Name, expression: Expression) -> Names | None:
+        """Return the names that a value, or the members of a set, may be; None for any."""
+        role = self.roles[agent]
+        match expression:
+            case Literal(value):
+                return _spelled(value)
+            case Host():
+                return frozenset(role.hosts)
+            case Self():
+                return frozenset({agent})
+            case Variable(name):
+                return role.named.get(name, frozenset())
+            case SetOf(items):
+                return _either(self.names(agent, item) for item in items)
+            case Apply("parent", (node, _)):
+                return self._places(self.names(agent, node))
+            case _:
+                return None
+
+    def _places(self, nodes: Names | None) -> Names:
+        """Return the places in which an observation may have seen some nodes."""
+        among = self.bounds.names if nodes is None else nodes & self.bounds.names
+        return frozenset({REGION, "unknown"}).union(*map(self.bounds.holders, among))
+
+    def entities(self, agent: Name, expression: Expression) -> tuple[Name, ...]:
+        """Return the entities that an expression may name, sorted."""
+        found = self.names(agent, expression)
+        return tuple(sorted(self.bounds.names if found is None else found & self.bounds.names))
+
+    def receivers(self, agent: Name, expression: Expression) -> tuple[Name, ...]:
+        """Return the agents that an expression may name, sorted."""
+        found = self.names(agent, expression)
+        return tuple(each for each in self.agents if found is None or each in found)
+
+    def query(self, agent: Name, template: QueryOf) -> Query:
+        """Return a query over all that the leaves of another may name: it looks at no less."""
+        argument = template.argument
+        if argument is None:
+            return All()
+        if isinstance(argument, QueryOf):
+            return Of(str(template.operator), self.query(agent, argument))
+        leaf = Nodes(self.entities(agent, argument))
+        return leaf if template.operator is None else Of(template.operator, leaf)
+
+    # --- the fixpoint -----------------------------------------------------------------------------------------
+
+    def _grow(self) -> bool:
+        before = self._size()
+        for agent in self.agents:
+            for number in sorted(self.roles[agent].statements):
+                self._flow(agent, self.program.statements[number])
+        return self._size() != before
+
+    def _size(self) -> tuple[int, ...]:
+        sets = [(len(role.statements), len(role.hosts)) for role in self.roles.values()]
+        named = [names for role in self.roles.values() for names in role.named.values()]
+        anything = sum(names is None for names in named)
+        return (*(n for pair in sets for n in pair), len(named), anything, sum(map(len, filter(None, named))))
+
+    def _flow(self, agent: Name, statement: Statement) -> None:
+        match statement:
+            case Assign(variable, expression):
+                self._bind(agent, variable, self.names(agent, expression))
+            case For(members, rest, _):
+                self._bind(agent, rest, self.names(agent, members))
+            case ForEach(variable, rest, _):
+                self._bind(agent, variable, self.roles[agent].named.get(rest, frozenset()))
+            case ChooseFrom(variable, members, _):
+                self._bind(agent, variable, self.names(agent, members))
+            case React(cases) | Match(_, cases):
+                for variable in frozenset[str]().union(*(variables(case.pattern) for case in cases)):
+                    self._bind(agent, variable, None)
+            case Call(behaviour, arguments):
+                self._pass(agent, agent, behaviour, arguments)
+            case Migrate(host):
+                self.roles[agent].hosts.update(self.entities(agent, host))
+            case Spawn(name, host, behaviour, arguments):
+                role = self.roles.setdefault(name, Role())
+                role.hosts.update(self.entities(agent, host))
+                role.statements |= self.reach(self.program.behaviours[behaviour].body)
+                self._pass(agent, name, behaviour, arguments)
+
+    def _pass(self, giver: Name, taker: Name, behaviour: str, arguments: tuple[Expression, ...]) -> None:
+        parameters = self.program.behaviours[behaviour].parameters
+        for parameter, argument in zip(parameters, arguments, strict=True):
+            self._bind(taker, parameter, self.names(giver, argument))
+
+    def _bind(self, agent: Name, variable: str, names: Names | None) -> None:
+        named = self.roles[agent].named
+        named[variable] = _either([named.get(variable, frozenset()), names])
+
+
+def _either(several: Iterable[Names | None]) -> Names | None:
+    found: set[Name] = set()
+    for names in several:
+        if names is None:
+            return None
+        found |= names
+    return frozenset(found)
+
+
+def _spelled(value: object) -> Names | None:
+    """Return the names that a constant spells; None for what may hold any."""
+    if isinstance(value, str):
+        return frozenset({value})
+    if isinstance(value, frozenset):
+        return _either(map(_spelled, value))
+    return frozenset() if isinstance(value, int | Truth) else None

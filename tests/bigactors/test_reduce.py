@@ -1,0 +1,56 @@
+"""`check --reduce`: what it prints and writes, and what it refuses."""
+
+import json
+
+import pytest
+
+
+def test_a_reduced_search_says_so_and_how_much_it_followed(bigactors):
+    code, out, _ = bigactors("check", "broken_deadlock", "--reduce", "por")
+    assert code == 1
+    assert out.startswith(
+        "broken_deadlock: 130 configurations, 140 of 206 transitions, depth 46, complete, reduced by por, "
+    )
+    assert "a trace, 22 steps:" in out
+    assert "shortest" not in out
+
+
+def test_the_report_as_json_says_so_too(bigactors):
+    _, out, _ = bigactors("check", "broken_deadlock", "--reduce", "por", "--json", "-")
+    report = json.loads(out)
+    assert (report["reduced"], report["transitions"], report["transitions_allowed"]) == (["por"], 140, 206)
+
+
+def test_what_is_not_reduced_follows_every_transition(bigactors):
+    report = json.loads(bigactors("check", "broken_deadlock", "--json", "-")[1])
+    assert (report["reduced"], report["transitions"]) == ([], report["transitions_allowed"])
+
+
+def test_a_property_that_it_would_be_unsound_for_is_incomplete(bigactors):
+    code, out, _ = bigactors("check", "look_before_entry_racy", "--reduce", "por")
+    assert code == 3
+    assert (
+        "? race_freedom       incomplete; not decided under this reduction: what an observation rests on"
+        in out
+    )
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("oil_spill", "--reduce", "por", "--scheduler", "fcfs"), "'por' is refused: under 'scheduler fcfs'"),
+        (
+            ("rendezvous", "--reduce", "symmetry"),
+            "the reduction 'symmetry' is refused: nothing in the mission is",
+        ),
+        (
+            ("handover", "--reduce", "por,symmetry"),
+            "the reduction 'symmetry' is refused: 'display' prints names",
+        ),
+        (("oil_spill", "--reduce", "magic"), "'magic' is none of por, symmetry"),
+    ],
+)
+def test_what_is_refused_is_a_mistake_with_its_reason(bigactors, words, message):
+    code, _, err = bigactors("check", *words)
+    assert code == 2
+    assert message in err

@@ -1,0 +1,52 @@
+"""All that inspections find in an exploration, to be compared between the full search and a reduced one."""
+
+from checker import Engine, Limits, explore
+from checker.findings import Collected
+from checker.inspections import Computation, DeadlockFreedom, LocalConsistency
+from checker.races import ControlRaces
+from semantics.propositions import holds
+
+
+class Messages(Collected):
+    """Keeps the words of every finding, not only the first of a kind."""
+
+    def __init__(self):
+        super().__init__()
+        self.words = set()
+
+    def add(self, finding):
+        self.words.add((finding.kind, finding.message))
+
+
+class Everything:
+    """Collects every message instead of the first, what is quiescent, and which formulas are true together."""
+
+    def __init__(self, formulas=()):
+        self.formulas = tuple(formulas)
+        self.inspections = (LocalConsistency(), DeadlockFreedom(), Computation(), ControlRaces())
+        for each in self.inspections:
+            each.collected = Messages()
+        self.inspections[1].arrival = Messages()
+        self.still = set()
+        self.truths = set()
+
+    def __call__(self, number, c, expansion):
+        for inspect in self.inspections:
+            inspect(number, c, expansion)
+        if not expansion.by_agents:
+            self.still.add(c)
+        self.truths.add(tuple(holds(formula, c) for formula in self.formulas))
+
+    @property
+    def messages(self):
+        collected = (*(each.collected for each in self.inspections), self.inspections[1].arrival)
+        return set().union(*(each.words for each in collected))
+
+
+def everything(initial, formulas=(), reduce=None, most=100_000, engine=Engine.REFERENCE):
+    """Return what is found: messages, quiescent configurations, combinations of truths, rules; None if too large."""
+    found = Everything(formulas)
+    explored = explore(initial, (found,), Limits(configurations=most), engine=engine, reduce=reduce)
+    if not explored.complete:
+        return None, explored
+    return (found.messages, found.still, found.truths, set(explored.rules)), explored

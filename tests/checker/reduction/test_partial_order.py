@@ -1,0 +1,300 @@
+"""Partial-order reduction: verdicts, findings and what comes to rest are those of the full search."""
+
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+from checked_missions import load, start
+from everything_found import everything
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mission_texts import missions
+
+from checker import Engine, Limits, Outcome, Reduction, RefusedError, check, explore
+from checker.reduction import Ample, Proviso, Reduced
+from checker.reduction.footprints import Footprints
+from checker.reduction.slots import NOTHING
+from checker.traces import replay, to_json
+from semantics import Control, Scheduler, strategies
+from semantics.monitor import monitored
+from semantics.propositions import Ended, HasPending, Inside, LinkedWith, Present, Property, Waiting
+from semantics.successors import expand
+from semantics.temporal import TEMPORAL
+from specs import MissionError
+from specs.elaboration import Variation, load_mission
+
+MISSIONS = Path(__file__).parents[3] / "specs" / "missions"
+NAMES = sorted(path.stem for path in MISSIONS.glob("*.mission"))
+POR = (Reduction.POR,)
+
+VARIATIONS = {
+    f"{scheduler.value} {control.value}": Variation(scheduler=scheduler, control=control)
+    for scheduler in (Scheduler.PROGRAM_ORDER, Scheduler.UNORDERED)
+    for control in Control
+}
+SMALL = [name for name in NAMES if name not in ("rendezvous", "takeover", "broken_deadlock", "spill_watch")]
+REFUSED = ("race_freedom", *TEMPORAL)
+"""Kinds of properties that the reduction does not preserve: they are left undecided."""
+
+
+def compared(initial, formulas=(), most=3_000, engine=Engine.REFERENCE):
+    """Return how many configurations the full and the reduced search visit, once they found the same."""
+    full, whole = everything(initial, formulas, most=most)
+    if full is None:
+        return None
+    reduced, part = everything(initial, formulas, Reduced(initial, POR, formulas), most=most, engine=engine)
+    assert reduced == full
+    return len(whole.configurations), len(part.configurations)
+
+
+def outcomes(report):
+    return {
+        each.property.name: (each.outcome, sorted(found.kind for found in each.violations), each.examined > 0)
+        for each in report.verdicts
+    }
+
+
+ENDLESS = ("nomad", "search_and_deploy")
+"""Under `unordered` they ask again and again before they are served."""
+
+
+@pytest.mark.parametrize("variation", VARIATIONS.values(), ids=VARIATIONS)
+@pytest.mark.parametrize("name", SMALL)
+def test_a_mission_has_the_same_findings(name, variation):
+    if name in ENDLESS and variation.scheduler is Scheduler.UNORDERED:
+        return
+    mission = load_mission(MISSIONS / f"{name}.mission", variation)
+    formulas = [each.formula for each in mission.properties if each.kind in ("invariant", "reachable")]
+    assert compared(mission.initial, formulas) is not None
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_a_report_has_the_same_verdicts(name):
+    mission = load_mission(MISSIONS / f"{name}.mission")
+    asked = [each for each in mission.properties if each.kind not in REFUSED]
+    full, reduced = (check(mission.initial, asked, reduce=by) for by in ((), POR))
+    assert outcomes(reduced) == outcomes(full)
+
+
+@pytest.mark.parametrize("name", ["takeover", "broken_deadlock"])
+def test_a_larger_mission_has_the_same_findings(name):
+    mission = load_mission(MISSIONS / f"{name}.mission")
+    formulas = [each.formula for each in mission.properties if each.kind in ("invariant", "reachable")]
+    whole, part = compared(mission.initial, formulas)
+    assert part * 4 <= whole
+
+
+def test_the_rendezvous_has_the_verdicts_of_the_full_search():
+    mission = load_mission(MISSIONS / "rendezvous.mission")
+    asked = [each for each in mission.properties if each.kind != "race_freedom"]
+    report = check(mission.initial, asked, reduce=POR)
+    assert {each.outcome for each in report.verdicts} == {Outcome.HOLDS}  # as in tests/missions
+
+
+def test_the_fast_explorer_refuses_to_reduce():
+    mission = load_mission(MISSIONS / "takeover.mission")
+    with pytest.raises(RefusedError, match="the fast explorer does not reduce"):
+        check(mission.initial, mission.properties, engine=Engine.FAST, reduce=POR)
+
+
+@given(
+    strategies.initial_configurations(
+        schedulers=(Scheduler.PROGRAM_ORDER, Scheduler.UNORDERED), monitored=False
+    ),
+    st.data(),
+)
+@settings(max_examples=40)
+def test_generated_programs_have_the_same_findings(initial, data):
+    name = st.sampled_from(sorted(initial.setting.kinds))
+    agent = st.sampled_from(initial.alpha.names())
+    atoms = st.one_of(
+        st.builds(Inside, name, name, st.booleans()),
+        st.builds(LinkedWith, name, name, st.booleans()),
+        st.builds(Present, name),
+        *(st.builds(atom, agent) for atom in (Ended, Waiting, HasPending)),
+    )
+    compared(initial, data.draw(st.lists(atoms, max_size=2)), most=300)
+
+
+@given(missions(), st.sampled_from(["", "scheduler unordered\n"]))
+@settings(max_examples=20)
+def test_generated_missions_have_the_same_findings(text, scheduler):
+    with suppress(MissionError):  # some are found wrong before they are run
+        formulas = [Inside("uav0", "gate0", actually=True), Ended("a")]
+        compared(load(text + scheduler).initial, formulas, most=600)
+
+
+def test_a_reduced_search_says_so_and_counts_what_it_followed():
+    mission = load_mission(MISSIONS / "rendezvous.mission")
+    report = check(mission.initial, mission.properties, reduce=POR)
+    assert report.reduced == ("por",)
+    assert (report.configurations, report.transitions, report.allowed) == (67, 83, 234)
+
+
+def test_a_trace_of_a_reduced_search_replays_but_is_not_said_to_be_a_shortest_one():
+    mission = load_mission(MISSIONS / "broken_deadlock.mission")
+    (found,) = [v for v in check(mission.initial, mission.properties, reduce=POR).verdicts if v.violations]
+    trace = found.violations[0].trace
+    assert trace.called == "a trace"
+    assert replay(mission.initial, to_json(trace, "m", "d")) == trace
+
+
+# --- what it is refused for -----------------------------------------------------------------------------------
+
+
+def test_it_is_refused_where_all_requests_stand_in_one_queue():
+    mission = load_mission(MISSIONS / "oil_spill.mission", Variation(scheduler=Scheduler.FCFS))
+    with pytest.raises(
+        RefusedError, match="'por' is refused: under 'scheduler fcfs' all requests stand in one"
+    ):
+        check(mission.initial, mission.properties, reduce=POR)
+
+
+def test_it_is_refused_where_what_observations_rest_on_is_remembered():
+    mission = load_mission(MISSIONS / "oil_spill.mission")
+    with pytest.raises(RefusedError, match="the order of any two steps may matter"):
+        Reduced(monitored(mission.initial), POR)
+
+
+def verdict(name, kind, asked=None):
+    mission = load_mission(MISSIONS / f"{name}.mission")
+    report = check(mission.initial, asked or mission.properties, reduce=POR)
+    return next(each for each in report.verdicts if each.property.kind == kind)
+
+
+def test_race_freedom_that_needs_a_search_is_not_decided_and_says_why():
+    found = verdict("look_before_entry_racy", "race_freedom")
+    assert found.outcome is Outcome.INCOMPLETE
+    assert found.note.startswith("not decided under this reduction: what an observation rests on is changed")
+
+
+def test_race_freedom_by_ownership_still_holds():
+    assert verdict("oil_spill", "race_freedom").outcome is Outcome.HOLDS
+
+
+def test_a_control_race_is_found_all_the_same():
+    found = verdict("broken_control_race", "race_freedom")
+    assert found.outcome is Outcome.VIOLATED
+    assert [each.kind for each in found.violations] == ["control race"]
+
+
+def test_a_kind_of_property_that_it_does_not_know_is_not_decided():
+    found = Reduced(load_mission(MISSIONS / "oil_spill.mission").initial, POR)
+    assert (
+        found.refuses(Property("ctl", "EF p"))
+        == "it is not known to be kept for properties of the kind 'ctl'"
+    )
+
+
+# --- the proviso ----------------------------------------------------------------------------------------------
+
+BUSY = """
+BigActor a hosted_at gcs0 with_behavior { loop { observe(PARENT(HOST)) react { case obs => skip } } }
+BigActor b hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) }
+"""
+
+
+def test_an_agent_that_is_never_done_does_not_put_off_another_for_ever():
+    initial = start(BUSY)
+    away = Inside("uav0", "gate0", actually=True)
+    assert compared(initial, [away]) is not None
+
+
+def test_without_the_proviso_it_would():
+    class Careless(Reduced):
+        def choose(self, c, expansion, later):  # noqa: ARG002  # that is the point
+            return super().choose(c, expansion, lambda _: True)
+
+    initial = start(BUSY)
+    away = [Inside("uav0", "gate0", actually=True)]
+    assert everything(initial, away, Careless(initial, POR, away))[0] != everything(initial, away)[0]
+
+
+def test_every_cycle_has_a_configuration_expanded_in_full_where_all_must_lead_on():
+    initial = start(BUSY)
+    whole = set()
+
+    class Watched(Reduced):
+        def choose(self, c, expansion, later):
+            chosen = super().choose(c, expansion, later)
+            if chosen == expansion.transitions:
+                whole.add(c)
+            return chosen
+
+    reduced = Watched(initial, POR, proviso=Proviso.ALL)
+    found = explore(initial, reduce=reduced)
+    edges = {c: steps(initial, c, found) for c in found.configurations if c not in whole}
+    assert whole
+    assert is_acyclic(edges)
+
+
+def steps(initial, c, found):
+    numbers = {each: number for number, each in enumerate(found.configurations)}
+    later = lambda each: numbers.get(each.target, -1) > numbers[c]  # noqa: E731  # as the explorer has it
+    return [each.target for each in Ample(initial, proviso=Proviso.ALL).choose(c, expand(c), later)]
+
+
+def is_acyclic(edges):
+    """Take away what leads nowhere until nothing is left."""
+    edges = dict(edges)
+    while ends := [c for c, targets in edges.items() if not any(target in edges for target in targets)]:
+        for c in ends:
+            del edges[c]
+    return not edges
+
+
+# --- the tests would notice -----------------------------------------------------------------------------------
+
+LATE = """
+BigActor a hosted_at vessel0 with_behavior {
+  react { case "first" => skip case "second" => control(MOVE_HOST_TO south0) }
+}
+BigActor b hosted_at uav0 with_behavior { send("first", a) }
+BigActor c hosted_at uav1 with_behavior { send("second", a) }
+"""
+SEEN = """
+BigActor a hosted_at uav1 with_behavior { control(MOVE_HOST_TO gate0) }
+BigActor b hosted_at uav0 with_behavior {
+  observe(CHILDREN(gate0))
+  react { case obs if uav1 in obs => send("seen", a) case obs => skip }
+}
+"""
+AWAY = """
+BigActor a hosted_at gcs0 with_behavior { migrate(gcs1) }
+environment { internet drops }
+"""
+DRIFTS = """
+BigActor a hosted_at uav0 with_behavior {
+  observe(CHILDREN(gate0))
+  react { case obs if uav1 in obs => send("seen", a) case obs => skip }
+}
+environment { uav1 drifts among gate0 }
+"""
+TWICE = """
+BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) }
+BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }
+"""
+MUTATIONS = {
+    "messages that are delivered": ("mail", LATE),
+    "where vehicles are": ("where", DRIFTS),
+    "channels that drop": ("connected", AWAY),
+    "what a control writes": ("control", TWICE),
+    "what a look reads": ("sense", SEEN),
+}
+
+
+@pytest.mark.parametrize("dropped", MUTATIONS)
+def test_a_footprint_that_leaves_something_out_is_noticed(dropped, monkeypatch):
+    method, text = MUTATIONS[dropped]
+    initial = start(text)
+    assert compared(initial) is not None
+    nothing = NOTHING if method in ("control", "sense") else ()
+    monkeypatch.setattr(Footprints, method, lambda *_: nothing)
+    with pytest.raises(AssertionError):
+        compared(initial)
+
+
+def test_limits_are_kept_under_reduction():
+    initial = load_mission(MISSIONS / "rendezvous.mission").initial
+    found = explore(initial, limits=Limits(configurations=20), reduce=Reduced(initial, POR))
+    assert found.bounds == ["the limit of 20 configurations"]

@@ -1,0 +1,355 @@
+"""Symmetry: what is interchangeable is found, one configuration stands for its likes, and its runs replay."""
+
+from contextlib import suppress
+from itertools import combinations
+from math import comb
+from pathlib import Path
+
+import pytest
+from checked_missions import load
+from everything_found import everything
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from checker import Limits, Reduction, RefusedError, check, explore
+from checker.reduction import Reduced
+from checker.reduction.renaming import Renaming
+from checker.reduction.symmetry import Symmetry
+from checker.traces import replay, to_json
+from semantics import Scheduler
+from semantics.configuration import Configuration
+from semantics.monitor import monitored
+from semantics.propositions import HasPending, Inside
+from semantics.setting import Control
+from semantics.successors import expand
+from specs.elaboration import load_mission
+
+MISSIONS = Path(__file__).parents[3] / "specs" / "missions"
+SYMMETRY = (Reduction.SYMMETRY,)
+BOTH = (Reduction.POR, Reduction.SYMMETRY)
+
+WORLD = """
+signature {{
+  kind Room contains Robot, Station, Crate
+  kind Robot driven carries Crate
+  kind Station
+  kind Crate
+}}
+world {{
+  dock0: Room = box (37.01, -8.69) (36.99, -8.71)
+  room0: Room = box (37.05, -8.69) (37.03, -8.71)
+  gcs0: Station = point (37.04, -8.70) linked mesh
+{robots}
+}}
+"""
+
+
+def swarm(body, robots=2, rest="", places=None):
+    """Return a mission of robots that start in one place and run one behaviour."""
+    where = places or ["point (37.00, -8.70) linked mesh"] * robots
+    there = "\n".join(f"  robot{number}: Robot = {place}" for number, place in enumerate(where))
+    agents = "\n".join(f"BigActor r{i} hosted_at robot{i} with_behavior {{ visit() }}" for i in range(robots))
+    return f"{WORLD.format(robots=there)}def visit() = {{ {body} }}\n{agents}\n{rest}"
+
+
+def mission(*arguments, **more):
+    return load(swarm(*arguments, **more), "")
+
+
+LOOKS = "observe(PARENT(HOST)) react { case obs => control(MOVE_HOST_TO room0) }"
+TELLS = 'send ("here", HOST) to base control(MOVE_HOST_TO room0)'
+BASE = (
+    "BigActor base hosted_at gcs0 with_behavior "
+    '{ react { case ("here", who) => react { case ("here", again) => send ("come", again) to base } } }'
+)
+
+
+# --- what is interchangeable ----------------------------------------------------------------------------------
+
+
+def classes(loaded):
+    return [each.names for each in Symmetry(loaded.initial).classes]
+
+
+def test_robots_that_start_in_one_place_and_run_one_behaviour_are_interchangeable():
+    assert classes(mission(LOOKS, robots=3)) == [(("r0", "robot0"), ("r1", "robot1"), ("r2", "robot2"))]
+
+
+def test_texts_written_out_for_each_are_alike_but_for_names_and_variables():
+    texts = "\n".join(
+        f"BigActor a{i} hosted_at robot{i} with_behavior {{ observe(PARENT(robot{i}))"
+        f" react {{ case seen{i} if robot{i} in seen{i} => control(MOVE_HOST_TO room0) }} }}"
+        for i in range(2)
+    )
+    text = swarm("skip", rest=texts).replace("BigActor r", "// BigActor r")
+    assert classes(load(text, "")) == [(("a0", "robot0"), ("a1", "robot1"))]
+
+
+def test_entities_that_nobody_is_hosted_at_are_interchangeable_too():
+    crates = ["point (37.00, -8.70) linked mesh", "point (37.00, -8.70) linked mesh"]
+    text = swarm(LOOKS, places=crates, rest="BigActor base hosted_at gcs0 with_behavior { skip }")
+    text = text.replace(
+        "}\ndef", "  c0: Crate = point (37.04, -8.70)\n  c1: Crate = point (37.04, -8.70)\n}\ndef"
+    )
+    assert classes(load(text, "")) == [(("r0", "robot0"), ("r1", "robot1")), (("c0",), ("c1",))]
+
+
+REFUSED = {
+    "in another place": (
+        {"body": LOOKS, "places": ["point (37.00, -8.70) linked mesh", "point (37.001, -8.70) linked mesh"]},
+        "'r0' is not like 'r1', since they are not in the same place",
+    ),
+    "on another channel": (
+        {"body": LOOKS, "places": ["point (37.00, -8.70) linked mesh", "point (37.00, -8.70)"]},
+        "since they are on different channels",
+    ),
+    "iterated": (
+        {"body": "observe(ALL) react { case o => for x in o { skip } }"},
+        "a 'for' goes through names",
+    ),
+    "chosen from": (
+        {"body": "observe(ALL) react { case o => choose x in o { observe(PARENT(x)) } }"},
+        "those after it in the order of names are lost",
+    ),
+    "printed": ({"body": "observe(ALL) react { case o => display(o) }"}, "'display' prints names"),
+    "ordered": (
+        {"body": "observe(ALL) react { case o => control(MOVE first(o of Robot) TO room0) }"},
+        "'first' takes names in their order",
+    ),
+    "named by another": (
+        {"body": LOOKS, "rest": "BigActor base hosted_at gcs0 with_behavior { observe(PARENT(robot1)) }"},
+        "since the text tells them apart",
+    ),
+    "moved by the environment": (
+        {"body": LOOKS, "rest": "environment { robot1 drifts among room0 }"},
+        "since the environment treats them differently",
+    ),
+}
+
+
+@pytest.mark.parametrize("why", REFUSED)
+def test_it_is_refused_with_the_reason(why):
+    arguments, reason = REFUSED[why]
+    with pytest.raises(RefusedError, match="the reduction 'symmetry' is refused") as refused:
+        Symmetry(mission(**arguments).initial)
+    assert reason in str(refused.value)
+
+
+def test_it_is_refused_where_a_property_names_one_of_them():
+    initial = mission(LOOKS).initial
+    with pytest.raises(RefusedError, match="a property tells them apart: robot1 in room0"):
+        Symmetry(initial, [Inside("robot1", "room0")])
+
+
+def test_it_is_refused_where_what_observations_rest_on_is_remembered():
+    with pytest.raises(RefusedError, match="remembered by name"):
+        Reduced(monitored(mission(LOOKS).initial), SYMMETRY)
+
+
+def test_a_property_of_all_of_them_tells_nobody_apart():
+    asked = 'invariant "a": forall r: Robot . not (r in gcs0) reachable "b": exists r: Robot . r in room0'
+    loaded = mission(LOOKS, rest=f"check {{ {asked} }}")
+    assert Symmetry(loaded.initial, [each.formula for each in loaded.properties]).classes
+
+
+def test_containers_are_not_exchanged_since_the_smallest_is_found_by_name():
+    text = swarm(LOOKS, robots=1).replace("kind Station\n", "kind Station\n  kind Raft contains Robot\n")
+    rafts = "".join(f"  raft{i}: Raft = circle (37.00, -8.70) radius 9 m\n" for i in range(2))
+    with pytest.raises((RefusedError, Exception), match=r"may contain others|raft0"):
+        Symmetry(load(text.replace("}\ndef", f"{rafts}}}\ndef"), "").initial)
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in MISSIONS.glob("*.mission")))
+def test_nothing_in_the_missions_that_ship_is_exchanged_without_being_alike(name):
+    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    with suppress(RefusedError):
+        assert equivariant(initial, Symmetry(initial), most=60)
+
+
+# --- what stands for what -------------------------------------------------------------------------------------
+
+
+def swaps(symmetry):
+    """Yield all exchanges of two members."""
+    for each in symmetry.classes:
+        for one, other in combinations(range(len(each.members)), 2):
+            order = list(range(len(each.members)))
+            order[one], order[other] = other, one
+            yield Renaming(*each.moving(order))
+
+
+def equivariant(initial, symmetry, most=400):
+    """Tell whether what follows a renamed configuration is what follows it, renamed."""
+    for c in explore(initial, limits=Limits(configurations=most)).configurations:
+        for swap in swaps(symmetry):
+            after = {swap.configuration(each.target) for each in expand(c).transitions}
+            if {each.target for each in expand(swap.configuration(c)).transitions} != after:
+                return False
+    return True
+
+
+def orbits(initial, symmetry, most=20_000):
+    """Return how many classes of likes are reachable, counted naively."""
+    found = explore(initial, limits=Limits(configurations=most))
+    assert found.complete
+    left, count = set(found.configurations), 0
+    while left:
+        count += 1
+        waiting = [left.pop()]
+        while waiting:
+            c = waiting.pop()
+            for like in (swap.configuration(c) for swap in swaps(symmetry)):
+                if like in left:
+                    left.discard(like)
+                    waiting.append(like)
+    return count
+
+
+LISTENS = """
+BigActor r hosted_at gcs0 with_behavior { react { case m: Message => skip } }
+environment { says "go" to r0 says "go" to r1 says "go" to r2 }
+"""
+ORBITS = {
+    "look": (LOOKS, "", 3),
+    "tell": (TELLS, BASE, 2),
+    "answered": (
+        'react { case ("come", who) => control(MOVE_HOST_TO room0) case "go" => send ("come", HOST) to r }',
+        LISTENS,
+        3,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ORBITS)
+def test_likes_have_one_representative(name):
+    body, rest, robots = ORBITS[name]
+    initial = mission(body, robots, rest).initial
+    reduced = Reduced(initial, SYMMETRY)
+    found = explore(initial, reduce=reduced)
+    assert len(found.configurations) == orbits(initial, reduced.symmetry)
+
+
+def test_robots_apart_are_counted_as_a_multiset():
+    initial = mission(LOOKS, robots=3).initial
+    each = len(explore(mission(LOOKS, robots=1).initial).configurations)
+    assert len(explore(initial).configurations) == each**3
+    assert len(explore(initial, reduce=Reduced(initial, SYMMETRY)).configurations) == comb(each + 2, 3)
+
+
+STEPS = (
+    "control(MOVE_HOST_TO room0)",
+    "control(MOVE_HOST_TO dock0)",
+    "control(CONNECT_HOST_TO gcs0)",
+    "control(DISCONNECT_HOST_FROM gcs0)",
+    "observe(PARENT(HOST)) react { case o => skip }",
+    "observe(CHILDREN(dock0)) react { case o => send o to base }",
+    'send ("at", HOST, SELF) to base',
+    'react { case "go" => skip }',
+    "migrate(gcs0)",
+)
+BASES = (
+    "BigActor base hosted_at gcs0 with_behavior { loop { react { case m: Message => skip } } }",
+    'BigActor base hosted_at gcs0 with_behavior { react { case ("at", h, a) => send "go" to a } }',
+    "BigActor base hosted_at gcs0 with_behavior { observe(HOSTED_AT(ALL)) react { case o => skip } }",
+    "BigActor base hosted_at gcs0 with_behavior { observe(LINKED_TO(HOST)) react { case o: Observation => skip } }",
+)
+AROUND = (
+    "",
+    'environment { says "go" to r1 says "go" to r0 }',
+    "environment { mesh drops and returns }",
+    "environment { robot0 vanishes robot1 vanishes }",
+    "environment { robot0 leaves mesh and returns robot1 leaves mesh and returns }",
+)
+
+
+@st.composite
+def swarms(draw):
+    body = " ".join(draw(st.lists(st.sampled_from(STEPS), min_size=1, max_size=2)))
+    varied = f"control {draw(st.sampled_from(['atomic', 'timed']))}\n"
+    varied += f"scheduler {draw(st.sampled_from([each.value for each in Scheduler]))}\n"
+    return swarm(body, 2, varied + draw(st.sampled_from(BASES)) + "\n" + draw(st.sampled_from(AROUND)))
+
+
+@given(swarms())
+@settings(max_examples=12)
+def test_generated_swarms_are_equivariant_and_found_alike(text):
+    initial = load(text, "").initial
+    symmetry = Symmetry(initial)
+    assert equivariant(initial, symmetry, most=80)
+    formulas = [HasPending("base"), Inside("gcs0", "room0")]
+    full, whole = everything(initial, formulas, most=700)
+    if full is None:
+        return
+    by = [SYMMETRY] if initial.setting.scheduler is Scheduler.FCFS else [SYMMETRY, BOTH]
+    for reductions in by:
+        found, part = everything(initial, formulas, Reduced(initial, reductions, formulas), most=700)
+        assert len(part.configurations) <= len(whole.configurations)
+        assert found[1] == {symmetry.representative(c) for c in full[1]}
+        assert found[2:] == full[2:]
+        assert {kind for kind, _ in found[0]} == {kind for kind, _ in full[0]}
+
+
+# --- runs -----------------------------------------------------------------------------------------------------
+
+LATE = """
+environment { robot0 vanishes robot1 vanishes robot2 vanishes }
+check { local_consistency deadlock_freedom reachable "all": forall r: Robot . r in room0 }
+"""
+
+
+def checked(reductions, rest=LATE, robots=3) -> tuple[Configuration, object]:
+    loaded = mission(LOOKS, robots, rest)
+    return loaded.initial, check(loaded.initial, loaded.properties, reduce=reductions)
+
+
+@pytest.mark.parametrize("reductions", [SYMMETRY, BOTH], ids=["symmetry", "both"])
+def test_runs_of_a_reduced_search_are_runs_of_the_mission_itself(reductions):
+    initial, report = checked(reductions)
+    _, full = checked(())
+    assert report.configurations < full.configurations
+    for found, whole in zip(report.verdicts, full.verdicts, strict=True):
+        assert found.outcome is whole.outcome
+        assert {each.kind for each in found.violations} == {each.kind for each in whole.violations}
+        runs = [(each.trace, each.message) for each in found.violations]
+        runs += [(found.witness, "")] if found.witness else []
+        for trace, message in runs:
+            assert replay(initial, to_json(trace, "m", "d")) == trace
+            if "inconsistent" in message:
+                host = message.split("(")[1].split(",")[0]
+                last = trace.configurations[-1]
+                assert any(each.request.agent == host for each in last.eta.all())
+
+
+def test_traces_under_symmetry_alone_are_still_shortest():
+    _, report = checked(SYMMETRY)
+    _, full = checked(())
+    for found, whole in zip(report.verdicts, full.verdicts, strict=True):
+        assert shortest_of_each_kind(found) == shortest_of_each_kind(whole)
+        assert all(each.trace.shortest for each in found.violations)
+
+
+def shortest_of_each_kind(verdict):
+    """Return the length of the first trace of each kind: one violation may stand for several alike."""
+    return {each.kind: len(each.trace) for each in reversed(verdict.violations)}
+
+
+def test_races_are_decided_under_symmetry():
+    rest = "check { race_freedom }"
+    assert [each.outcome for each in checked(SYMMETRY, rest, 2)[1].verdicts] == [
+        each.outcome for each in checked((), rest, 2)[1].verdicts
+    ]
+
+
+@pytest.mark.parametrize("control", Control)
+def test_both_reductions_together_visit_least(control):
+    loaded = mission(LOOKS, 3, f"control {control.value}\n")
+    counts = [
+        len(explore(loaded.initial, reduce=Reduced(loaded.initial, each) if each else None).configurations)
+        for each in ((), SYMMETRY, BOTH)
+    ]
+    assert counts[0] > counts[1] > counts[2]
+
+
+def test_robots_of_a_chain_are_not_interchangeable():
+    with pytest.raises(RefusedError, match="nothing in the mission is interchangeable"):
+        Symmetry(load_mission(MISSIONS / "rendezvous.mission").initial)
