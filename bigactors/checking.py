@@ -1,16 +1,30 @@
 """One mission checked: its report, or why there is none."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
+from bigactors import __version__
 from bigactors.exits import Exit
+from bigactors.files import file_stem
 from bigactors.missions import digest_of, open_mission
 from bigactors.mistakes import Mistake, describe_bug
 from bigactors.progress import watching
 from bigactors.terminal import tell
-from checker import Engine, Limits, Reduction, RefusedError, Report, check, report_json
+from checker import (
+    CheckpointError,
+    Engine,
+    Keeping,
+    Limits,
+    Reduction,
+    RefusedError,
+    Report,
+    check,
+    report_json,
+)
 from checker.findings import MOST_VIOLATIONS
+from semantics.canonical import digest
 from specs.elaboration import ElaboratedMission, Variation
 
 FAILURE_SCHEMA = "bigactors.failure/1"
@@ -74,6 +88,7 @@ class How:
     engine: Engine | None = None
     violations: int = MOST_VIOLATIONS
     reduce: tuple[Reduction, ...] = ()
+    keeping: Keeping | None = None
 
 
 def check_mission(
@@ -96,8 +111,13 @@ def check_mission(
                 how.engine,
                 violations=how.violations,
                 reduce=how.reduce,
+                keeping=how.keeping and _of_this(how.keeping, mission, limits),
             )
         return Checked(name, mission, digest_of(mission), report, watch.interrupted)
+    except CheckpointError as refused:
+        mistake = Mistake(str(refused), "leave --resume out to begin anew", name)
+        tell(str(mistake))
+        return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
     except RefusedError as refused:
         mistake = Mistake(str(refused), "check it without, or with the other reduction alone", name)
         tell(str(mistake))
@@ -110,6 +130,13 @@ def check_mission(
     except Exception as error:  # whatever it is, it is our bug, and other missions are to be checked
         tell(f"{name}:\n{describe_bug(error)}")
         return Failed(name, Exit.BUG, f"internal error: {type(error).__name__}: {error}")
+
+
+def _of_this(keeping: Keeping, mission: ElaboratedMission, limits: Limits) -> Keeping:
+    """Bind what is kept to the mission as it is varied, to the version, and to what is followed."""
+    bound = digest((digest_of(mission), __version__, limits.pending))
+    folder = keeping.folder and str(Path(keeping.folder) / file_stem(mission.name))
+    return replace(keeping, folder=folder, digest=bound)
 
 
 def check_missions(

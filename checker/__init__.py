@@ -4,7 +4,7 @@ It knows the calculus by `semantics.successors` alone: nothing of files, vehicle
 """
 
 from checker.check import check
-from checker.exploration import Engine, Exploration, Limits, Progress, explore
+from checker.exploration import CheckpointError, Engine, Exploration, Keeping, Limits, Progress, explore
 from checker.ownership import owned
 from checker.reduction import Reduction, RefusedError
 from checker.report import report_json, report_text
@@ -12,8 +12,10 @@ from checker.traces import ReplayError, Step, Trace, print_loop, print_trace, re
 from checker.verdicts import Outcome, Report, Verdict, Violation
 
 __all__ = [
+    "CheckpointError",
     "Engine",
     "Exploration",
+    "Keeping",
     "Limits",
     "Outcome",
     "Progress",

@@ -10,6 +10,7 @@ from checker.exploration import (
     Engine,
     Exploration,
     Inspect,
+    Keeping,
     Limits,
     Progress,
     explore,
@@ -59,6 +60,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     *,
     violations: int = MOST_VIOLATIONS,
     reduce: Iterable[Reduction] = (),
+    keeping: Keeping | None = None,
 ) -> Report:
     """Explore everything that is reachable and decide the properties.
 
@@ -74,6 +76,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
         engine: How to explore; by default whichever is quicker for the mission's size.
         violations: Of each property so many different ones are shown at the most, each with a shortest trace.
         reduce: What may let it visit less: the reference explorer, the only one that reduces.
+        keeping: What the fast explorer keeps on the way, and what it doubts; where it is said, that one explores.
 
     Raises:
         RefusedError: A reduction is unsound for the mission, or nothing in it allows one. Properties that it is
@@ -86,8 +89,10 @@ def check(  # noqa: PLR0913 - each says one thing of a check
         raise RefusedError(reducer.names[0], "the fast explorer does not reduce; leave --engine out")
 
     def run(engine: Engine, limits: Limits) -> Report:
-        return _Check(initial, asked, limits, report, engine, violations, reducer).run(notes)
+        return _Check(initial, asked, limits, report, engine, violations, reducer, keeping).run(notes)
 
+    if keeping is not None and reducer is None:
+        engine = engine or Engine.FAST
     impatient = limits.seconds is None or limits.seconds > PATIENCE
     if engine is None and reducer is None and impatient:
         tried = run(Engine.REFERENCE, replace(limits, seconds=PATIENCE))
@@ -106,6 +111,7 @@ class _Check:
         engine: Engine,
         most: int,
         reducer: Reduced | None,
+        keeping: Keeping | None,
     ) -> None:
         self.initial = initial
         self.properties = properties
@@ -114,6 +120,7 @@ class _Check:
         self.engine = engine
         self.most = most
         self.reducer = reducer
+        self.keeping = keeping
         self.visited = Visited()
         self.deadlock = DeadlockFreedom(most)
         self.consistency = LocalConsistency(most)

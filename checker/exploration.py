@@ -3,6 +3,8 @@
 It visits each configuration once, in the order of its distance from the first, so a path to it is a shortest one.
 """
 
+import resource
+import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
@@ -33,12 +35,37 @@ class Limits:
         seconds: For how long.
         pending: How many requests an agent may have pending, or messages in its mailbox.
         spent: How many of the seconds are gone already.
+        memory: How many bytes the process may take; looked at now and then, so that it may be a little more.
     """
 
     configurations: int | None = 2_000_000
     seconds: float | None = None
     pending: int = MOST_PENDING
     spent: float = 0.0
+    memory: int | None = None
+
+
+class CheckpointError(Exception):
+    """A checkpoint that can't be read, or that is of something else."""
+
+
+@dataclass(frozen=True, slots=True)
+class Keeping:
+    """What is kept of an exploration, and what is doubted.
+
+    Attributes:
+        folder: Where checkpoints are written; None for nowhere.
+        resumed: Whether it goes on from the checkpoint that is there.
+        digest: What the checkpoint is of.
+        every: Seconds between two checkpoints.
+        doubted: Of how many configurations the interpreter is asked once more what follows (`--paranoid`).
+    """
+
+    folder: str | None = None
+    resumed: bool = False
+    digest: str = ""
+    every: float = 60.0
+    doubted: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,6 +177,7 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
     *,
     edges: bool = False,
     reduce: Reducer | None = None,
+    keeping: Keeping | None = None,
 ) -> Exploration:
     """Visit everything that is reachable, breadth-first.
 
@@ -162,11 +190,12 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
         engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
         edges: Whether every transition is kept, as temporal properties need; the fast explorer finds them again.
         reduce: What lets it visit less; only the reference explorer can.
+        keeping: What the fast explorer keeps on the way, and what it doubts.
     """
     if engine is Engine.FAST:
         from checker.fast.explorer import explore_fast  # noqa: PLC0415  # numba takes its time to load
 
-        return explore_fast(initial, tuple(inspect), limits or Limits(), report, every)
+        return explore_fast(initial, tuple(inspect), limits or Limits(), report, every, keeping or Keeping())
     explorer = _Explorer(initial, tuple(inspect), limits or Limits(), report, every)
     explorer.found.edges = Edges() if edges else None
     if reduce is not None:
@@ -218,6 +247,9 @@ class _Explorer:
             most = self.limits.seconds
             if most is not None and now - started + self.limits.spent > most:
                 self.bound(time_met(most))
+                break
+            if number % 1024 == 0 and is_full(self.limits):
+                self.bound(memory_met(self.limits))
                 break
             if self.report is not None and now - reported >= self.every:
                 self.report(self.progress(number, now - started))
@@ -289,6 +321,26 @@ def limit_met(most: int) -> str:
 def time_met(seconds: float) -> str:
     """Say that the time was over."""
     return f"the time limit of {seconds:g} s"
+
+
+def is_full(limits: Limits) -> bool:
+    """Tell whether the process takes more memory than it may."""
+    return limits.memory is not None and memory_taken() > limits.memory
+
+
+def memory_taken() -> int:
+    """Return how many bytes of memory the process takes now; its peak where the system doesn't tell."""
+    try:
+        with open("/proc/self/statm", encoding="ascii") as file:
+            return int(file.read().split()[1]) * resource.getpagesize()
+    except OSError:
+        unit = 1 if sys.platform == "darwin" else 1024
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
+
+
+def memory_met(limits: Limits) -> str:
+    """Say that there was no more memory."""
+    return f"the memory limit of {(limits.memory or 0) / 1e6:,.0f} MB"
 
 
 def crowd_met(most: int) -> str:

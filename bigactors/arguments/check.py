@@ -2,7 +2,7 @@
 
 from bigactors.arguments.common import EXITS, MISSION, varying
 from bigactors.arguments.parser import Command, Parser
-from bigactors.arguments.values import FORMATS, at_least_one, named, output, reductions, seconds
+from bigactors.arguments.values import FORMATS, at_least_one, named, output, reductions, seconds, size
 
 
 def fill(parser: Parser) -> None:
@@ -36,6 +36,13 @@ def fill(parser: Parser) -> None:
         type=seconds,
         help="explore no longer than SECONDS (default: no limit)",
     )
+    parser.add_argument(
+        "--max-memory",
+        metavar="SIZE",
+        type=size,
+        help="stop exploring when the process takes more, such as 800M or 12G (default: no limit)",
+    )
+    _long_runs(parser)
     parser.add_argument(
         "--trace",
         metavar="DIR",
@@ -89,3 +96,25 @@ COMMAND = Command(
     ),
     fill,
 )
+
+
+def _long_runs(parser: Parser) -> None:
+    group = parser.add_argument_group("long runs, by the fast explorer")
+    group.add_argument(
+        "--checkpoint",
+        metavar="DIR",
+        type=named,
+        help="keep in DIR, every minute and at the end, what is needed to go on after the process was killed",
+    )
+    group.add_argument(
+        "--every", metavar="SECONDS", type=seconds, default=60.0, help="between two checkpoints (default 60)"
+    )
+    group.add_argument(
+        "--resume", action="store_true", help="go on from the checkpoint in DIR, if there is one"
+    )
+    group.add_argument(
+        "--paranoid",
+        metavar="N",
+        type=at_least_one,
+        help="let the interpreter work out once more what follows from N configurations, and stop at a difference",
+    )

@@ -134,3 +134,16 @@ def reductions(text: str) -> tuple[str, ...]:
         if name not in REDUCTIONS:
             raise argparse.ArgumentTypeError(f"'{name:.60}' is none of {', '.join(REDUCTIONS)}")
     return names
+
+
+def size(text: str) -> int:
+    """Return a number of bytes; k, M and G stand for thousands, millions and thousands of millions.
+
+    >>> size("800M")
+    800000000
+    """
+    unit = {"k": 10**3, "M": 10**6, "G": 10**9}.get(text[-1:], 1)
+    value = _number(text if unit == 1 else text[:-1])
+    if value is None or value <= 0:
+        raise argparse.ArgumentTypeError(f"'{text:.60}' is no size: write one such as 800M or 12G")
+    return int(value * unit)

@@ -14,7 +14,7 @@ from bigactors.mistakes import Mistake
 from bigactors.outputs import outputs_of, write_outputs
 from bigactors.terminal import paint, say, tell
 from bigactors.verdict_files import verdict_json
-from checker import Engine, Limits, Reduction, report_text
+from checker import Engine, Keeping, Limits, Reduction, report_text
 from checker.coverage_report import coverage_text
 from checker.report import MARKS
 from checker.verdicts import Outcome
@@ -34,7 +34,7 @@ WORDS = {
 
 def run(options: Namespace) -> Exit:
     """Check missions; print the reports and write what was asked for."""
-    limits = Limits(configurations=options.max_configurations, seconds=options.max_time)
+    limits = Limits(options.max_configurations, options.max_time, memory=options.max_memory)
     if options.trace:
         make_folder(options.trace)
     if options.verdict:
@@ -44,7 +44,7 @@ def run(options: Namespace) -> Exit:
     results: list[Checked | Failed] = []
     folders: set[str] = set()
     engine = options.engine and Engine(options.engine)
-    how = How(engine, options.violations, tuple(map(Reduction, options.reduce)))
+    how = How(engine, options.violations, tuple(map(Reduction, options.reduce)), keeping_of(options))
     for result in check_missions(options.files, limits, variation_of(options), how):
         results.append(result)
         if not alone:
@@ -60,6 +60,19 @@ def run(options: Namespace) -> Exit:
             say(coloured(line))
     write_outputs(outputs, results, code)
     return code
+
+
+def keeping_of(options: Namespace) -> Keeping | None:
+    """Return what is kept on the way and doubted, None where nothing is asked for."""
+    if options.resume and options.checkpoint is None:
+        raise Mistake("--resume goes on from a checkpoint", "say where it is: --checkpoint DIR")
+    if options.checkpoint is None and options.paranoid is None:
+        return None
+    if options.engine == "reference" or options.reduce:
+        raise Mistake(
+            "--checkpoint and --paranoid are of the fast explorer", "leave --engine and --reduce out"
+        )
+    return Keeping(options.checkpoint, options.resume, every=options.every, doubted=options.paranoid or 0)
 
 
 def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:

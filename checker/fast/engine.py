@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from checker.fast import kernel
 from checker.fast.arrays import Growing
-from checker.fast.columns import packing
+from checker.fast.columns import Packing, packing
 from checker.fast.kernel import ALPHA, AT, CODE, CROWDS, CUT, GATHERED, LIMIT, NODE, SIZE, TREE, TURNS, WORDS
 from checker.fast.learner import Actor, CodedSource, Learner
 from checker.fast.pages import Pages
@@ -36,6 +36,7 @@ class Space:
         learner: What is known of the rules.
         packing: Where each column stands in a row.
         origins: For each row the one that it was first reached from; the first is its own.
+        learned: What was not known on the way: the row, and in which tree, at which node and for which code.
     """
 
     def __init__(self, learner: Learner, limit: int | None) -> None:
@@ -43,6 +44,7 @@ class Space:
         self.state = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
         self.state[TURNS] = learner.setting.scheduler is Scheduler.FCFS
+        self.learned: list[tuple[int, int, int, int]] = []
         self.clauses = [learner.tree(Actor(by_clause, clause)) for clause in learner.setting.environment]
         self.counts = Growing(np.int64)
         self.masks = Growing(np.uint64)
@@ -159,13 +161,48 @@ class Space:
             self._learn(int(self.state[AT]))
 
     def _learn(self, row: int) -> None:
-        learner, node, code = self.learner, int(self.state[NODE]), int(self.state[CODE])
-        known = False
+        unknown = (row, int(self.state[TREE]), int(self.state[NODE]), int(self.state[CODE]))
+        self.learned.append(unknown)
+        self._learn_from(self.codes(row), *unknown[1:])
+        self._see()
+
+    def _learn_from(self, codes: list[int], tree: int, node: int, code: int) -> None:
+        """Learn what was not known at a node of a tree, from the codes of a row that came there."""
+        learner = self.learner
         if node >= 0:
             column = learner.columns.all[learner.trees.column_of(node)]
-            known = learner.trees.settle(node, code, column)
-        if not known:
-            learner.learn(int(self.state[TREE]), CodedSource(learner.columns, self.codes(row)))
+            if learner.trees.settle(node, code, column):
+                return
+        learner.learn(tree, CodedSource(learner.columns, codes))
+
+    def restore(
+        self,
+        where: Packing,
+        words: NDArray[np.uint64],
+        origins: NDArray[np.uint32],
+        learned: list[list[int]],
+    ) -> None:
+        """Go on from the rows of another space of the same mission, learning again what that had learned.
+
+        Raises:
+            ValueError, IndexError: They are not rows of such a space.
+        """
+        rows = words.reshape(len(origins), where.words)
+        for row, tree, node, code in learned:
+            found = (rows[row][where.word] >> where.shift) & where.mask
+            self.learned.append((row, tree, node, code))
+            self._learn_from([int(each) for each in found], tree, node, code)
+            self._agents()  # plants the trees of agents that are new, in the same order
+        if len(where.mask) != len(self.learner.columns):
+            raise ValueError("it has other columns")
+        self.packing, self.state[WORDS], self.state[SIZE] = where, where.words, len(origins)
+        self._reserve_rows(len(origins))
+        self.words.room[: len(words)] = words
+        self.origins.room[: len(origins)] = origins
+        self.masks.size = 0
+        self._make_batch(BATCH)
+        self._rebuild(2 * len(origins))
+        self._make_room()
         self._see()
 
     def _see(self) -> None:

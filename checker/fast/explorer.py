@@ -2,19 +2,26 @@
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
 from typing import overload
 
 from checker.exploration import (
     INTERRUPTION,
     Exploration,
     Inspect,
+    Keeping,
     Limits,
     Progress,
     Report,
     crowd_met,
+    is_full,
     limit_met,
+    memory_met,
     time_met,
 )
+from checker.fast.checkpoint import Journey, resume, save
+from checker.fast.doubt import doubt
 from checker.fast.engine import Space
 from checker.fast.inspecting import inspect_fast
 from checker.fast.learner import Learner
@@ -67,49 +74,79 @@ class Configurations(Sequence[Configuration]):
         return self.space.configuration(range(len(self))[number])
 
 
-def explore_fast(
+def explore_fast(  # as `explore`
     initial: Configuration,
     inspect: tuple[Inspect, ...],
     limits: Limits,
     report: Report | None,
     every: float,
+    keeping: Keeping,
 ) -> Exploration:
-    """Visit everything that is reachable (see `checker.exploration.explore`)."""
-    return _Explorer(initial, limits, report, every).run(inspect)
+    """Visit everything that is reachable (see `checker.exploration.explore`).
+
+    Raises:
+        CheckpointError: There is none to go on from, or it is of something else.
+    """
+    return _Explorer(initial, limits, report, every, keeping).run(inspect)
 
 
 class _Explorer:
-    def __init__(self, initial: Configuration, limits: Limits, report: Report | None, every: float) -> None:
+    def __init__(
+        self,
+        initial: Configuration,
+        limits: Limits,
+        report: Report | None,
+        every: float,
+        keeping: Keeping,
+    ) -> None:
         self.limits = limits
         self.report = report
         self.every = every
+        self.keeping = keeping
         self.learner = Learner(initial.setting, initial.state, limits.pending)  # type: ignore[arg-type]  # a stored one
         self.space = Space(self.learner, limits.configurations)
-        self.depth = 0
+        self.journey = Journey(0, 1, 0.0)
         self.bounds: list[str] = []
 
+    @property
+    def checkpoint(self) -> Path | None:
+        """Where the checkpoint is, if one is kept: the search for stale observations has one of its own."""
+        name = "monitored.npz" if self.learner.setting.monitored else "exploration.npz"
+        return None if self.keeping.folder is None else Path(self.keeping.folder) / name
+
     def run(self, inspect: tuple[Inspect, ...]) -> Exploration:
-        started = time.monotonic()
+        began = time.monotonic()
+        path = self.checkpoint
+        if path is not None and self.keeping.resumed and path.exists():
+            self.journey = resume(self.space, self.keeping.digest, path)
         try:
-            self.visit_all(started)
+            self.visit_all(began - self.journey.seconds)
         except KeyboardInterrupt:
             self.bounds.append(INTERRUPTION)
+        self.keep(time.monotonic() - began + self.journey.seconds)
         space, configurations = self.space, Configurations(self.space)
+        doubt(space, self.keeping.doubted)
         survey = Survey(space)
         inspect_fast(survey, inspect)
         rules = space.rules()
         return Exploration(
             configurations,
             Origins(space),
-            self.depth,
+            self.journey.depth,
             space.expanded,
             sum(rules.values()),
             rules,
             sorted(self.bounds + self.met()),
-            time.monotonic() - started,
+            time.monotonic() - began + self.journey.seconds,
             self.learner.runs,
             survey=survey,
         )
+
+    def keep(self, seconds: float) -> None:
+        """Write a checkpoint, if one is wanted."""
+        path = self.checkpoint
+        if path is not None:
+            save(self.space, replace(self.journey, seconds=seconds), self.keeping.digest, path)
 
     def met(self) -> list[str]:
         most = self.limits.configurations
@@ -117,23 +154,37 @@ class _Explorer:
         return cut + ([crowd_met(self.limits.pending)] if self.space.is_crowded else [])
 
     def visit_all(self, started: float) -> None:
-        layer_end, reported = 1, started
+        reported = kept = time.monotonic()
         while self.space.expanded < self.space.size:
-            self.space.advance(min(self.space.expanded + CHUNK, layer_end))
-            if self.space.expanded == layer_end and self.space.size > layer_end:
-                layer_end = self.space.size
-                self.depth += 1
+            self.advance()
             now = time.monotonic()
-            most = self.limits.seconds
-            if most is not None and now - started + self.limits.spent > most:
-                self.bounds.append(time_met(most))
+            if self.is_over(now - started):
                 return
             if self.report is not None and now - reported >= self.every:
                 self.report(self.progress(now - started))
                 reported = now
+            if now - kept >= self.keeping.every:
+                self.keep(now - started)
+                kept = time.monotonic()
+
+    def advance(self) -> None:
+        """Expand some rows of a layer; begin the next one where it ends."""
+        space, end = self.space, self.journey.layer_end
+        space.advance(min(space.expanded + CHUNK, end))
+        if space.expanded == end and space.size > end:
+            self.journey = Journey(self.journey.depth + 1, space.size, self.journey.seconds)
+
+    def is_over(self, seconds: float) -> bool:
+        """Tell whether time or memory has come to its end, and note it."""
+        most = self.limits.seconds
+        if most is not None and seconds + self.limits.spent > most:
+            self.bounds.append(time_met(most))
+        elif is_full(self.limits):
+            self.bounds.append(memory_met(self.limits))
+        return bool(self.bounds)
 
     def progress(self, seconds: float) -> Progress:
         space = self.space
         rate = space.expanded / max(seconds, 1e-9)
         transitions = int(space.counts.used.sum())
-        return Progress(space.size, transitions, self.depth, space.size - space.expanded, rate)
+        return Progress(space.size, transitions, self.journey.depth, space.size - space.expanded, rate)

@@ -1,0 +1,129 @@
+"""Checkpoints: everything from which an exploration goes on after its process was killed.
+
+Rows, origins and counts are saved as they are. What was learned is not: it is learned again from the rows at which it
+was learned, in the same order, so that nothing in a checkpoint is ever evaluated. A digest of all columns tells whether
+that came to the same.
+"""
+
+import json
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from checker.exploration import CheckpointError
+from checker.fast.columns import Packing
+from checker.fast.engine import Space
+from checker.fast.kernel import AT, CROWDS, CUT, LIMIT, SIZE
+from semantics.canonical import canonical
+
+SCHEMA = "bigactors.checkpoint/1"
+KEPT = (AT, SIZE, CUT, CROWDS)
+"""What of the loops' state goes on; the rest follows from the mission."""
+
+MOST_BYTES = 1 << 40
+
+
+@dataclass(frozen=True, slots=True)
+class Journey:
+    """How far the exploration had come: its depth, where its layer ends, and the seconds that it took."""
+
+    depth: int
+    layer_end: int
+    seconds: float
+
+
+def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
+    """Write a checkpoint in the place of the one before: what is there is always whole."""
+    columns = space.learner.columns.all
+    head = {
+        "schema": SCHEMA,
+        "digest": digest,
+        "limit": int(space.state[LIMIT]),
+        "words": space.packing.words,
+        "depth": journey.depth,
+        "layer_end": journey.layer_end,
+        "seconds": journey.seconds,
+        "columns": _digest_of_columns(space),
+    }
+    partial = path.with_suffix(".partial")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with partial.open("wb") as file:
+        np.savez(
+            file,
+            head=np.frombuffer(json.dumps(head).encode(), np.uint8),
+            rows=space.words.room[: space.size * space.packing.words],
+            origins=space.origins.room[: space.size],
+            counts=space.counts.used,
+            packing=space.packing.columns[: 3 * len(columns)],
+            learned=np.array(space.learned, np.int64).reshape(-1, 4),
+            state=space.state[list(KEPT)],
+        )
+        file.flush()
+        os.fsync(file.fileno())
+    partial.replace(path)
+
+
+def resume(space: Space, digest: str, path: Path) -> Journey:
+    """Let a new space go on where a checkpoint was written.
+
+    Raises:
+        CheckpointError: It is damaged, or of another mission, variation, limit or version.
+    """
+    arrays = _read(path)
+    head = _head(arrays, path)
+    if head.get("digest") != digest or head.get("limit") != int(space.state[LIMIT]):
+        raise CheckpointError(f"{path}: this checkpoint is of another mission, variation, limit or version")
+    try:
+        space.restore(
+            Packing(int(head["words"]), arrays["packing"].astype(np.uint64)),
+            arrays["rows"].astype(np.uint64),
+            arrays["origins"].astype(np.uint32),
+            arrays["learned"].astype(np.int64).tolist(),
+        )
+        space.counts.size = 0
+        space.counts.extend(len(space.learner.leaves.rule))
+        space.counts.used[: len(arrays["counts"])] = arrays["counts"]
+        space.state[list(KEPT)] = arrays["state"]
+        journey = Journey(int(head["depth"]), int(head["layer_end"]), float(head["seconds"]))
+    except (ValueError, IndexError, KeyError, TypeError) as error:
+        raise CheckpointError(f"{path}: this checkpoint is damaged: {error}") from error
+    if _digest_of_columns(space) != head["columns"]:
+        raise CheckpointError(f"{path}: what is learned from this checkpoint is not what was learned")
+    return journey
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise CheckpointError(f"{path}: a checkpoint is no larger than {MOST_BYTES:,} bytes")
+        with np.load(path, allow_pickle=False) as file:
+            return {name: file[name] for name in file.files}
+    except (OSError, ValueError) as error:
+        raise CheckpointError(f"{path}: this is no checkpoint: {error}") from error
+
+
+def _head(arrays: dict[str, Any], path: Path) -> dict[str, Any]:
+    try:
+        head = json.loads(arrays["head"].tobytes())
+    except (KeyError, ValueError) as error:
+        raise CheckpointError(f"{path}: this is no checkpoint: {error}") from error
+    if not isinstance(head, dict) or head.get("schema") != SCHEMA:
+        raise CheckpointError(f"{path}: this is no checkpoint of the schema {SCHEMA}")
+    return head
+
+
+def _digest_of_columns(space: Space) -> str:
+    found = sha256()
+    for line in _lines(space):
+        found.update(line.encode("utf-8", "surrogatepass"))
+    return found.hexdigest()
+
+
+def _lines(space: Space) -> Iterator[str]:
+    for column in space.learner.columns.all:
+        yield canonical((column.place, tuple(column.values)))

@@ -1,0 +1,43 @@
+"""Doubt (`--paranoid`): the interpreter is asked once more what follows from a sample of configurations."""
+
+from collections import Counter
+from random import Random
+
+from checker.fast.engine import Space
+from semantics.configuration import Configuration
+from semantics.printing import print_configuration
+from semantics.successors import expand
+
+SEED = 20260
+
+
+class Disagreement(Exception):  # what it is
+    """What was learned does not lead where the rules lead: a bug of ours."""
+
+
+def doubt(space: Space, count: int) -> None:
+    """Compare what was learned with the rules on some configurations, chosen alike in every run.
+
+    Raises:
+        Disagreement: There is a difference; it says where.
+    """
+    numbers = range(space.expanded)
+    for number in sorted(Random(SEED).sample(numbers, min(count, len(numbers)))):
+        compare(space, number)
+
+
+def compare(space: Space, number: int) -> None:
+    """Compare the successors of one configuration, with how often and by which rule each is reached."""
+    c = space.configuration(number)
+    learned: Counter[tuple[str, Configuration]] = Counter()
+    left_out = 0
+    for _, steps, targets in space.edges(range(number, number + 1)):
+        for step, target in zip(steps, targets, strict=True):
+            if target < 0:
+                left_out += 1  # beyond the limit of configurations
+            else:
+                learned[space.learner.steps[int(step)].rule, space.configuration(int(target))] += 1
+    ruled = Counter((t.label.rule, t.target) for t in expand(c).transitions)
+    if learned - ruled or (ruled - learned).total() != left_out:
+        wrong = ", ".join(sorted({rule for rule, _ in (learned - ruled) + (ruled - learned)}))
+        raise Disagreement(f"configuration {number}: {wrong}\n{print_configuration(c)}")
