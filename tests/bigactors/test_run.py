@@ -2,6 +2,8 @@
 
 import os
 import stat
+import tempfile
+from pathlib import Path
 
 import pytest
 
@@ -13,11 +15,15 @@ UAV = "--vehicle=uav0=udp:127.0.0.1:0"
 
 
 @pytest.fixture
-def there(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "runtime"))
-    (tmp_path / "runtime").mkdir(mode=0o700)
-    return tmp_path
+def there(monkeypatch):
+    """Work in a folder of a short name: the path of a socket has at most 100 bytes."""
+    with tempfile.TemporaryDirectory() as name:
+        here = Path(name).resolve()
+        monkeypatch.chdir(here)
+        monkeypatch.setenv("XDG_RUNTIME_DIR", str(here / "runtime"))
+        (here / "runtime").mkdir(mode=0o700)
+        yield here
+        monkeypatch.undo()  # leave the folder before it goes
 
 
 @pytest.mark.usefixtures("there")

@@ -204,7 +204,7 @@ def test_coverage_reads_projections_alone():
     mission = load(agent(LOOKS) + "environment { uav1 drifts among gate0 }")
     visited = Visited()
     explore(mission.initial, (visited,))
-    rebuilt = Visited(dict(visited.codes), set(visited.moments), set(visited.happened))
+    rebuilt = Visited(dict(visited.codes), set(visited.moments), happened=set(visited.happened))
     assert coverage(mission.initial, rebuilt, complete=True) == coverage(
         mission.initial, visited, complete=True
     )

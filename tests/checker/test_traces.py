@@ -102,7 +102,8 @@ def test_the_empty_trace_replays(oil_spill):
 def test_which_of_several_successors_of_one_label_was_taken_is_kept():
     text = "BigActor a hosted_at uav0 with_behavior { choose x in {1, 2, 3} { display(x) send(x, a) } }"
     found = explore(load(text).initial)
-    ways = [trace_to(found, number) for number, depth in enumerate(found.depths) if depth == 1]
+    runs = [trace_to(found, number) for number in range(len(found.configurations))]
+    ways = [run for run in runs if len(run) == 1]
     assert sorted(way.steps[0].choice for way in ways) == [0, 1, 2]
     for way in ways:
         assert replay(load(text).initial, through_json(way)) == way
@@ -119,20 +120,16 @@ def test_two_messages_that_print_alike_are_told_apart():
     """.replace("PARENT(drifter0)", "PARENT(vessel0)")
     c = load(text).initial
     found = explore(c)
-    alike = [
-        number
-        for number, label in enumerate(found.labels)
-        if label is not None and label.rule == "snd" and len(candidates_of(found, number)) == 2
-    ]
+    runs = [trace_to(found, number) for number in range(1, len(found.configurations))]
+    alike = [run for run in runs if run.steps[-1].label.rule == "snd" and len(candidates_of(run)) == 2]
     assert alike  # both messages are on their way, show {north0}, and hold different relations
-    for number in alike:
-        trace = trace_to(found, number)
+    for trace in alike:
         assert replay(c, through_json(trace)) == trace
 
 
-def candidates_of(found, number):
-    source = found.configurations[found.origins[number]]
-    return [t for t in candidates(source) if str(t.label) == str(found.labels[number])]
+def candidates_of(run):
+    source, last = run.configurations[-2], run.steps[-1]
+    return [t for t in candidates(source) if str(t.label) == str(last.label)]
 
 
 @settings(max_examples=25)
