@@ -172,7 +172,14 @@ class _Check:
     ) -> Exploration:
         reducer = self.reducer if start is self.initial else None
         return explore(
-            start, inspections, limits, self.report, engine=self.engine, edges=edges, reduce=reducer
+            start,
+            inspections,
+            limits,
+            self.report,
+            engine=self.engine,
+            edges=edges,
+            reduce=reducer,
+            keeping=self.keeping,
         )
 
     def search(self) -> Exploration | None:
