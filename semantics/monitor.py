@@ -8,11 +8,11 @@ from dataclasses import replace
 from functools import partial
 
 from semantics.agents import Watch, watch_cell
-from semantics.cells import MONITOR, QUEUE, Cell, Changes
+from semantics.cells import MONITOR, QUEUE, Cell, Changes, merged
 from semantics.configuration import Configuration, Transition
 from semantics.eta import line_cell, sends_cell
 from semantics.provenance import NOTHING, SLOT, Dependency, Key, Provenance, differences
-from semantics.queries import Query, evaluate
+from semantics.queries import Nodes, Of, Query, evaluate
 from semantics.requests import CTR, FLY, SND, Request
 from semantics.signature import Name
 from semantics.structure import Parent, Relation
@@ -29,23 +29,58 @@ def marked(c: Configuration, transition: Transition) -> Transition:
     """
     if not c.setting.monitored or transition.label.rule not in CONTROLS:
         return transition
-    after = transition.target
-    slots = changed_slots(c, after)
-    author = str(transition.label.agent)
-    mark = partial(_mark, memo={}, answer=lambda query: slots | _changed_answers(c, after, query))
-    changes: Changes = {}
-    for agent in after.alpha.names():
-        changes |= _mark_memory(after, agent, mark) if agent != author else {}
-    for cell in _request_cells(after):
-        changes |= _mark_requests(after, cell, author, mark)
-    return replace(transition, target=after.with_(changes)) if changes else transition
+    after, author = transition.target, str(transition.label.agent)
+
+    def marking(holder: Name) -> Changes:
+        """Return the marks in the memory of one agent and in its requests; nobody's are those of the common queue."""
+        mark = partial(_mark, memo={}, answer=partial(_changed, c, after))
+        mine = {} if holder in (author, NOBODY) else _mark_memory(after, holder, mark)
+        return mine | merged(
+            _mark_requests(after, cell, author, mark) for cell in _request_cells(after, holder)
+        )
+
+    return replace(transition, target=after.with_each(after.each((NOBODY, *after.alpha.names()), marking)))
 
 
-def changed_slots(before: Configuration, after: Configuration) -> frozenset[Key]:
-    """Return the slots of A(P) in which two configurations differ."""
+NOBODY: Name = ""
+"""Whose requests are those of the queue that all agents share under `fcfs`."""
+
+
+def _changed(before: Configuration, after: Configuration, query: Query) -> frozenset[Key]:
+    """Return the slots of A(P), and the answers to a query, in which two configurations differ."""
+    names = touched(before, after)
+    old, new = (evaluate(query, c.structure.physical, c.alpha) for c in (before, after))
+    return changed_slots(before, after, names) | differences(old, new, names if is_local(query) else None)
+
+
+def touched(before: Configuration, after: Configuration) -> tuple[Name, ...]:
+    """Return the entities whose place or links in A(P) may have changed, sorted."""
+    everyone, setting = tuple(sorted(before.setting.kinds)), before.setting
+    names: set[Name] = set()
+    for cell in after.state.changed(before.state):
+        holds = cell[0] == "placement" and setting.signature[setting.kind(cell[-1])].holds
+        if holds or cell[0] == "down":
+            return everyone
+        if cell[0] in ("placement", "channels"):
+            names.add(cell[-1])
+    return tuple(sorted(names))
+
+
+def is_local(query: Query) -> bool:
+    """Tell whether, as long as the places and links are the same that were swept, each answer is about one entity."""
+    if not isinstance(query, Of) or query.operator not in ("CHILDREN", "LINKED_TO"):
+        return False
+    inner = query.of
+    while isinstance(inner, Of) and inner.operator == "PARENT":
+        inner = inner.of
+    return isinstance(inner, Nodes)
+
+
+def changed_slots(before: Configuration, after: Configuration, names: tuple[Name, ...]) -> frozenset[Key]:
+    """Return the slots of A(P) in which two configurations differ about some entities."""
     old, new = before.structure.physical, after.structure.physical
     keys: set[Key] = set()
-    for name in before.setting.kinds:
+    for name in names:
         parents = {p.abstract_parent(name) if name in p else None for p in (old, new)}
         if len(parents) > 1:
             keys |= {(f"{SLOT}parent", name)} | {(f"{SLOT}children", place) for place in parents if place}
@@ -72,11 +107,6 @@ def stale_tests(request: Request, rests_on: Provenance, used: frozenset[Key]) ->
     return tuple(sorted(stale, key=repr))
 
 
-def _changed_answers(before: Configuration, after: Configuration, query: Query) -> frozenset[Key]:
-    views = [evaluate(query, c.structure.physical, c.alpha) for c in (before, after)]
-    return differences(views[0], views[1])
-
-
 Mark = Callable[[Provenance], Provenance]
 Memo = dict[Query, frozenset[Key]]
 
@@ -100,8 +130,8 @@ def _mark_memory(c: Configuration, agent: Name, mark: Mark) -> Changes:
     return {watch_cell(agent): Watch(*parts)}
 
 
-def _request_cells(c: Configuration) -> list[Cell]:
-    cells = [QUEUE, *(make(agent) for agent in c.alpha.names() for make in (line_cell, sends_cell))]
+def _request_cells(c: Configuration, holder: Name) -> list[Cell]:
+    cells = [QUEUE] if holder == NOBODY else [line_cell(holder), sends_cell(holder)]
     return [cell for cell in cells if c.read(cell)]
 
 

@@ -3,9 +3,11 @@
 The race monitor's memory. A stored observation is a dependency with no question yet; testing it asks one.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from semantics.queries import Observation, Query
+from semantics.queries import AGENT, Observation, Query
+from semantics.signature import Name
 
 Key = tuple[str, ...]
 """One thing that an observation may be asked, or one slot of A(P): `("in", "uav0")`, `("parent", "uav0")`."""
@@ -56,17 +58,23 @@ def asking(provenance: Provenance, keys: tuple[Key, ...]) -> Provenance:
     return provenance.difference(stored) | {each.testing(key) for each in stored for key in keys}
 
 
-def differences(before: Observation, after: Observation) -> frozenset[Key]:
-    """Return the questions that two observations of one query answer differently."""
-    keys: set[Key] = {
-        ("in", name) for name in set(before.shown + before.agents) ^ set(after.shown + after.agents)
-    }
-    for node in {*before.nodes(), *after.nodes()}:
-        if before.parent(node) != after.parent(node):
-            keys.add(("parent", node))
-        if before.links(node) != after.links(node):
-            keys.add(("links", node))
-    for pair in set(before.relations) ^ set(after.relations):
-        place = getattr(pair, "place", None)
-        keys.update({("children", place)} if place else ())
-    return frozenset(keys | {EVERYTHING}) if keys or before != after else frozenset()
+def differences(
+    before: Observation, after: Observation, names: Iterable[Name] | None = None
+) -> frozenset[Key]:
+    """Return the questions that two observations of one query answer differently.
+
+    Where it is known about which `names` alone they may differ, if they swept the same, only those are compared.
+    """
+    everywhere = names is None or before.swept != after.swept
+    about = {name for name, _ in (*before.facts, *after.facts)} if everywhere else frozenset(names or ())
+    keys: set[Key] = set()
+    for name in sorted(about):
+        old, new = before.fact(name), after.fact(name)
+        if old.shown != new.shown:
+            keys.add(("in", name.removeprefix(AGENT)))
+        if old.parent != new.parent:
+            places = {place for place in (old.parent, new.parent) if place is not None}
+            keys |= {("parent", name), *(("children", place) for place in places)}
+        if old.links != new.links:
+            keys.add(("links", name))
+    return frozenset(keys | {EVERYTHING}) if keys or before.swept != after.swept else frozenset()

@@ -21,6 +21,11 @@ class Kind:
     driven: bool = False
     passive: bool = False
 
+    @property
+    def holds(self) -> bool:
+        """Whether anything may be a child of such a node."""
+        return bool(self.contains or self.carries)
+
     def may_contain(self, kind: str) -> bool:
         """Tell whether a node of `kind` may be a child; what is carried is contained."""
         return kind in self.contains or kind in self.carries

@@ -61,10 +61,16 @@ Writes = list[tuple[int, int]]
 
 
 class Columns:
-    """All columns of an exploration."""
+    """All columns of an exploration.
 
-    def __init__(self, mobile: frozenset[Name]) -> None:
+    Attributes:
+        mobile: The names that an observation has columns for.
+        apart: The names about which a rule's conclusion is worked out apart: those, and agents.
+    """
+
+    def __init__(self, mobile: frozenset[Name], agents: frozenset[Name] = frozenset()) -> None:
         self.mobile = mobile
+        self.apart = mobile | agents
         self.names = tuple(sorted(mobile))
         self.all: list[Column] = []
         self.numbers: dict[Place, int] = {}

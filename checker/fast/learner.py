@@ -131,7 +131,7 @@ class Learner:
 
     def __post_init__(self) -> None:
         mobile = mobile_names(self.setting, self.still)
-        self.columns = Columns(mobile)
+        self.columns = Columns(mobile, agents_of(self.setting, self.still))
         self.writing = Writing(self.columns, self.still, self.varying)
         for cell, value in self.still.items():
             self.columns.start(cell, value)
@@ -257,9 +257,14 @@ def mobile_names(setting: Setting, first: Row) -> frozenset[Name]:
     aboard = {cell[-1] for cell, value in first.items() if isinstance(value, Carried)}
     agents: set[Name] = set()
     if any(isinstance(statement, Migrate | Spawn) for statement in setting.program.statements):
-        agents = {agent_key(cell[-1]) for cell, _ in first.items() if cell[0] == "host"}
-        agents |= {agent_key(s.name) for s in setting.program.statements if isinstance(s, Spawn)}
+        agents = set(map(agent_key, agents_of(setting, first)))
     return frozenset(driven | around | aboard | agents)
+
+
+def agents_of(setting: Setting, first: Row) -> frozenset[Name]:
+    """Return every agent that there may ever be."""
+    spawned = (each.name for each in setting.program.statements if isinstance(each, Spawn))
+    return frozenset((*(cell[-1] for cell, _ in first.items() if cell[0] == "host"), *spawned))
 
 
 def is_crowded(c: Configuration, a: Name, most: int) -> bool:

@@ -32,7 +32,7 @@ class Concluded:
         effect: What it writes whomever it is about.
         said: What is said name by name in holes: the cell, the hole's number, the family.
         families: What is written name by name.
-        apart: The mobile names about which something is said or written so.
+        apart: The names about which that is worked out apart.
     """
 
     step: Transition
@@ -69,8 +69,8 @@ class Writing:
         found.families = state.families
         for cell, value in (state.changes | merged(self._about_still(state))).items():
             self._write(cell, value, found)
-        families = (*state.families, *(family for _, _, family in found.said))
-        about = frozenset[Name]().union(*(self.columns.mobile.intersection(family) for family in families))
+        about = {name for _, _, family in found.said for name in self.columns.mobile.intersection(family)}
+        about.update(name for family in state.families for name in family if name in self.columns.apart)
         found.apart = tuple(sorted(about))
         return found
 
@@ -79,7 +79,7 @@ class Writing:
         writes = [
             self._coded((cell, number, name), family[name])
             for cell, number, family in found.said
-            if name in family
+            if name in self.columns.mobile and name in family
         ]
         inner = Concluded(found.step)
         for cell, value in merged(family[name] for family in found.families if name in family).items():
@@ -89,8 +89,8 @@ class Writing:
         return writes + inner.effect.writes
 
     def _about_still(self, state: Conclusion) -> Iterator[Changes]:
-        mobile = self.columns.mobile
-        return (family[name] for family in state.families for name in family if name not in mobile)
+        apart = self.columns.apart
+        return (family[name] for family in state.families for name in family if name not in apart)
 
     def _write(self, cell: Cell, value: Any, found: Concluded) -> None:
         skeleton, families = taken_apart(value, self.columns.mobile)
