@@ -27,8 +27,8 @@ def fill(parser: Parser) -> None:
         "--max-configurations",
         metavar="N",
         type=at_least_one,
-        default=2_000_000,
-        help="visit no more than N configurations (default 2,000,000)",
+        help="visit no more than N configurations (default 100,000,000, of which each takes some 30 bytes; 2,000,000 "
+        "with --engine reference or --reduce)",
     )
     parser.add_argument(
         "--max-time",

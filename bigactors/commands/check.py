@@ -34,7 +34,7 @@ WORDS = {
 
 def run(options: Namespace) -> Exit:
     """Check missions; print the reports and write what was asked for."""
-    limits = Limits(options.max_configurations, options.max_time, memory=options.max_memory)
+    limits = Limits(most_of(options), options.max_time, memory=options.max_memory)
     if options.trace:
         make_folder(options.trace)
     if options.verdict:
@@ -60,6 +60,16 @@ def run(options: Namespace) -> Exit:
             say(coloured(line))
     write_outputs(outputs, results, code)
     return code
+
+
+MOST, MOST_OF_REFERENCE = 100_000_000, 2_000_000
+"""How many configurations are visited at most: those of the reference explorer take a thousand bytes each."""
+
+
+def most_of(options: Namespace) -> int:
+    """Return how many configurations are visited at most."""
+    usual = MOST_OF_REFERENCE if options.engine == "reference" or options.reduce else MOST
+    return options.max_configurations or usual
 
 
 def keeping_of(options: Namespace) -> Keeping | None:
