@@ -326,3 +326,44 @@ def test_a_pattern_that_is_too_large_is_refused():
         run(text)
     fits = text.replace(large, " | ".join(["A"] * 150)).replace("big start = A;", f"big start = {large};")
     assert len(run(fits, max_states=3)) == 2
+
+
+def test_instantaneous_reactions_after_equal_results_are_counted_once():
+    """Either A may become a B, with the same result; the three C that follow are counted once, as BigraphER does."""
+    text = """\
+atomic ctrl A = 0; atomic ctrl B = 0; atomic ctrl C = 0; atomic ctrl D = 0;
+big s0 = A | A | C | C | C;
+react change = A --> B;
+react burn = B | C --> B;
+begin brs init s0; rules = [ (burn), {change} ]; end
+"""
+    assert counts(text) == (3, 2, (2 + 3) + 1)
+
+
+PICK = """\
+atomic ctrl Fork = 2; atomic ctrl Held = 1; atomic ctrl Left = 1; atomic ctrl Right = 1;
+big s0 = {start};
+react pick = Fork{{x, y}} -[1.0]-> Held{{x}} | {{y}};
+begin sbrs init s0; rules = [ {{pick}} ]; end
+"""
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        "/a /b (Fork{a, b} | Left{a} | Right{b})",
+        "/b /a (Right{b} | Left{a} | Fork{a, b})",
+        "/a /b (Fork{b, a} | Left{a} | Right{b})",
+    ],
+)
+def test_ports_that_fit_in_two_ways_are_two_choices_however_the_state_is_written(start):
+    """BigraphER takes one of the two, and which one depends on how the state is written."""
+    assert counts(PICK.format(start=start)) == (3, 2, 2)
+
+
+def test_rates_of_choices_between_ports_do_not_depend_on_what_else_is_on_the_links():
+    """Where the two choices give equal states their rates are summed, as they are seen apart otherwise."""
+    alike = run(PICK.format(start="/a /b (Fork{a, b} | Left{a} | Left{b})"))
+    apart = run(PICK.format(start="/a /b (Fork{a, b} | Left{a} | Left{b} | Right{b})"))
+    assert list(alike.weights) == [2]
+    assert list(apart.weights) == [1, 1]
