@@ -367,3 +367,34 @@ def test_rates_of_choices_between_ports_do_not_depend_on_what_else_is_on_the_lin
     apart = run(PICK.format(start="/a /b (Fork{a, b} | Left{a} | Left{b} | Right{b})"))
     assert list(alike.weights) == [2]
     assert list(apart.weights) == [1, 1]
+
+
+def test_what_would_be_put_nowhere_is_an_error_that_names_the_rule():
+    """For BigraphER B becomes a node without a place, and one more with every step."""
+    text = """\
+ctrl Range = 0; atomic ctrl A = 0; atomic ctrl B = 0;
+big start = Range.A;
+big left = share (A || id) by ([{0, 1}, {0}], 2) in (Range || id);
+react spill = left --> Range.(A | id) || B;
+begin brs init start; rules = [ {spill} ]; end
+"""
+    with pytest.raises(BigraphError, match="rule 'spill' puts something into a region that lies nowhere"):
+        run(text)
+
+
+DROP = """\
+ctrl Room = 0; atomic ctrl A = 0;
+big start = Room.(A | A | A);
+react drop = Room.(A | id) --> {right};
+begin brs init start; rules = [ {{drop}} ]; end
+"""
+
+
+def test_what_a_site_held_is_dropped_by_an_instantiation():
+    assert counts(DROP.format(right="Room.A @ []")) == (2, 2, 4)
+
+
+@pytest.mark.parametrize("right", ["Room.A || 0", "Room.A || split(0)", "Room.A || ([{}], 0)"])
+def test_a_site_that_is_nowhere_is_refused(right):
+    with pytest.raises(BigraphError):
+        run(DROP.format(right=right))
