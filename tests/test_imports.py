@@ -26,7 +26,7 @@ LIBRARIES = {
     "pyproj": ("physical/",),
     "lark": ("specs/", "bigraphs/notation/"),
     "networkx": ("bigraphs/", "checker/", "specs/elaboration/bodies.py"),  # where a graph is a graph
-    "numpy": ("checker/",),
+    "numpy": ("checker/", "bigactors/big_temporal.py"),  # arrays for the checker
     "numba": ("checker/",),
     "scipy": ("checker/temporal/components.py",),
     "pyais": ("physical/ais_decode.py",),

@@ -15,7 +15,7 @@ FILE: Final = (
 TASKS: Final = {
     "full": "every state that can be reached, written for people and for other programs",
     "sim": "one seeded run",
-    "check": "whether predicates always, never or ever hold, with a shortest run that shows it",
+    "check": "whether predicates hold always, never or ever, and formulas of LTL and CTL, with a run that shows it",
     "validate": "whether the file makes sense, and what is in it",
     "show": "a state, printed and drawn",
 }
@@ -119,6 +119,13 @@ def _check(task: Parser) -> None:
             type=named,
             help=f"{text}; may be repeated",
         )
+    for option, text in (
+        ("--ltl", "a formula of predicates that is true of every run, such as 'p leads to q'"),
+        ("--ctl", "a formula of predicates that is true of the tree of runs, such as 'AG EF p'"),
+    ):
+        wanted.add_argument(
+            option, metavar="FORMULA", action="append", default=[], help=f"{text}; may be repeated"
+        )
     wanted.add_argument("--no-deadlock", action="store_true", help="something can happen in every state")
     task.add_argument(
         "--json", metavar="FILE", type=named, help="verdicts as data; - for standard output, alone"
@@ -163,6 +170,7 @@ COMMAND = Command(
         "bigactors big full --storm network --max-states 100000 network.big",
         "bigactors big sim --seed 7 --until 20 network.big",
         "bigactors big check --never collision network.big",
+        "bigactors big check --ltl 'request leads to answer' --ctl 'AG EF idle' network.big",
     ),
     fill,
 )

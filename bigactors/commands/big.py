@@ -1,17 +1,17 @@
 """`bigactors big`: systems of bigraphs, without missions."""
 
-import sys
 from argparse import Namespace
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 
+from bigactors.big_checks import MARKS, asks_nothing, check_formulas, decided_json, decided_lines, verdicts_on
 from bigactors.big_output import check_outputs, write_outputs
 from bigactors.exits import Exit, worst
 from bigactors.files import json_text, write_json
 from bigactors.mistakes import Mistake
 from bigactors.progress import Watch, watching
-from bigactors.terminal import is_terminal, paint, say, say_text, tell
+from bigactors.terminal import is_terminal, say, say_text, tell
 from bigraphs import BigraphError, NotationError, draw_text, save_bigraph
 from bigraphs.engine.machine import Machine
 from bigraphs.examples import example_names, example_text
@@ -21,20 +21,6 @@ from bigraphs.notation import load_system, read_system, write_big
 from bigraphs.simulation import Bounds, Stage, simulate
 from bigraphs.system import System, SystemKind
 from bigraphs.transitions import TransitionSystem
-from bigraphs.verdicts import (
-    Outcome,
-    Quantifier,
-    Verdict,
-    deadlock_verdict,
-    predicate_verdict,
-    property_verdict,
-)
-
-MARKS: Final = {
-    Outcome.HOLDS: ("✓", "green", Exit.HOLDS),
-    Outcome.VIOLATED: ("✗", "red", Exit.VIOLATED),
-    Outcome.INCOMPLETE: ("?", "yellow", Exit.INCOMPLETE),
-}
 
 
 def run(options: Namespace) -> Exit:
@@ -137,75 +123,23 @@ def stage_json(stage: Stage) -> dict[str, Any]:
 def check(options: Namespace) -> Exit:
     """Decide what is claimed."""
     system = read_file(options)
-    found = explored(options, system)
-    verdicts = list(verdicts_on(options, found))
-    if not verdicts:
+    if asks_nothing(options, system):
         raise Mistake(
             "there is nothing to check",
-            "give --always, --never or --reachable with a predicate, or --no-deadlock",
+            "give --always, --never or --reachable with a predicate, --ltl or --ctl with a formula, or --no-deadlock",
             options.file,
         )
+    check_formulas(options, system)
+    found = explored(options, system)
+    decided = list(verdicts_on(options, found))
     if options.json != "-":
         say(summary(options.file, found))
-        for verdict in verdicts:
-            for line in verdict_lines(found, verdict):
+        for each in decided:
+            for line in decided_lines(found, each):
                 say(line)
     if options.json:
-        _write_json(options.json, verdicts_json(found, verdicts))
-    return worst(MARKS[verdict.outcome][2] for verdict in verdicts)
-
-
-def verdicts_on(options: Namespace, found: TransitionSystem) -> Iterator[Verdict]:
-    """Yield a verdict on each thing that is claimed."""
-    for quantifier in Quantifier:
-        for label in getattr(options, quantifier.value):
-            yield predicate_verdict(found, quantifier, label)
-    if options.no_deadlock:
-        yield deadlock_verdict(found)
-    yield from (property_verdict(found, claim) for claim in found.system.properties)
-
-
-def verdict_lines(found: TransitionSystem, verdict: Verdict) -> Iterator[str]:
-    """Yield what is printed of a verdict: with a state that shows it, a shortest run to that state."""
-    mark, colour, _ = MARKS[verdict.outcome]
-    yield f"  {paint(mark, colour, sys.stdout)} {verdict.claim}: {verdict.outcome.value}"
-    if verdict.state is not None:
-        path = found.path_to(verdict.state)
-        yield f"      a shortest run to state {verdict.state}, {len(path) - 1} steps:"
-        for before, state in zip([None, *path], path, strict=False):
-            rules = "" if before is None else f"--{', '.join(found.rules_between(before, state))}--> "
-            yield f"        {state}: {rules}{write_big(found.state(state))}"
-
-
-def verdicts_json(found: TransitionSystem, verdicts: list[Verdict]) -> dict[str, Any]:
-    """Return verdicts as data."""
-    return {
-        "states": len(found),
-        "transitions": len(found.starts),
-        "complete": found.complete,
-        "reason": found.reason,
-        "verdicts": [
-            {
-                "claim": verdict.claim,
-                "outcome": verdict.outcome.value,
-                "run": None
-                if verdict.state is None
-                else [_step_json(found, pair) for pair in _pairs(found, verdict)],
-            }
-            for verdict in verdicts
-        ],
-    }
-
-
-def _pairs(found: TransitionSystem, verdict: Verdict) -> list[tuple[int | None, int]]:
-    path = found.path_to(verdict.state or 0)
-    return list(zip([None, *path], path, strict=False))
-
-
-def _step_json(found: TransitionSystem, pair: tuple[int | None, int]) -> dict[str, Any]:
-    before, state = pair
-    rules = [] if before is None else list(found.rules_between(before, state))
-    return {"number": state, "rules": rules, "state": bigraph_json(found.state(state))}
+        _write_json(options.json, decided_json(found, decided))
+    return worst(MARKS[each.outcome][2] for each in decided)
 
 
 def validate(options: Namespace) -> Exit:

@@ -27,7 +27,11 @@ MOST_INSTANTANEOUS: Final = 100_000
 
 
 class Step(NamedTuple):
-    """One thing that can happen: the rule, where, and the state that it leads to."""
+    """One thing that can happen: the rule, where, and the state that it leads to.
+
+    `reactions` counts it and the instantaneous reactions that follow, which are counted once where several occurrences
+    have equal results.
+    """
 
     reaction: Reaction
     occurrence: Occurrence
@@ -90,11 +94,21 @@ class Machine:
             if instant:
                 continue
             enabled = [(reaction, found) for reaction in reactions for found in spot.live(reaction)]
+            settled: set[Key] = set()
             for reaction, found in enabled:
-                target, count = self.settle(spot.after(reaction.apply(spot.state, found)[0]))
-                yield Step(reaction, found, target, 1 + count)
+                result = spot.after(reaction.apply(spot.state, found)[0])
+                target, count = self.settle(result)
+                yield Step(reaction, found, target, 1 + (count and self._counted(result, count, settled)))
             if enabled:
                 return
+
+    def _counted(self, result: Spot, count: int, settled: set[Key]) -> int:
+        """Return a number of instantaneous reactions, 0 where those that follow an equal result are counted already."""
+        key = self.labelling.canonical(result.state)
+        if key in settled:
+            return 0
+        settled.add(key)
+        return count
 
     def settle(self, spot: Spot) -> tuple[Spot, int]:
         """Apply instantaneous rules until none can be applied, or an ordinary class above them is enabled.

@@ -1,4 +1,5 @@
 import json
+import re
 
 import pytest
 
@@ -91,6 +92,54 @@ class TestBig:
             ("never crowd", "holds"),
             ("reachable meeting", "holds"),
             ("no deadlock", "holds"),
+        ]
+
+    def test_a_formula_that_fails_comes_with_a_run_and_its_loop(self, bigactors):
+        code, out, _ = bigactors("big", "check", "--ltl", "<> not meeting", "walk.big")
+        assert code == 0
+        assert "  ✓ ltl <> not meeting: holds\n" in out
+        code, out, _ = bigactors(
+            "big", "check", "--ltl", "[]<> meeting", "--ctl", "AG EF meeting", "walk.big"
+        )
+        assert code == 1
+        assert "  ✗ ltl []<> meeting: violated\n      a run on which it is false:\n        0: " in out
+        assert re.search(
+            r"\n        and again from state \d+, by --walk-->\n  ✓ ctl AG EF meeting: holds\n", out
+        )
+
+    def test_formulas_are_decided_in_data_too(self, bigactors):
+        asked = ["--ltl", "[] not gone", "--ltl", "[]<> not gone", "--ctl", "AF gone"]
+        code, out, _ = bigactors("big", "check", *asked, "--json", "-", "decay.big")
+        prefix, lasso, tree = json.loads(out)["verdicts"]
+        assert code == 1
+        assert (prefix["outcome"], lasso["outcome"], tree["outcome"]) == ("violated", "violated", "holds")
+        assert [each["rules"] for each in prefix["run"]] == [[], ["decay"], ["decay"], ["decay"]]
+        assert (prefix["loop"], lasso["loop"]) == (None, {"to": 3, "rules": []})
+        assert tree["run"] is None
+
+    def test_formulas_about_what_was_not_explored_are_not_decided(self, bigactors):
+        asked = ["--ltl", "[] not crowd", "--ctl", "AG EF meeting"]
+        code, out, _ = bigactors("big", "check", *asked, "--max-states", "2", "walk.big")
+        assert code == 3
+        assert "  ? ltl [] not crowd: incomplete\n  ? ctl AG EF meeting: incomplete\n" in out
+
+    def test_a_formula_with_a_mistake_is_refused_before_anything_is_explored(self, bigactors):
+        code, out, err = bigactors("big", "check", "--ltl", "<> meetin", "walk.big")
+        assert (code, out) == (2, "")
+        assert err == (
+            "--ltl:1:4: unknown predicate 'meetin'\n    1 | <> meetin\n      |    ^^^^^^\n"
+            "hint: did you mean 'meeting'?\n"
+        )
+
+    def test_a_property_of_a_bgm_file_that_holds_is_said_to(self, bigactors, walk):
+        (walk / "lamps.bgm").write_text(
+            LAMPS.replace("Lamp.On);", "Lamp.On) || terminal();"), encoding="utf-8"
+        )
+        code, out, _ = bigactors("big", "check", "lamps.bgm", "--no-deadlock", "--json", "-")
+        assert code == 1
+        assert [(each["claim"], each["outcome"]) for each in json.loads(out)["verdicts"]] == [
+            ("no deadlock", "violated"),
+            ("dark", "holds"),
         ]
 
     def test_a_property_of_a_bgm_file_is_checked(self, bigactors, walk):

@@ -326,3 +326,75 @@ def test_a_pattern_that_is_too_large_is_refused():
         run(text)
     fits = text.replace(large, " | ".join(["A"] * 150)).replace("big start = A;", f"big start = {large};")
     assert len(run(fits, max_states=3)) == 2
+
+
+def test_instantaneous_reactions_after_equal_results_are_counted_once():
+    """Either A may become a B, with the same result; the three C that follow are counted once, as BigraphER does."""
+    text = """\
+atomic ctrl A = 0; atomic ctrl B = 0; atomic ctrl C = 0; atomic ctrl D = 0;
+big s0 = A | A | C | C | C;
+react change = A --> B;
+react burn = B | C --> B;
+begin brs init s0; rules = [ (burn), {change} ]; end
+"""
+    assert counts(text) == (3, 2, (2 + 3) + 1)
+
+
+PICK = """\
+atomic ctrl Fork = 2; atomic ctrl Held = 1; atomic ctrl Left = 1; atomic ctrl Right = 1;
+big s0 = {start};
+react pick = Fork{{x, y}} -[1.0]-> Held{{x}} | {{y}};
+begin sbrs init s0; rules = [ {{pick}} ]; end
+"""
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        "/a /b (Fork{a, b} | Left{a} | Right{b})",
+        "/b /a (Right{b} | Left{a} | Fork{a, b})",
+        "/a /b (Fork{b, a} | Left{a} | Right{b})",
+    ],
+)
+def test_ports_that_fit_in_two_ways_are_two_choices_however_the_state_is_written(start):
+    """BigraphER takes one of the two, and which one depends on how the state is written."""
+    assert counts(PICK.format(start=start)) == (3, 2, 2)
+
+
+def test_rates_of_choices_between_ports_do_not_depend_on_what_else_is_on_the_links():
+    """Where the two choices give equal states their rates are summed, as they are seen apart otherwise."""
+    alike = run(PICK.format(start="/a /b (Fork{a, b} | Left{a} | Left{b})"))
+    apart = run(PICK.format(start="/a /b (Fork{a, b} | Left{a} | Left{b} | Right{b})"))
+    assert list(alike.weights) == [2]
+    assert list(apart.weights) == [1, 1]
+
+
+def test_what_would_be_put_nowhere_is_an_error_that_names_the_rule():
+    """For BigraphER B becomes a node without a place, and one more with every step."""
+    text = """\
+ctrl Range = 0; atomic ctrl A = 0; atomic ctrl B = 0;
+big start = Range.A;
+big left = share (A || id) by ([{0, 1}, {0}], 2) in (Range || id);
+react spill = left --> Range.(A | id) || B;
+begin brs init start; rules = [ {spill} ]; end
+"""
+    with pytest.raises(BigraphError, match="rule 'spill' puts something into a region that lies nowhere"):
+        run(text)
+
+
+DROP = """\
+ctrl Room = 0; atomic ctrl A = 0;
+big start = Room.(A | A | A);
+react drop = Room.(A | id) --> {right};
+begin brs init start; rules = [ {{drop}} ]; end
+"""
+
+
+def test_what_a_site_held_is_dropped_by_an_instantiation():
+    assert counts(DROP.format(right="Room.A @ []")) == (2, 2, 4)
+
+
+@pytest.mark.parametrize("right", ["Room.A || 0", "Room.A || split(0)", "Room.A || ([{}], 0)"])
+def test_a_site_that_is_nowhere_is_refused(right):
+    with pytest.raises(BigraphError):
+        run(DROP.format(right=right))

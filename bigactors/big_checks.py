@@ -1,0 +1,163 @@
+"""What `bigactors big check` claims of a system, decided, printed and as data."""
+
+import sys
+from argparse import Namespace
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, Final
+
+from bigactors.big_formulas import LOGICS, parse_formula
+from bigactors.exits import Exit
+from bigactors.mistakes import Mistake
+from bigactors.terminal import paint
+from bigraphs import NotationError
+from bigraphs.exports.json import bigraph_json
+from bigraphs.notation import write_big
+from bigraphs.system import System
+from bigraphs.transitions import TransitionSystem
+from bigraphs.verdicts import (
+    Outcome,
+    Quantifier,
+    Verdict,
+    deadlock_verdict,
+    predicate_verdict,
+    property_verdict,
+)
+
+MARKS: Final = {
+    Outcome.HOLDS: ("✓", "green", Exit.HOLDS),
+    Outcome.VIOLATED: ("✗", "red", Exit.VIOLATED),
+    Outcome.INCOMPLETE: ("?", "yellow", Exit.INCOMPLETE),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A step of a run: the rules that make it, none where nothing can happen, and the number of the state after it."""
+
+    rules: tuple[str, ...]
+    state: int
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A run from the initial state; the steps from number `loop` on come again and again, unless it is None."""
+
+    steps: tuple[Step, ...]
+    loop: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Decided:
+    """What became of a claim, with a run that shows it where one run can; `what` says of the run what it is."""
+
+    claim: str
+    outcome: Outcome
+    run: Run | None = None
+    what: str = ""
+    note: str = ""
+
+
+def of_verdict(found: TransitionSystem, verdict: Verdict) -> Decided:
+    """Return a verdict with a shortest run to the state that shows it."""
+    if verdict.state is None:
+        return Decided(verdict.claim, verdict.outcome)
+    path = found.path_to(verdict.state)
+    steps = tuple(Step(found.rules_between(*pair), pair[1]) for pair in pairwise(path))
+    what = f"a shortest run to state {verdict.state}, {len(steps)} steps"
+    return Decided(verdict.claim, verdict.outcome, Run(steps), what)
+
+
+def verdicts_on(options: Namespace, found: TransitionSystem) -> Iterator[Decided]:
+    """Yield a verdict on each thing that is claimed."""
+    for quantifier in Quantifier:
+        for label in getattr(options, quantifier.value):
+            yield of_verdict(found, predicate_verdict(found, quantifier, label))
+    if options.no_deadlock:
+        yield of_verdict(found, deadlock_verdict(found))
+    for claim in found.system.properties:
+        yield of_verdict(found, property_verdict(found, claim))
+    if asked := asked_formulas(options):
+        from bigactors.big_temporal import decided_formulas  # noqa: PLC0415 - scipy is slow to import
+
+        yield from decided_formulas(found, asked)
+
+
+def check_formulas(options: Namespace, system: System) -> None:
+    """Refuse what is no formula, before a long exploration and not after it."""
+    for logic, text in asked_formulas(options):
+        try:
+            parse_formula(text, logic, system)
+        except NotationError as error:
+            raise Mistake(error.message, error.hint, options.file, error.render(f"--{logic}")) from error
+
+
+def asked_formulas(options: Namespace) -> list[tuple[str, str]]:
+    """Return the formulas that are asked about, each with its logic."""
+    return [(logic, text) for logic in LOGICS for text in getattr(options, logic)]
+
+
+def asks_nothing(options: Namespace, system: System) -> bool:
+    """Say whether there is nothing to decide."""
+    predicates = (getattr(options, quantifier.value) for quantifier in Quantifier)
+    return not (any(predicates) or options.no_deadlock or system.properties or asked_formulas(options))
+
+
+def decided_lines(found: TransitionSystem, decided: Decided) -> Iterator[str]:
+    """Yield what is printed of a verdict, with the run that shows it."""
+    mark, colour, _ = MARKS[decided.outcome]
+    yield f"  {paint(mark, colour, sys.stdout)} {decided.claim}: {decided.outcome.value}"
+    if decided.note:
+        yield f"      {decided.note}"
+    if decided.run is not None:
+        yield f"      {decided.what}:"
+        yield from _run_lines(found, decided.run)
+
+
+def _run_lines(found: TransitionSystem, run: Run) -> Iterator[str]:
+    yield f"        0: {write_big(found.state(0))}"
+    ends = len(run.steps) if run.loop is None else len(run.steps) - 1
+    for step in run.steps[:ends]:
+        yield f"        {step.state}: --{_rules(step)}--> {write_big(found.state(step.state))}"
+    for step in run.steps[ends:]:
+        if step.rules:
+            yield f"        and again from state {step.state}, by --{_rules(step)}-->"
+        else:
+            yield f"        and stays in state {step.state}, where nothing can happen"
+
+
+def _rules(step: Step) -> str:
+    return ", ".join(step.rules) or "nothing can happen"
+
+
+def decided_json(found: TransitionSystem, decided: list[Decided]) -> dict[str, Any]:
+    """Return verdicts as data; `loop` is where in `run` the last state goes on, and by which rules."""
+    return {
+        "states": len(found),
+        "transitions": len(found.starts),
+        "complete": found.complete,
+        "reason": found.reason,
+        "verdicts": [
+            {
+                "claim": each.claim,
+                "outcome": each.outcome.value,
+                "note": each.note,
+                "run": None if each.run is None else _run_json(found, each.run),
+                "loop": None if each.run is None else _loop_json(each.run),
+            }
+            for each in decided
+        ],
+    }
+
+
+def _run_json(found: TransitionSystem, run: Run) -> list[dict[str, Any]]:
+    shown = run.steps if run.loop is None else run.steps[:-1]
+    return [
+        {"number": step.state, "rules": list(step.rules), "state": bigraph_json(found.state(step.state))}
+        for step in (Step((), 0), *shown)
+    ]
+
+
+def _loop_json(run: Run) -> dict[str, Any] | None:
+    return None if run.loop is None else {"to": run.loop, "rules": list(run.steps[-1].rules)}

@@ -1,0 +1,241 @@
+"""Temporal formulas over the predicates and rules of a system of bigraphs, in the words of a mission's `ltl` and `ctl`.
+
+Atoms are the predicates of the system, and `taken` and `enabled` with a rule of it.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from itertools import chain
+from typing import Final, cast
+
+from bigraphs.errors import NotationError
+from bigraphs.notation import formulas as s
+from bigraphs.system import System
+from semantics import temporal as t
+from semantics.propositions import Always, Proposition
+
+LOGICS: Final = ("ltl", "ctl")
+MOST_NESTED: Final = 32
+"""So many operators of paths may be inside each other."""
+MOST_PARTS: Final = 2_000
+"""So many parts may a formula have once `<->` and W are written with other operators, which doubles what is in them."""
+
+_PREFIXES: Final[dict[str, Callable[[t.Temporal], t.Path]]] = {
+    "[]": t.Globally,
+    "G": t.Globally,
+    "always": t.Globally,
+    "<>": t.Eventually,
+    "F": t.Eventually,
+    "eventually": t.Eventually,
+    "X": t.Next,
+    "next": t.Next,
+}
+_OPERATIONS: Final[dict[str, Callable[[t.Temporal, t.Temporal], t.Path]]] = {
+    "U": t.Until,
+    "until": t.Until,
+    "R": t.Release,
+    "W": t.WeakUntil,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Occurs:
+    """A predicate occurs in the state: an atom of its own, beside those of missions."""
+
+    label: str
+
+    def __str__(self) -> str:
+        return self.label
+
+
+def occurs(label: str) -> t.Now:
+    """Return the formula that a predicate occurs now; the checker only ever looks its atoms up."""
+    return t.Now(cast("Proposition", Occurs(label)))
+
+
+def parse_formula(text: str, logic: str, system: System) -> t.Temporal:
+    """Read a formula of a logic, `ltl` or `ctl`, about a system; raises NotationError where something is wrong."""
+    elaboration = _Elaboration(text, logic, system)
+    return elaboration.state(elaboration.part(s.parse_formula(text)))
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """A part of a formula.
+
+    Attributes:
+        formula: What it means.
+        start: Where it stands in the text.
+        end: Where what follows it stands.
+        depth: How many operators of paths in it are inside each other.
+        size: How many parts it has, written without `<->` and W.
+        of_path: Whether it is about a path that nothing quantifies, in CTL.
+    """
+
+    formula: t.Temporal
+    start: int
+    end: int
+    depth: int = 0
+    size: int = 1
+    of_path: bool = False
+
+
+class _Elaboration:
+    """From what is written to formulas of one logic."""
+
+    def __init__(self, text: str, logic: str, system: System) -> None:
+        self.text, self.logic = text, logic
+        self.predicates = tuple(predicate.label for predicate in system.predicates)
+        rules = [rule for each in system.classes if not each.instantaneous for rule in each.rules]
+        self.instantaneous = {
+            name
+            for each in system.classes
+            if each.instantaneous
+            for rule in each.rules
+            for name in (rule.name, rule.label)
+        }
+        self.rules = tuple(dict.fromkeys(chain.from_iterable((rule.name, rule.label) for rule in rules)))
+        self.labels = {rule.label for rule in rules}
+
+    def state(self, part: _Part) -> t.Temporal:
+        """Return a formula that is to be about a state, as all but those behind A and E are in CTL."""
+        if part.of_path:
+            message = "in ctl an operator of paths stands directly behind A or E"
+            raise self.wrong("logic", message, part, "write AG, EF, AX or A (F U G)")
+        return part.formula
+
+    def wrong(self, code: str, message: str, at: _Part | s.Word, hint: str) -> NotationError:
+        """Return a mistake with its place."""
+        return NotationError(code, message, self.text, at.start, length=at.end - at.start, hint=hint)
+
+    def part(self, term: s.Term) -> _Part:
+        """Return what a term means."""
+        parts = (self.part(each) if isinstance(each, s.Term) else each for each in term.parts)
+        found: _Part = getattr(self, term.kind)(term, *parts)
+        return found
+
+    # --- atoms, and then what is made of them: a method for each kind of term
+
+    def truth(self, at: s.Term, word: s.Word) -> _Part:
+        return _part(t.Now(Always(word.text == "true")), at)
+
+    def predicate(self, at: s.Term, word: s.Word) -> _Part:
+        label = self.known(word, self.predicates, "predicate")
+        return _part(occurs(label), at)
+
+    def taken(self, at: s.Term, word: s.Word) -> _Part:
+        if self.logic == "ctl":
+            message = "in ctl no step is taken: all that may follow are looked at"
+            raise self.wrong("logic", message, word, "write it in ltl, or say enabled")
+        return _part(t.Taken(self.steps(word)), at)
+
+    def enabled(self, at: s.Term, word: s.Word) -> _Part:
+        return _part(t.Enabled(self.steps(word)), at)
+
+    def steps(self, word: s.Word) -> t.Steps:
+        """Return the steps of a rule, or of all rules of a name (see `big_temporal.graph_of`)."""
+        name = _unquoted(word.text)
+        if name not in self.rules and name in self.instantaneous:
+            message = f"the rule '{name}' is instantaneous, so no step is its own"
+            raise self.wrong("rule", message, word, "name the ordinary rule that it follows")
+        label = self.known(word, self.rules, "rule")
+        return t.Steps((label,)) if label in self.labels else t.Steps((), label)
+
+    def known(self, word: s.Word, labels: tuple[str, ...], sort: str) -> str:
+        """Return the label that a word is, spaces in its parameters left out."""
+        name = _unquoted(word.text)
+        if name in labels:
+            return name
+        tight = name.replace(" ", "")
+        if tight in labels:
+            return tight
+        near = get_close_matches(name, labels, 1)
+        hint = f"did you mean '{near[0]}'?" if near else f"the {sort}s are {_some(labels)}"
+        raise self.wrong(sort, f"unknown {sort} '{name}'", word, hint)
+
+    # --- connectives
+
+    def denied(self, at: s.Term, inner: _Part) -> _Part:
+        return _part(t.Denied(self.state(inner)), at, inner)
+
+    def both(self, at: s.Term, left: _Part, right: _Part) -> _Part:
+        return _part(t.Both(self.state(left), self.state(right)), at, left, right)
+
+    def either(self, at: s.Term, left: _Part, right: _Part) -> _Part:
+        return _part(t.Either(self.state(left), self.state(right)), at, left, right)
+
+    def implies(self, at: s.Term, left: _Part, right: _Part) -> _Part:
+        return _part(t.Either(t.Denied(self.state(left)), self.state(right)), at, left, right)
+
+    def equivalent(self, at: s.Term, left: _Part, right: _Part) -> _Part:
+        one, other = self.state(left), self.state(right)
+        formula = t.Both(t.Either(t.Denied(one), other), t.Either(t.Denied(other), one))
+        return self.bounded(_part(formula, at, left, right, times=2))
+
+    # --- operators of paths
+
+    def prefix(self, at: s.Term, operator: s.Word, inner: _Part) -> _Part:
+        formula = self.state(inner)
+        make = _PREFIXES.get(operator.text)
+        if make is not None:
+            return self.over_path(make(formula), at, inner)
+        if self.logic == "ctl":
+            message = "'infinitely often' is two operators of paths"
+            raise self.wrong("logic", message, operator, "write AG AF F")
+        return self.over_path(t.Globally(t.Eventually(formula)), at, inner)
+
+    def operation(self, at: s.Term, left: _Part, operator: s.Word, right: _Part) -> _Part:
+        formula = _OPERATIONS[operator.text](self.state(left), self.state(right))
+        times = 2 if operator.text == "W" else 1  # in CTL, where it is written with U
+        return self.over_path(formula, at, left, right, times=times)
+
+    def quantified(self, at: s.Term, quantifier: s.Word, inner: _Part) -> _Part:
+        letter, operator = quantifier.text[0], quantifier.text[1:]
+        if self.logic == "ltl":
+            message = f"ltl is about every run, and doesn't say '{letter}'"
+            raise self.wrong("logic", message, quantifier, "leave it out, or ask with --ctl")
+        make = t.OnAllPaths if letter == "A" else t.OnSomePath
+        if operator:
+            formula = make(_PREFIXES[operator](self.state(inner)))
+            return replace(self.over_path(formula, at, inner), of_path=False)
+        if not inner.of_path:
+            message = f"'{letter}' needs an operator of paths"
+            raise self.wrong("logic", message, inner, "write AG, EF, AX or A (F U G)")
+        return _part(make(inner.formula), at, inner)
+
+    def leads_to(self, at: s.Term, left: _Part, _leads: s.Word, right: _Part) -> _Part:
+        before, after = t.Denied(self.state(left)), t.Eventually(self.state(right))
+        if self.logic == "ctl":
+            always = t.OnAllPaths(t.Globally(t.Either(before, t.OnAllPaths(after))))
+            return replace(self.over_path(always, at, left, right), of_path=False)
+        return self.over_path(t.Globally(t.Either(before, after)), at, left, right)
+
+    def bounded(self, part: _Part) -> _Part:
+        """Return a part, unless what it stands for is too large."""
+        if part.size > MOST_PARTS:
+            message = f"written out, a formula of more than {MOST_PARTS} parts"
+            raise self.wrong("too-long", message, part, "check its parts one by one")
+        return part
+
+    def over_path(self, formula: t.Temporal, at: s.Term, *parts: _Part, times: int = 1) -> _Part:
+        """Return what is about a path (in LTL everything is), one operator deeper than its parts."""
+        found = self.bounded(_part(formula, at, *parts, times=times))
+        if found.depth >= MOST_NESTED:
+            message = f"more than {MOST_NESTED} operators of paths inside each other"
+            raise self.wrong("too-deep", message, found, "split it")
+        return replace(found, depth=found.depth + 1, of_path=self.logic == "ctl")
+
+
+def _part(formula: t.Temporal, at: s.Term, *parts: _Part, times: int = 1) -> _Part:
+    depth, size = max((part.depth for part in parts), default=0), sum(part.size for part in parts)
+    return _Part(formula, at.start, at.end, depth, 1 + times * size)
+
+
+def _unquoted(word: str) -> str:
+    return word[1:-1] if word.startswith('"') else word
+
+
+def _some(labels: Iterable[str]) -> str:
+    first = list(labels)
+    return ", ".join(first[:8]) + (", ..." if len(first) > 8 else "") if first else "none"

@@ -1,0 +1,132 @@
+"""LTL and CTL on systems of bigraphs: the checker's engine, given a transition system that bigraphs explored.
+
+Runs are infinite: where nothing can happen, a run stays. Nothing is assumed to be fair. Weights play no part, but that
+what has a weight may happen.
+"""
+
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+from itertools import chain
+from typing import Final, cast
+
+import numpy as np
+
+from bigactors.big_checks import Decided, Run, Step
+from bigactors.big_formulas import Occurs, parse_formula
+from bigraphs.transitions import TransitionSystem
+from bigraphs.verdicts import Outcome
+from checker.graph import STUTTER, Graph
+from checker.temporal.automaton import TooLargeError
+from checker.temporal.branching import Branching
+from checker.temporal.components import Conditions
+from checker.temporal.lassos import Lasso
+from checker.temporal.linear import counterexample
+from checker.temporal.truth import Truth
+from checker.temporal.words import is_true_on
+from semantics.configuration import Label
+from semantics.propositions import Proposition
+from semantics.temporal import Temporal
+
+NO_FAIRNESS: Final = Conditions()
+
+
+def decided_formulas(found: TransitionSystem, asked: Iterable[tuple[str, str]]) -> Iterator[Decided]:
+    """Yield a verdict on each of some formulas, each given with its logic."""
+    decider = Decider(found)
+    return (decider.decide(logic, text) for logic, text in asked)
+
+
+def graph_of(found: TransitionSystem) -> Graph:
+    """Return the checker's graph of a transition system: an edge for each transition and each rule that makes it.
+
+    A label's `rule` is the rule with its parameters, its `agent` the name alone, so that `Steps` finds both.
+    """
+    rules = {rule.label: rule for rule in found.system.rules()}
+    number = {label: index for index, label in enumerate(rules)}
+    sets = [[number[label] for label in each] for each in found.rule_sets]
+    kinds = np.array(found.rules, dtype=np.int64)
+    times = np.array([len(each) for each in sets], dtype=np.int64)[kinds] if sets else kinds
+    sources = np.repeat(np.array(found.starts, dtype=np.int64), times)
+    leaving = np.bincount(sources, minlength=len(found))
+    return Graph(
+        np.concatenate(([0], np.cumsum(leaving))),
+        np.repeat(np.array(found.targets, dtype=np.int32), times),
+        np.fromiter(chain.from_iterable(sets[kind] for kind in kinds), dtype=np.int32, count=len(sources)),
+        tuple(Label(label, rule.name) for label, rule in rules.items()),
+        None if found.complete else np.arange(len(found)) >= found.expanded,
+    )
+
+
+class Decider:
+    """Decides formulas about one transition system; what they share is computed once."""
+
+    def __init__(self, found: TransitionSystem) -> None:
+        self.found = found
+
+    @cached_property
+    def graph(self) -> Graph:
+        """The graph, with a step that changes nothing where nothing can happen."""
+        return graph_of(self.found).total()
+
+    @cached_property
+    def truth(self) -> Truth:
+        """Where predicates occur."""
+        columns = zip(self.found.system.predicates, self.found.labels, strict=True)
+        values = {
+            cast("Proposition", Occurs(predicate.label)): np.frombuffer(bytes(holds), dtype=np.uint8) > 0
+            for predicate, holds in columns
+        }
+        return Truth(self.graph, values)
+
+    def decide(self, logic: str, text: str) -> Decided:
+        """Decide a formula of a logic, `ltl` or `ctl`; raises NotationError if it is none.
+
+        An incomplete system never says that a formula holds; what it shows to be violated is.
+        """
+        formula = parse_formula(text, logic, self.found.system)
+        claim = f"{logic} {' '.join(text.split())}"
+        if not len(self.found):
+            return Decided(claim, Outcome.INCOMPLETE)
+        return (self.linear if logic == "ltl" else self.branching)(claim, formula)
+
+    def linear(self, claim: str, formula: Temporal) -> Decided:
+        """Decide what is claimed of every run."""
+        try:
+            lasso = counterexample(self.graph, self.truth, formula, NO_FAIRNESS)
+        except TooLargeError as error:
+            return Decided(claim, Outcome.INCOMPLETE, note=f"not decided: {error}; split the formula")
+        if lasso is None:
+            return Decided(claim, self.unless_violated())
+        if lasso.loop and is_true_on(lasso, formula, self.truth):
+            raise AssertionError(f"the counterexample is none: {formula}")
+        what = "a run on which it is false" + ("" if lasso.loop else ", whatever follows")
+        return Decided(claim, Outcome.VIOLATED, self.run(lasso), what)
+
+    def branching(self, claim: str, formula: Temporal) -> Decided:
+        """Decide what is claimed of the tree of runs."""
+        tree = Branching(self.graph, self.truth, NO_FAIRNESS)
+        surely, perhaps = bool(tree.where(formula)[0]), bool(tree.where(formula, perhaps=True)[0])
+        if perhaps:
+            lasso = tree.evidence(formula) if surely else Lasso(())
+            run = self.run(lasso) if len(lasso) else None
+            return Decided(claim, self.unless_violated(), run, "a run that shows it")
+        lasso = tree.evidence(formula, claimed=False)
+        if not len(lasso):
+            note = "false in the initial state; no single run shows it"
+            return Decided(claim, Outcome.VIOLATED, note=note)
+        return Decided(claim, Outcome.VIOLATED, self.run(lasso), "a run that shows it")
+
+    def unless_violated(self) -> Outcome:
+        """Return what it means that nothing speaks against a formula."""
+        return Outcome.HOLDS if self.found.complete else Outcome.INCOMPLETE
+
+    def run(self, lasso: Lasso) -> Run:
+        """Return the run that a lasso of edges is."""
+        return Run(tuple(self.steps(lasso)), len(lasso.stem) if lasso.loop else None)
+
+    def steps(self, lasso: Lasso) -> Iterator[Step]:
+        """Yield the steps of a lasso, the loop taken once."""
+        for edge in (*lasso.stem, *lasso.loop):
+            action = int(self.graph.actions[edge])
+            rules = () if action == STUTTER else (self.graph.labels[action].rule,)
+            yield Step(rules, int(self.graph.targets[edge]))

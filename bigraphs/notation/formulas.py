@@ -1,0 +1,123 @@
+"""The grammar of temporal formulas about systems of bigraphs.
+
+It has the operators of `specs/mission.lark`, with their priorities. Its atoms are labels of predicates and rules, in
+quotes where that is a word of the language.
+"""
+
+import re
+from dataclasses import dataclass
+from functools import cache
+from typing import Final
+
+from lark import Lark, Token
+from lark.tree import Meta
+from lark.visitors import Transformer_NonRecursive
+
+from bigraphs.errors import NotationError
+from bigraphs.notation.reading import read
+
+MOST_WORDS: Final = 200
+"""A formula has so many words and signs at the most."""
+
+GRAMMAR: Final = r"""
+?formula: equivalence
+        | equivalence LEADS equivalence -> leads_to
+?equivalence: implication
+            | equivalence "<->" implication -> equivalent
+?implication: either
+            | either "->" implication -> implies
+?either: both
+       | either _OR both -> either
+?both: path
+     | both _AND path -> both
+?path: denial
+     | denial OPERATION path -> operation
+?denial: claim
+       | _NOT denial -> denied
+       | PREFIX denial -> prefix
+       | FAR_PREFIX formula -> prefix
+       | QUANTIFIER denial -> quantified
+?claim: TRUTH -> truth
+      | LABEL -> predicate
+      | "taken" LABEL -> taken
+      | "enabled" LABEL -> enabled
+      | "(" formula ")"
+
+LEADS: /leads\s+to(?!\w)/
+_OR: "||" | /or(?!\w)/
+_AND: "&&" | /and(?!\w)/
+_NOT: "!" | /not(?!\w)/
+OPERATION: /(?:[URW]|until)(?!\w)/
+PREFIX: "[]" | "<>" | /[GFX](?!\w)/
+FAR_PREFIX: /(?:always|eventually|next|infinitely\s+often)(?!\w)/
+QUANTIFIER: /[AE][GFX]?(?!\w)/
+TRUTH: /(?:true|false)(?!\w)/
+LABEL: /(?!(?:RESERVED)(?![\w']))[^\W\d][\w']*(?:\((?:[^()"]|"[^"]*")*\))?|"[^"]+"/
+%ignore /\s+/
+""".replace(
+    "RESERVED",
+    "leads|or|and|not|until|always|eventually|next|infinitely|true|false|taken|enabled|[URWGFX]|[AE][GFX]?",
+)
+_WORD: Final = re.compile(r"\w+|\[\]|<>|[^\w\s]")
+_WORDS: Final = {
+    "LABEL": "a predicate",
+    "TRUTH": "'true'",
+    "PREFIX": "'[]'",
+    "QUANTIFIER": "'A' or 'E'",
+    "OPERATION": "'U'",
+    "LEADS": "'leads to'",
+    "_OR": "'or'",
+    "_AND": "'and'",
+    "_NOT": "'not'",
+    "LPAR": "'('",
+    "RPAR": "')'",
+    "TAKEN": "'taken'",
+    "$END": "the end",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """A word or sign of a formula, and where it stands in the text."""
+
+    text: str
+    start: int
+
+    @property
+    def end(self) -> int:
+        """Return where what follows it stands."""
+        return self.start + len(self.text)
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """A formula as written: `kind` is its rule of the grammar; `start` and `end` are where it stands in the text."""
+
+    kind: str
+    parts: "tuple[Term | Word, ...]"
+    start: int
+    end: int
+
+
+def parse_formula(text: str) -> Term:
+    """Return a formula as written; raises NotationError where it is none, or too long."""
+    if sum(1 for _ in _WORD.finditer(text)) > MOST_WORDS:
+        message = f"a formula of more than {MOST_WORDS} words and signs"
+        raise NotationError("too-long", message, text, 0, hint="check its parts one by one")
+    term: Term = _Build().transform(read(_parser(), text, _WORDS, "formula"))
+    return term
+
+
+@cache
+def _parser() -> Lark:
+    return Lark(GRAMMAR, parser="lalr", start=["formula"], propagate_positions=True)
+
+
+class _Build(Transformer_NonRecursive[Token, Term]):
+    """From lark's trees to terms."""
+
+    def __default__(self, data: str, children: list[Term | Token], meta: Meta) -> Term:
+        parts = (
+            Word(str(each), each.start_pos or 0) if isinstance(each, Token) else each for each in children
+        )
+        return Term(str(data), tuple(parts), meta.start_pos, meta.end_pos)

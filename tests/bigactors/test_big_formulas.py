@@ -1,0 +1,106 @@
+import pytest
+
+from bigactors.big_formulas import MOST_NESTED, parse_formula
+from bigactors.big_temporal import Decider
+from bigraphs.errors import NotationError
+from bigraphs.exploration import explore
+from bigraphs.notation import read_system
+from bigraphs.notation.formulas import MOST_WORDS
+from bigraphs.verdicts import Outcome
+
+SYSTEM = read_system("""\
+ctrl Room = 0; atomic ctrl Ball = 0; atomic fun ctrl Lamp(n) = 0;
+fun big lit(n) = Lamp(n);
+big start = Room.Ball;
+big until = Ball;
+big ball = Ball;
+fun react light(n) = Ball --> Lamp(n);
+react put = Room --> Room;
+react clear = Ball | Ball --> Ball;
+begin brs
+  int n = {1, 2};
+  init start;
+  rules = [ (clear), {light(n), put} ];
+  preds = { lit(n), until, ball };
+end
+""")
+
+
+@pytest.mark.parametrize(
+    ("logic", "text", "written"),
+    [
+        ("ltl", "ball", "ball"),
+        ("ltl", "lit(1) or lit( 2 )", "lit(1) or lit(2)"),
+        ("ltl", "ball leads to lit(1)", "[] (not ball or <> lit(1))"),
+        ("ltl", "[] ball -> <> lit(1)", "not [] ball or <> lit(1)"),
+        ("ltl", "always ball -> eventually lit(1)", "[] (not ball or <> lit(1))"),
+        ("ltl", "infinitely often ball", "[] <> ball"),
+        ("ltl", "not ball U lit(1) && X ball", "(not ball U lit(1)) and X ball"),
+        ("ltl", "ball R lit(1) W ball", "ball R (lit(1) W ball)"),
+        ("ltl", 'G "until" until ball', "[] until U ball"),
+        ("ltl", "taken light leads to taken light(2)", "[] (not taken light or <> taken light(2))"),
+        ("ltl", "true <-> enabled put", "(not true or enabled put) and (not enabled put or true)"),
+        ("ctl", "AG EF ball", "A [] E <> ball"),
+        ("ctl", "A (ball U lit(1)) or E X !ball", "A (ball U lit(1)) or E X not ball"),
+        ("ctl", "ball leads to lit(1)", "A [] (not ball or A <> lit(1))"),
+    ],
+)
+def test_formulas_are_read_as_in_missions(logic, text, written):
+    assert str(parse_formula(text, logic, SYSTEM)) == written
+
+
+BEHIND = "write AG, EF, AX or A (F U G)"
+
+
+@pytest.mark.parametrize(
+    ("logic", "text", "message", "caret", "hint"),
+    [
+        ("ltl", "<> bal", "unknown predicate 'bal'", "   ^^^", "did you mean 'ball'?"),
+        ("ltl", "A ball", "ltl is about every run, and doesn't say 'A'", "^", "leave it out, or ask with --ctl"),
+        ("ctl", "E ball", "'E' needs an operator of paths", "  ^^^^", BEHIND),
+        ("ctl", "[] ball", "in ctl an operator of paths stands directly behind A or E", "^^^^^^^", BEHIND),
+        ("ctl", "ball or X ball", "in ctl an operator of paths stands directly behind A or E", "        ^^^^^^",
+         BEHIND),
+        ("ctl", "taken put", "in ctl no step is taken: all that may follow are looked at", "      ^^^",
+         "write it in ltl, or say enabled"),
+        ("ctl", "A infinitely often ball", "'infinitely often' is two operators of paths", "  ^^^^^^^^^^^^^^^^",
+         "write AG AF F"),
+        ("ltl", "taken clear", "the rule 'clear' is instantaneous, so no step is its own", "      ^^^^^",
+         "name the ordinary rule that it follows"),
+        ("ltl", "taken jump", "unknown rule 'jump'", "      ^^^^", "the rules are light, light(2), light(1), put"),
+        ("ltl", "(ball", "the text ends, expected ')'", "     ^", ""),
+    ],
+)  # fmt: skip
+def test_mistakes_are_shown_where_they_are(logic, text, message, caret, hint):
+    with pytest.raises(NotationError) as found:
+        parse_formula(text, logic, SYSTEM)
+    place, shown, mark, *advice = found.value.render(f"--{logic}").split("\n")
+    assert place == f"--{logic}:1:{caret.index('^') + 1}: {message}"
+    assert (shown, mark) == (f"    1 | {text}", f"      | {caret}")
+    assert advice == ([f"hint: {hint}"] if hint else [])
+
+
+@pytest.mark.parametrize(
+    ("logic", "text"),
+    [
+        ("ltl", "not " * MOST_WORDS + "ball"),
+        ("ltl", "X" * 5000),
+        ("ltl", "[] " * (MOST_NESTED + 1) + "ball"),
+        ("ctl", "AX " * (MOST_NESTED + 1) + "ball"),
+        ("ltl", "<->".join(["ball"] * 60)),
+        ("ctl", "A (ball W " * 20 + "ball" + ")" * 20),
+        ("ltl", "(" * 500),
+    ],
+)
+def test_formulas_are_bounded(logic, text):
+    with pytest.raises(NotationError):
+        parse_formula(text, logic, SYSTEM)
+
+
+def test_what_is_within_the_bounds_is_decided():
+    formula = parse_formula("not " * (MOST_WORDS - 1) + "ball", "ltl", SYSTEM)
+    verdict = Decider(explore(SYSTEM)).decide("ltl", "not " * (MOST_WORDS - 1) + "ball")
+    assert str(formula).startswith("not not not")
+    assert verdict.outcome is Outcome.VIOLATED
+    longest = Decider(explore(SYSTEM)).decide("ctl", "AX " * MOST_NESTED + "(ball or not ball)")
+    assert longest.outcome is Outcome.HOLDS
