@@ -286,25 +286,35 @@ def has_control(survey: Survey, leaf: int) -> bool:
 
 
 def are_independent(survey: Survey, one: int, other: int) -> bool:
-    """Tell whether neither of two leaves writes what the other was found by or writes: then any order ends alike."""
+    """Tell whether neither of two leaves writes what the other writes, or what changes an answer it was found by."""
     writes = [written(survey, leaf) for leaf in (one, other)]
-    reads = [survey.space.learner.reads[leaf] for leaf in (one, other)]
-    if writes[0] is None or writes[1] is None:
+    if writes[0] is None or writes[1] is None or not writes[0].keys().isdisjoint(writes[1]):
         return False
-    return writes[0].isdisjoint(writes[1] | reads[1]) and writes[1].isdisjoint(reads[0])
+    return leaves_alone(survey, writes[0], other) and leaves_alone(survey, writes[1], one)
 
 
-def written(survey: Survey, leaf: int) -> frozenset[int] | None:
-    """Return the columns that a leaf's transitions write, None where that is worked out elsewhere."""
+def leaves_alone(survey: Survey, writes: dict[int, list[int]], leaf: int) -> bool:
+    """Tell whether some writes change no answer that a leaf was found by."""
+    columns = survey.space.learner.columns.all
+    for column, ask, said in survey.space.learner.reads[leaf]:
+        for code in writes.get(column, ()):
+            if ask.question is None or ask.question(columns[column].value(code), *ask.constants) != said:
+                return False
+    return True
+
+
+def written(survey: Survey, leaf: int) -> dict[int, list[int]] | None:
+    """Return the columns that a leaf's transitions write, with the codes; None where that is worked out elsewhere."""
     leaves = survey.space.learner.leaves
-    found: set[int] = set()
+    found: dict[int, list[int]] = {}
     for step in leaves.steps_of(leaf):
         record = leaves.steps.room[STEP * step : STEP * (step + 1)]
         if record[COPIES] != record[COPIES_END] or record[PARTS] != record[PARTS_END]:
             return None
-        pairs = leaves.writes.room[PAIR * record[WRITES] : PAIR * record[WRITES_END] : PAIR]
-        found.update(map(int, pairs))
-    return frozenset(found)
+        for write in range(int(record[WRITES]), int(record[WRITES_END])):
+            column, code = leaves.writes.room[PAIR * write : PAIR * (write + 1)]
+            found.setdefault(int(column), []).append(int(code))
+    return found
 
 
 def stale_controls(a: Name, c: Configuration) -> tuple[Key | None, ...]:

@@ -107,7 +107,7 @@ class Learner:
         owners: What each tree is about.
         taken: For each tree the cells that were taken to be never written.
         answers: What a question is answered with, leaf by leaf.
-        reads: For each leaf of an actor the columns that it was found by.
+        reads: For each leaf of an actor what was asked of which column to come there, with the answer.
         steps: The label of each transition, as it was when it was learned.
     """
 
@@ -126,7 +126,7 @@ class Learner:
     labels: dict[Hashable, Known] = field(default_factory=dict)
     steps: dict[int, Label] = field(default_factory=dict)
     answers: dict[int, Hashable] = field(default_factory=dict)
-    reads: dict[int, frozenset[int]] = field(default_factory=dict)
+    reads: dict[int, tuple[tuple[int, Ask, Any], ...]] = field(default_factory=dict)
     runs: int = 0
 
     def __post_init__(self) -> None:
@@ -181,7 +181,7 @@ class Learner:
         for each, trees in zip(concluded, parts, strict=True):
             each.effect.parts = trees
         leaf = self.leaves.add(self._steps(actor, concluded), CROWDED if is_full else 0)
-        self.reads[leaf] = self._columns(recorder.scopes[0])
+        self.reads[leaf] = tuple((self._column(ask), ask, said) for ask, said in recorder.scopes[0].items())
         self._grow(tree, recorder.scopes[0], recorder.taken, leaf, source)
         for part in (part for trees in parts for part in trees):
             owner = self.owners[part]
@@ -193,9 +193,6 @@ class Learner:
         leaf = self.leaves.add(())
         self.answers[leaf] = answer
         self._grow(tree, recorder.scopes[0], recorder.taken, leaf, source)
-
-    def _columns(self, asked: Asked) -> frozenset[int]:
-        return frozenset(self._column(ask) for ask in asked)
 
     def _column(self, ask: Ask) -> int:
         return self.columns.number((ask.cell,) if ask.hole is None else (ask.cell, *ask.hole))
