@@ -120,9 +120,14 @@ def machine(kept: Kept) -> str:
     )
 
 
+def growth_section(kept: Kept) -> str:
+    """Return the table of the growth and the picture that was plotted beside it."""
+    return f"{growth_tables(kept)}\n![Rate and bytes a configuration](pictures/growth.svg)\n"
+
+
 TABLES: dict[str, Callable[[Kept], str]] = {
     "patrol": patrol_tables,
-    "growth": growth_tables,
+    "growth": growth_section,
     "largest": largest_tables,
 }
 
