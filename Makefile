@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 
-.PHONY: demo live-demo test lint types fuzz bench-bigraphs docs clean
+.PHONY: demo live-demo test lint types fuzz bench bench-bigraphs docs clean
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -29,6 +29,12 @@ types: $(STAMP)
 
 fuzz: $(STAMP)  ## 100,000 mutated missions, a million mutated packets and sentences (some 25 minutes on two cores)
 	BIGACTORS_FUZZ=100000 BIGACTORS_FUZZ_PACKETS=1000000 $(BIN)/python -m pytest -n 2 -q -m fuzz
+
+bench: $(STAMP)  ## the explorer beside SPIN, its growth, the largest missions; writes docs/performance.md (some 15 minutes)
+	$(BIN)/python benchmarks/run.py
+	$(BIN)/python benchmarks/growth.py
+	$(BIN)/python benchmarks/largest.py
+	$(BIN)/python benchmarks/tables.py
 
 bench-bigraphs: $(STAMP)  ## the bigraph engine beside BigraphER, up to 100,000 states
 	$(BIN)/python benchmarks/bigraph_systems.py --growth

@@ -16,6 +16,23 @@ STATIONS = 3
 MOST_AGENTS = 4
 """Each starts in a corner of its own."""
 
+COUNTS = {
+    (1, 2, False): (171, 549),
+    (1, 3, False): (390, 1_287),
+    (1, 6, False): (1_659, 5_589),
+    (1, 2, True): (777, 2_574),
+    (1, 3, True): (1_434, 4_788),
+    (2, 2, False): (14_232, 62_157),
+    (2, 3, False): (66_264, 300_432),
+    (2, 2, True): (342_876, 1_585_857),
+    (2, 3, True): (1_051_404, 4_899_462),
+    (2, 6, False): (1_076_964, 5_044_005),
+    (3, 2, False): (1_634_778, 8_966_151),
+    (2, 6, True): (11_536_584, 54_378_969),
+    (3, 3, False): (15_330_840, 87_525_372),
+}
+"""Configurations and transitions by UAVs, side and hand-over, as SPIN counts them."""
+
 _PITCH, _HALF = (
     20,
     5,

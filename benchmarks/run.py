@@ -1,27 +1,29 @@
-"""Measure both engines of the explorer beside SPIN on the patrol: counts are asserted equal, then all run in turns.
+"""Measure the patrol beside SPIN: counts are asserted, then both run in turns; cold and warm starts stand apart.
 
-Usage: `python benchmarks/run.py [--turns N] AGENTSxSIDE[+handover] ...`, by default 1x3+handover 2x2.
+Usage: `python benchmarks/run.py [--turns N] [--output FILE] AGENTSxSIDE[+handover] ...`. The reference engine takes
+part where there are few configurations.
 """
 
 import argparse
-import multiprocessing
-import resource
+import json
 import statistics
 import sys
 import tempfile
-import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from patrol import mission_text, promela_text, starts
-from spin import Searched, missing, search
+from machine import describe
+from ours import Explored, explored
+from patrol import COUNTS, mission_text, promela_text, starts
+from spin import Searched, missing, prepared, searched
 
-from checker import Engine, Limits, explore
-from specs import parse_bytes
-from specs.elaboration import elaborate
+RESULTS = Path(__file__).parent / "results" / "patrol.json"
+
+FEW = 20_000
+"""Up to so many configurations the reference engine takes part."""
+
+FAST, REFERENCE, SPIN = "bigactors, fast", "bigactors, reference", "SPIN, no reduction"
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +36,16 @@ class Size:
 
     def __str__(self) -> str:
         return f"{self.agents}, {self.side}×{self.side}{', hand-over' if self.handover else ''}"
+
+    @property
+    def text(self) -> str:
+        """The mission."""
+        return mission_text(self.agents, self.side, self.handover)
+
+    @property
+    def counts(self) -> tuple[int, int] | None:
+        """Its configurations and transitions, where they are known."""
+        return COUNTS.get((self.agents, self.side, self.handover))
 
 
 def patrol(text: str) -> Size:
@@ -50,94 +62,124 @@ def patrol(text: str) -> Size:
     return Size(agents, side, bool(plus))
 
 
-Tool = Callable[[Size], Searched]
+DEFAULT = [Size(1, 3, handover=True), Size(2, 2), Size(2, 3, handover=True), Size(2, 6, handover=True)]
+
+Run = Explored | Searched
 
 
-def explore_patrol(size: Size, engine: Engine) -> Searched:
-    """Explore the mission in a process of its own, so that its peak of memory is its own."""
-    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
-        return pool.submit(_explore, size, engine).result()
+def say(text: str) -> None:
+    """Say how far the measuring is."""
+    sys.stderr.write(f"{text}\n")
+    sys.stderr.flush()
 
 
-def _explore(size: Size, engine: Engine) -> Searched:
-    began = time.monotonic()
-    source, tree = parse_bytes("patrol.mission", mission_text(size.agents, size.side, size.handover).encode())
-    initial = elaborate(tree, source, Path()).initial
-    preparing = time.monotonic() - began
-    found = explore(initial, limits=Limits(configurations=None), engine=engine)
-    if not found.complete:
-        raise SystemExit(f"the exploration is incomplete: {', '.join(found.bounds)}")
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    return Searched(len(found.configurations), found.transitions, found.seconds, memory, preparing)
-
-
-def search_patrol(size: Size) -> Searched:
-    """Let SPIN search the same model."""
+def measure(size: Size, turns: int) -> dict[str, list[Run]]:
+    """Run the tools in turns; raises SystemExit unless every run has the counts that are known."""
     with tempfile.TemporaryDirectory() as folder:
-        return search(promela_text(size.agents, size.side, size.handover), Path(folder))
+        say(f"{size}: SPIN is compiled, and its depth is looked for")
+        model = prepared(promela_text(size.agents, size.side, size.handover), Path(folder))
+        tools: dict[str, Callable[[], Run]] = {
+            FAST: lambda: explored(size.text),
+            SPIN: lambda: searched(model),
+        }
+        if size.counts is not None and size.counts[0] <= FEW:
+            tools[REFERENCE] = lambda: explored(size.text, "--engine", "reference")
+        runs: dict[str, list[Run]] = {name: [] for name in tools}
+        for turn in range(turns):
+            for name, tool in tools.items():
+                runs[name].append(tool())
+                say(f"  turn {turn + 1}, {name}: {runs[name][-1].seconds:.2f} s")
+    _assert_counts(size, runs)
+    return runs
 
 
-TOOLS: dict[str, Tool] = {
-    "bigactors, fast": partial(explore_patrol, engine=Engine.FAST),
-    "bigactors, reference": partial(explore_patrol, engine=Engine.REFERENCE),
-    "SPIN, no reduction": search_patrol,
-}
-
-
-def measure(size: Size, turns: int) -> dict[str, Searched]:
-    """Run the tools in turns and return each one's median turn; every run must have the same counts."""
-    runs: dict[str, list[Searched]] = {name: [] for name in TOOLS}
-    for _ in range(turns):
-        for name, tool in TOOLS.items():
-            runs[name].append(tool(size))
+def _assert_counts(size: Size, runs: dict[str, list[Run]]) -> None:
     counts = {(run.configurations, run.transitions) for several in runs.values() for run in several}
-    if len(counts) != 1:
-        raise SystemExit(f"{size}: the counts differ: {sorted(counts)}")
-    return {name: _median(several) for name, several in runs.items()}
+    if len(counts) != 1 or size.counts not in (None, *counts):
+        raise SystemExit(f"{size}: the counts are {sorted(counts)}, and should all be {size.counts}")
+    for run in runs[FAST]:
+        if isinstance(run, Explored) and run.bounds:
+            raise SystemExit(f"{size}: incomplete, {', '.join(run.bounds)}")
 
 
-def _median(runs: Sequence[Searched]) -> Searched:
+def median(runs: Sequence[Run]) -> Run:
+    """Return the turn that took the median time."""
     middle = statistics.median_low(run.seconds for run in runs)
     return next(run for run in runs if run.seconds == middle)
 
 
-def table(measured: dict[Size, dict[str, Searched]]) -> str:
-    """Lay out what was measured, one line for each tool and size."""
-    lines = [
-        "| UAVs, grid | tool | configurations | transitions | prepare s | search s | states/s | peak MB |",
-        "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |",
-    ]
-    for size, tools in measured.items():
-        lines += [f"| {size} | {name} | {_figures(run)} |" for name, run in tools.items()]
-    return "\n".join(lines) + "\n"
+def ratios(ours: Run, peer: Run) -> dict[str, float]:
+    """Return how many times SPIN's rate ours is, and what part of its memory ours takes."""
+    return {
+        "configurations_per_second": peer.seconds / ours.seconds,
+        "memory": ours.memory / peer.memory,
+        "search_alone": peer.seconds / (getattr(ours, "searching", None) or ours.seconds),
+    }
 
 
-def _figures(run: Searched) -> str:
-    rate = run.configurations / max(run.seconds, 1e-9)
-    return (
-        f"{run.configurations:,} | {run.transitions:,} | {run.preparing:.2f} | {run.seconds:.3f}"
-        f" | {rate:,.0f} | {run.memory:,.0f}"
-    )
+def result(size: Size, runs: dict[str, list[Run]]) -> dict[str, object]:
+    """Return what is kept of a size."""
+    medians = {name: median(several) for name, several in runs.items()}
+    return {
+        "size": str(size),
+        "configurations": medians[FAST].configurations,
+        "transitions": medians[FAST].transitions,
+        "ratio_to_spin": ratios(medians[FAST], medians[SPIN]),
+        "median": {name: figures(run) for name, run in medians.items()},
+        "turns": {name: [asdict(run) for run in several] for name, several in runs.items()},
+    }
+
+
+def figures(run: Run) -> dict[str, object]:
+    """Return a run's figures, and its rate."""
+    return asdict(run) | {"configurations_per_second": run.configurations / max(run.seconds, 1e-9)}
+
+
+def cold_and_warm(size: Size) -> dict[str, object]:
+    """Explore twice with a cache of compiled loops of its own: it is empty at first, and full then."""
+    with tempfile.TemporaryDirectory() as folder:
+        both = {name: explored(size.text, cache=Path(folder)) for name in ("cold", "warm")}
+    return {"size": str(size)} | {name: figures(run) | {"phases": phases(run)} for name, run in both.items()}
+
+
+def phases(run: Explored) -> dict[str, float]:
+    """Part the seconds of a process: what is neither compiled nor learned is searched, or loaded for it."""
+    return {
+        "importing": run.importing,
+        "compiling": run.compiling,
+        "learning": run.learning,
+        "searching": run.searching,
+        "wall": run.wall,
+    }
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Measure the sizes that were asked for and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument(
-        "sizes",
-        nargs="*",
-        type=patrol,
-        default=[Size(1, 3, handover=True), Size(2, 2)],
-        metavar="AGENTSxSIDE[+handover]",
-    )
-    parser.add_argument(
-        "--turns", type=int, default=3, help="how often each tool runs; the median is printed"
-    )
+    """Measure the sizes that were asked for, and keep the figures."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("sizes", nargs="*", type=patrol, default=DEFAULT, metavar="AGENTSxSIDE[+handover]")
+    parser.add_argument("--turns", type=int, default=3, help="how often each tool runs; the median counts")
+    parser.add_argument("--output", type=Path, default=RESULTS, help="where the figures are kept")
     given = parser.parse_args(arguments)
     if missing():
         parser.exit(2, f"not installed: {', '.join(missing())} (Debian: apt-get install spin gcc)\n")
-    measured = {size: measure(size, given.turns) for size in given.sizes}
-    sys.stdout.write(table(measured))
+    machine = describe()
+    say("cold and warm start")
+    start = cold_and_warm(given.sizes[0])
+    sizes = [result(size, measure(size, given.turns)) for size in given.sizes]
+    largest = max(sizes, key=lambda each: each["configurations"])
+    kept = {
+        "machine": machine,
+        "turns": given.turns,
+        "largest": largest["size"],
+        "ratio_to_spin": largest["ratio_to_spin"],
+        "sizes": sizes,
+        "start": start,
+    }
+    given.output.parent.mkdir(parents=True, exist_ok=True)
+    given.output.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+    from tables import patrol_tables  # noqa: PLC0415  # it reads what was kept
+
+    sys.stdout.write(patrol_tables(kept))
     return 0
 
 

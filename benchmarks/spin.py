@@ -55,25 +55,41 @@ def missing() -> tuple[str, ...]:
     return tuple(tool for tool in ("spin", "gcc") if shutil.which(tool) is None)
 
 
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """A compiled verifier, how deep its stack has to be, and the seconds that translating and compiling took."""
+
+    folder: Path
+    depth: int
+    preparing: float
+
+
 def search(promela: str, folder: Path) -> Searched:
     """Search all of a model's state space, in a folder for SPIN's files.
-
-    SPIN counts the storing of the initial state among the transitions; here it is not one.
 
     Raises:
         SpinError: The model is refused, violated, or too deep.
     """
+    return searched(prepared(promela, folder))
+
+
+def prepared(promela: str, folder: Path) -> Prepared:
+    """Compile a model, and find by a search that is not measured how deep it is."""
     began = time.monotonic()
     (folder / "model.pml").write_text(promela, encoding="ascii")
     _run("spin", "-a", "model.pml", folder=folder)
     _run("gcc", *COMPILE, "-o", "pan", "pan.c", folder=folder)
     preparing = time.monotonic() - began
-    depth = _depth(folder)
-    output, seconds, memory = _verify(folder, depth)
+    return Prepared(folder, _depth(folder), preparing)
+
+
+def searched(model: Prepared) -> Searched:
+    """Search all of a prepared model. SPIN counts storing the initial state as a transition; here it is not one."""
+    output, seconds, memory = _verify(model.folder, model.depth)
     if CUT in output:
-        raise SpinError(f"the search was cut at {depth:,} steps")
+        raise SpinError(f"the search was cut at {model.depth:,} steps")
     stored, transitions = _count(_STORED, output), _count(_TRANSITIONS, output)
-    return Searched(stored, transitions - 1, seconds, memory, preparing)
+    return Searched(stored, transitions - 1, seconds, memory, model.preparing)
 
 
 def verdicts(promela: str, claims: Mapping[str, str], folder: Path) -> dict[bool, dict[str, bool]]:

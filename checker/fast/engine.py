@@ -273,6 +273,7 @@ class Space:
     def _add_first(self) -> None:
         codes = self.learner.columns.codes(self.learner.still)
         where = self.packing = packing([len(column.values) for column in self.learner.columns.all])
+        self.state[WORDS] = where.words
         self._reserve_rows(FIRST_ROWS)
         for word, shift, code in zip(where.word, where.shift, codes, strict=True):
             self.words.room[word] |= np.uint64(code) << shift

@@ -1,0 +1,118 @@
+"""Look how large an oil spill and a rendezvous can be explored in given time and memory: in full, then reduced.
+
+Usage: `python benchmarks/largest.py [--minutes N] [--gigabytes N] [--uavs N] [--spills N] [--robots N]`.
+One more UAV or robot is added until a search meets a limit; from there on partial-order reduction goes on alike.
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+import oil_spill
+import rendezvous
+from machine import describe
+from ours import Explored, explored
+from run import say
+
+RESULTS = Path(__file__).parent / "results" / "largest.json"
+
+COUNTS = {
+    "oil_spill, 2 UAVs, 1 spill": (510, 1_438),
+    "oil_spill, 2 UAVs, 2 spills": (1_530, 6_354),
+    "oil_spill, 3 UAVs, 1 spill": (10_648, 36_017),
+} | {f"rendezvous, {robots} robots": counts for robots, counts in rendezvous.COUNTS.items()}
+"""What the reference explorer found: configurations and transitions, unreduced."""
+
+Row = dict[str, object]
+
+
+def climb(family: str, missions: dict[str, str], limits: tuple[str, ...]) -> Iterator[Row]:
+    """Explore missions, each larger than the one before: in full until a limit is met, from there on reduced."""
+    reduced = False
+    for name, text in missions.items():
+        if not reduced:
+            found = explored(text, "--engine", "fast", *limits)
+            yield _row(family, name, found, reduced=False)
+            reduced = bool(found.bounds)
+        if reduced:
+            found = explored(text, "--engine", "reference", "--reduce", *limits)
+            yield _row(family, name, found, reduced=True)
+            if found.bounds:
+                return
+
+
+def _row(family: str, name: str, found: Explored, *, reduced: bool) -> Row:
+    counts = (found.configurations, found.transitions)
+    if not reduced and not found.bounds and COUNTS.get(name, counts) != counts:
+        raise SystemExit(f"{name}: the counts are {counts}, not {COUNTS[name]}")
+    how = "reduced by por" if reduced else "in full"
+    say(
+        f"{name}, {how}: {found.configurations:,}, {', '.join(found.bounds) or 'complete'}, {found.seconds:.1f} s"
+    )
+    return {"family": family, "name": name, "reduced": reduced, "complete": not found.bounds} | asdict(found)
+
+
+def largest(rows: Sequence[Row]) -> dict[str, Row]:
+    """Return of each family the complete search of the last mission, in full and reduced."""
+    return {
+        f"{row['family']}, {'reduced' if row['reduced'] else 'in full'}": row
+        for row in rows
+        if row["complete"]
+    }
+
+
+def _spills(most: int, spills: int) -> dict[str, str]:
+    return {
+        f"oil_spill, {uavs} UAVs, {spills} spill{'s' if spills > 1 else ''}": oil_spill.mission_text(
+            uavs, spills
+        )
+        for uavs in range(2, most + 1)
+    }
+
+
+def _meetings(most: int) -> dict[str, str]:
+    return {f"rendezvous, {robots} robots": rendezvous.mission_text(robots) for robots in range(3, most + 1)}
+
+
+def families(uavs: int, spills: int, robots: int) -> dict[str, Callable[[], dict[str, str]]]:
+    """Return what makes the missions of each family, the larger the later."""
+    found: dict[str, Callable[[], dict[str, str]]] = {
+        f"oil_spill, spills: {count}": lambda count=count: _spills(uavs, count)  # type: ignore[misc]
+        for count in range(1, spills + 1)
+    }
+    return found | {"rendezvous": lambda: _meetings(robots)}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Climb each family as far as the limits allow, and keep what was found."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--minutes", type=float, default=0.5, help="for each search (default 0.5)")
+    parser.add_argument("--gigabytes", type=float, default=4, help="for each search (default 4)")
+    parser.add_argument("--uavs", type=int, default=8, help="at most (default 8)")
+    parser.add_argument("--spills", type=int, default=4, help="at most (default 4)")
+    parser.add_argument("--robots", type=int, default=12, help="at most (default 12)")
+    parser.add_argument("--output", type=Path, default=RESULTS, help="where the figures are kept")
+    given = parser.parse_args(arguments)
+    limits = ("--minutes", str(given.minutes), "--gigabytes", str(given.gigabytes))
+    machine, rows = describe(), []
+    for family, missions in families(given.uavs, given.spills, given.robots).items():
+        rows += climb(family, missions(), limits)
+    kept = {
+        "machine": machine,
+        "limits": {"minutes": given.minutes, "gigabytes": given.gigabytes},
+        "largest": {name: row["name"] for name, row in largest(rows).items()},
+        "searches": rows,
+    }
+    given.output.parent.mkdir(parents=True, exist_ok=True)
+    given.output.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+    from tables import largest_tables  # noqa: PLC0415  # it reads what was kept
+
+    sys.stdout.write(largest_tables(kept))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

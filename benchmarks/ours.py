@@ -1,0 +1,253 @@
+"""Explore a mission in a process of its own, and say what that took.
+
+Usage: `python benchmarks/ours.py FILE.mission [options]` prints one JSON object, the fields of `Explored`. The other
+scripts call `explored`, which starts such a process, so that its peak of memory and its start are its own.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from machine import resident
+
+if TYPE_CHECKING:
+    from checker import Exploration
+    from checker.fast.engine import Space
+    from specs.elaboration import ElaboratedMission
+
+ROOT = Path(__file__).parents[1]
+
+CHUNK = 1 << 16
+"""Configurations that are expanded between two looks at the clock."""
+
+LONGEST = 3600
+"""Seconds after which a process is given up."""
+
+EVERY = 0.25
+"""Seconds between two looks at how much memory is taken."""
+
+
+@dataclass(slots=True)
+class Explored:
+    """What an exploration found and took.
+
+    Attributes:
+        configurations: How many.
+        transitions: How many.
+        bounds: The limits that were met; none where it is complete.
+        seconds: Of the whole exploration, with what it compiled, loaded and learned.
+        compiling: Seconds of it in which loops were compiled; none where they were cached.
+        learning: Seconds of it in which rules were run in Python and remembered.
+        importing: Seconds before it: importing, parsing, elaborating.
+        wall: Seconds of the process from its start to its end.
+        memory: Of the process at its peak, in MB.
+        bytes_per_configuration: What rows, parent links and visited set take, room included.
+        rule_runs: How often rules were run in Python.
+        allowed: How many transitions the visited configurations allow.
+        marks: What was so on the way, where that was asked for.
+    """
+
+    configurations: int
+    transitions: int
+    bounds: list[str]
+    seconds: float
+    compiling: float = 0.0
+    learning: float = 0.0
+    importing: float = 0.0
+    wall: float = 0.0
+    memory: float = 0.0
+    bytes_per_configuration: float | None = None
+    rule_runs: int | None = None
+    allowed: int | None = None
+    marks: list[dict[str, float]] = field(default_factory=list)
+
+    @property
+    def searching(self) -> float:
+        """Seconds of the exploration in which nothing was compiled and nothing learned."""
+        return max(self.seconds - self.compiling - self.learning, 0.0)
+
+    @property
+    def rate(self) -> float:
+        """Configurations a second."""
+        return self.configurations / max(self.seconds, 1e-9)
+
+
+def explored(text: str, *options: str, cache: Path | None = None) -> Explored:
+    """Explore a mission in a new process; options are those of the command line.
+
+    Args:
+        text: The mission.
+        options: See `python benchmarks/ours.py --help`.
+        cache: Where compiled loops are kept, instead of beside their sources.
+
+    Raises:
+        SystemExit: The process failed.
+    """
+    paths = [str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(paths)}
+    if cache is not None:
+        environment["NUMBA_CACHE_DIR"] = str(cache)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "measured.mission"
+        path.write_text(text, encoding="utf-8")
+        command = [sys.executable, __file__, str(path), *options]
+        began = time.monotonic()
+        done = subprocess.run(
+            command, env=environment, capture_output=True, text=True, check=False, timeout=LONGEST
+        )
+        wall = time.monotonic() - began
+    if done.returncode:
+        raise SystemExit(f"the exploration failed:\n{done.stderr}")
+    found = Explored(**json.loads(done.stdout))
+    found.wall = wall
+    return found
+
+
+# --- in the process ---------------------------------------------------------------------------------------------------
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Explore what was asked for and print what it took."""
+    began = time.monotonic()
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("mission", type=Path, metavar="FILE")
+    parser.add_argument("--engine", choices=("fast", "reference"), default="fast")
+    parser.add_argument(
+        "--reduce", action="store_true", help="by partial order; the reference engine does it"
+    )
+    parser.add_argument("--minutes", type=float, help="how long at most")
+    parser.add_argument("--gigabytes", type=float, help="how much memory at most")
+    parser.add_argument("--marks", help="numbers of configurations at which to look, and stop at the last")
+    given = parser.parse_args(arguments)
+    with Compiling() as compiled:
+        import checker.fast.explorer  # noqa: F401, PLC0415  # its time is measured, apart from the search's
+
+        learned = _timed_learning()
+        found = _explore(given, began)
+    found.compiling, found.learning = sum(compiled), sum(learned)
+    sys.stdout.write(json.dumps(asdict(found)) + "\n")
+    return 0
+
+
+class Compiling:
+    """Collect the seconds in which numba compiles: it tells of each time."""
+
+    def __enter__(self) -> list[float]:
+        from numba.core import event  # noqa: PLC0415  # only this process needs it
+
+        self.seconds: list[float] = []
+        self.timer = event.install_timer("numba:compile", self.seconds.append)
+        self.timer.__enter__()
+        return self.seconds
+
+    def __exit__(self, *raised: Any) -> None:
+        self.timer.__exit__(*raised)
+
+
+def _timed_learning() -> list[float]:
+    """Collect the seconds of each time that rules are run in Python."""
+    from checker.fast.learner import CodedSource, Learner  # noqa: PLC0415
+
+    seconds, learn = [], Learner.learn
+
+    def timed(learner: Learner, tree: int, source: CodedSource) -> None:
+        began = time.perf_counter()
+        learn(learner, tree, source)
+        seconds.append(time.perf_counter() - began)
+
+    Learner.learn = timed  # type: ignore[method-assign]  # in this process only, which does nothing else
+    return seconds
+
+
+def _explore(given: argparse.Namespace, began: float) -> Explored:
+    from specs.elaboration import load_mission  # noqa: PLC0415
+
+    mission = load_mission(given.mission)
+    if given.marks:
+        return _marked(mission, [int(mark) for mark in given.marks.split(",")], began)
+    started = time.monotonic()
+    found = _search(mission, given)
+    seconds = time.monotonic() - started
+    result = Explored(len(found.configurations), found.transitions, list(found.bounds), seconds)
+    result.importing = started - began
+    result.memory = resident()
+    result.rule_runs, result.allowed = found.rule_runs, found.allowed or None
+    if found.survey is not None:
+        space = found.survey.space
+        result.bytes_per_configuration = space.bytes_used / space.size
+    return result
+
+
+def _search(mission: "ElaboratedMission", given: argparse.Namespace) -> "Exploration":
+    from checker import Engine, Limits, Progress, Reduction, explore  # noqa: PLC0415  # its time is measured
+    from checker.reduction import Reduced  # noqa: PLC0415
+
+    def look(progress: Progress) -> None:  # noqa: ARG001  # what it takes is asked of the system
+        if given.gigabytes is not None and resident("VmRSS") > given.gigabytes * 1000:
+            raise KeyboardInterrupt  # what explorations take for the user's wish to end
+
+    reducer = None
+    if given.reduce:
+        formulas = [each.formula for each in mission.properties if each.kind in ("invariant", "reachable")]
+        reducer = Reduced(mission.initial, [Reduction.POR], formulas)
+    seconds = None if given.minutes is None else 60 * given.minutes
+    return explore(
+        mission.initial,
+        limits=Limits(configurations=None, seconds=seconds),
+        engine=Engine(given.engine),
+        report=look,
+        every=EVERY,
+        reduce=reducer,
+    )
+
+
+def _marked(mission: "ElaboratedMission", marks: list[int], began: float) -> Explored:
+    """Search up to the last mark; what was learned before a mark is in the seconds of that mark only."""
+    from checker import Limits  # noqa: PLC0415
+    from checker.fast.engine import Space  # noqa: PLC0415
+    from checker.fast.learner import Learner  # noqa: PLC0415
+
+    importing, started = time.monotonic() - began, time.monotonic()
+    learner = Learner(mission.initial.setting, mission.initial.state, Limits().pending)  # type: ignore[arg-type]
+    space, found = Space(learner, None), []
+    for mark in marks:
+        while space.size < mark and space.expanded < space.size:
+            space.advance(min(space.expanded + CHUNK, space.size))
+        found.append(_mark(space, time.monotonic() - started))
+    ended = found[-1]
+    bounds = [] if space.expanded == space.size else [f"stopped at {space.size:,} configurations"]
+    return Explored(
+        space.size,
+        int(ended["transitions"]),
+        bounds,
+        ended["seconds"],
+        importing=importing,
+        memory=resident(),
+        bytes_per_configuration=ended["bytes_per_configuration"],
+        rule_runs=learner.runs,
+        marks=found,
+    )
+
+
+def _mark(space: "Space", seconds: float) -> dict[str, float]:
+    return {
+        "configurations": space.size,
+        "expanded": space.expanded,
+        "transitions": sum(space.rules().values()),
+        "seconds": seconds,
+        "bytes_per_configuration": space.bytes_used / space.size,
+        "memory": resident("VmRSS"),
+        "rule_runs": space.learner.runs,
+    }
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,164 @@
+"""Write the tables of docs/performance.md from what the benchmarks kept, between its markers.
+
+Usage: `python benchmarks/tables.py [--results FOLDER] [--page FILE]`. What was not measured yet stays.
+"""
+
+import argparse
+import json
+import re
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+RESULTS = Path(__file__).parent / "results"
+PAGE = Path(__file__).parents[1] / "docs" / "performance.md"
+
+Kept = dict[str, Any]
+
+
+def patrol_tables(kept: Kept) -> str:
+    """Lay out the patrol beside SPIN: each tool, the ratios, and the phases of a cold and a warm start."""
+    tools = [
+        (each["size"], name, *_run(run)) for each in kept["sizes"] for name, run in each["median"].items()
+    ]
+    beside = [
+        (
+            each["size"],
+            f"{each['configurations']:,}",
+            f"{each['ratio_to_spin']['configurations_per_second']:.2f}",
+            f"{each['ratio_to_spin']['search_alone']:.2f}",
+            f"{each['ratio_to_spin']['memory']:.2f}",
+        )
+        for each in kept["sizes"]
+    ]
+    start = kept["start"]
+    phases = [
+        (name, *(f"{seconds:.2f}" for seconds in start[name]["phases"].values())) for name in ("cold", "warm")
+    ]
+    heads = (
+        "UAVs, grid|tool|configurations|transitions|seconds|configurations/s|peak MB|bytes each|rules run in Python",
+        "UAVs, grid|configurations|rate, SPIN's = 1|with all learned|memory, SPIN's = 1",
+        f"start ({start['size']})|import, load|compile|learn|search, load loops|whole process",
+    )
+    tables = (_table(head, rows) for head, rows in zip(heads, (tools, beside, phases), strict=True))
+    return "\n".join([*tables, machine(kept)])
+
+
+def _run(run: Kept) -> tuple[str, ...]:
+    each, runs = run.get("bytes_per_configuration"), run.get("rule_runs")
+    return (
+        f"{run['configurations']:,}",
+        f"{run['transitions']:,}",
+        f"{run['seconds']:.2f}",
+        f"{run['configurations_per_second']:,.0f}",
+        f"{run['memory']:,.0f}",
+        "" if each is None else f"{each:.1f}",
+        "" if runs is None else f"{runs:,}",
+    )
+
+
+def growth_tables(kept: Kept) -> str:
+    """Lay out how rate and memory change as a search grows."""
+    head = "configurations|expanded|expanded/s|transitions/s|bytes each|rules run in Python|transitions"
+    rows = [
+        (
+            f"{mark['configurations']:,}",
+            f"{mark['expanded']:,}",
+            f"{mark['expanded_per_second']:,.0f}",
+            f"{mark['transitions_per_second']:,.0f}",
+            f"{mark['bytes_per_configuration']:.1f}",
+            f"{mark['rule_runs']:,}",
+            f"{mark['transitions']:,}",
+        )
+        for mark in kept["marks"]
+    ]
+    share = kept["rate_kept"]
+    ended = f"{', '.join(kept['bounds']) or 'complete'}; peak of the process {kept['peak_memory']:,.0f} MB."
+    said = (
+        f"Patrol {kept['size']}, {ended} Rates are those since the row before. Of the first row's rate the last"
+        f" keeps {share['configurations']:.0%} in configurations and {share['transitions']:.0%} in transitions.\n"
+    )
+    return "\n".join([_table(head, rows), said, machine(kept)])
+
+
+def largest_tables(kept: Kept) -> str:
+    """Lay out every search of the two families, and name the largest complete ones."""
+    head = "mission|search|configurations|transitions|seconds|peak MB|rules run in Python|ended"
+    rows = [
+        (
+            row["name"],
+            "reduced by por" if row["reduced"] else "in full",
+            f"{row['configurations']:,}",
+            f"{row['transitions']:,}",
+            f"{row['seconds']:.1f}",
+            f"{row['memory']:,.0f}",
+            "" if row["rule_runs"] is None else f"{row['rule_runs']:,}",
+            "complete" if row["complete"] else "cut",
+        )
+        for row in kept["searches"]
+    ]
+    limits = f"{kept['limits']['minutes']:g} minutes and {kept['limits']['gigabytes']:g} GB"
+    named = "; ".join(f"{family}: *{name}*" for family, name in kept["largest"].items())
+    said = f"The largest that were complete within {limits} a search: {named}.\n"
+    return "\n".join([_table(head, rows), said, machine(kept)])
+
+
+def _table(head: str, rows: Iterable[Sequence[str]]) -> str:
+    names = head.split("|")
+    lines = [names, ["---", *("---:" for _ in names[1:])], *rows]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def machine(kept: Kept) -> str:
+    """Say on what was measured."""
+    on = kept["machine"]
+    versions = ", ".join(f"{name} {version}" for name, version in on["versions"].items())
+    return (
+        f"Measured {on['day']} on {on['processor']}, {on['cores']} cores, {on['memory_gb']} GB, load average"
+        f" {on['load_average']} at the start; {versions}.\n"
+    )
+
+
+def growth_section(kept: Kept) -> str:
+    """Return the table of the growth and the picture that was plotted beside it."""
+    return f"{growth_tables(kept)}\n![Rate and bytes a configuration](pictures/growth.svg)\n"
+
+
+TABLES: dict[str, Callable[[Kept], str]] = {
+    "patrol": patrol_tables,
+    "growth": growth_section,
+    "largest": largest_tables,
+}
+
+
+def filled(page: str, name: str, table: str) -> str:
+    """Return a page with what stands between the markers of a name replaced.
+
+    Raises:
+        ValueError: The page does not have them.
+    """
+    begin, end = f"<!-- begin {name} -->", f"<!-- end {name} -->"
+    pattern = re.compile(f"{re.escape(begin)}.*?{re.escape(end)}", re.DOTALL)
+    if not pattern.search(page):
+        raise ValueError(f"the page has no markers {begin} and {end}")
+    return pattern.sub(lambda _: f"{begin}\n\n{table}\n{end}", page)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write every table that was measured into the page."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--results", type=Path, default=RESULTS, metavar="FOLDER")
+    parser.add_argument("--page", type=Path, default=PAGE, metavar="FILE")
+    given = parser.parse_args(arguments)
+    page = given.page.read_text(encoding="utf-8")
+    for name, table in TABLES.items():
+        kept = given.results / f"{name}.json"
+        if kept.exists():
+            page = filled(page, name, table(json.loads(kept.read_text(encoding="utf-8"))))
+    given.page.write_text(page, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

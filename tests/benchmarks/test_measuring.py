@@ -1,0 +1,106 @@
+"""The scripts that measure the explorer keep figures of the documented shape, and their missions are what they say."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from scripts import BENCHMARKS, script
+
+from checker import explore
+from specs import parse_bytes
+from specs.elaboration import elaborate, load_mission
+
+sys.path.insert(0, str(BENCHMARKS))  # the scripts import one another
+oil_spill = script("oil_spill")
+spin = script("spin")
+tables = script("tables")
+growth = script("growth")
+
+MACHINE = {"processor", "cores", "memory_gb", "system", "versions", "load_average", "day"}
+
+
+def oil(uavs, spills=1):
+    source, tree = parse_bytes("oil_spill.mission", oil_spill.mission_text(uavs, spills).encode())
+    return elaborate(tree, source, Path()).initial
+
+
+def kept(name, folder, *arguments):
+    path = folder / f"{name}.json"
+    command = [sys.executable, str(BENCHMARKS / f"{name}.py"), "--output", str(path), *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=BENCHMARKS.parent)
+    assert done.returncode == 0, done.stderr
+    return json.loads(path.read_text()), done.stdout
+
+
+def test_one_uav_and_one_spill_have_the_counts_of_the_mission_that_ships():
+    shipped = explore(load_mission(BENCHMARKS.parent / "specs/missions/oil_spill.mission").initial)
+    found = explore(oil(1))
+    assert (len(found.configurations), found.transitions) == (
+        len(shipped.configurations),
+        shipped.transitions,
+    )
+
+
+@pytest.mark.parametrize(("uavs", "spills", "counts"), [(2, 1, (510, 1_438)), (2, 2, (1_530, 6_354))])
+def test_several_uavs_and_spills_have_their_counts(uavs, spills, counts):
+    found = explore(oil(uavs, spills))
+    assert found.complete
+    assert (len(found.configurations), found.transitions) == counts
+
+
+def test_eight_uavs_and_four_spills_are_a_mission():
+    assert len(oil(8, 4).alpha.names()) == 8
+
+
+@pytest.mark.parametrize("size", [(0, 1), (10, 1), (1, 0), (1, 5)])
+def test_an_oil_spill_without_room_is_refused(size):
+    with pytest.raises(ValueError, match="have room, not"):
+        oil_spill.mission_text(*size)
+
+
+@pytest.mark.skipif(bool(spin.missing()), reason=f"not installed: {', '.join(spin.missing())}")
+def test_the_patrol_is_kept_with_its_ratios_to_spin(tmp_path):
+    data, printed = kept("run", tmp_path, "--turns", "1", "1x3+handover")
+    assert data["machine"].keys() == MACHINE
+    assert data["ratio_to_spin"].keys() == {"configurations_per_second", "memory", "search_alone"}
+    (size,) = data["sizes"]
+    assert (size["configurations"], size["transitions"]) == (1_434, 4_788)
+    assert size["median"].keys() == {"bigactors, fast", "bigactors, reference", "SPIN, no reduction"}
+    fast = size["median"]["bigactors, fast"]
+    assert 0 < fast["rule_runs"] < size["transitions"]
+    assert fast["memory"] > 0
+    assert data["start"]["cold"]["phases"]["compiling"] > data["start"]["warm"]["phases"]["compiling"] == 0
+    assert "| 1, 3×3, hand-over | SPIN, no reduction | 1,434 | 4,788 |" in printed
+
+
+def test_growth_is_kept_mark_by_mark_and_plotted(tmp_path):
+    plot = tmp_path / "growth.svg"
+    data, _ = kept("growth", tmp_path, "--first", "2000", "--most", "10000", "--plot", str(plot), "2x3")
+    sizes = [mark["configurations"] for mark in data["marks"]]
+    assert sizes == sorted(sizes)
+    assert data["bounds"] == [f"stopped at {sizes[-1]:,} configurations"]
+    assert data["rate_kept"].keys() == {"configurations", "transitions"}
+    assert plot.read_text().startswith("<?xml")
+
+
+def test_what_meets_a_limit_is_cut_and_goes_on_reduced(tmp_path):
+    sizes = ("--uavs", "2", "--spills", "1", "--robots", "2")
+    data, _ = kept("largest", tmp_path, "--minutes", "0", *sizes)
+    assert [row["reduced"] for row in data["searches"]] == [False, True]
+    assert not any(row["complete"] for row in data["searches"])
+    assert data["largest"] == {}
+
+
+def test_growth_looks_at_all_sizes_between_its_ends():
+    assert growth.marks(100, 10) == [2, 10, 20, 50, 100]
+
+
+def test_a_table_is_written_between_its_markers_only():
+    page = "before\n<!-- begin it -->\nold\n<!-- end it -->\nafter\n"
+    assert (
+        tables.filled(page, "it", "new\n") == "before\n<!-- begin it -->\n\nnew\n\n<!-- end it -->\nafter\n"
+    )
+    with pytest.raises(ValueError, match="no markers"):
+        tables.filled("nothing", "it", "new\n")
