@@ -90,10 +90,14 @@ def test_ais_comes_by_a_serial_line():
 
         async def main():
             world, feed = World(), AisFeed("ais", f"serial:{os.ttyname(slave)}:38400")
-            async with running(feed.run(world)):
-                await wait(0.1)
+            async with running(feed.run(world), report_again()):
+                await until(lambda: names(world) == {"mmsi376427000"}, 10)
+
+        async def report_again():
+            """Send the sentence again and again, as a vessel does: what comes before the port is open is lost."""
+            while True:
                 os.write(master, VESSEL + b"\r\n")
-                await until(lambda: names(world) == {"mmsi376427000"}, 5)
+                await wait(0.1)
 
         asyncio.run(main())
     finally:
