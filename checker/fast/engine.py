@@ -296,7 +296,7 @@ class Space:
         if wanted > len(self.origins.room):
             self._reserve_rows(max(wanted, more(len(self.origins.room))))
         if len(self.table.room) * 3 // 4 < wanted:
-            self._rebuild(max(2 * wanted, more(len(self.table.room))))
+            self._rebuild(max(2 * wanted, 2 * len(self.table.room)))
 
     def _reserve_rows(self, rows: int) -> None:
         self.words.grow(rows * self.packing.words)

@@ -28,7 +28,7 @@ from checker.fast.learner import Learner
 from checker.fast.survey import Survey
 from semantics.configuration import Configuration
 
-CHUNK = 1 << 13
+CHUNK = 1 << 15
 """Configurations that are expanded between two looks at the clock."""
 
 
