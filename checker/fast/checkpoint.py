@@ -19,11 +19,11 @@ import numpy as np
 from checker.exploration import CheckpointError
 from checker.fast.columns import Packing
 from checker.fast.engine import Space
-from checker.fast.kernel import AT, CROWDS, CUT, LIMIT, SIZE
+from checker.fast.kernel import CROWDS, CUT, EXPANDED, LIMIT, SIZE
 from semantics.canonical import canonical
 
 SCHEMA = "bigactors.checkpoint/1"
-KEPT = (AT, SIZE, CUT, CROWDS)
+KEPT = (EXPANDED, SIZE, CUT, CROWDS)
 """What of the loops' state goes on; the rest follows from the mission."""
 
 MOST_BYTES = 1 << 40

@@ -3,8 +3,10 @@
 It visits the same configurations in the same order and stops at the same bounds.
 """
 
+import os
 from collections import Counter
 from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import accumulate
 
 import numpy as np
@@ -13,16 +15,34 @@ from numpy.typing import NDArray
 from checker.fast import kernel
 from checker.fast.arrays import Growing
 from checker.fast.columns import Packing, packing
-from checker.fast.kernel import ALPHA, AT, CODE, CROWDS, CUT, GATHERED, LIMIT, NODE, SIZE, TREE, TURNS, WORDS
+from checker.fast.kernel import (
+    ALPHA,
+    AT,
+    CODE,
+    CROWDS,
+    CUT,
+    EXPANDED,
+    GATHERED,
+    LIMIT,
+    NODE,
+    SIZE,
+    TREE,
+    TURNS,
+    WORDS,
+)
 from checker.fast.learner import Actor, CodedSource, Learner
 from checker.fast.pages import Pages
+from checker.fast.trees import RECORD
 from semantics.cells import AGENTS, Row
 from semantics.configuration import Configuration
 from semantics.setting import Scheduler
 from semantics.successors import by_clause, moves, served
 
-BATCH = 1 << 13
-"""Successors that are looked up at once: what is touched for them fits a core's own cache."""
+BATCH = 1 << 15
+"""Successors that a batch has room for; it is stored when half of that is gathered."""
+
+WORTH = 1 << 12
+"""From how many successors on they are stored beside the gathering of the next: handing over takes time, too."""
 
 FIRST_ROWS = 1 << 15
 MOST_ACTORS = 512
@@ -43,19 +63,22 @@ class Space:
         self.learner = learner
         self.state = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
+        self.beside = ThreadPoolExecutor(1) if cores() > 1 else None
+        self.storing: Future[None] | None = None
         self.state[TURNS] = learner.setting.scheduler is Scheduler.FCFS
         self.learned: list[tuple[int, int, int, int]] = []
         self.clauses = [learner.tree(Actor(by_clause, clause)) for clause in learner.setting.environment]
         self.counts = Growing(np.int64)
         self.masks = Growing(np.uint64)
+        self.located = 0
         self.words = Pages(np.uint64, FIRST_ROWS)
         self.origins = Pages(np.uint32, FIRST_ROWS)
         self.packing = packing([len(column.values) for column in learner.columns.all])
         self.state[WORDS] = self.packing.words
         self.table = Pages(np.uint32, 1)
-        self._make_batch(BATCH)
+        self._make_batches(BATCH)
         self._add_first()
-        self._make_room()
+        self._make_room(BATCH)
         self._see()
 
     @property
@@ -66,7 +89,7 @@ class Space:
     @property
     def expanded(self) -> int:
         """How many of them were expanded."""
-        return int(self.state[AT])
+        return int(self.state[EXPANDED])
 
     @property
     def was_cut(self) -> bool:
@@ -110,23 +133,37 @@ class Space:
 
     def advance(self, until: int) -> None:
         """Expand rows up to a number, learning what is not known on the way."""
-        while True:
-            ended = kernel.advance(
-                self.model,
-                self.words.room,
-                self.origins.room,
-                self.table.room,
-                self.batch,
-                self.counts.room,
-                self.state,
-                until,
-            )
-            if ended == kernel.DONE:
-                return
-            if ended == kernel.FULL:
-                self._make_room()
-            else:
-                self._miss()
+        self.state[AT], self.state[GATHERED] = self.expanded, 0
+        try:
+            while self.state[AT] < until:
+                known = kernel.gather(self.model, self.words.room, self.batch, self.state, until)
+                self._hand_over()
+                if not known:
+                    self._stored()
+                    self._miss()
+        finally:
+            self._stored()
+
+    def _hand_over(self) -> None:
+        """Let what was gathered be stored, and another batch take what comes next."""
+        self._stored()
+        gathered, self.state[GATHERED] = int(self.state[GATHERED]), 0
+        self._make_room(gathered)
+        self.batch, self.full = self.full, self.batch
+        if self.beside is not None and gathered >= WORTH:
+            self.storing = self.beside.submit(self._store, gathered, int(self.state[AT]))
+        else:
+            self._store(gathered, int(self.state[AT]))
+
+    def _store(self, gathered: int, at: int) -> None:
+        arrays = (self.words.room, self.origins.room, self.table.room)
+        kernel.store(*arrays, self.full, gathered, at, self.counts.room, self.state)
+
+    def _stored(self) -> None:
+        """Wait until what was handed over is stored."""
+        if self.storing is not None:
+            self.storing.result()
+            self.storing = None
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the leaf that each row leads to in a tree, learning what is not known on the way."""
@@ -140,23 +177,19 @@ class Space:
 
     def edges(self, rows: range) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int64]]]:
         """Yield the transitions of rows that were expanded, some at a time: origins, steps, and targets (< 0: none)."""
-        expanded, self.state[AT] = self.expanded, rows.start
-        try:
-            while self.state[AT] < rows.stop:
-                known = kernel.gather(self.model, self.words.room, self.batch, self.state, rows.stop)
-                count = int(self.state[GATHERED])
-                targets = np.zeros(count, np.int64)
-                kernel.look_up(self.words.room, self.table.room, self.batch, targets, self.state)
-                self.state[GATHERED] = 0
-                yield self.batch.origins[:count].copy(), self.batch.steps[:count].copy(), targets
-                if not known:
-                    self._miss()
-        finally:
-            self.state[AT] = expanded
+        self.state[AT] = rows.start
+        while self.state[AT] < rows.stop:
+            known = kernel.gather(self.model, self.words.room, self.batch, self.state, rows.stop)
+            count, self.state[GATHERED] = int(self.state[GATHERED]), 0
+            targets = np.zeros(count, np.int64)
+            kernel.look_up(self.words.room, self.table.room, self.batch, targets, self.state)
+            yield self.batch.origins[:count].copy(), self.batch.steps[:count].copy(), targets
+            if not known:
+                self._miss()
 
     def _miss(self) -> None:
         if self.state[NODE] == kernel.WIDE:
-            self._make_batch(2 * len(self.batch.hashes))
+            self._make_batches(2 * len(self.batch.hashes))
         else:
             self._learn(int(self.state[AT]))
 
@@ -199,10 +232,10 @@ class Space:
         self._reserve_rows(len(origins))
         self.words.room[: len(words)] = words
         self.origins.room[: len(origins)] = origins
-        self.masks.size = 0
-        self._make_batch(BATCH)
+        self.masks.size = self.located = 0
+        self._make_batches(BATCH)
         self._rebuild(2 * len(origins))
-        self._make_room()
+        self._make_room(BATCH)
         self._see()
 
     def _see(self) -> None:
@@ -210,6 +243,7 @@ class Space:
         self._pack()
         agents, begins = self._agents()
         trees, leaves = self.learner.trees, self.learner.leaves
+        self._locate()
         self._make_masks()
         learned = (
             trees.root,
@@ -224,6 +258,12 @@ class Space:
         self.model = kernel.Model._make(
             (*(each.room for each in learned), self.masks.room, self.packing.columns, *actors)
         )
+
+    def _locate(self) -> None:
+        """Let inner nodes that are new know where their columns stand; all of them where the packing is."""
+        nodes = self.learner.trees.nodes
+        kernel.locate(nodes.used, self.packing.columns, self.located)
+        self.located = len(nodes) // RECORD
 
     def _make_masks(self) -> None:
         """Work out what the transitions that are new keep and set; all of them where the packing is."""
@@ -264,8 +304,8 @@ class Space:
         self._reserve_rows(len(self.origins.room))
         new = self.packing
         kernel.repack(self.words.room, self.size, old.columns, new.columns, old.words, new.words)
-        self.masks.size = 0
-        self._make_batch(len(self.batch.hashes))
+        self.masks.size = self.located = 0
+        self._make_batches(len(self.batch.hashes))
         self._rebuild(len(self.table.room))
 
     # --- room -----------------------------------------------------------------------------------------------------
@@ -279,20 +319,24 @@ class Space:
             self.words.room[word] |= np.uint64(code) << shift
         self.state[SIZE] = 1
 
-    def _make_batch(self, successors: int) -> None:
-        """Make an empty batch; what it held must have been stored."""
-        self.batch = kernel.Batch(
+    def _make_batches(self, successors: int) -> None:
+        """Make two empty batches; what they held must have been stored."""
+        self.batch: kernel.Batch = self._batch(successors)
+        self.full: kernel.Batch = self._batch(successors)
+        self.state[GATHERED] = 0
+
+    def _batch(self, successors: int) -> kernel.Batch:
+        return kernel.Batch(
             np.zeros(successors * self.packing.words, np.uint64),
             np.zeros(successors, np.uint64),
             np.zeros(successors, np.int64),
             np.zeros(successors, np.int32),
             np.zeros(len(self.clauses) + MOST_ACTORS, np.int32),
         )
-        self.state[GATHERED] = 0
 
-    def _make_room(self) -> None:
-        """Make room for a batch of new rows."""
-        wanted = min(self.size + len(self.batch.hashes), int(self.state[LIMIT]))
+    def _make_room(self, rows: int) -> None:
+        """Make room for so many new rows."""
+        wanted = min(self.size + rows, int(self.state[LIMIT]))
         if wanted > len(self.origins.room):
             self._reserve_rows(max(wanted, more(len(self.origins.room))))
         if len(self.table.room) * 3 // 4 < wanted:
@@ -306,6 +350,11 @@ class Space:
         self.table = Pages(np.uint32, 1)  # give the old one back before the next is taken
         self.table = Pages(np.uint32, slots)
         kernel.rebuild(self.words.room, self.size, self.packing.words, self.table.room)
+
+
+def cores() -> int:
+    """Return how many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def more(room: int) -> int:

@@ -32,7 +32,7 @@ from checker.fast.leaves import (
     WRITES,
     WRITES_END,
 )
-from checker.fast.trees import RECORD
+from checker.fast.trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
 
 Ints = NDArray[np.int32]
 Words = NDArray[np.uint64]
@@ -51,7 +51,7 @@ class Model(NamedTuple):
     """
 
     root: Ints
-    nodes: State
+    nodes: Words
     next: Ints
     leaves: Ints
     steps: Ints
@@ -74,61 +74,69 @@ class Batch(NamedTuple):
     leaves: Ints
 
 
-DONE, MISSED, FULL = 0, 1, 2
-"""How `advance` ends: all rows were expanded; something is not known; there is no room."""
-
-AT, SIZE, LIMIT, WORDS, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, TOUCHED = range(13)
+AT, SIZE, LIMIT, WORDS, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED, TOUCHED = range(14)
 """What stands where in the loops' state: the row that comes next, how many rows there are and may be, words a row,
 whether requests wait for their turn, the column that says which agents there are (-1: always the same), how many
-successors are gathered, what was not known, whether rows were left out or not followed, and nothing of meaning."""
+successors are gathered, what was not known, whether rows were left out or not followed, up to which row all successors
+are stored, and nothing of meaning."""
 
-STATE = 13
+STATE = 14
+BLOCK = 1 << 12
+"""Successors that are looked up at once: what is touched for them fits a core's own cache."""
+
 WIDE = -2
 """What stands in the place of a node where one row has more successors than a batch holds."""
 
-COLUMN = 3
+PLACE = 3
 _MULTIPLIER = np.uint64(0x9E3779B97F4A7C15)
-_HALF = np.uint64(32)
+_HALF, _ONE = np.uint64(32), np.uint64(1)
+
+# Indices are unsigned in the inner loops: of signed ones numba asks whether they count from the end.
+_RECORD, _LOW, _WIDTH, _BASE, _WORD, _SHIFT, _MASK = map(
+    np.uint64, (RECORD, LOW, WIDTH, BASE, WORD, SHIFT, MASK)
+)
 
 
 @njit(cache=True, inline="always")
 def code_at(words: Words, at: int, columns: Words, column: int) -> int:
     """Return the code of a column in the row that begins there."""
-    where = COLUMN * column
+    where = PLACE * column
     return np.int64((words[at + np.int64(columns[where])] >> columns[where + 1]) & columns[where + 2])
 
 
 @njit(cache=True, inline="always")
-def walk(words: Words, at: int, start: int, nodes: State, leads: Ints, columns: Words, state: State) -> int:
+def walk(words: Words, at: int, start: int, nodes: Words, leads: Ints, state: State) -> int:
     """Return the reference to the leaf that a row leads to from some reference on, 0 where it is not known."""
+    begin = np.uint64(at)
     reference = np.int64(start)
-    node, code = np.int64(-1), np.int64(-1)
+    record, code = np.uint64(0), np.uint64(0)
     while reference > 0:
-        node = reference - 1
-        code = code_at(words, at, columns, nodes[RECORD * node])
-        inside = code - nodes[RECORD * node + 1]
+        record = _RECORD * np.uint64(reference - 1)
+        code = (words[begin + nodes[record + _WORD]] >> nodes[record + _SHIFT]) & nodes[record + _MASK]
+        inside = code - nodes[record + _LOW]
         reference = np.int64(0)
-        if 0 <= inside < nodes[RECORD * node + 2]:
-            reference = np.int64(leads[nodes[RECORD * node + 3] + inside])
+        if inside < nodes[record + _WIDTH]:
+            reference = np.int64(leads[nodes[record + _BASE] + inside])
     if reference == 0:
-        state[NODE], state[CODE] = node, code
+        state[NODE] = -1 if start == 0 else np.int64(record // _RECORD)
+        state[CODE] = np.int64(code)
     return reference
 
 
 @njit(cache=True, inline="always")
 def hashed(words: Words, at: int, count: int) -> np.uint64:
     """Return the hash of a row."""
-    mixed = np.uint64(count)
-    for k in range(count):
-        mixed = (mixed ^ words[at + k]) * _MULTIPLIER
+    mixed, begin = np.uint64(count), np.uint64(at)
+    for k in range(np.uint64(count)):
+        mixed = (mixed ^ words[begin + k]) * _MULTIPLIER
         mixed ^= mixed >> _HALF
     return mixed * _MULTIPLIER
 
 
 @njit(cache=True, inline="always")
-def slot_of(mixed: np.uint64, slots: int) -> int:
+def slot_of(mixed: np.uint64, slots: int) -> np.uint64:
     """Return where a hash belongs in a table of so many slots."""
-    return np.int64(((mixed >> _HALF) * np.uint64(slots)) >> _HALF)
+    return ((mixed >> _HALF) * np.uint64(slots)) >> _HALF
 
 
 @njit(cache=True)
@@ -143,9 +151,11 @@ def bits_for(slots: int) -> int:
 @njit(cache=True, inline="always")
 def conclude(words: Words, at: int, masks: Words, step: int, target: Words, to: int, width: int) -> None:
     """Write what a transition writes over what stands in the target."""
-    mask = 2 * width * step
-    for j in range(width):
-        target[to + j] = (words[at + j] & masks[mask + j]) | masks[mask + width + j]
+    wide, source, goal = np.uint64(width), np.uint64(at), np.uint64(to)
+    keep = wide * np.uint64(2 * step)
+    put = keep + wide
+    for j in range(wide):
+        target[goal + j] = (words[source + j] & masks[keep + j]) | masks[put + j]
 
 
 @njit(cache=True, inline="always")
@@ -155,7 +165,7 @@ def copy_columns(
     """Copy what a transition copies from column to column."""
     for k in range(begin, end):
         code = np.uint64(code_at(words, at, columns, copies[PAIR * k + 1]))
-        where = COLUMN * copies[PAIR * k]
+        where = PLACE * copies[PAIR * k]
         word, shift, mask = to + np.int64(columns[where]), columns[where + 1], columns[where + 2]
         target[word] = (target[word] & ~(mask << shift)) | (code << shift)
 
@@ -191,71 +201,78 @@ def find(
     words: Words, table: Any, target: Words, k: int, mixed: np.uint64, width: int, bits: np.uint32
 ) -> int:
     """Return the number of the row that a successor is; -slot - 1 where it is new, with where it belongs."""
-    slots = len(table)
+    slots, wide = np.uint64(len(table)), np.uint64(width)
     numbers = np.uint32((np.int64(1) << np.int64(bits)) - 1)
     tag = np.uint32(mixed) >> bits
-    slot = slot_of(mixed, slots)
+    slot, goal = slot_of(mixed, len(table)), np.uint64(k) * wide
     found = np.int64(-1)
     while True:
         entry = table[slot]
         if entry == 0:
-            found = -slot - 1
+            found = -np.int64(slot) - 1
             break
         if entry >> bits == tag:
-            row = np.int64(entry & numbers) - 1
+            row = np.uint64(entry & numbers) - _ONE
             same = True
-            for j in range(width):
-                same = same and words[row * width + j] == target[k * width + j]
+            for j in range(wide):
+                same = same and words[row * wide + j] == target[goal + j]
             if same:
-                found = row
+                found = np.int64(row)
                 break
-        slot += 1
+        slot += _ONE
         if slot == slots:
-            slot = np.int64(0)
+            slot = np.uint64(0)
     return found
 
 
 @njit(cache=True)
-def touch(words: Words, table: Any, hashes: Words, count: int, width: int) -> int:
+def touch(words: Words, table: Any, hashes: Words, begin: int, end: int, width: int) -> int:
     """Read what successors will be compared with, so that the memory fetches it side by side."""
-    slots = len(table)
-    bits = np.uint32(bits_for(slots))
+    wide = np.uint64(width)
+    bits = np.uint32(bits_for(len(table)))
     numbers = np.uint32((np.int64(1) << np.int64(bits)) - 1)
     touched = np.uint64(0)
-    for k in range(count):
-        touched += np.uint64(table[slot_of(hashes[k], slots)])
-    for k in range(count):
-        entry = table[slot_of(hashes[k], slots)]
+    for k in range(np.uint64(begin), np.uint64(end)):
+        touched += np.uint64(table[slot_of(hashes[k], len(table))])
+    for k in range(np.uint64(begin), np.uint64(end)):
+        entry = table[slot_of(hashes[k], len(table))]
         if entry != 0 and entry >> bits == np.uint32(hashes[k]) >> bits:
-            touched += words[(np.int64(entry & numbers) - 1) * width]
-    return np.int64(touched & np.uint64(1))
+            touched += words[(np.uint64(entry & numbers) - _ONE) * wide]
+    return np.int64(touched & _ONE)
 
 
-@njit(cache=True)
-def store(words: Words, origins: Any, table: Any, batch: Batch, counts: State, state: State) -> None:
-    """Look up the batch: what is new becomes a row, with where it was reached from."""
+@njit(cache=True, nogil=True)
+def store(
+    words: Words, origins: Any, table: Any, batch: Batch, gathered: int, at: int, counts: State, state: State
+) -> None:
+    """Look up what was gathered of the rows before `at`: what is new becomes a row, with where it was reached from.
+
+    There must be room for so many new rows. It may run beside `gather`: they touch nothing of each other's.
+    """
     target, hashes, reached_from, taken = batch.words, batch.hashes, batch.origins, batch.steps
     width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
-    state[TOUCHED] = touch(words, table, hashes, state[GATHERED], width)
     bits = np.uint32(bits_for(len(table)))
-    for k in range(state[GATHERED]):
-        counts[taken[k]] += 1
-        found = find(words, table, target, k, hashes[k], width, bits)
-        if found >= 0:
-            continue
-        if size >= limit:
-            state[CUT] += 1
-            continue
-        for j in range(width):
-            words[size * width + j] = target[k * width + j]
-        origins[size] = reached_from[k]
-        table[-found - 1] = ((np.uint32(hashes[k]) >> bits) << bits) | np.uint32(size + 1)
-        size += 1
+    for begin in range(0, gathered, BLOCK):
+        end = min(begin + BLOCK, gathered)
+        state[TOUCHED] = touch(words, table, hashes, begin, end, width)
+        for k in range(begin, end):
+            counts[taken[k]] += 1
+            found = find(words, table, target, k, hashes[k], width, bits)
+            if found >= 0:
+                continue
+            if size >= limit:
+                state[CUT] += 1
+                continue
+            for j in range(width):
+                words[size * width + j] = target[k * width + j]
+            origins[size] = reached_from[k]
+            table[-found - 1] = ((np.uint32(hashes[k]) >> bits) << bits) | np.uint32(size + 1)
+            size += 1
     state[SIZE] = size
-    state[GATHERED] = 0
+    state[EXPANDED] = at
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def gather(  # one loop, so that its arrays are taken out of their tuples only once
     m: Model, words: Words, batch: Batch, state: State, until: int
 ) -> bool:
@@ -281,7 +298,7 @@ def gather(  # one loop, so that its arrays are taken out of their tuples only o
         flags = np.int64(0)
         for k in range(count):
             tree = agents[first + k] if first + k < last else clauses[first + k - last]
-            reference = walk(words, at, root[tree], nodes, leads, columns, state)
+            reference = walk(words, at, root[tree], nodes, leads, state)
             if reference == 0:
                 state[TREE] = tree
                 known = False
@@ -306,20 +323,12 @@ def gather(  # one loop, so that its arrays are taken out of their tuples only o
                         break
                     to = end * width
                     conclude(words, at, masks, step, target, to, width)
-                    if steps[record + COPIES] < steps[record + COPIES_END]:
-                        copy_columns(
-                            words,
-                            at,
-                            columns,
-                            copies,
-                            steps[record + COPIES],
-                            steps[record + COPIES_END],
-                            target,
-                            to,
-                        )
+                    begin, stop = steps[record + COPIES], steps[record + COPIES_END]
+                    if begin < stop:
+                        copy_columns(words, at, columns, copies, begin, stop, target, to)
                     for part in range(steps[record + PARTS], steps[record + PARTS_END]):
                         tree = parts[part]
-                        reference = walk(words, at, root[tree], nodes, leads, columns, state)
+                        reference = walk(words, at, root[tree], nodes, leads, state)
                         if reference == 0:
                             state[TREE] = tree
                             known = False
@@ -345,32 +354,13 @@ def gather(  # one loop, so that its arrays are taken out of their tuples only o
 
 
 @njit(cache=True)
-def advance(
-    m: Model, words: Words, origins: Any, table: Any, batch: Batch, counts: State, state: State, until: int
-) -> int:
-    """Expand rows up to a number, in their order; everything that was gathered is stored when it ends.
-
-    There must be room for a whole batch of new rows; it ends where there is not.
-    """
-    most = min(len(origins), len(words) // state[WORDS], len(table) * 3 // 4)
-    while state[AT] < until:
-        if min(state[SIZE] + len(batch.hashes), state[LIMIT]) > most:
-            return FULL
-        known = gather(m, words, batch, state, until)
-        store(words, origins, table, batch, counts, state)
-        if not known:
-            return MISSED
-    return DONE
-
-
-@njit(cache=True)
 def classify(m: Model, words: Words, rows: State, tree: int, found: Ints, state: State) -> int:
     """Note the leaf that each of some rows leads to in a tree; return how many were led, all where it knows all."""
-    root, nodes, leads, columns = m.root, m.nodes, m.next, m.columns
+    root, nodes, leads = m.root, m.nodes, m.next
     width = state[WORDS]
     done = np.int64(0)
     for k in range(len(rows)):
-        reference = walk(words, rows[k] * width, root[tree], nodes, leads, columns, state)
+        reference = walk(words, rows[k] * width, root[tree], nodes, leads, state)
         if reference == 0:
             state[TREE] = tree
             break
@@ -384,31 +374,33 @@ def look_up(words: Words, table: Any, batch: Batch, targets: Any, state: State) 
     """Note the row that each successor of the batch is."""
     target, hashes = batch.words, batch.hashes
     width = state[WORDS]
-    state[TOUCHED] = touch(words, table, hashes, state[GATHERED], width)
     bits = np.uint32(bits_for(len(table)))
-    for k in range(state[GATHERED]):
-        targets[k] = find(words, table, target, k, hashes[k], width, bits)
+    for begin in range(0, len(targets), BLOCK):
+        end = min(begin + BLOCK, len(targets))
+        state[TOUCHED] = touch(words, table, hashes, begin, end, width)
+        for k in range(begin, end):
+            targets[k] = find(words, table, target, k, hashes[k], width, bits)
 
 
 @njit(cache=True)
 def rebuild(words: Words, size: int, width: int, table: Any) -> None:
     """Fill an empty table with the rows, all of them different; their places are touched some ahead."""
-    slots = len(table)
-    bits = np.uint32(bits_for(slots))
+    slots = np.uint64(len(table))
+    bits = np.uint32(bits_for(len(table)))
     ahead = 256
     hashes = np.zeros(ahead, np.uint64)
     touched = np.uint32(0)
     for begin in range(0, size, ahead):
         for row in range(begin, min(begin + ahead, size)):
             hashes[row - begin] = hashed(words, row * width, width)
-            touched += table[slot_of(hashes[row - begin], slots)]
+            touched += table[slot_of(hashes[row - begin], len(table))]
         for row in range(begin, min(begin + ahead, size)):
             mixed = hashes[row - begin]
-            slot = slot_of(mixed, slots)
+            slot = slot_of(mixed, len(table))
             while table[slot] != 0:
-                slot += 1
+                slot += _ONE
                 if slot == slots:
-                    slot = np.int64(0)
+                    slot = np.uint64(0)
             table[slot] = ((np.uint32(mixed) >> bits) << bits) | np.uint32(row + 1)
     hashes[0] = touched
 
@@ -417,14 +409,25 @@ def rebuild(words: Words, size: int, width: int, table: Any) -> None:
 def repack(words: Words, size: int, old: Words, new: Words, old_width: int, new_width: int) -> None:
     """Pack rows anew in their place, from the last to the first: a row of the new packing is not shorter."""
     packed = np.zeros(new_width, np.uint64)
+    used = np.flatnonzero(old[2::PLACE])
     for row in range(size - 1, -1, -1):
         packed[:] = 0
-        for column in range(len(old) // COLUMN):
+        for column in used:
             code = np.uint64(code_at(words, row * old_width, old, column))
-            where = COLUMN * column
+            where = PLACE * column
             packed[np.int64(new[where])] |= code << new[where + 1]
         for k in range(new_width):
             words[row * new_width + k] = packed[k]
+
+
+@njit(cache=True)
+def locate(nodes: Words, columns: Words, first: int) -> None:
+    """Note where the columns stand that inner nodes ask, from a first node on."""
+    for record in range(RECORD * first, len(nodes), RECORD):
+        where = PLACE * np.int64(nodes[record + COLUMN])
+        nodes[record + WORD] = columns[where]
+        nodes[record + SHIFT] = columns[where + 1]
+        nodes[record + MASK] = columns[where + 2]
 
 
 @njit(cache=True)
@@ -436,7 +439,7 @@ def make_masks(masks: Words, steps: Ints, writes: Ints, columns: Words, width: i
             masks[at + k] = ~np.uint64(0)
             masks[at + width + k] = np.uint64(0)
         for k in range(steps[STEP * step + WRITES], steps[STEP * step + WRITES_END]):
-            where = COLUMN * writes[PAIR * k]
+            where = PLACE * writes[PAIR * k]
             word, shift, mask = np.int64(columns[where]), columns[where + 1], columns[where + 2]
             masks[at + word] &= ~(mask << shift)
             masks[at + width + word] &= ~(mask << shift)

@@ -16,8 +16,12 @@ from checker.fast.columns import Column
 from checker.fast.recording import Ask
 
 UNKNOWN = 0
-RECORD = 4
-"""Numbers that an inner node has."""
+RECORD = 8
+"""Numbers that an inner node has; the last is one to spare."""
+
+COLUMN, LOW, WIDTH, BASE, WORD, SHIFT, MASK = range(7)
+"""What they are: the column that it asks, the first code of its window, how many codes that has, where it begins in
+`next`, and where the column stands in a row as long as the packing is the same (see `kernel.locate`)."""
 
 
 class LearningError(Exception):
@@ -35,15 +39,14 @@ class Trees:
 
     Attributes:
         root: For each tree the reference to its root.
-        nodes: For each inner node four numbers: its column, the first code of its window, how many codes that has, and
-            where it begins in `next`.
+        nodes: For each inner node `RECORD` numbers.
         next: References, window by window.
         asks: For each inner node what it asks.
         answers: For each inner node that asks a yes or no, the reference that each answer leads to.
     """
 
     root: Growing = field(default_factory=lambda: Growing(np.int32))
-    nodes: Growing = field(default_factory=lambda: Growing(np.int64))
+    nodes: Growing = field(default_factory=lambda: Growing(np.uint64))
     next: Growing = field(default_factory=lambda: Growing(np.int32))
     asks: list[Ask] = field(default_factory=list)
     answers: list[dict[bool, int]] = field(default_factory=list)
@@ -86,7 +89,7 @@ class Trees:
 
     def column_of(self, node: int) -> int:
         """Return the number of the column that a node asks."""
-        return int(self.nodes.room[RECORD * node])
+        return int(self.nodes.room[RECORD * node + COLUMN])
 
     def forget(self, tree: int) -> None:
         """Forget all that a tree knows."""
@@ -95,7 +98,7 @@ class Trees:
     def _new_node(self, ask: Ask, column: int) -> int:
         self.asks.append(ask)
         self.answers.append({})
-        return self.nodes.append(column, 0, 0, 0) // RECORD
+        return self.nodes.append(column, *[0] * (RECORD - 1)) // RECORD
 
     def _follow(self, node: int, answer: Any) -> int:
         if self.asks[node].question is not None:
@@ -107,7 +110,7 @@ class Trees:
         return int(self.next.room[base + answer - low]) if low <= answer < low + width else UNKNOWN
 
     def _window(self, node: int) -> tuple[int, int, int]:
-        low, width, base = self.nodes.room[RECORD * node + 1 : RECORD * node + 4]
+        low, width, base = self.nodes.room[RECORD * node + LOW : RECORD * node + WORD]
         return int(low), int(width), int(base)
 
     def _lead(self, tree: int, previous: "tuple[int, Any, Column] | None", reference: int) -> None:
@@ -137,7 +140,7 @@ class Trees:
             self.next.room[base + low - first : base + low - first + width] = self.next.room[
                 old : old + width
             ]
-        self.nodes.room[RECORD * node + 1 : RECORD * node + 4] = first, last - first + 1, base
+        self.nodes.room[RECORD * node + LOW : RECORD * node + WORD] = first, last - first + 1, base
 
     def _fill(self, node: int, column: Column) -> None:
         """Answer a node's yes or no for every code that its window holds and its column has."""
