@@ -65,6 +65,8 @@ class Space:
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
         self.beside = ThreadPoolExecutor(1) if cores() > 1 else None
         self.storing: Future[None] | None = None
+        self.batch: kernel.Batch
+        self.full: kernel.Batch
         self.state[TURNS] = learner.setting.scheduler is Scheduler.FCFS
         self.learned: list[tuple[int, int, int, int]] = []
         self.clauses = [learner.tree(Actor(by_clause, clause)) for clause in learner.setting.environment]
@@ -321,8 +323,7 @@ class Space:
 
     def _make_batches(self, successors: int) -> None:
         """Make two empty batches; what they held must have been stored."""
-        self.batch: kernel.Batch = self._batch(successors)
-        self.full: kernel.Batch = self._batch(successors)
+        self.batch, self.full = (self._batch(successors) for _ in range(2))
         self.state[GATHERED] = 0
 
     def _batch(self, successors: int) -> kernel.Batch:
