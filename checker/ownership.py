@@ -4,18 +4,15 @@ No agent may write a slot that another's redex, missing site or tested observati
 slot of its own: it stands for the parents that a missing site reads, so that two who write it don't interfere.
 """
 
-from collections.abc import Iterable, Iterator
-from contextlib import suppress
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
 
 from semantics.configuration import Configuration
 from semantics.expressions import (
     Apply,
     Either,
     Expression,
-    Fault,
     Host,
     Literal,
     QueryOf,
@@ -23,31 +20,12 @@ from semantics.expressions import (
     TupleOf,
     Variable,
 )
-from semantics.program import Program
+from semantics.program import expressions_of, reachable
 from semantics.reactions import Pattern, Reaction, Term
+from semantics.relevance import instances
 from semantics.setting import Scheduler
 from semantics.signature import Name
-from semantics.statements import (
-    Assign,
-    Call,
-    Case,
-    Choose,
-    ChooseFrom,
-    ControlBy,
-    Display,
-    For,
-    ForEach,
-    If,
-    Loop,
-    Match,
-    Migrate,
-    Observe,
-    React,
-    Send,
-    Spawn,
-    Statement,
-    While,
-)
+from semantics.statements import ControlBy, Display, Migrate, Observe, Send, Spawn, Statement
 
 ANY = "*"
 """Stands for every name."""
@@ -110,14 +88,8 @@ class _Text:
     @cached_property
     def statements(self) -> tuple[Statement, ...]:
         """The statements that the agent may come to."""
-        seen: set[int] = set()
-        waiting = list(self.c.alpha.code(self.agent))
-        while waiting:
-            number = waiting.pop()
-            if number not in seen:
-                seen.add(number)
-                waiting.extend(leads_to(self.program, self.program.statements[number]))
-        return tuple(self.program.statements[number] for number in sorted(seen))
+        reach = reachable(self.program, self.c.alpha.code(self.agent))
+        return tuple(self.program.statements[number] for number in sorted(reach))
 
     @cached_property
     def host(self) -> Name:
@@ -136,15 +108,9 @@ class _Text:
     def reactions(self) -> tuple[Reaction, ...]:
         """The reactions that the agent may request, for every name that an argument may come to."""
         controls = [statement for statement in self.statements if isinstance(statement, ControlBy)]
-        return tuple(reaction for each in controls for reaction in self._instances(each))
-
-    def _instances(self, statement: ControlBy) -> Iterator[Reaction]:
-        make = self.program.reactions[statement.name]
-        everyone = sorted(self.c.setting.kinds)
-        names = [self.host, *map(self.name, statement.arguments)]
-        for chosen in product(*(everyone if name == ANY else [name] for name in names)):
-            with suppress(Fault):  # not every name is one that the command takes
-                yield make(*chosen)
+        setting = self.c.setting
+        hosts = frozenset(setting.kinds) if self.host == ANY else frozenset({self.host})
+        return tuple(reaction for each in controls for reaction in instances(setting, each, hosts))
 
     def writes(self, reaction: Reaction) -> frozenset[Slot]:
         """Return the slots that a reaction may change.
@@ -233,50 +199,3 @@ class _Text:
             yield ("links", ANY)
         if isinstance(inner, QueryOf):
             yield from self._asked(inner, tests)
-
-
-def leads_to(program: Program, statement: Statement) -> Iterator[int]:
-    """Yield the statements that stand in a statement, or in the behaviour that it calls."""
-    match statement:
-        case If(_, then, otherwise):
-            yield from (*then, *otherwise)
-        case While(_, body) | Loop(body) | ForEach(_, _, body) | ChooseFrom(_, _, body):
-            yield from body
-        case For(_, _, each):
-            yield each
-        case Choose(alternatives):
-            yield from (number for block in alternatives for number in block)
-        case React(cases) | Match(_, cases):
-            yield from (number for case in cases for number in case.body)
-        case Call(behaviour):
-            yield from program.behaviours[behaviour].body
-
-
-def expressions_of(statement: Statement) -> Iterable[Expression]:
-    """Return the expressions whose value decides something, or is kept, sent or used."""
-    match statement:
-        case Assign(_, expression) | If(expression, _, _) | While(expression, _) | For(expression, _, _):
-            return (expression,)
-        case ChooseFrom(_, expression, _) | Migrate(expression):
-            return (expression,)
-        case Send(message, to):
-            return (message, to)
-        case ControlBy(_, arguments) | Call(_, arguments):
-            return arguments
-        case Match(value, cases):
-            return (value, *_guards(cases))
-        case React(cases):
-            return _guards(cases)
-        case Observe(query):
-            return _leaves(query)
-        case _:
-            return ()
-
-
-def _guards(cases: tuple[Case, ...]) -> tuple[Expression, ...]:
-    return tuple(case.guard for case in cases if case.guard is not None)
-
-
-def _leaves(query: QueryOf) -> tuple[Expression, ...]:
-    inner = query.argument
-    return () if inner is None else _leaves(inner) if isinstance(inner, QueryOf) else (inner,)

@@ -5,14 +5,15 @@ Rules only carry along what values rest on; here it is marked what has changed i
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 from semantics.agents import Watch, watch_cell
 from semantics.cells import MONITOR, QUEUE, Cell, Changes, merged
 from semantics.configuration import Configuration, Transition
 from semantics.eta import line_cell, sends_cell
-from semantics.provenance import NOTHING, SLOT, Dependency, Key, Provenance, differences
+from semantics.provenance import EVERYTHING, NOTHING, SLOT, Dependency, Key, Provenance, differences
 from semantics.queries import Nodes, Of, Query, evaluate
+from semantics.relevance import ANY, Questions, anybodys, meet, questions_of, relevant, slots_of
 from semantics.requests import CTR, FLY, SND, Request
 from semantics.signature import Name
 from semantics.structure import Parent, Relation
@@ -33,10 +34,10 @@ def marked(c: Configuration, transition: Transition) -> Transition:
 
     def marking(holder: Name) -> Changes:
         """Return the marks in the memory of one agent and in its requests; nobody's are those of the common queue."""
-        mark = partial(_mark, memo={}, answer=partial(_changed, c, after))
-        mine = {} if holder in (author, NOBODY) else _mark_memory(after, holder, mark)
+        answer = cache(partial(_changed, c, after))
+        mine = {} if holder in (author, NOBODY) else _mark_memory(after, holder, answer)
         return mine | merged(
-            _mark_requests(after, cell, author, mark) for cell in _request_cells(after, holder)
+            _mark_requests(after, cell, author, answer) for cell in _request_cells(after, holder)
         )
 
     return replace(transition, target=after.with_each(after.each((NOBODY, *after.alpha.names()), marking)))
@@ -46,11 +47,21 @@ NOBODY: Name = ""
 """Whose requests are those of the queue that all agents share under `fcfs`."""
 
 
-def _changed(before: Configuration, after: Configuration, query: Query) -> frozenset[Key]:
-    """Return the slots of A(P), and the answers to a query, in which two configurations differ."""
+def _changed(before: Configuration, after: Configuration, query: Query, asked: Questions) -> frozenset[Key]:
+    """Return which of some questions two configurations answer differently: slots of A(P), and answers to a query."""
     names = touched(before, after)
+    slots = changed_slots(before, after, names, asked)
+    if not meet(asked, _answers_about(query, names)):
+        return slots
     old, new = (evaluate(query, c.structure.physical, c.alpha) for c in (before, after))
-    return changed_slots(before, after, names) | differences(old, new, names if is_local(query) else None)
+    return slots | relevant(differences(old, new, names if is_local(query) else None), asked)
+
+
+def _answers_about(query: Query, names: tuple[Name, ...]) -> Questions:
+    """Return the answers to a query that may differ where only these entities' places and links do."""
+    about = names if is_local(query) and not set(names).intersection(nodes_of(query)) else (ANY,)
+    answers = {(kind, name) for kind in ("in", "parent", "links") for name in about}
+    return frozenset(answers | {("children", ANY), EVERYTHING})
 
 
 def touched(before: Configuration, after: Configuration) -> tuple[Name, ...]:
@@ -76,17 +87,29 @@ def is_local(query: Query) -> bool:
     return isinstance(inner, Nodes)
 
 
-def changed_slots(before: Configuration, after: Configuration, names: tuple[Name, ...]) -> frozenset[Key]:
-    """Return the slots of A(P) in which two configurations differ about some entities."""
+def nodes_of(query: Query) -> tuple[Name, ...]:
+    """Return the nodes that a query begins with; none for ALL."""
+    while isinstance(query, Of):
+        query = query.of
+    return query.names if isinstance(query, Nodes) else ()
+
+
+def changed_slots(
+    before: Configuration, after: Configuration, names: tuple[Name, ...], asked: Questions
+) -> frozenset[Key]:
+    """Return which of some slots of A(P) differ in two configurations, where only these entities may."""
     old, new = before.structure.physical, after.structure.physical
     keys: set[Key] = set()
     for name in names:
+        links: Key = (f"{SLOT}links", name)
+        if relevant([links], asked) and old.links(name) != new.links(name):
+            keys.add(links)
+        if not meet(asked, frozenset({(f"{SLOT}parent", name), (f"{SLOT}children", ANY)})):
+            continue
         parents = {p.abstract_parent(name) if name in p else None for p in (old, new)}
         if len(parents) > 1:
             keys |= {(f"{SLOT}parent", name)} | {(f"{SLOT}children", place) for place in parents if place}
-        if old.links(name) != new.links(name):
-            keys.add((f"{SLOT}links", name))
-    return frozenset(keys)
+    return relevant(keys, asked)
 
 
 def slots_used(relations: tuple[Relation, ...], closed: tuple[Name, ...]) -> frozenset[Key]:
@@ -107,26 +130,32 @@ def stale_tests(request: Request, rests_on: Provenance, used: frozenset[Key]) ->
     return tuple(sorted(stale, key=repr))
 
 
-Mark = Callable[[Provenance], Provenance]
-Memo = dict[Query, frozenset[Key]]
+Answer = Callable[[Query, Questions], frozenset[Key]]
+"""Which of some questions about an observation a transition has given another answer."""
 
 
-def _mark(provenance: Provenance, *, memo: Memo, answer: Callable[[Query], frozenset[Key]]) -> Provenance:
-    return frozenset(_mark_one(each, memo, answer) for each in provenance)
+def _mark(provenance: Provenance, asked: Questions, answer: Answer) -> Provenance:
+    return frozenset(_mark_one(each, asked, answer) for each in provenance)
 
 
-def _mark_one(each: Dependency, memo: Memo, answer: Callable[[Query], frozenset[Key]]) -> Dependency:
-    if each.query not in memo:
-        memo[each.query] = answer(each.query)
-    changed = memo[each.query].difference(each.changed)
-    return replace(each, changed=tuple(sorted(changed.union(each.changed)))) if changed else each
+def _mark_one(each: Dependency, asked: Questions, answer: Answer) -> Dependency:
+    if each.stale:
+        return each
+    if each.asked is not None:
+        asked = frozenset(key for key in asked if key[0].startswith(SLOT)) | {each.asked}
+    changed = answer(each.query, asked).difference(each.changed)
+    return each.having(changed.union(each.changed)) if changed else each
 
 
-def _mark_memory(c: Configuration, agent: Name, mark: Mark) -> Changes:
+def _mark_memory(c: Configuration, agent: Name, answer: Answer) -> Changes:
     watch = c.alpha.watch(agent)
-    if watch is None:
+    if watch is None or not any((*watch.code, *watch.store, *watch.mailbox)):
         return {}
-    parts = (tuple(map(mark, part)) for part in (watch.code, watch.store, watch.mailbox))
+    asked = questions_of(c, agent)
+    parts = (
+        tuple(_mark(each, asked, answer) for each in part)
+        for part in (watch.code, watch.store, watch.mailbox)
+    )
     return {watch_cell(agent): Watch(*parts)}
 
 
@@ -135,14 +164,24 @@ def _request_cells(c: Configuration, holder: Name) -> list[Cell]:
     return [cell for cell in cells if c.read(cell)]
 
 
-def _mark_requests(c: Configuration, cell: Cell, author: Name, mark: Mark) -> Changes:
+def _mark_requests(c: Configuration, cell: Cell, author: Name, answer: Answer) -> Changes:
     kept = zip(c.read(cell), c.read((MONITOR, *cell)), strict=True)
-    marked = tuple(each if _holder(request) == author else mark(each) for request, each in kept)
+    marked = tuple(
+        each if not each or _holder(request) == author else _mark(each, _asked_by(c, request), answer)
+        for request, each in kept
+    )
     return {(MONITOR, *cell): marked}
 
 
 def _holder(request: Request) -> Name:
     return request.to if isinstance(request, SND) else request.agent
+
+
+def _asked_by(c: Configuration, request: Request) -> Questions:
+    """Return what may matter of what a request rests on: for a control its own redex, for a message who gets it."""
+    if isinstance(request, CTR | FLY):
+        return slots_of(request.reaction.redex)
+    return anybodys(c) if isinstance(request, SND) else questions_of(c, request.agent)
 
 
 def monitored(c: Configuration) -> Configuration:

@@ -1,11 +1,11 @@
 """A program: the numbered statements of a mission, and the variables that each may still read."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
-from semantics.expressions import free
+from semantics.expressions import Expression, QueryOf, free
 from semantics.patterns import variables
 from semantics.statements import (
     Assign,
@@ -139,3 +139,65 @@ def _reads(  # noqa: PLR0912  # one case for each kind of statement
             return of_cases(cases)
         case _:
             return NONE
+
+
+@lru_cache(maxsize=1 << 12)
+def reachable(program: Program, code: Block) -> frozenset[int]:
+    """Return the statements that code may come to; those of whom it spawns not included."""
+    seen: set[int] = set()
+    waiting = list(code)
+    while waiting:
+        number = waiting.pop()
+        if number not in seen:
+            seen.add(number)
+            waiting.extend(leads_to(program, program.statements[number]))
+    return frozenset(seen)
+
+
+def leads_to(program: Program, statement: Statement) -> Iterator[int]:
+    """Yield the statements that stand in a statement, or in the behaviour that it calls."""
+    match statement:
+        case If(_, then, otherwise):
+            yield from (*then, *otherwise)
+        case While(_, body) | Loop(body) | ForEach(_, _, body) | ChooseFrom(_, _, body):
+            yield from body
+        case For(_, _, each):
+            yield each
+        case Choose(alternatives):
+            yield from (number for block in alternatives for number in block)
+        case React(cases) | Match(_, cases):
+            yield from (number for case in cases for number in case.body)
+        case Call(behaviour):
+            yield from program.behaviours[behaviour].body
+
+
+def expressions_of(statement: Statement) -> Iterable[Expression]:
+    """Return the expressions whose value decides something, or is kept, sent or used."""
+    match statement:
+        case Assign(_, expression) | If(expression, _, _) | While(expression, _) | For(expression, _, _):
+            return (expression,)
+        case ChooseFrom(_, expression, _) | Migrate(expression):
+            return (expression,)
+        case Send(message, to):
+            return (message, to)
+        case ControlBy(_, arguments) | Call(_, arguments):
+            return arguments
+        case Match(value, cases):
+            return (value, *_guards(cases))
+        case React(cases):
+            return _guards(cases)
+        case Observe(query):
+            return _leaves(query)
+        case Spawn(_, host, _, arguments):
+            return (host, *arguments)
+        case _:
+            return ()
+
+
+def _guards(cases: tuple[Case, ...]) -> tuple[Expression, ...]:
+    return tuple(case.guard for case in cases if case.guard is not None)
+
+
+def _leaves(query: QueryOf) -> tuple[Expression, ...]:
+    inner = query.argument
+    return () if inner is None else _leaves(inner) if isinstance(inner, QueryOf) else (inner,)

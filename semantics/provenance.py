@@ -40,12 +40,19 @@ class Dependency:
 
     def testing(self, key: Key) -> "Dependency":
         """Return the dependency on one answer of this observation."""
-        return replace(self, asked=key)
+        return replace(self, asked=key).having(self.changed)
 
-    def pruned(self) -> "Dependency":
-        """Forget what nobody asks any more; slots are kept, a redex may use them."""
-        kept = (key for key in self.changed if key == self.asked or key[0].startswith(SLOT))
-        return replace(self, changed=tuple(kept))
+    def having(self, changed: Iterable[Key]) -> "Dependency":
+        """Return the dependency with what others have changed, forgetting what nobody asks any more.
+
+        Of what was tested that is all but the answer itself and the slots, which a redex may use; once the answer has
+        been changed the slots don't matter either.
+        """
+        kept = frozenset(changed)
+        if self.asked is not None:
+            slots = (key for key in kept if key[0].startswith(SLOT))
+            kept = frozenset({self.asked} if self.asked in kept else slots)
+        return replace(self, changed=tuple(sorted(kept)))
 
 
 Provenance = frozenset[Dependency]

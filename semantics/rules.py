@@ -111,10 +111,10 @@ def req_ctr(c: Configuration, a: Name) -> Iterator[Transition]:
     reaction = make(process.scope.host, *(name_in(value) for value, _ in arguments))
     assert isinstance(reaction, Reaction)
     rests_on = resting_on(process, *(kept for _, kept in arguments))
-    pruned = frozenset(each.pruned() for each in rests_on if each.asked is not None)
+    tests = frozenset(each for each in rests_on if each.asked is not None)
     process.leave()
     label = Label("req_ctr", a, f"control({reaction})")
-    yield Transition(label, c.with_(continuing(c, process), c.eta.adding(CTR(a, reaction), pruned)))
+    yield Transition(label, c.with_(continuing(c, process), c.eta.adding(CTR(a, reaction), tests)))
 
 
 def actuate(c: Configuration, a: Name) -> Iterator[Transition]:

@@ -24,6 +24,7 @@ from semantics.configuration import Configuration, Transition
 from semantics.environment import Says
 from semantics.eta import line_cell, sends_cell
 from semantics.expressions import Fault
+from semantics.program import reachable
 from semantics.reactions import Reaction
 from semantics.requests import CTR, FLY, MGR, OBS, READY, SND, Received, Request
 from semantics.setting import Scheduler
@@ -159,7 +160,7 @@ class Actors:
 
     def _code(self, agent: Name, code: Code) -> tuple[Footprint, Footprint]:
         """Return what may come of code, and what of it may come before the agent's line has moved."""
-        reach = self.roles.reach(code)
+        reach = reachable(self.program, code)
         born = self.roles.descendants(reach)
         theirs = joined(self._of_statement(each, n) for each in born for n in self.roles[each].statements)
         here = self.footprints.slots.footprint([("host", agent)])  # any step may ask for HOST

@@ -7,7 +7,6 @@ may give them. What is not a constant, a host or a place in which something was 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from checker.ownership import leads_to
 from checker.reduction.bounds import Bounds, Names, reached
 from semantics.expressions import (
     Apply,
@@ -20,6 +19,7 @@ from semantics.expressions import (
     Variable,
 )
 from semantics.patterns import variables
+from semantics.program import reachable
 from semantics.queries import All, Nodes, Of, Query
 from semantics.requests import MGR
 from semantics.signature import REGION, Name
@@ -69,7 +69,9 @@ class Roles:
         for agent in alpha.names():
             moving = (p.request.host for p in bounds.initial.eta.of(agent) if isinstance(p.request, MGR))
             held = {variable: _spelled(value) for variable, value in alpha.store(agent)}
-            self.roles[agent] = Role(set(self.reach(alpha.code(agent))), {alpha.host(agent), *moving}, held)
+            self.roles[agent] = Role(
+                set(reachable(self.program, alpha.code(agent))), {alpha.host(agent), *moving}, held
+            )
         while self._grow():
             pass
 
@@ -80,17 +82,6 @@ class Roles:
     def agents(self) -> tuple[Name, ...]:
         """Every agent that may ever be, sorted."""
         return tuple(sorted(self.roles))
-
-    def reach(self, code: Iterable[int]) -> frozenset[int]:
-        """Return the statements that code may come to; those of whom it spawns not included."""
-        seen: set[int] = set()
-        waiting = list(code)
-        while waiting:
-            number = waiting.pop()
-            if number not in seen:
-                seen.add(number)
-                waiting.extend(leads_to(self.program, self.program.statements[number]))
-        return frozenset(seen)
 
     def descendants(self, reach: Iterable[int]) -> Names:
         """Return whom these statements may spawn, and whom those may spawn, and so on."""
@@ -181,7 +172,7 @@ class Roles:
             case Spawn(name, host, behaviour, arguments):
                 role = self.roles.setdefault(name, Role())
                 role.hosts.update(self.entities(agent, host))
-                role.statements |= self.reach(self.program.behaviours[behaviour].body)
+                role.statements |= reachable(self.program, self.program.behaviours[behaviour].body)
                 self._pass(agent, name, behaviour, arguments)
 
     def _pass(self, giver: Name, taker: Name, behaviour: str, arguments: tuple[Expression, ...]) -> None:

@@ -43,13 +43,17 @@ rule swap(u: UAV) { HOST || gate0 || north0.(u | $0) -> HOST || gate0.u || north
 """
 
 
+WAYS = ("bare", "bare", "tested", "looked", "told", "heard")
+"""How a control comes about."""
+
+
 @st.composite
-def bodies(draw, host, other):
+def bodies(draw, host, other, ways):
     """Yield the text of a behaviour: controls, tests of what was observed, messages to the other."""
     lines = []
     for _ in range(draw(st.integers(1, 2))):
         control = draw(st.sampled_from(CONTROLS[host]))
-        way = draw(st.sampled_from(["bare", "bare", "tested", "looked", "told", "heard"]))
+        way = draw(st.sampled_from(ways))
         if way == "bare":
             lines.append(control)
         elif way == "heard":
@@ -64,9 +68,9 @@ def bodies(draw, host, other):
 
 
 @st.composite
-def missions(draw):
+def missions(draw, ways=WAYS):
     text = RULES
     for agent, other in (("a", "b"), ("b", "a")):
         host = draw(st.sampled_from(sorted(CONTROLS)))
-        text += f"BigActor {agent} hosted_at {host} with_behavior {{ {draw(bodies(host, other))} }}\n"
+        text += f"BigActor {agent} hosted_at {host} with_behavior {{ {draw(bodies(host, other, ways))} }}\n"
     return text + f"control {draw(st.sampled_from(['atomic', 'timed']))}\n"

@@ -149,8 +149,12 @@ def test_a_limit_that_only_the_search_for_stale_observations_meets_is_said_to_be
       react { case obs if not (uav1 in obs) => control(MOVE_HOST_TO gate0) case obs => skip }
     }
     BigActor b hosted_at uav1 with_behavior {
-      observe(CHILDREN(gate0))
-      react { case obs if not (uav0 in obs) => control(MOVE_HOST_TO gate0) case obs => skip }
+      loop {
+        control(MOVE_HOST_TO gate0)
+        control(MOVE_HOST_TO south0)
+        observe(PARENT(HOST))
+        react { case obs => skip }
+      }
     }
     check { local_consistency race_freedom }
     """

@@ -1,13 +1,27 @@
 """Control races and stale-observation races (semantics.md, check 2), each of their clauses."""
 
-import pytest
-from checked_missions import kinds, load, moves, rules_of, verdict, violation
+from pathlib import Path
 
-from checker import explore
+import pytest
+from checked_missions import kinds, load, moves, rules_of, start, verdict, violation
+from hypothesis import event, given, reject, settings
+from mission_texts import missions
+
+from checker import Limits, explore
 from checker.findings import Collected
 from checker.races import ControlRaces, StaleObservationRaces
 from checker.verdicts import Outcome
+from semantics import monitor
 from semantics.monitor import monitored
+from semantics.provenance import EVERYTHING
+from semantics.relevance import ANY, SLOTS
+from specs import MissionError
+from specs.elaboration import load_mission
+
+ROOT = Path(__file__).parents[2]
+MISSIONS = sorted(
+    (*ROOT.glob("specs/missions/*.mission"), *ROOT.glob("tests/corpus/violated/stale*.mission"))
+)
 
 STALE = "stale-observation race"
 ENTERS = moves("gate0", "b", "uav1")
@@ -428,3 +442,42 @@ PASSED = {
 @pytest.mark.parametrize("text", PASSED.values(), ids=PASSED)
 def test_what_comes_after_rests_on(text):
     assert stale(text + "\n" + ENTERS) == {"a"}
+
+
+# --- what is forgotten ----------------------------------------------------------------------------------------
+
+EVERY = frozenset({(kind, ANY) for kind in ("in", "parent", "children", "links")} | SLOTS | {EVERYTHING})
+
+
+def first_races(c):
+    """Return each stale-observation race with how many steps lead to it, or None where the search is cut off."""
+    stale = StaleObservationRaces()
+    found = explore(monitored(c), (stale,), Limits(configurations=4_000))
+    if not found.complete:
+        return None
+    return {key: len(found.path(finding.at)) for key, finding in stale.collected.first.items()}
+
+
+def remembering_everything(c):
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("questions_of", "anybodys", "slots_of"):
+            patch.setattr(monitor, name, lambda *_: EVERY)
+        return first_races(c)
+
+
+@pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.stem)
+def test_what_a_mission_lets_the_monitor_forget_would_have_made_no_race(path):
+    c = load_mission(path).initial
+    assert remembering_everything(c) in (None, first_races(c))
+
+
+@settings(max_examples=100)
+@given(missions(("bare", "tested", "looked")))
+def test_what_the_monitor_forgets_would_have_made_no_race(text):
+    try:
+        c = start(text)
+    except MissionError:
+        reject()
+    found = first_races(c)
+    event("races" if found else "none")
+    assert remembering_everything(c) in (None, found)

@@ -1,0 +1,157 @@
+"""What an agent may ever ask of an observation, and which slots its controls may use: static, larger than any run.
+
+The race monitor remembers of what others change only what may matter to who holds it. So it multiplies configurations
+no more than it must.
+"""
+
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from functools import lru_cache
+from itertools import product
+from math import prod
+
+from semantics.configuration import Configuration
+from semantics.expressions import (
+    OPERATORS,
+    Apply,
+    Either,
+    Expression,
+    Fault,
+    Host,
+    Literal,
+    QueryOf,
+    SetOf,
+    TupleOf,
+    free,
+)
+from semantics.program import Program, expressions_of, reachable
+from semantics.provenance import EVERYTHING, SLOT, Key
+from semantics.reactions import NodeTerm, Pattern, Reaction
+from semantics.setting import Setting
+from semantics.signature import Name
+from semantics.statements import ChooseFrom, ControlBy, For, Migrate, Send, Spawn
+
+Names = frozenset[Name]
+Questions = frozenset[Key]
+"""Keys; one about `ANY` stands for those about every name."""
+
+ANY = "*"
+SLOTS: Questions = frozenset((f"{SLOT}{kind}", ANY) for kind in ("parent", "links", "children"))
+
+MOST_INSTANCES = 5_000
+"""A control whose arguments may come to more combinations than these is taken for one that may use any slot."""
+
+
+def relevant(keys: Iterable[Key], questions: Questions) -> frozenset[Key]:
+    """Return the keys that are among some questions."""
+    return frozenset(key for key in keys if key in questions or (key[0], ANY) in questions)
+
+
+def meet(some: Questions, others: Questions) -> bool:
+    """Tell whether some questions and others have any in common."""
+    return any(
+        key in others
+        or (key[0], ANY) in others
+        or (key[-1] == ANY and key[0] in {each[0] for each in others})
+        for key in some
+    )
+
+
+def questions_of(c: Configuration, agent: Name) -> Questions:
+    """Return what an agent may come to ask; if it may tell others what it saw, what anybody may."""
+    program = c.setting.program
+    reach = reachable(program, c.alpha.code(agent))
+    return (
+        anybodys(c) if _may(program, reach, Send, Spawn) else _questions(c.setting, reach, _hosts(c, agent))
+    )
+
+
+def anybodys(c: Configuration) -> Questions:
+    """Return what any agent may ever come to ask."""
+    every = frozenset(range(len(c.setting.program.statements)))
+    return _questions(c.setting, every, frozenset[Name]().union(*(_hosts(c, a) for a in c.alpha.names())))
+
+
+def _hosts(c: Configuration, agent: Name) -> Names:
+    """Return where an agent may ever be hosted."""
+    program = c.setting.program
+    if _may(program, range(len(program.statements)), Migrate, Spawn):
+        return frozenset(c.setting.kinds)
+    return frozenset({c.alpha.host(agent)})
+
+
+def slots_of(redex: Pattern) -> Questions:
+    """Return the slots that a redex may use, in whichever match."""
+    used = [("parent", node) for node, _ in redex.parents] + [("links", node) for _, node in redex.links]
+    return frozenset(
+        (f"{SLOT}{kind}", _name(node)) for kind, node in (*used, *(("children", n) for n in redex.closed))
+    )
+
+
+def _name(term: NodeTerm) -> Name:
+    return term if isinstance(term, str) else ANY
+
+
+def _may(program: Program, reach: Iterable[int], *statements: type) -> bool:
+    return any(isinstance(program.statements[number], statements) for number in reach)
+
+
+@lru_cache(maxsize=1 << 12)
+def _questions(setting: Setting, reach: frozenset[int], hosts: Names) -> Questions:
+    found: set[Key] = set()
+    for number in sorted(reach):
+        statement = setting.program.statements[number]
+        for expression in expressions_of(statement):
+            found.update(_asked(expression))
+        if isinstance(statement, For | ChooseFrom) and free(statement.members):
+            found.add(EVERYTHING)
+        if isinstance(statement, ControlBy):
+            found |= _slots(setting, statement, hosts)
+    return frozenset(found)
+
+
+def _asked(expression: Expression | QueryOf | None) -> Iterator[Key]:
+    match expression:
+        case Apply(operator, arguments):
+            if free(expression):
+                shown = (each.value if isinstance(each, Literal) else ANY for each in arguments)
+                yield from OPERATORS[operator].asks(*shown)
+            for each in arguments:
+                yield from _asked(each)
+        case TupleOf(items) | SetOf(items):
+            for each in items:
+                yield from _asked(each)
+        case Either(_, first, second):
+            yield from (*_asked(first), *_asked(second))
+        case QueryOf(_, argument):
+            yield from _asked(argument)
+
+
+def _slots(setting: Setting, control: ControlBy, hosts: Names) -> Questions:
+    """Return the slots that a control may use, whatever its arguments come to."""
+    if prod(map(len, _ranges(setting, control, hosts))) > MOST_INSTANCES:
+        return SLOTS
+    redexes = {reaction.redex for reaction in instances(setting, control, hosts)}
+    return frozenset[Key]().union(*map(slots_of, redexes))
+
+
+def instances(setting: Setting, control: ControlBy, hosts: Names) -> Iterator[Reaction]:
+    """Yield the reactions that a control may request, for every name that an argument may come to."""
+    make = setting.program.reactions[control.name]
+    for host, *names in product(*map(sorted, _ranges(setting, control, hosts))):
+        with suppress(Fault):  # not every name is one that the command takes
+            yield make(host, *names)
+
+
+def _ranges(setting: Setting, control: ControlBy, hosts: Names) -> list[Names]:
+    return [hosts, *(_range(setting, each, hosts) for each in control.arguments)]
+
+
+def _range(setting: Setting, argument: Expression, hosts: Names) -> Names:
+    match argument:
+        case Literal(str(name)):
+            return frozenset({name})
+        case Host():
+            return hosts
+        case _:
+            return frozenset(setting.kinds)

@@ -1,0 +1,87 @@
+"""What may matter of an observation: the answers that are asked, the slots that controls use, and no more."""
+
+from small_missions import around, explore, is_in, mission, move_to, of_name, received
+
+from semantics.expressions import Apply, Variable
+from semantics.provenance import EVERYTHING
+from semantics.relevance import ANY, anybodys, meet, questions_of, relevant, slots_of
+from semantics.requests import CTR
+from semantics.statements import Assign, ControlBy, For, ForEach, If, Migrate, Observe, Send
+
+NAMES = ("base", "sea", "area", "u0", "u1")
+LOOK = Observe(of_name("CHILDREN", "area"))
+ASKS = (LOOK, received("o", 2), If(is_in("u1", "o"), (3,)), move_to("area"))
+
+
+def asked(statements, code, hosts=("u0", "u1")):
+    c = mission(NAMES, statements, {"a": (hosts[0], code), "b": (hosts[1], ())})
+    return questions_of(c, "a")
+
+
+def test_what_is_tested_may_be_asked_and_nothing_else():
+    assert asked(ASKS, (0, 1)) == {("in", "u1"), ("slot parent", "u0")}
+
+
+def test_who_has_ended_asks_nothing():
+    c = mission(NAMES, ASKS, {"a": ("u0", (0, 1)), "b": ("u1", ())})
+    assert questions_of(c, "b") == frozenset()
+
+
+def test_what_was_passed_is_not_asked_again():
+    assert asked(ASKS, (3,)) == {("slot parent", "u0")}
+
+
+def test_a_name_that_is_computed_may_be_any():
+    statements = (Assign("x", Apply("parent", (Variable("y"), Variable("o")))),)
+    assert asked(statements, (0,)) == {("parent", ANY)}
+
+
+def test_going_through_an_observation_asks_for_all_of_it():
+    statements = (For(Variable("o"), "rest", 1), ForEach("x", "rest", (2,)), move_to("area"))
+    assert EVERYTHING in asked(statements, (0,))
+
+
+def test_a_control_may_use_the_slots_of_every_place_that_its_argument_may_name():
+    statements = (ControlBy("MOVE", (Variable("x"), Variable("y"))),)
+    slots = {name for kind, name in asked(statements, (0,)) if kind == "slot parent"}
+    assert {"u0", "u1"} <= slots
+
+
+def test_who_may_migrate_may_be_anywhere():
+    statements = (*ASKS, Migrate(Variable("h")))
+    assert {("slot parent", "u0"), ("slot parent", "u1")} <= asked(statements, (0, 1))
+
+
+def test_who_sends_may_tell_what_others_ask():
+    statements = (*ASKS, Send(Variable("o"), Variable("to")))
+    c = mission(NAMES, statements, {"a": ("u0", (4,)), "b": ("u1", (0, 1))})
+    assert questions_of(c, "a") == anybodys(c)
+    assert {("in", "u1"), ("slot parent", "u0"), ("slot parent", "u1")} <= anybodys(c)
+
+
+def test_a_query_asks_too():
+    statements = (Observe(around()),)
+    assert asked(statements, (0,)) == frozenset()
+
+
+def test_questions_meet_where_one_may_be_the_other():
+    anyone, u0, u1 = (frozenset({("in", name)}) for name in (ANY, "u0", "u1"))
+    assert meet(anyone, u0)
+    assert meet(u0, anyone)
+    assert meet(u0, u0)
+    assert not meet(u0, u1)
+    assert not meet(frozenset({("parent", ANY)}), u0)
+    assert relevant([("in", "u0"), ("parent", "u0"), EVERYTHING], anyone) == u0
+
+
+def test_the_slots_of_a_redex_are_among_what_its_agent_may_ask():
+    c = mission(NAMES, ASKS, {"a": ("u0", (0, 1)), "b": ("u1", (3,))})
+    pending = [
+        each.request
+        for found in explore(c).configurations
+        for agent in ("a", "b")
+        for each in found.eta.of(agent)
+        if isinstance(each.request, CTR)
+    ]
+    assert pending
+    assert all(slots_of(request.reaction.redex) <= questions_of(c, request.agent) for request in pending)
