@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from checker.bounding import BoundMet, bounded
 from checker.coverage import coverage
 from checker.exploration import (
     INTERRUPTION,
@@ -97,7 +98,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     if engine is None and reducer is None and impatient:
         tried = run(Engine.REFERENCE, replace(limits, seconds=PATIENCE))
         late = any(bound.startswith(time_met(PATIENCE)) for bound in tried.bounds)
-        return run(Engine.FAST, limits) if late else tried
+        return run(Engine.FAST, replace(limits, spent=limits.spent + tried.seconds)) if late else tried
     return run(engine or Engine.REFERENCE, limits)
 
 
@@ -153,15 +154,18 @@ class _Check:
         if self.searching and not any(map(self.refused, self.properties)):
             self.remembered = self.search()
         later = self.remembered.bounds if self.remembered else []
+        seconds = self.found.seconds + (self.remembered.seconds if self.remembered else 0.0)
+        with bounded(replace(self.limits, spent=self.limits.spent + seconds)):
+            verdicts = tuple(map(self.decide, self.properties))
         return Report(
-            verdicts=tuple(map(self.decide, self.properties)),
+            verdicts=verdicts,
             configurations=len(self.found.configurations),
             transitions=self.found.transitions,
             depth=self.found.depth,
             bounds=tuple(dict.fromkeys([*self.found.bounds, *later])),
             rules=dict(sorted(self.found.rules.items())),
             notes=notes,
-            seconds=self.found.seconds + (self.remembered.seconds if self.remembered else 0.0),
+            seconds=seconds,
             coverage=coverage(self.initial, self.visited, complete=self.found.complete and not self.reducer),
             reduced=tuple(map(str, self.reducer.names)) if self.reducer else (),
             allowed=self.found.allowed,
@@ -230,9 +234,14 @@ class _Check:
     def decide_temporal(self, asked: Property) -> Verdict:
         from checker.temporal.decide import Decider  # noqa: PLC0415 - numpy and scipy take their time to load
 
-        if self.decider is None:
-            self.decider = Decider(self.found, self.temporal)
-        return self.decider.decide(asked)
+        try:
+            if self.decider is None:
+                self.decider = Decider(self.found, self.temporal)
+            return self.decider.decide(asked)
+        except BoundMet as bound:
+            return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {bound} was met")
+        except MemoryError:
+            return Verdict(asked, Outcome.INCOMPLETE, note="not decided: there is not enough memory")
 
     def verdict(self, asked: Property, collected: Collected, note: str = "") -> Verdict:
         """Return the verdict of a property that no finding may speak against."""

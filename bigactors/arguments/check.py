@@ -34,13 +34,13 @@ def fill(parser: Parser) -> None:
         "--max-time",
         metavar="SECONDS",
         type=seconds,
-        help="explore no longer than SECONDS (default: no limit)",
+        help="explore and decide no longer than SECONDS; exploring takes four fifths of it (default: no limit)",
     )
     parser.add_argument(
         "--max-memory",
         metavar="SIZE",
         type=size,
-        help="stop exploring when the process takes more, such as 800M or 12G (default: no limit)",
+        help="stop when the process takes more memory, such as 800M or 12G (default: no limit)",
     )
     _long_runs(parser)
     parser.add_argument(

@@ -12,6 +12,7 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
+from checker.bounding import look
 from checker.fast import kernel
 from checker.fast.arrays import Growing
 from checker.fast.columns import Packing, packing
@@ -172,6 +173,7 @@ class Space:
         found = np.zeros(len(rows), np.int32)
         done = 0
         while done < len(rows):
+            look()
             done += kernel.classify(self.model, self.words.room, rows[done:], tree, found[done:], self.state)
             if done < len(rows):
                 self._learn(int(rows[done]))
@@ -181,6 +183,7 @@ class Space:
         """Yield the transitions of rows that were expanded, some at a time: origins, steps, and targets (< 0: none)."""
         self.state[AT] = rows.start
         while self.state[AT] < rows.stop:
+            look()
             known = kernel.gather(self.model, self.words.room, self.batch, self.state, rows.stop)
             count, self.state[GATHERED] = int(self.state[GATHERED]), 0
             targets = np.zeros(count, np.int64)
@@ -190,6 +193,7 @@ class Space:
                 self._miss()
 
     def _miss(self) -> None:
+        look()  # everything that was gathered is stored
         if self.state[NODE] == kernel.WIDE:
             self._make_batches(2 * len(self.batch.hashes))
         else:

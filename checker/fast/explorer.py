@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import overload
 
+from checker.bounding import BoundMet, bounded
 from checker.exploration import (
     INTERRUPTION,
     Exploration,
@@ -30,6 +31,9 @@ from semantics.configuration import Configuration
 
 CHUNK = 1 << 15
 """Configurations that are expanded between two looks at the clock."""
+
+EXPLORING = 0.8
+"""What part of the time is for exploring: what was explored has to be looked at, too."""
 
 
 class Origins(Sequence[int]):
@@ -119,15 +123,14 @@ class _Explorer:
         path = self.checkpoint
         if path is not None and self.keeping.resumed and path.exists():
             self.journey = resume(self.space, self.keeping.digest, path)
-        try:
-            self.visit_all(began - self.journey.seconds)
-        except KeyboardInterrupt:
-            self.bounds.append(INTERRUPTION)
-        self.keep(time.monotonic() - began + self.journey.seconds)
+        began -= self.journey.seconds
+        with bounded(self.limits, began):
+            self.visit(began)
+        self.keep(time.monotonic() - began)
         space, configurations = self.space, Configurations(self.space)
-        doubt(space, self.keeping.doubted)
         survey = Survey(space)
-        inspect_fast(survey, inspect)
+        with bounded(self.limits_of_looking(), began):
+            self.look_at(survey, inspect)
         rules = space.rules()
         return Exploration(
             configurations,
@@ -137,10 +140,31 @@ class _Explorer:
             sum(rules.values()),
             rules,
             sorted(self.bounds + self.met()),
-            time.monotonic() - began + self.journey.seconds,
+            time.monotonic() - began,
             self.learner.runs,
             survey=survey,
         )
+
+    def visit(self, began: float) -> None:
+        """Explore until the end, or until a bound is met."""
+        try:
+            self.visit_all(began)
+        except BoundMet as bound:
+            self.bounds.append(str(bound))
+        except KeyboardInterrupt:
+            self.bounds.append(INTERRUPTION)
+
+    def look_at(self, survey: Survey, inspect: tuple[Inspect, ...]) -> None:
+        """Look at what was explored, as long as there is time: what was not looked at to the end has found nothing."""
+        try:
+            doubt(self.space, self.keeping.doubted)
+            inspect_fast(survey, inspect)
+        except BoundMet as bound:
+            self.bounds.append(f"{bound}, in looking at what was explored")
+
+    def limits_of_looking(self) -> Limits:
+        """Return the limits; memory that came to its end is enough to look at what is there."""
+        return replace(self.limits, memory=None) if memory_met(self.limits) in self.bounds else self.limits
 
     def keep(self, seconds: float) -> None:
         """Write a checkpoint, if one is wanted."""
@@ -177,7 +201,7 @@ class _Explorer:
     def is_over(self, seconds: float) -> bool:
         """Tell whether time or memory has come to its end, and note it."""
         most = self.limits.seconds
-        if most is not None and seconds + self.limits.spent > most:
+        if most is not None and seconds + self.limits.spent > EXPLORING * most:
             self.bounds.append(time_met(most))
         elif is_full(self.limits):
             self.bounds.append(memory_met(self.limits))

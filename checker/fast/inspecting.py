@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from checker.bounding import look
 from checker.coverage import passed_over
 from checker.exploration import Inspect
 from checker.fast.learner import Actor
@@ -63,6 +64,7 @@ def inspect_fast(survey: Survey, inspections: Iterable[Inspect]) -> None:
 def look_at_each(survey: Survey, inspection: Inspect) -> None:
     """Let an inspection look at every configuration."""
     for number in range(survey.size):
+        look()
         c = survey.space.configuration(number)
         inspection(number, c, expand(c))
 
