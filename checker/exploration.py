@@ -13,6 +13,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, Protocol
 
 from checker.edges import Edges
+from checker.estimate import Estimate, estimate
 from semantics.configuration import Configuration, Transition
 from semantics.successors import Expansion, expand
 
@@ -70,13 +71,31 @@ class Keeping:
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """How far an exploration has come; `rate` is in configurations a second."""
+    """How far an exploration has come.
+
+    Attributes:
+        configurations: How many were met.
+        transitions: How many were followed.
+        depth: The distance of those that are being expanded.
+        frontier: How many wait to be expanded.
+        rate: How many are expanded in a second.
+        estimate: How many there may be in all; None while nobody can say.
+    """
 
     configurations: int
     transitions: int
     depth: int
     frontier: int
     rate: float
+    estimate: Estimate | None = None
+
+    @property
+    def left(self) -> tuple[float, float] | None:
+        """How many seconds it may go on, at least and at most, if layers and rate go on as they do."""
+        if self.estimate is None or self.rate <= 0:
+            return None
+        more = self.estimate.most - self.configurations
+        return self.frontier / self.rate, (self.frontier + more) / self.rate
 
 
 class Engine(Enum):
@@ -215,6 +234,7 @@ class _Explorer:
         self.configurations = [initial]
         self.origins = [0]
         self.depths = [0]
+        self.layers = [1]
         self.found = Exploration(self.configurations, self.origins)
         self.numbers = {initial: 0}
         self.inspect = inspect
@@ -296,8 +316,15 @@ class _Explorer:
             self.configurations.append(reached)
             self.origins.append(number)
             self.depths.append(self.depths[number] + 1)
+            self.count(self.depths[-1])
         if found.edges is not None:
             found.edges.add(label, target)
+
+    def count(self, depth: int) -> None:
+        """Count a configuration into its layer."""
+        if depth == len(self.layers):
+            self.layers.append(0)
+        self.layers[depth] += 1
 
     def missing(self, number: int) -> None:
         if self.found.edges is not None:
@@ -309,8 +336,9 @@ class _Explorer:
 
     def progress(self, number: int, seconds: float) -> Progress:
         found = self.found
-        total, rate = len(self.configurations), number / max(seconds, 1e-9)
-        return Progress(total, found.transitions, self.depths[number], total - number, rate)
+        total, depth, rate = len(self.configurations), self.depths[number], number / max(seconds, 1e-9)
+        guess = estimate(self.layers[: depth + 1])
+        return Progress(total, found.transitions, depth, total - number, rate, guess)
 
 
 def limit_met(most: int) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import overload
 
 from checker.bounding import BoundMet, bounded
+from checker.estimate import estimate
 from checker.exploration import (
     INTERRUPTION,
     Exploration,
@@ -110,6 +111,7 @@ class _Explorer:
         self.learner = Learner(initial.setting, initial.state, limits.pending)  # type: ignore[arg-type]  # a stored one
         self.space = Space(self.learner, limits.configurations)
         self.journey = Journey(0, 1, 0.0)
+        self.layers = [1]
         self.bounds: list[str] = []
 
     @property
@@ -123,6 +125,7 @@ class _Explorer:
         path = self.checkpoint
         if path is not None and self.keeping.resumed and path.exists():
             self.journey = resume(self.space, self.keeping.digest, path)
+            self.layers = list(self.journey.layers)
         began -= self.journey.seconds
         with bounded(self.limits, began):
             self.visit(began)
@@ -170,7 +173,8 @@ class _Explorer:
         """Write a checkpoint, if one is wanted."""
         path = self.checkpoint
         if path is not None:
-            save(self.space, replace(self.journey, seconds=seconds), self.keeping.digest, path)
+            journey = replace(self.journey, seconds=seconds, layers=tuple(self.layers))
+            save(self.space, journey, self.keeping.digest, path)
 
     def met(self) -> list[str]:
         most = self.limits.configurations
@@ -196,6 +200,7 @@ class _Explorer:
         space, end = self.space, self.journey.layer_end
         space.advance(min(space.expanded + CHUNK, end))
         if space.expanded == end and space.size > end:
+            self.layers.append(space.size - end)
             self.journey = Journey(self.journey.depth + 1, space.size, self.journey.seconds)
 
     def is_over(self, seconds: float) -> bool:
@@ -211,4 +216,5 @@ class _Explorer:
         space = self.space
         rate = space.expanded / max(seconds, 1e-9)
         transitions = int(space.counts.used.sum())
-        return Progress(space.size, transitions, self.journey.depth, space.size - space.expanded, rate)
+        frontier, guess = space.size - space.expanded, estimate(self.layers)
+        return Progress(space.size, transitions, self.journey.depth, frontier, rate, guess)
