@@ -86,8 +86,8 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     asked, limits = tuple(properties), limits or Limits()
     formulas = [each.formula for each in asked if each.kind in ("invariant", "reachable")]
     reducer = reducing(initial, reduce, formulas)
-    if reducer is not None and engine is Engine.FAST:
-        raise RefusedError(reducer.names[0], "the fast explorer does not reduce; leave --engine out")
+    if reducer is not None and engine not in (None, Engine.REFERENCE):
+        raise RefusedError(reducer.names[0], f"the {engine.value} engine does not reduce; leave --engine out")
 
     def run(engine: Engine, limits: Limits) -> Report:
         return _Check(initial, asked, limits, report, engine, violations, reducer, keeping).run(notes)
@@ -135,7 +135,7 @@ class _Check:
         }
         asked = any(each.kind == "race_freedom" for each in self.properties)
         self.owned = asked and owned(initial)
-        self.searching = asked and not self.owned
+        self.searching = asked and not self.owned and engine is not Engine.SYMBOLIC
         self.remembered: Exploration | None = None
         self.temporal = tuple(each for each in self.properties if each.kind in TEMPORAL)
         self.decider: Decider | None = None
@@ -159,7 +159,7 @@ class _Check:
             verdicts = tuple(map(self.decide, self.properties))
         return Report(
             verdicts=verdicts,
-            configurations=len(self.found.configurations),
+            configurations=self.found.size,
             transitions=self.found.transitions,
             depth=self.found.depth,
             bounds=tuple(dict.fromkeys([*self.found.bounds, *later])),
@@ -203,12 +203,25 @@ class _Check:
 
     def decide(self, asked: Property) -> Verdict:
         """Return the verdict on one property: what a reduction may have lost is not said to hold."""
+        beyond = self.beyond(asked)
+        if beyond is not None:
+            return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {beyond}")
         reason = self.refused(asked)
         if reason is None:
             return self.decided(asked)
         found = self.decided(asked)
         note = f"not decided under this reduction: {reason}"
         return found if found.outcome is Outcome.VIOLATED else Verdict(asked, Outcome.INCOMPLETE, note=note)
+
+    def beyond(self, asked: Property) -> str | None:
+        """Return why the engine can't decide a property, None where it can."""
+        if self.engine is not Engine.SYMBOLIC:
+            return None
+        if asked.kind in TEMPORAL:
+            return "the symbolic engine knows nothing of runs; leave --engine out"
+        if asked.kind == "race_freedom" and not self.owned:
+            return "the symbolic engine looks for no races; leave --engine out"
+        return None
 
     def decided(self, asked: Property) -> Verdict:
         """Return what the exploration says of a property."""

@@ -67,8 +67,9 @@ def fill(parser: Parser) -> None:
     parser.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
     parser.add_argument(
         "--engine",
-        choices=("reference", "fast"),
-        help="how it explores; verdicts are the same (default: whichever is quicker for the mission's size)",
+        choices=("reference", "fast", "symbolic"),
+        help="how it explores; verdicts are the same (default: reference or fast, whichever is quicker for the "
+        "mission's size); symbolic, for very large missions, decides nothing of runs and races (docs/symbolic.md)",
     )
     parser.add_argument(
         "--reduce",

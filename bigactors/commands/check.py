@@ -66,8 +66,10 @@ MOST, MOST_OF_REFERENCE = 100_000_000, 2_000_000
 """How many configurations are visited at most: those of the reference explorer take a thousand bytes each."""
 
 
-def most_of(options: Namespace) -> int:
-    """Return how many configurations are visited at most."""
+def most_of(options: Namespace) -> int | None:
+    """Return how many configurations are visited at most; sets of them have no usual limit."""
+    if options.engine == "symbolic":
+        return int(options.max_configurations) if options.max_configurations else None
     usual = MOST_OF_REFERENCE if options.engine == "reference" or options.reduce else MOST
     return options.max_configurations or usual
 
@@ -78,7 +80,7 @@ def keeping_of(options: Namespace) -> Keeping | None:
         raise Mistake("--resume goes on from a checkpoint", "say where it is: --checkpoint DIR")
     if options.checkpoint is None and options.paranoid is None:
         return None
-    if options.engine == "reference" or options.reduce:
+    if options.engine in ("reference", "symbolic") or options.reduce:
         raise Mistake(
             "--checkpoint and --paranoid are of the fast explorer", "leave --engine and --reduce out"
         )

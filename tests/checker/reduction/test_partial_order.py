@@ -93,7 +93,7 @@ def test_the_rendezvous_has_the_verdicts_of_the_full_search():
 
 def test_the_fast_explorer_refuses_to_reduce():
     mission = load_mission(MISSIONS / "takeover.mission")
-    with pytest.raises(RefusedError, match="the fast explorer does not reduce"):
+    with pytest.raises(RefusedError, match="the fast engine does not reduce"):
         check(mission.initial, mission.properties, engine=Engine.FAST, reduce=POR)
 
 
