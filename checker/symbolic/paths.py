@@ -8,6 +8,8 @@ from collections import defaultdict
 from collections.abc import Iterator
 from typing import NamedTuple
 
+import numpy as np
+
 from checker.bounding import look
 from checker.fast.learner import CodedSource, Learner
 from checker.fast.trees import RECORD, UNKNOWN
@@ -104,7 +106,13 @@ class Paths:
         return found
 
     def _who(self, node: int, reference: int) -> Set:
-        return self._codes(node, self._leads(node)[reference])
+        """Return who is led on by a node as by a reference."""
+        trees = self.learner.trees
+        column, low, width, base = map(int, trees.nodes.room[RECORD * node : RECORD * (node + 1)])
+        led = np.flatnonzero(trees.next.room[base : base + width] == reference) + low
+        return self._codes(
+            node, [code for code in led.tolist() if code < len(self.learner.columns.all[column].values)]
+        )
 
     def _codes(self, node: int, codes: list[int]) -> Set:
         column = self.learner.trees.column_of(node)

@@ -81,7 +81,7 @@ def test_what_was_explored_and_not_looked_at_does_not_hold(clock, monkeypatch):
     assert not report.coverage.complete
 
 
-@pytest.mark.parametrize("engine", (Engine.REFERENCE, Engine.FAST))
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
 def test_temporal_properties_are_not_decided_when_the_time_is_over(clock, monkeypatch, engine):
     mission = load_mission(MISSIONS / "surveillance.mission")
     asked = [each for each in mission.properties if each.kind in ("ltl", "ctl", "progress")]

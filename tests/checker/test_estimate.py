@@ -86,7 +86,7 @@ def test_seconds_left_follow_from_rate_and_frontier():
     assert Progress(1_000, 3_000, 9, 100, 0.0, Estimate(1_000, 1_400)).left is None
 
 
-@pytest.mark.parametrize("engine", (Engine.REFERENCE, Engine.FAST))
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
 def test_both_explorers_tell_of_the_same_layers(engine, monkeypatch):
     told = []
     if engine is Engine.FAST:
