@@ -92,7 +92,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     def run(engine: Engine, limits: Limits) -> Report:
         return _Check(initial, asked, limits, report, engine, violations, reducer, keeping).run(notes)
 
-    if keeping is not None and reducer is None:
+    if (keeping is not None or limits.spill is not None) and reducer is None:
         engine = engine or Engine.FAST
     impatient = limits.seconds is None or limits.seconds > PATIENCE
     if engine is None and reducer is None and impatient:

@@ -37,6 +37,7 @@ class Limits:
         pending: How many requests an agent may have pending, or messages in its mailbox.
         spent: How many of the seconds are gone already.
         memory: How many bytes the process may take; looked at now and then, so that it may be a little more.
+        spill: The folder in which the fast explorer has files for its rows when memory ends; None for nowhere.
     """
 
     configurations: int | None = 2_000_000
@@ -44,6 +45,7 @@ class Limits:
     pending: int = MOST_PENDING
     spent: float = 0.0
     memory: int | None = None
+    spill: str | None = None
 
 
 class EngineError(Exception):
@@ -374,10 +376,14 @@ def is_full(limits: Limits) -> bool:
 
 
 def memory_taken() -> int:
-    """Return how many bytes of memory the process takes now; its peak where the system doesn't tell."""
+    """Return how many bytes of memory the process takes now; its peak where the system doesn't tell.
+
+    What is a file's is not counted: the system takes that back when it needs memory.
+    """
     try:
         with open("/proc/self/statm", encoding="ascii") as file:
-            return int(file.read().split()[1]) * resource.getpagesize()
+            resident, of_files = map(int, file.read().split()[1:3])
+            return (resident - of_files) * resource.getpagesize()
     except OSError:
         unit = 1 if sys.platform == "darwin" else 1024
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit

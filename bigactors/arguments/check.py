@@ -114,6 +114,13 @@ def _long_runs(parser: Parser) -> None:
         "--resume", action="store_true", help="go on from the checkpoint in DIR, if there is one"
     )
     group.add_argument(
+        "--spill",
+        metavar="DIR",
+        type=named,
+        help="when --max-memory is reached, go on with configurations in files in DIR, which should be on a disk; they "
+        "have no names and are gone at the end",
+    )
+    group.add_argument(
         "--paranoid",
         metavar="N",
         type=at_least_one,

@@ -34,7 +34,7 @@ WORDS = {
 
 def run(options: Namespace) -> Exit:
     """Check missions; print the reports and write what was asked for."""
-    limits = Limits(most_of(options), options.max_time, memory=options.max_memory)
+    limits = limits_of(options)
     if options.trace:
         make_folder(options.trace)
     if options.verdict:
@@ -64,6 +64,17 @@ def run(options: Namespace) -> Exit:
 
 MOST, MOST_OF_REFERENCE = 100_000_000, 2_000_000
 """How many configurations are visited at most: those of the reference explorer take a thousand bytes each."""
+
+
+def limits_of(options: Namespace) -> Limits:
+    """Return the limits of the exploration."""
+    if options.spill is not None:
+        if options.max_memory is None:
+            raise Mistake("--spill is for when memory ends", "say when that is: --max-memory SIZE")
+        if options.engine in ("reference", "symbolic") or options.reduce:
+            raise Mistake("--spill is of the fast explorer", "leave --engine and --reduce out")
+        make_folder(options.spill)
+    return Limits(most_of(options), options.max_time, memory=options.max_memory, spill=options.spill)
 
 
 def most_of(options: Namespace) -> int | None:

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import accumulate
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,6 +104,11 @@ class Space:
     def is_crowded(self) -> bool:
         """Whether some were not followed, because an agent has too much pending."""
         return bool(self.state[CROWDS])
+
+    @property
+    def spilled(self) -> bool:
+        """Whether rows and origins are in files."""
+        return self.origins.spilled
 
     @property
     def bytes_used(self) -> int:
@@ -346,6 +352,15 @@ class Space:
             self._reserve_rows(max(wanted, more(len(self.origins.room))))
         if len(self.table.room) * 3 // 4 < wanted:
             self._rebuild(max(2 * wanted, 2 * len(self.table.room)))
+
+    def spill(self, folder: Path) -> None:
+        """Let rows and origins go over to files in a folder; the table, which is looked up at random, stays in memory.
+
+        Raises:
+            OSError: There is no such folder, or no room in it.
+        """
+        self.words.spill(folder, self.size * self.packing.words)
+        self.origins.spill(folder, self.size)
 
     def _reserve_rows(self, rows: int) -> None:
         self.words.grow(rows * self.packing.words)

@@ -127,7 +127,7 @@ class _Explorer:
             self.journey = resume(self.space, self.keeping.digest, path)
             self.layers = list(self.journey.layers)
         began -= self.journey.seconds
-        with bounded(self.limits, began):
+        with bounded(self.limits if self.limits.spill is None else replace(self.limits, memory=None), began):
             self.visit(began)
         self.keep(time.monotonic() - began)
         space, configurations = self.space, Configurations(self.space)
@@ -154,6 +154,8 @@ class _Explorer:
             self.visit_all(began)
         except BoundMet as bound:
             self.bounds.append(str(bound))
+        except OSError as error:
+            self.bounds.append(f"the end of the room in {self.limits.spill}: {error.strerror}")
         except KeyboardInterrupt:
             self.bounds.append(INTERRUPTION)
 
@@ -166,8 +168,9 @@ class _Explorer:
             self.bounds.append(f"{bound}, in looking at what was explored")
 
     def limits_of_looking(self) -> Limits:
-        """Return the limits; memory that came to its end is enough to look at what is there."""
-        return replace(self.limits, memory=None) if memory_met(self.limits) in self.bounds else self.limits
+        """Return the limits; memory that came to its end, with files or without, is enough to look at what is there."""
+        full = memory_met(self.limits) in self.bounds or self.space.spilled
+        return replace(self.limits, memory=None) if full else self.limits
 
     def keep(self, seconds: float) -> None:
         """Write a checkpoint, if one is wanted."""
@@ -208,9 +211,16 @@ class _Explorer:
         most = self.limits.seconds
         if most is not None and seconds + self.limits.spent > EXPLORING * most:
             self.bounds.append(time_met(most))
-        elif is_full(self.limits):
+        elif is_full(self.limits) and not self.makes_room():
             self.bounds.append(memory_met(self.limits))
         return bool(self.bounds)
+
+    def makes_room(self) -> bool:
+        """Let rows go over to files, if that is wanted and not done yet; tell whether it made room."""
+        if self.limits.spill is None or self.space.spilled:
+            return False
+        self.space.spill(Path(self.limits.spill))
+        return not is_full(self.limits)
 
     def progress(self, seconds: float) -> Progress:
         space = self.space

@@ -12,7 +12,7 @@ import numpy as np
 
 from checker.bounding import look
 from checker.fast.learner import CodedSource, Learner
-from checker.fast.trees import RECORD, UNKNOWN
+from checker.fast.trees import UNKNOWN
 from checker.symbolic.coding import Coding
 from checker.symbolic.diagrams import Set
 
@@ -74,7 +74,7 @@ class Paths:
         reference, asked = int(trees.root.room[tree]), []
         while reference > 0:
             node = reference - 1
-            column, low, width, base = map(int, trees.nodes.room[RECORD * node : RECORD * (node + 1)])
+            column, (low, width, base) = trees.column_of(node), trees.window(node)
             at = (codes[column] if column < len(codes) else 0) - low
             reference = int(trees.next.room[base + at]) if 0 <= at < width else UNKNOWN
             asked.append((node, reference))
@@ -97,7 +97,7 @@ class Paths:
     def _leads(self, node: int) -> dict[int, list[int]]:
         """Return what a node leads to, each with the codes that it leads there."""
         trees = self.learner.trees
-        column, low, width, base = map(int, trees.nodes.room[RECORD * node : RECORD * (node + 1)])
+        column, (low, width, base) = trees.column_of(node), trees.window(node)
         known = len(self.learner.columns.all[column].values)
         found: defaultdict[int, list[int]] = defaultdict(list)
         for code, reference in enumerate(trees.next.room[base : base + width].tolist(), low):
@@ -108,7 +108,7 @@ class Paths:
     def _who(self, node: int, reference: int) -> Set:
         """Return who is led on by a node as by a reference."""
         trees = self.learner.trees
-        column, low, width, base = map(int, trees.nodes.room[RECORD * node : RECORD * (node + 1)])
+        column, (low, width, base) = trees.column_of(node), trees.window(node)
         led = np.flatnonzero(trees.next.room[base : base + width] == reference) + low
         return self._codes(
             node, [code for code in led.tolist() if code < len(self.learner.columns.all[column].values)]
