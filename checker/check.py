@@ -89,8 +89,10 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     if reducer is not None and engine not in (None, Engine.REFERENCE):
         raise RefusedError(reducer.names[0], f"the {engine.value} engine does not reduce; leave --engine out")
 
-    def run(engine: Engine, limits: Limits) -> Report:
-        return _Check(initial, asked, limits, report, engine, violations, reducer, keeping).run(notes)
+    def run(engine: Engine, exploring: Limits) -> Report:
+        return _Check(initial, asked, exploring, report, engine, violations, reducer, keeping).run(
+            notes, limits
+        )
 
     if (keeping is not None or limits.spill is not None) and reducer is None:
         engine = engine or Engine.FAST
@@ -140,7 +142,8 @@ class _Check:
         self.temporal = tuple(each for each in self.properties if each.kind in TEMPORAL)
         self.decider: Decider | None = None
 
-    def run(self, notes: tuple[str, ...]) -> Report:
+    def run(self, notes: tuple[str, ...], whole: Limits) -> Report:
+        """Explore, and decide within the limits of the whole check."""
         races = (self.races,) if self.searching else ()
         inspections: tuple[Inspect, ...] = (
             self.visited,
@@ -155,7 +158,7 @@ class _Check:
             self.remembered = self.search()
         later = self.remembered.bounds if self.remembered else []
         seconds = self.found.seconds + (self.remembered.seconds if self.remembered else 0.0)
-        with bounded(replace(self.limits, spent=self.limits.spent + seconds)):
+        with bounded(replace(whole, spent=self.limits.spent + seconds)):
             verdicts = tuple(map(self.decide, self.properties))
         return Report(
             verdicts=verdicts,

@@ -13,8 +13,8 @@ from semantics.cells import AGENTS
 from semantics.configuration import Configuration
 from semantics.signature import Name
 
-BLOCK = 1 << 20
-"""Rows that are classified at once."""
+BLOCK = 1 << 18
+"""Rows that are classified at once: what is worked out of them takes some fifty bytes each."""
 
 
 @dataclass(frozen=True, slots=True)

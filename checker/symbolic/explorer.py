@@ -103,6 +103,7 @@ class _Explorer:
         self.learn_from_some()
         self.reach.build()
         self.reach.run(self.tell)
+        self.count()
 
     def learn_from_some(self) -> None:
         """Explore some configurations one by one; that they can be reached is found out once more, all at once."""
@@ -116,11 +117,16 @@ class _Explorer:
         if now - self.told < self.every:
             return
         self.told = now
-        count, most = self.reach.count, self.limits.configurations
+        count = self.count()
         if self.report is not None:
             self.report(Progress(count, 0, None, None, count / (now - self.began)))
+
+    def count(self) -> int:
+        """Count what was reached, as far as that may go."""
+        count, most = self.reach.count, self.limits.configurations
         if most is not None and count > most:
             raise BoundMet(limit_met(most))
+        return count
 
     def met(self) -> list[str]:
         return [crowd_met(self.limits.pending)] if self.reach.is_crowded else []

@@ -107,3 +107,12 @@ def test_the_time_that_the_first_explorer_took_is_not_given_twice(monkeypatch):
     check(mission.initial, (), Limits(seconds=60.0))
     assert [engine for engine, _ in given] == [Engine.REFERENCE, Engine.FAST]
     assert given[0][1] == 0.0 < given[1][1]
+
+
+def test_deciding_may_take_longer_than_the_patience_with_the_first_explorer(clock, monkeypatch):
+    mission = load_mission(MISSIONS / "surveillance.mission")
+    monkeypatch.setattr(CHECK, "PATIENCE", 3_600.0)
+    clock.jumps_before(monkeypatch, CHECK._Check, "decide_temporal")
+    report = check(mission.initial, mission.properties)
+    assert "not decided" not in " ".join(each.note for each in report.verdicts)
+    assert Outcome.INCOMPLETE not in {each.outcome for each in report.verdicts}
