@@ -128,7 +128,7 @@ class Relations:
             self.crowded |= who
             return
         for number in self.leaf_steps(path.leaf):
-            self._take(*self.step(number, who))
+            self._take(*self.step(number, who & self.there))
 
     def _take(self, written: Written, relation: Set) -> None:
         known = self.by_writes.get(written)

@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from checked_missions import load
 from hypothesis import assume, given, settings
 
 import checker.symbolic.explorer
@@ -51,8 +52,12 @@ def reports(initial, properties):
 
 def judged_alike(name, variation):
     mission = load_mission(MISSIONS / f"{name}.mission", variation)
-    ours, theirs = reports(mission.initial, [each for each in mission.properties if each.kind in KINDS])
+    ours, theirs = reports(mission.initial, asked(mission))
     return told(ours) == told(theirs)
+
+
+def asked(mission):
+    return [each for each in mission.properties if each.kind in KINDS]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -108,14 +113,31 @@ def test_what_is_said_of_runs_and_races_is_not_decided():
 def test_what_is_cut_is_incomplete(limits, bound, monkeypatch):
     monkeypatch.setattr(checker.symbolic.explorer, "FIRST", 5)
     mission = load_mission(MISSIONS / "takeover.mission", Variation(scheduler=Scheduler.PROGRAM_ORDER))
-    asked = [each for each in mission.properties if each.kind in KINDS]
-    report = check(mission.initial, asked, limits, engine=Engine.SYMBOLIC)
+    report = check(mission.initial, asked(mission), limits, engine=Engine.SYMBOLIC)
     assert report.bounds == (bound,)
     assert {each.outcome for each in report.verdicts} == {Outcome.INCOMPLETE}
 
 
+SPAWNING = """
+BigActor b hosted_at uav0 with_behavior {
+  observe(ALL)
+  react {
+    case seen if drifter0 in seen => spawn a hosted_at uav0 with_behavior looks()
+    case seen => skip
+  }
+  observe(ALL)
+}
+def looks() = { observe(ALL) control(MOVE_HOST_TO gate0) }
+environment { drifter0 vanishes }
+"""
+
+
+@pytest.mark.usefixtures("learning_in_sets")
 def test_agents_that_are_spawned_take_part():
-    assert judged_alike("nomad", Variation())
+    mission = load(SPAWNING)
+    ours, theirs = reports(mission.initial, asked(mission))
+    assert ours.rules["spawn"] > 0 < ours.rules["actuate"]
+    assert told(ours) == told(theirs)
 
 
 def test_a_queue_for_all_is_refused():
