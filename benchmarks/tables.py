@@ -94,7 +94,7 @@ def largest_tables(kept: Kept) -> str:
             f"{row['seconds']:.1f}",
             f"{row['memory']:,.0f}",
             "" if row["rule_runs"] is None else f"{row['rule_runs']:,}",
-            "complete" if row["complete"] else "cut",
+            row["ended"],
         )
         for row in kept["searches"]
     ]
