@@ -233,7 +233,7 @@ def _with_height(pilot: Pilot, task: Task) -> Task:
 def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Published, ...], tuple[Report, ...]]:
     """Publish the vehicle where anything that is shown of it has changed."""
     position, authority = pilot.known.position, pilot.known.authority
-    if position is None:
+    if position is None or pilot.known.profile is None:  # a run begins when it is known what flies
         return replace(pilot, since=None), (), ()
     pilot = replace(pilot, since=now if pilot.since is None else pilot.since)
     shown = (position, authority, pilot.link.lost)
