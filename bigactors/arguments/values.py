@@ -120,6 +120,18 @@ def identity(word: str) -> tuple[str, str]:
     return f"{found[1]}:{number}", found[3]
 
 
+def route(word: str) -> tuple[str, str]:
+    """Read VEHICLE=FILE.
+
+    >>> route("uav0=uav0.plan")
+    ('uav0', 'uav0.plan')
+    """
+    name, _, file = word.partition("=")
+    if not (name and file):
+        raise argparse.ArgumentTypeError(f"'{word:.60}' is not VEHICLE=FILE, such as uav0=uav0.plan")
+    return name, file
+
+
 REDUCTIONS: Final = ("por", "symmetry")
 """What `check --reduce` takes."""
 

@@ -15,6 +15,7 @@ from bigactors.foreign import TELEMETRY, watched
 from bigactors.missions import digest_of, open_mission, shipped_missions, variation_of
 from bigactors.mistakes import Mistake
 from bigactors.recordings import mission_of, open_recording, trace_of
+from bigactors.routes import write_route
 from bigactors.terminal import is_terminal, paint, say, tell
 from bigraphs import draw_text
 from checker import ReplayError, Trace, print_loop, print_trace, replay
@@ -42,6 +43,8 @@ def run(options: Namespace) -> Exit:
     say(f"c{len(trace)} = {print_configuration(trace.configurations[-1])}")
     again = f", and {print_loop(trace)}" if trace.loop is not None else ""
     say(f"{options.trace}: {len(trace)} steps replayed on {mission.name}{again}")
+    for vehicle, path in options.waypoints:
+        tell(f"{write_route(trace, vehicle, path)} waypoints of {vehicle} written to {path}")
     return Exit.HOLDS
 
 
