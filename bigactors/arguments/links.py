@@ -82,6 +82,6 @@ def living(word: str) -> tuple[str, float]:
     ('ais', 120.0)
     """
     feed, _, time = word.partition("=")
-    if feed not in LIVING:
+    if feed not in LIVING or not time:
         raise argparse.ArgumentTypeError(f"'{word:.60}' is not FEED=SECONDS for one of {', '.join(LIVING)}")
     return feed, seconds(time)

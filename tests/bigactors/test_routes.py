@@ -25,7 +25,9 @@ def test_the_waypoints_of_a_trace_are_the_centroids_of_the_places_that_it_goes_t
     assert f"waypoints of uav0 written to {name}" in err
     home, first, *_ = read((folder / name).read_text())
     assert home.point.vertices == ((37.15, -8.7),)
-    assert distance(first.point, centroid(box((37.04, -8.59), (36.94, -8.79)))) < 5_000  # beside the spill in it
+    assert (
+        distance(first.point, centroid(box((37.04, -8.59), (36.94, -8.79)))) < 5_000
+    )  # beside the spill in it
     assert bigactors("world", name)[0] == 0
 
 
