@@ -21,6 +21,8 @@ DEFAULT: Final = {
 """Seconds between two of a kind, before anybody asks for others."""
 
 SHORTEST: Final = 0.05
+CAPABILITIES: Final = 2 | 4 | 8 | 8192 | 16384
+"""MAV_PROTOCOL_CAPABILITY: float parameters, MISSION_INT, COMMAND_INT, MAVLink 2, fences by the mission protocol."""
 
 
 class Reporter:
@@ -186,6 +188,7 @@ def _version(vehicle: Vehicle) -> Message:
     numbers = ["capabilities", "flight_sw_version", "middleware_sw_version", "os_sw_version", "board_version"]
     nothing: dict[str, Any] = dict.fromkeys([*numbers, "vendor_id", "product_id", "uid"], 0)
     custom = {f"{part}_custom_version": [0] * 8 for part in ("flight", "middleware", "os")}
+    nothing["capabilities"] = CAPABILITIES
     return say("AUTOPILOT_VERSION", uid2=list(vehicle.serial.ljust(18, b"\0")), **nothing, **custom)
 
 
