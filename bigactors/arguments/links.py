@@ -26,7 +26,7 @@ def fill_links(parser: Parser) -> None:
         metavar="FILE",
         type=named,
         help="sign with the MAVLink 2 key in FILE, and believe only what is signed by it; the newest time stamps are "
-        "kept there (python -m adapters.mavlink.keys FILE makes one)",
+        "kept there (python -m adapters.mavlink.new_key FILE makes one)",
     )
     parser.add_argument(
         "--within",

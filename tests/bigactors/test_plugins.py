@@ -167,7 +167,7 @@ def test_a_place_that_never_moves_can_be_detected_where_its_kind_is_expected():
 
 def test_a_key_is_made_of_a_passphrase_and_shared_by_all_links(tmp_path):
     path = tmp_path / "key.json"
-    make = [sys.executable, "-m", "adapters.mavlink.keys", str(path)]
+    make = [sys.executable, "-m", "adapters.mavlink.new_key", str(path)]
     subprocess.run(make, input="open sesame\n", text=True, check=True)
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     assert len(load(path).key) == 32
