@@ -459,6 +459,16 @@ def test_an_answer_that_cannot_be_used_is_reported(document, what):
     run(main())
 
 
+def test_a_location_cannot_take_the_name_of_a_vehicle():
+    async def main():
+        naming = NamingService(own={"vehicle:uav0": "uav0"})
+        world = await located({"entities": [DRIFTER | {"name": "uav0"}, DRIFTER]}, naming=naming)
+        assert names(world) == {"drifter0"}
+        assert "name:uav0 would be called uav0, as vehicle:uav0 is" in world.of(Trouble)[0].detail
+
+    run(main())
+
+
 def test_a_service_that_is_not_there_or_fails_is_reported():
     async def main():
         world = await located({}, status=500)
@@ -472,6 +482,17 @@ def test_a_service_that_is_not_there_or_fails_is_reported():
 
 
 # --- naming -----------------------------------------------------------------------------------------
+
+
+def test_own_names_are_taken_before_the_table_and_all_that_is_heard():
+    own = {"mavlink:3": "uav0", "place:sea0": "sea0"}
+    naming = NamingService({"mavlink:3": "uav0", "mmsi:244660274": "tanker0"}, own)
+    assert naming.name("mmsi:244660274") == "tanker0"
+    for identity in ("name:uav0", "name:sea0"):
+        with pytest.raises(NameClash):
+            naming.name(identity)
+    with pytest.raises(NameClash, match="mmsi:244660274 would be called uav0, as mavlink:3 is"):
+        NamingService({"mmsi:244660274": "uav0"}, own)
 
 
 def test_an_identity_keeps_its_name_and_two_cannot_have_one():

@@ -497,3 +497,23 @@ def test_a_transponder_that_jumps_breaks_an_assumption_and_the_vehicle_returns(f
     assert "drifter0 is in east0; the mission does not say that it drifts" in flown.witness.told()
     assert "commit" not in flown.witness.rules
     assert flown.inside("west0")
+
+
+def test_a_file_of_places_that_changes_in_flight_breaks_an_assumption_and_the_vehicle_returns(
+    flying, tmp_path
+):
+    def write(*corners):
+        east = PhysicalProperty("east0", "Location", box(*corners))
+        (tmp_path / "places.geojson").write_text(write_geojson([east]))
+
+    async def surveyor(_flight, _simulator, witness):
+        await airborne(witness)
+        assert not witness.findings
+        write((37.0115, -8.6505), (37.0105, -8.6515))  # onto the drifter
+
+    write((37.02, -8.60), (37.00, -8.62))
+    flown = flying(SHUTTLE, copter(), "--feed=places=places.geojson", foe=surveyor, seconds=600)
+    assert flown.broken
+    assert "east0 is in west0 and contains drifter0" in flown.witness.told()
+    assert "commit" not in flown.witness.rules
+    assert flown.inside("west0")
