@@ -89,6 +89,7 @@ PLACES = {
 }
 STATIONS = {"gcs0": 255.0, "gcs1": 254.0}
 GOOD = Disturbance()
+LOOK = 0.5
 LATE = 3.0
 """Seconds by which what is seen may be behind the truth: delays of the link, and turns."""
 
@@ -98,7 +99,7 @@ class Witness:
     """Holds each commit against where the vehicle was, and each hand-over against whom it obeyed."""
 
     vehicle: Vehicle
-    recent: deque = field(default_factory=lambda: deque(maxlen=int(LATE / 0.1)))
+    truth: list = field(default_factory=list)
     rules: list = field(default_factory=list)
     findings: list = field(default_factory=list)
     untrue: list = field(default_factory=list)
@@ -106,11 +107,15 @@ class Witness:
     async def look(self):
         while True:
             self.note()
-            await asyncio.sleep(0.1)
+            await asyncio.sleep(LOOK)
 
     def note(self):
         body = self.vehicle.body
-        self.recent.append((point(body.latitude, body.longitude), self.vehicle.parameters["SYSID_MYGCS"]))
+        now, obeyed = asyncio.get_running_loop().time(), self.vehicle.parameters["SYSID_MYGCS"]
+        self.truth.append((now, (body.latitude, body.longitude), obeyed))
+
+    def recent(self):
+        return [each for each in self.truth[-100:] if each[0] >= self.truth[-1][0] - LATE]
 
     def arrived(self, heard, now):
         pass
@@ -120,16 +125,17 @@ class Witness:
 
     def turned(self, turn, _now):
         self.findings += turn.findings
-        self.note()
+        if turn.steps:
+            self.note()
         for step in turn.steps:
             label = step.transition.label
             self.rules.append(label.rule)
             if label.rule == "commit":
                 place = label.about.reaction.text.rpartition(" ")[2]
-                self.check(label, any(contains(PLACES[place], at) for at, _ in self.recent))
+                self.check(label, any(contains(PLACES[place], point(*at)) for _, at, _ in self.recent()))
             elif label.rule == "actuate" and "HAND" in str(label):
                 station = label.about.reaction.text.rpartition(" ")[2]
-                self.check(label, any(obeyed == STATIONS[station] for _, obeyed in self.recent))
+                self.check(label, any(obeyed == STATIONS[station] for _, _, obeyed in self.recent()))
 
     def check(self, label, true):
         if not true:
