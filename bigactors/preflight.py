@@ -112,9 +112,10 @@ def _unshown(reaction: Reaction, mission: ElaboratedMission) -> Iterator[str]:
             yield f"nothing shows that {node} is put into {place}"
         elif of is not None and holder is not None and of in signature[holder].carries:
             yield f"nothing shows that {node} is aboard {place}"
+    flies = any(True for _ in _moves(reaction))
     for node, links in _links(reaction):
         of = _kind(mission, node)
-        if any(_is_other(link) for link in links) or (of is not None and not signature[of].driven):
+        if flies or any(_is_other(link) for link in links) or (of is not None and not signature[of].driven):
             which = sorted(link if isinstance(link, str) else "a channel" for link in links)
             yield f"nothing shows that {node} joins or leaves {' and '.join(dict.fromkeys(which))}"
 

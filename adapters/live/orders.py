@@ -63,8 +63,11 @@ def unshown(c: Configuration, request: CTR, found: Realisation, vehicles: frozen
             return f"nothing shows that {node} is put into {place}"
     for node, lost, gained in relinked(request.reaction, found.match, c.structure.logical):
         handed = node in vehicles and all(map(is_authority, lost | gained)) and len(lost) == len(gained) == 1
-        if (lost or gained - set(c.structure.logical.links(node))) and not handed:
-            return f"nothing shows that {node} joins or leaves {', '.join(sorted(lost | gained))}"
+        if not lost and gained.issubset(c.structure.logical.links(node)):
+            continue
+        if not handed or travelling:
+            while_flying = " while others travel" if travelling else ""
+            return f"nothing shows that {node} joins or leaves {', '.join(sorted(lost | gained))}{while_flying}"
     return ""
 
 

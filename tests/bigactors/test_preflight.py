@@ -27,7 +27,9 @@ world {
   pad0: Pad = circle (37.01, -8.61) radius 40 m
   ship0: Ship = point (37.012, -8.615) linked wifi
   mast0: Mast = point (37.011, -8.616) linked wifi
-  uav0: UAV = point (37.01, -8.65)
+  gcs0: Mast = point (37.03, -8.63) linked control:gcs0
+  gcs1: Mast = point (37.04, -8.63) linked control:gcs1
+  uav0: UAV = point (37.01, -8.65) linked control:gcs0
   buoy0: Buoy carried by uav0
 }
 """
@@ -50,6 +52,10 @@ def line(folder, *statements):
         ("control(MOVE_HOST_TO ship0)", "nothing shows that uav0 is aboard ship0"),
         ("control(PUT buoy0 IN west0)", "nothing shows that buoy0 is put into west0"),
         ("control(CONNECT_HOST_TO mast0)", "nothing shows that uav0 joins or leaves a channel"),
+        (
+            "control({ HOST[c].$0 || gcs1[d].$1 || east0.$2 -> gcs1[d].$1 || east0.(HOST[d].$0 | $2) })",
+            "uav0 joins or leaves a channel",  # handed over and moved at once
+        ),
         ("control({ HOST || mast0[wifi] -> HOST[wifi] || mast0[wifi] })", "uav0 joins or leaves wifi"),
     ],
 )
@@ -58,7 +64,7 @@ def test_what_nothing_would_ever_confirm_is_refused_before_anything_is_heard(
 ):
     assert main([*line(tmp_path, statement), "--wait", "0.1"]) == 2
     told = capsys.readouterr().err
-    assert "carrier.mission:22: a would ask for what cannot be flown" in told
+    assert "carrier.mission:24: a would ask for what cannot be flown" in told
     assert reason in told
     assert "nothing was heard" not in told
 
@@ -95,7 +101,7 @@ def test_a_later_place_too_small_for_the_planes_circle_is_refused_before_take_of
     flight = prepare(options(tmp_path, "control(MOVE_HOST_TO east0)", "control(MOVE_HOST_TO pad0)"))
     with pytest.raises(Mistake, match="pad0 is too small: the plane needs a circle of 80 m") as error:
         run(flown(flight, plane))
-    assert error.value.place.endswith("carrier.mission:23")
+    assert error.value.place.endswith("carrier.mission:25")
     assert not plane.armed
 
 
