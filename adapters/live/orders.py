@@ -67,7 +67,9 @@ def unshown(c: Configuration, request: CTR, found: Realisation, vehicles: frozen
             continue
         if not handed or travelling:
             while_flying = " while others travel" if travelling else ""
-            return f"nothing shows that {node} joins or leaves {', '.join(sorted(lost | gained))}{while_flying}"
+            return (
+                f"nothing shows that {node} joins or leaves {', '.join(sorted(lost | gained))}{while_flying}"
+            )
     return ""
 
 
