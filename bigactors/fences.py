@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from bigactors.mistakes import Mistake, suggestion
-from physical import Geometry, box, contains
+from physical import Geometry, area, box, contains
 from physical.frame import METRES_PER_DEGREE
 from semantics.environment import Appears, Drifts
 from semantics.physical_model import Placed
@@ -45,7 +45,7 @@ def _around(mission: ElaboratedMission) -> Geometry | None:
         place for place in places if all(place == ground or contains(place, ground) for ground in grounds)
     ]
     if holding:
-        return next(place for place in holding if all(place == o or contains(o, place) for o in holding))
+        return min(holding, key=area)
     return _box(grounds) if grounds else None
 
 

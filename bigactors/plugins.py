@@ -119,10 +119,11 @@ def _own_names(options: Namespace, mission: ElaboratedMission, crafts: dict[str,
         if _has_border(name, mission) and mission.setting.kinds[name] not in detected
     }
     for name, craft in crafts.items():
-        if craft.serial is not None:
-            own[f"serial:{craft.serial}"] = name
-        else:
-            own[f"vehicle:{name}" if craft.system is None else f"mavlink:{craft.system}"] = name
+        known = f"serial:{craft.serial}" if craft.serial else f"mavlink:{craft.system}"
+        anonymous = craft.serial is None and craft.system is None
+        own[f"vehicle:{name}" if anonymous or known in own else known] = (
+            name  # ids are unique on one link only
+        )
     return own
 
 

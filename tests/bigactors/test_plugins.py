@@ -130,6 +130,17 @@ def test_what_is_no_value_of_an_option_is_told(word, capsys):
     assert "is not FEED=" in capsys.readouterr().err
 
 
+def test_vehicles_with_one_system_id_on_two_links_both_have_their_names(mission, tmp_path):
+    mission(
+        "sea0: Location = box (37.2, -8.5) (36.9, -8.8)",
+        "uav0: UAV = point (37.05, -8.65)",
+        "uav1: UAV = point (37.06, -8.65)",
+    )
+    more = ["--vehicle=uav1:1=udp:2", "--feed=detections=folder:."]
+    *_, feed = plugins(*more, mission=str(tmp_path / "m.mission"), vehicle="--vehicle=uav0:1=udp:1")
+    assert (feed._naming.identity("uav0"), feed._naming.identity("uav1")) == ("mavlink:1", "vehicle:uav1")
+
+
 # --- feeds ----------------------------------------------------------------------------------------------
 
 
