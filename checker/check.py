@@ -76,7 +76,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
         notes: What the report is to say besides.
         engine: How to explore; by default whichever is quicker for the mission's size.
         violations: Of each property so many different ones are shown at the most, each with a shortest trace.
-        reduce: What may let it visit less: the reference explorer, the only one that reduces.
+        reduce: What may let it visit less; by symmetry only the reference explorer can.
         keeping: What the fast explorer keeps on the way, and what it doubts; where it is said, that one explores.
 
     Raises:
@@ -86,18 +86,21 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     asked, limits = tuple(properties), limits or Limits()
     formulas = [each.formula for each in asked if each.kind in ("invariant", "reachable")]
     reducer = reducing(initial, reduce, formulas)
-    if reducer is not None and engine not in (None, Engine.REFERENCE):
-        raise RefusedError(reducer.names[0], f"the {engine.value} engine does not reduce; leave --engine out")
+    if reducer is not None and engine is Engine.SYMBOLIC:
+        raise RefusedError(reducer.names[0], "the symbolic engine does not reduce; leave --engine out")
+    symmetric = reducer is not None and reducer.symmetry is not None
+    if symmetric and engine is Engine.FAST:
+        raise RefusedError(Reduction.SYMMETRY, "only the reference explorer knows it; leave --engine out")
 
     def run(engine: Engine, exploring: Limits) -> Report:
         return _Check(initial, asked, exploring, report, engine, violations, reducer, keeping).run(
             notes, limits
         )
 
-    if (keeping is not None or limits.spill is not None) and reducer is None:
+    if (keeping is not None and reducer is None) or (limits.spill is not None and not symmetric):
         engine = engine or Engine.FAST
     impatient = limits.seconds is None or limits.seconds > PATIENCE
-    if engine is None and reducer is None and impatient:
+    if engine is None and not symmetric and impatient:
         tried = run(Engine.REFERENCE, replace(limits, seconds=PATIENCE))
         late = any(bound.startswith(time_met(PATIENCE)) for bound in tried.bounds)
         return run(Engine.FAST, replace(limits, spent=limits.spent + tried.seconds)) if late else tried

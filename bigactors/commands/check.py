@@ -71,8 +71,8 @@ def limits_of(options: Namespace) -> Limits:
     if options.spill is not None:
         if options.max_memory is None:
             raise Mistake("--spill is for when memory ends", "say when that is: --max-memory SIZE")
-        if options.engine in ("reference", "symbolic") or options.reduce:
-            raise Mistake("--spill is of the fast explorer", "leave --engine and --reduce out")
+        if options.engine in ("reference", "symbolic") or Reduction.SYMMETRY.value in options.reduce:
+            raise Mistake("--spill is of the fast explorer", "leave --engine and --reduce symmetry out")
         make_folder(options.spill)
     return Limits(most_of(options), options.max_time, memory=options.max_memory, spill=options.spill)
 
@@ -81,7 +81,8 @@ def most_of(options: Namespace) -> int | None:
     """Return how many configurations are visited at most; sets of them have no usual limit."""
     if options.engine == "symbolic":
         return int(options.max_configurations) if options.max_configurations else None
-    usual = MOST_OF_REFERENCE if options.engine == "reference" or options.reduce else MOST
+    symmetric = Reduction.SYMMETRY.value in options.reduce
+    usual = MOST_OF_REFERENCE if options.engine == "reference" or symmetric else MOST
     return options.max_configurations or usual
 
 

@@ -30,8 +30,7 @@ class Pages:
     def __init__(self, kind: type[np.generic], count: int) -> None:
         self._kind = np.dtype(kind)
         self._file: int | None = None
-        self._pages = mmap.mmap(-1, self._bytes(count), flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
-        self._advise()
+        self._map(count)
         self.room: NDArray[Any] = np.frombuffer(self._pages, self._kind)
 
     @property
@@ -46,13 +45,29 @@ class Pages:
             OSError: There is no room for them in the file.
         """
         if count > len(self.room):
-            wanted = self._bytes(count)
             if self._file is not None:
-                _reserve(self._file, wanted)
+                reserve(self._file, self._bytes(count))
             self.room = np.zeros(0, self._kind)  # the pages can't move while an array stands on them
-            self._pages.resize(wanted)
-            self._advise()
+            self._resize(count)
             self.room = np.frombuffer(self._pages, self._kind)
+
+    def _resize(self, count: int) -> None:
+        if self._file is not None:
+            self._pages = mmap.mmap(
+                self._file, self._bytes(count)
+            )  # the same file, whoever holds the old pages
+            return
+        try:
+            self._pages.resize(self._bytes(count))
+            self._advise()
+        except BufferError:  # a traceback or the compiler still holds the array: leave it the old pages
+            held = np.frombuffer(self._pages, np.uint8)
+            self._map(count)
+            np.frombuffer(self._pages, np.uint8)[: len(held)] = held
+
+    def _map(self, count: int) -> None:
+        self._pages = mmap.mmap(-1, self._bytes(count), flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
+        self._advise()
 
     def spill(self, folder: Path, used: int) -> None:
         """Go over to a file without a name in a folder, with the first so many numbers.
@@ -63,7 +78,7 @@ class Pages:
         with TemporaryFile(dir=folder) as opened:
             file = os.dup(opened.fileno())
         weakref.finalize(self, os.close, file)
-        _reserve(file, self.room.nbytes)
+        reserve(file, self.room.nbytes)
         pages = mmap.mmap(file, self.room.nbytes)
         room: NDArray[Any] = np.frombuffer(pages, self._kind)
         for begin in range(0, used, PIECE):
@@ -75,11 +90,11 @@ class Pages:
         return -(-count * self._kind.itemsize // mmap.PAGESIZE) * mmap.PAGESIZE
 
     def _advise(self) -> None:
-        if hasattr(mmap, "MADV_HUGEPAGE") and self._file is None:
+        if hasattr(mmap, "MADV_HUGEPAGE"):
             self._pages.madvise(mmap.MADV_HUGEPAGE)
 
 
-def _reserve(file: int, size: int) -> None:
+def reserve(file: int, size: int) -> None:
     """Take all the room that a file is to have: writing to a hole that can't be filled would end the process."""
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(file, 0, size)
