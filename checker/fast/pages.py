@@ -55,7 +55,7 @@ class Pages:
         if self._file is not None:
             self._pages = mmap.mmap(
                 self._file, self._bytes(count)
-            )  # the same file, whoever holds the old pages
+            )  # whoever has the old pages has the same file
             return
         try:
             self._pages.resize(self._bytes(count))
