@@ -10,6 +10,7 @@ from functools import partial, reduce
 from operator import and_, or_
 from typing import Any
 
+from checker.bounding import look
 from checker.exploration import Inspect
 from checker.fast.questions import (
     Key,
@@ -60,6 +61,7 @@ class View:
         found: dict[int, Set] = {}
         missing = reach.reached
         while missing.satisfiable():
+            look()
             leaf, who = reach.paths.path(tree, reach.coding.codes(missing))
             found[leaf] = found.get(leaf, reach.diagrams.none) | (who & reach.reached)
             missing &= ~who

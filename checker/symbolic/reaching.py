@@ -147,6 +147,7 @@ class Reach:
         followed = self.reached & ~crowded
         for each in self.relations:
             for leaf in each.leaves:
+                look()
                 who = followed & each.there & each.who(leaf)
                 for step in each.leaf_steps(leaf) if who.satisfiable() else ():
                     label = int(self.learner.leaves.steps.room[STEP * step + ALIKE])
