@@ -34,7 +34,7 @@ def fill(parser: Parser) -> None:
         "--max-time",
         metavar="SECONDS",
         type=seconds,
-        help="explore and decide no longer than SECONDS; exploring takes four fifths of it (default: no limit)",
+        help="explore and decide no longer than SECONDS; the fast explorer takes half of it (default: no limit)",
     )
     parser.add_argument(
         "--max-memory",

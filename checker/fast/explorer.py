@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 CHUNK = 1 << 15
 """Configurations that are expanded between two looks at the clock."""
 
-EXPLORING = 0.8
-"""What part of the time is for exploring: what was explored has to be looked at, too."""
+EXPLORING = 0.5
+"""What part of the time is for exploring: to look at what was explored takes as long again."""
 
 
 class Origins(Sequence[int]):

@@ -4,7 +4,7 @@ A survey says of each finding how often it occurs, and where first; there the in
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from functools import partial, reduce
+from functools import cache, partial, reduce
 from itertools import combinations_with_replacement
 from operator import and_, or_
 from typing import Any
@@ -26,7 +26,7 @@ from checker.fast.questions import (
     what_moves,
     where_it_stands,
 )
-from checker.fast.survey import Survey
+from checker.fast.survey import Survey, distinct
 from checker.findings import Collected
 from checker.inspections import (
     Computation,
@@ -200,19 +200,22 @@ def look_at_races(survey: Survey, inspection: ControlRaces) -> None:
     unordered = space.learner.setting.scheduler is Scheduler.UNORDERED
     pairs = [(a, b) for a, b in combinations_with_replacement(agents, 2) if a != b or unordered]
     asked = {pair: space.learner.question(partial(races_between, *pair)) for pair in pairs}
+    controlling = cache(partial(has_control, survey))
+    independent = cache(partial(are_independent, survey))
     for rows in survey.blocks():
         leaves = {a: space.classify(trees[a], rows) for a in agents}
         for a, b in pairs:
             both = leaves[a].astype(np.int64) << 32 | leaves[b]
-            kinds, which = np.unique(both, return_inverse=True)
+            kinds, firsts, which, counts = np.unique(
+                both, return_index=True, return_inverse=True, return_counts=True
+            )
             together = np.zeros(len(kinds), np.bool_)
             for kind, pair in enumerate(kinds):
                 one, other = int(pair) >> 32, int(pair) & 0xFFFFFFFF
-                if not (has_control(survey, one) and has_control(survey, other)):
+                if not (controlling(one) and controlling(other)):
                     continue
-                if not unordered and are_independent(survey, one, other):
-                    members = np.flatnonzero(which == kind)
-                    tallies.append((None, len(members), int(rows[members[0]])))
+                if not unordered and independent(one, other):
+                    tallies.append((None, int(counts[kind]), int(rows[firsts[kind]])))
                 else:
                     together[kind] = True
             tallies += _of_rows(survey, asked[a, b], rows[together[which]])
@@ -222,10 +225,9 @@ def look_at_races(survey: Survey, inspection: ControlRaces) -> None:
 def _of_rows(survey: Survey, tree: int, rows: NDArray[np.int64]) -> Iterator[Tally]:
     if len(rows):
         leaves = survey.space.classify(tree, rows)
-        for leaf in np.unique(leaves):
-            members = np.flatnonzero(leaves == leaf)
-            for key in survey.space.learner.answers[int(leaf)]:  # type: ignore[attr-defined]  # a tuple of keys
-                yield key, len(members), int(rows[members[0]])
+        for leaf, first, count in distinct(leaves):
+            for key in survey.space.learner.answers[leaf]:  # type: ignore[attr-defined]  # a tuple of keys
+                yield key, count, int(rows[first])
 
 
 def has_control(survey: Survey, leaf: int) -> bool:
