@@ -23,9 +23,9 @@ from checker.exploration import (
 from checker.fast.checkpoint import Journey, resume, save
 from checker.fast.doubt import doubt
 from checker.fast.engine import Space
+from checker.fast.graph import GraphSurvey
 from checker.fast.inspecting import inspect_fast
 from checker.fast.learner import Learner
-from checker.fast.survey import Survey
 from semantics.configuration import Configuration
 
 CHUNK = 1 << 15
@@ -126,7 +126,7 @@ class _Explorer:
         self.keep(time.monotonic() - began + self.journey.seconds)
         space, configurations = self.space, Configurations(self.space)
         doubt(space, self.keeping.doubted)
-        survey = Survey(space)
+        survey = GraphSurvey(space)
         inspect_fast(survey, inspect)
         rules = space.rules()
         return Exploration(

@@ -1,0 +1,150 @@
+"""The compiled loops of a worker: whose each successor is, which of them are new, and rows put into other codes."""
+
+# mypy: disable-error-code="return-value, assignment, arg-type"
+# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from checker.fast.kernel import COLUMN, CUT, LIMIT, SIZE, WORDS, State, Words, bits_for, find, hashed, touch
+
+_HALF = np.uint64(32)
+
+
+@njit(cache=True)
+def owners_of(
+    words: Words, count: int, width: int, columns: Words, keys: Words, begins: State, workers: int, owners: Any
+) -> None:
+    """Note the worker that each row belongs to."""
+    for k in range(count):
+        key = np.uint64(0)
+        for column in range(len(begins) - 1):
+            mask = columns[COLUMN * column + 2]
+            if mask != 0:
+                word = words[k * width + np.int64(columns[COLUMN * column])]
+                key ^= keys[begins[column] + np.int64((word >> columns[COLUMN * column + 1]) & mask)]
+        owners[k] = np.int64(((key >> _HALF) * np.uint64(workers)) >> _HALF)
+
+
+@njit(cache=True)
+def settle(
+    words: Words,
+    origins: Words,
+    table: Any,
+    rows: Words,
+    hashes: Words,
+    reached_from: Any,
+    owners: Any,
+    count: int,
+    me: int,
+    state: State,
+) -> None:
+    """Look up the rows that belong to this worker: what is new becomes one of its rows."""
+    width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
+    touch(words, table, hashes, count, width)
+    bits = np.uint32(bits_for(len(table)))
+    for k in range(count):
+        if owners[k] != me:
+            continue
+        found = find(words, table, rows, k, hashes[k], width, bits)
+        if found >= 0:
+            continue
+        if size >= limit:
+            state[CUT] += 1
+            continue
+        for j in range(width):
+            words[size * width + j] = rows[k * width + j]
+        origins[size] = np.uint64(reached_from[k])
+        table[-found - 1] = ((np.uint32(hashes[k]) >> bits) << bits) | np.uint32(size + 1)
+        size += 1
+    state[SIZE] = size
+
+
+@njit(cache=True)
+def unsent(
+    rows: Words, hashes: Words, owners: Any, count: int, me: int, width: int, sent: Words, chosen: Any
+) -> int:
+    """Note which rows of other workers were not sent to them lately; return how many.
+
+    `sent` holds one row, and before it a 1, for each hash modulo its size: comparing whole rows, it may forget, but
+    never errs.
+    """
+    places = np.uint64(len(sent) // (width + 1))
+    found = np.int64(0)
+    for k in range(count):
+        if owners[k] == me:
+            continue
+        at = np.int64(hashes[k] % places) * (width + 1)
+        same = sent[at] == 1
+        for j in range(width):
+            same = same and sent[at + 1 + j] == rows[k * width + j]
+        if not same:
+            sent[at] = 1
+            for j in range(width):
+                sent[at + 1 + j] = rows[k * width + j]
+            chosen[found] = k
+            found += 1
+    return found
+
+
+@njit(cache=True)
+def translate(
+    theirs: Words,
+    first: int,
+    count: int,
+    their_width: int,
+    their_columns: Words,
+    codes: State,
+    begins: State,
+    numbers: State,
+    columns: Words,
+    width: int,
+    rows: Words,
+    hashes: Words,
+) -> None:
+    """Put rows of another worker's codes and packing into one's own, and hash them.
+
+    Their column c with code k has the code `codes[begins[c] + k]` in one's own column `numbers[c]`.
+    """
+    for k in range(count):
+        at, to = (first + k) * their_width, k * width
+        for j in range(width):
+            rows[to + j] = 0
+        for column in range(len(numbers)):
+            where = COLUMN * column
+            mask = their_columns[where + 2]
+            if mask != 0:
+                word = theirs[at + np.int64(their_columns[where])]
+                code = codes[begins[column] + np.int64((word >> their_columns[where + 1]) & mask)]
+                mine = COLUMN * numbers[column]
+                rows[to + np.int64(columns[mine])] |= np.uint64(code) << columns[mine + 1]
+        hashes[k] = hashed(rows, to, width)
+
+
+@njit(cache=True)
+def look_up(
+    words: Words, table: Any, rows: Words, hashes: Words, count: int, width: int, found: State
+) -> None:
+    """Note which of one's own rows each row is; less than 0 where it is none."""
+    touch(words, table, hashes, count, width)
+    bits = np.uint32(bits_for(len(table)))
+    for k in range(count):
+        found[k] = find(words, table, rows, k, hashes[k], width, bits)
+
+
+@njit(cache=True)
+def mark_used(words: Words, width: int, columns: Words, begins: State, used: Any) -> bool:
+    """Mark the values that some row has, column by column; False where a code is none of its column."""
+    for row in range(len(words) // width):
+        for column in range(len(begins) - 1):
+            mask = columns[COLUMN * column + 2]
+            code = np.int64(0)
+            if mask != 0:
+                word = words[row * width + np.int64(columns[COLUMN * column])]
+                code = np.int64((word >> columns[COLUMN * column + 1]) & mask)
+            if code < 0 or code >= begins[column + 1] - begins[column]:
+                return False
+            used[begins[column] + code] = True
+    return True
