@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from checker.coverage import coverage
 from checker.exploration import (
     INTERRUPTION,
+    Cluster,
     Engine,
     Exploration,
     Inspect,
@@ -61,6 +62,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     violations: int = MOST_VIOLATIONS,
     reduce: Iterable[Reduction] = (),
     keeping: Keeping | None = None,
+    cluster: Cluster | None = None,
 ) -> Report:
     """Explore everything that is reachable and decide the properties.
 
@@ -77,6 +79,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
         violations: Of each property so many different ones are shown at the most, each with a shortest trace.
         reduce: What may let it visit less: the reference explorer, the only one that reduces.
         keeping: What the fast explorer keeps on the way, and what it doubts; where it is said, that one explores.
+        cluster: With whom, where Ray is the engine.
 
     Raises:
         RefusedError: A reduction is unsound for the mission, or nothing in it allows one. Properties that it is
@@ -85,11 +88,15 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     asked, limits = tuple(properties), limits or Limits()
     formulas = [each.formula for each in asked if each.kind in ("invariant", "reachable")]
     reducer = reducing(initial, reduce, formulas)
-    if reducer is not None and engine is Engine.FAST:
-        raise RefusedError(reducer.names[0], "the fast explorer does not reduce; leave --engine out")
+    if reducer is not None and engine in (Engine.FAST, Engine.RAY):
+        raise RefusedError(
+            reducer.names[0], f"the {engine.value} explorer does not reduce; leave --engine out"
+        )
 
     def run(engine: Engine, limits: Limits) -> Report:
-        return _Check(initial, asked, limits, report, engine, violations, reducer, keeping).run(notes)
+        return _Check(initial, asked, limits, report, engine, violations, reducer, keeping, cluster).run(
+            notes
+        )
 
     if keeping is not None and reducer is None:
         engine = engine or Engine.FAST
@@ -112,6 +119,7 @@ class _Check:
         most: int,
         reducer: Reduced | None,
         keeping: Keeping | None,
+        cluster: Cluster | None,
     ) -> None:
         self.initial = initial
         self.properties = properties
@@ -121,6 +129,7 @@ class _Check:
         self.most = most
         self.reducer = reducer
         self.keeping = keeping
+        self.cluster = cluster
         self.visited = Visited()
         self.deadlock = DeadlockFreedom(most)
         self.consistency = LocalConsistency(most)
@@ -180,6 +189,7 @@ class _Check:
             edges=edges,
             reduce=reducer,
             keeping=self.keeping,
+            cluster=self.cluster,
         )
 
     def search(self) -> Exploration | None:

@@ -28,6 +28,7 @@ LIBRARIES = {
     "networkx": ("bigraphs/", "checker/", "specs/elaboration/bodies.py"),  # where a graph is a graph
     "numpy": ("checker/", "bigactors/big_temporal.py"),  # arrays for the checker
     "numba": ("checker/",),
+    "ray": ("checker/cluster/ray_crew.py",),
     "scipy": ("checker/temporal/components.py",),
     "pyais": ("physical/ais_decode.py",),
     "pymavlink": ("adapters/mavlink/codec.py",),
@@ -41,7 +42,17 @@ LIBRARIES = {
 }
 
 # Libraries that take long to load or are extras: imported in the functions that need them, never with the module.
-LAZY = {"aiohttp", "matplotlib", "pyais", "pymavlink", "serial_asyncio_fast", "zenoh", "mcap", "nicegui"}
+LAZY = {
+    "aiohttp",
+    "matplotlib",
+    "pyais",
+    "pymavlink",
+    "serial_asyncio_fast",
+    "zenoh",
+    "mcap",
+    "nicegui",
+    "ray",
+}
 
 
 class Import(NamedTuple):

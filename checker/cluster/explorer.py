@@ -32,6 +32,9 @@ from checker.exploration import (
 )
 from semantics.configuration import Configuration
 
+MOST_LOSSES = 5
+"""How often workers may be lost between two checkpoints."""
+
 ROUND = 1 << 16
 """Rows that each worker expands between two exchanges."""
 
@@ -73,6 +76,7 @@ class Expedition:
         self.standings: list[Standing] = []
         self.bounds: list[str] = []
         self.is_lost = True
+        self.losses = 0
         self.began = time.monotonic() - (self.latest.seconds if self.latest else 0.0)
         self.reported = self.kept = time.monotonic()
 
@@ -126,8 +130,12 @@ class Expedition:
             try:
                 self.visit_all()
                 return ask()
-            except LostError:
+            except LostError as lost:
                 self.is_lost = True
+                self.losses += 1
+                if self.losses > MOST_LOSSES:
+                    often = f"workers were lost {self.losses} times without a checkpoint between"
+                    raise ClusterError(f"{often}: {lost}") from lost
 
     def met(self) -> list[str]:
         most = self.limits.configurations
@@ -219,6 +227,7 @@ class Expedition:
         self.latest = Latest(before + 1, self.layer, time.monotonic() - self.began)
         write_latest(self.folder, self.latest, self.digest, self.crew.size)
         self.crew.every("drop", str(self.folder), before)
+        self.losses = 0
         self.kept = time.monotonic()
 
     def load(self, number: int) -> list[Standing]:

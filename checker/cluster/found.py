@@ -1,6 +1,7 @@
 """What was found by a crew: configurations, where they came from, and the graph, asked of whoever has them."""
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import Any, TypeVar, overload
 
 import numpy as np
@@ -34,9 +35,7 @@ class Found:
         crowded: Whether some of them were not followed.
     """
 
-    def __init__(
-        self, crew: Crew, surely: Callable[[Callable[[], Any]], Any], setting: Setting
-    ) -> None:
+    def __init__(self, crew: Crew, surely: Callable[[Callable[[], Any]], Any], setting: Setting) -> None:
         self.crew = crew
         self.surely = surely
         self.setting = setting
@@ -145,31 +144,31 @@ class Survey:
         labels: dict[Label, int] = {}
         parts = [(np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int64))]
         for first in range(0, max(found.expanded, default=0), BLOCK):
-            answers, edges = found.surely(lambda first=first: self._edges(first))
+            answers, edges = found.surely(partial(self._edges, first))
             parts += [self._gathered(worker, told, answers, labels) for worker, told in enumerate(edges)]
         sources, actions, targets = (np.concatenate(each) for each in zip(*parts, strict=True))
         order = np.argsort(sources, kind="stable")
         sources, actions, targets = sources[order], actions[order], targets[order]
         there = targets >= 0
-        partial = self._unfollowed(sources)
-        partial[sources[~there]] = True
+        cut_off = self._unfollowed(sources)
+        cut_off[sources[~there]] = True
         starts = np.concatenate(([0], np.cumsum(np.bincount(sources[there], minlength=size))))
         return Graph(
             starts.astype(np.int64),
             targets[there].astype(np.int32),
             actions[there],
             tuple(labels),
-            partial if partial.any() else None,
+            cut_off if cut_off.any() else None,
         )
 
     def _unfollowed(self, sources: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Return which configurations were not followed; those that are crowded have no transitions."""
         found = self.found
         rows = zip(found.places.begins, found.expanded, strict=True)
-        partial = ~found.spread([np.arange(begins[-1]) < expanded for begins, expanded in rows])
+        missing = ~found.spread([np.arange(begins[-1]) < expanded for begins, expanded in rows])
         if found.crowded:
-            partial |= np.bincount(sources, minlength=len(partial)) == 0
-        return partial
+            missing |= np.bincount(sources, minlength=len(missing)) == 0
+        return missing
 
     def _edges(self, first: int) -> tuple[list[Any], list[Any]]:
         return self.found.crew.exchange("point", "find", first, BLOCK), self.found.crew.every("edges")

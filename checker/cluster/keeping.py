@@ -159,7 +159,12 @@ class Loading:
         fits = fits and bool(np.all(sizes > 0)) and int(self.begins[-1]) == len(self.digests)
         fits = fits and len(self.rows) == count * where.words
         fits = fits and all(0 <= row < count for row in self.learned)
-        if not fits or np.any(where.word < 0) or np.any(where.word >= where.words) or np.any(where.shift > 63):
+        if (
+            not fits
+            or np.any(where.word < 0)
+            or np.any(where.word >= where.words)
+            or np.any(where.shift > 63)
+        ):
             return False
         return kernel.mark_used(self.rows, where.words, where.columns, self.begins, self.used)
 

@@ -15,7 +15,14 @@ _HALF = np.uint64(32)
 
 @njit(cache=True)
 def owners_of(
-    words: Words, count: int, width: int, columns: Words, keys: Words, begins: State, workers: int, owners: Any
+    words: Words,
+    count: int,
+    width: int,
+    columns: Words,
+    keys: Words,
+    begins: State,
+    workers: int,
+    owners: Any,
 ) -> None:
     """Note the worker that each row belongs to."""
     for k in range(count):

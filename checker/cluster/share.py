@@ -199,9 +199,7 @@ class Share(Space):
         owners = self.owners_of(batch.words, count)
         self._settle(batch.origins[:count], self.me, owners)
         chosen = np.zeros(count, np.int64)
-        found = kernel.unsent(
-            batch.words, batch.hashes, owners, count, self.me, width, self.lately, chosen
-        )
+        found = kernel.unsent(batch.words, batch.hashes, owners, count, self.me, width, self.lately, chosen)
         others = chosen[:found]
         self.outbox.add(batch.words.reshape(-1, width)[others], batch.origins[others], owners[others])
 
@@ -278,7 +276,9 @@ class Share(Space):
     def translated(self, peer: int, parcel: Parcel) -> Iterator[NDArray[np.int64]]:
         """Put the rows of a parcel into the batch, some at a time; yield the sender's rows they were reached from."""
         codes, begins, numbers = self.dictionaries[peer].arrays()
-        rows = np.array(parcel.rows)  # what comes is read-only, for which the loops would be compiled once more
+        rows = np.array(
+            parcel.rows
+        )  # what comes is read-only, for which the loops would be compiled once more
         columns = np.array(parcel.packing.columns)
         for first in range(0, len(parcel), len(self.batch.hashes)):
             self._make_room()

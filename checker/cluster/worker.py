@@ -1,6 +1,6 @@
 """What one worker answers: rounds, surveys of its rows, edges, and checkpoints. It has numbers of its own for rows."""
 
-from collections.abc import Hashable, Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -173,7 +173,7 @@ class Worker:
         kernel.look_up(words, table, share.batch.words, share.batch.hashes, count, share.packing.words, found)
         return found
 
-    def _edges(self, found: list[tuple[NDArray[Any], ...]]) -> Edges:
+    def _edges(self, found: Sequence[tuple[NDArray[Any], ...]]) -> Edges:
         numbers: dict[Label, int] = {}
         learner = self.share.learner
         action_of = np.zeros(len(learner.leaves.rule), np.int32)

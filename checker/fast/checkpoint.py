@@ -69,7 +69,8 @@ def write_archive(path: Path, head: dict[str, Any], **arrays: NDArray[Any]) -> N
     partial = path.with_suffix(".partial")
     path.parent.mkdir(parents=True, exist_ok=True)
     with partial.open("wb") as file:
-        np.savez(file, head=np.frombuffer(json.dumps(head).encode(), np.uint8), **arrays)
+        kept = {"head": np.frombuffer(json.dumps(head).encode(), np.uint8), **arrays}
+        np.savez(file, allow_pickle=False, **kept)
         file.flush()
         os.fsync(file.fileno())
     partial.replace(path)
