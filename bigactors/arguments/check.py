@@ -27,8 +27,8 @@ def fill(parser: Parser) -> None:
         "--max-configurations",
         metavar="N",
         type=at_least_one,
-        help="visit no more than N configurations (default 100,000,000, of which each takes some 30 bytes, for each worker "
-        "of --engine ray; 2,000,000 with --engine reference or --reduce)",
+        help="visit no more than N configurations (default 100,000,000, of which each takes some 30 bytes, for each "
+        "worker of --engine ray; 2,000,000 with --engine reference or --reduce)",
     )
     parser.add_argument(
         "--max-time",
@@ -40,7 +40,8 @@ def fill(parser: Parser) -> None:
         "--max-memory",
         metavar="SIZE",
         type=size,
-        help="stop exploring when the process, or one of the workers, takes more, such as 800M or 12G (default: no limit)",
+        help="stop exploring when the process, or one of its workers, takes more, such as 800M or 12G (default: no "
+        "limit)",
     )
     _long_runs(parser)
     _several_processes(parser)
@@ -132,6 +133,6 @@ def _long_runs(parser: Parser) -> None:
         "--paranoid",
         metavar="N",
         type=at_least_one,
-        help="let the interpreter work out once more what follows from N configurations, and stop at a difference (not with "
-        "--engine ray)",
+        help="let the interpreter work out once more what follows from N configurations, and stop at a difference (not "
+        "with --engine ray)",
     )

@@ -97,7 +97,6 @@ class Expedition:
 
     def run(self, inspect: tuple[Inspect, ...]) -> Exploration:
         """Visit everything that is reachable, and let inspections have found what there is."""
-        began = time.monotonic()
         found = Found(self.crew, self.surely, self.initial.setting)
         together = tuple(each for each in inspect if is_mergeable(each))
         parts = self.surely(lambda: self.crew.every("inspect", together))
@@ -119,7 +118,7 @@ class Expedition:
             rules.total(),
             rules,
             sorted(self.bounds + self.met()),
-            time.monotonic() - began + (self.latest.seconds if self.keeping.resumed and self.latest else 0.0),
+            time.monotonic() - self.began,
             sum(standing.runs for standing in self.standings),
             survey=Survey(found),
         )
@@ -138,6 +137,7 @@ class Expedition:
                     raise ClusterError(f"{often}: {lost}") from lost
 
     def met(self) -> list[str]:
+        """Return the bounds that left something out."""
         most = self.limits.configurations
         cut = [limit_met(most)] if most is not None and any(each.cut for each in self.standings) else []
         crowded = any(each.crowded for each in self.standings)
@@ -160,6 +160,7 @@ class Expedition:
         self.save()
 
     def is_done(self) -> bool:
+        """Tell whether there is nothing to be expanded, or a bound was met."""
         return bool(self.bounds) or all(each.expanded == each.size for each in self.standings)
 
     def begin(self) -> None:
@@ -174,14 +175,16 @@ class Expedition:
         self.is_lost = False
 
     def go_round(self) -> None:
-        """Let each worker expand some rows, and the others take what is theirs."""
+        """Let each worker expand some rows, and the others take what is theirs, unless a bound is met."""
+        self.look_at_bounds(time.monotonic() - self.began)
+        if self.bounds:
+            return
         if all(each.expanded == each.end for each in self.standings):
             self.layer += 1
         before = [each.size for each in self.standings]
         self.standings = self.crew.exchange("expand", "take", self.layer, ROUND)
         self.trim(before)
         now = time.monotonic()
-        self.look_at_bounds(now - self.began)
         if self.report is not None and now - self.reported >= self.every:
             self.report(self.progress(now - self.began))
             self.reported = now
@@ -210,6 +213,7 @@ class Expedition:
             self.bounds.append(memory_met(limits))
 
     def progress(self, seconds: float) -> Progress:
+        """Return how far all have come."""
         size, expanded, transitions = (
             sum(getattr(each, name) for each in self.standings)
             for name in ("size", "expanded", "transitions")

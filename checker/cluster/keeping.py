@@ -188,11 +188,12 @@ class Loading:
                 self.codes[begin:end] = [known.get(each, UNKNOWN) for each in self.digests[begin:end]]
 
     def recall(self) -> None:
-        """Learn again what can be learned by now; nothing where all values are known."""
+        """Learn again what can be learned by now, for others too; nothing where all values are known."""
         count = len(self.learned) + 1
-        while len(self.learned) < count and self.missing():
+        while len(self.learned) < count and (self.codes == UNKNOWN).any():
             count = len(self.learned)
             self.learned = [row for row in self.learned if not self._relearn(row)]
+            self._resolve()
 
     def _relearn(self, row: int) -> bool:
         """Let the rules run on a row once more, if its values are known."""

@@ -208,7 +208,7 @@ def connect(cluster: Cluster) -> None:
         raise ClusterError("Ray was loaded before and would listen to others: let the checker load it")
 
 
-def explore_with_ray(  # as `explore`
+def explore_with_ray(  # noqa: PLR0913, PLR0917  # as `explore`
     initial: Configuration,
     inspect: tuple[Inspect, ...],
     limits: Limits,

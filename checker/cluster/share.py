@@ -17,7 +17,7 @@ from checker.cluster.parcels import Dictionary, Entry, Parcel, Told
 from checker.exploration import memory_taken
 from checker.fast import kernel as loops
 from checker.fast.columns import Packing
-from checker.fast.engine import BATCH, FIRST_ROWS, MOST_ROWS, Space
+from checker.fast.engine import FIRST_ROWS, MOST_ROWS, Space
 from checker.fast.kernel import AT, CROWDS, CUT, GATHERED, LIMIT, SIZE
 from checker.fast.learner import Learner
 from checker.fast.pages import Pages

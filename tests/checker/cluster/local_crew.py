@@ -36,7 +36,7 @@ class LocalCrew:
             self.dies = None
         if worker in self.lost:
             raise LostError
-        return sent(getattr(self.workers[worker], method)(*arguments))
+        return sent(getattr(self.workers[worker], method)(*sent(arguments)))
 
     def every(self, method: str, *arguments: Any) -> list[Any]:
         return [self.one(worker, method, *arguments) for worker in range(self.size)]
