@@ -129,7 +129,9 @@ def elaborate_bodies(
     behaviours = {
         name: Behaviour(name, bodies.parameters[name], body.block) for name, body in bodies.behaviours.items()
     }
-    reactions = {name: Checked(name, command, names.kinds) for name, command in COMMANDS.items()}
+    reactions: dict[str, Checked | Maker] = {
+        name: Checked(name, command, names.kinds) for name, command in COMMANDS.items()
+    }
     reactions |= {name: Maker(schema, names.kinds) for name, schema in bodies.schemas.items()}
     statements, lines = tuple(program.statements), tuple(program.lines)
     declared = {

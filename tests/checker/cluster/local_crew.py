@@ -21,7 +21,7 @@ class LocalCrew:
         self.workers = [Worker(initial, pending, me, workers) for me in range(workers)]
         self.initial, self.pending = initial, pending
         self.dies = dies
-        self.calls = 0
+        self.called: list[str] = []
         self.lost: set[int] = set()
         self.revived = 0
 
@@ -29,8 +29,12 @@ class LocalCrew:
     def size(self) -> int:
         return len(self.workers)
 
+    @property
+    def calls(self) -> int:
+        return len(self.called)
+
     def one(self, worker: int, method: str, *arguments: Any) -> Any:
-        self.calls += 1
+        self.called.append(method)
         if self.dies is not None and self.calls >= self.dies[0]:
             self.lost.add(self.dies[1])
             self.dies = None
