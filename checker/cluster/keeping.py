@@ -18,11 +18,11 @@ from checker.cluster.share import Share
 from checker.exploration import CheckpointError
 from checker.fast.checkpoint import read_archive, write_archive
 from checker.fast.columns import Packing
-from checker.fast.kernel import AT, CROWDS, CUT, LIMIT, SIZE
+from checker.fast.kernel import CROWDS, CUT, EXPANDED, LIMIT, SIZE
 
 SCHEMA = "bigactors.share/1"
 UNKNOWN = -1
-KEPT = (AT, SIZE, CUT, CROWDS, LIMIT)
+KEPT = (EXPANDED, SIZE, CUT, CROWDS, LIMIT)
 """What of the loops' state goes on."""
 
 BLOCK = 1 << 18

@@ -8,7 +8,21 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from checker.fast.kernel import COLUMN, CUT, LIMIT, SIZE, WORDS, State, Words, bits_for, find, hashed, touch
+from checker.fast.kernel import (
+    BLOCK,
+    CUT,
+    LIMIT,
+    PLACE,
+    SIZE,
+    TOUCHED,
+    WORDS,
+    State,
+    Words,
+    bits_for,
+    find,
+    hashed,
+    touch,
+)
 
 _HALF = np.uint64(32)
 
@@ -28,10 +42,10 @@ def owners_of(
     for k in range(count):
         key = np.uint64(0)
         for column in range(len(begins) - 1):
-            mask = columns[COLUMN * column + 2]
+            mask = columns[PLACE * column + 2]
             if mask != 0:
-                word = words[k * width + np.int64(columns[COLUMN * column])]
-                key ^= keys[begins[column] + np.int64((word >> columns[COLUMN * column + 1]) & mask)]
+                word = words[k * width + np.int64(columns[PLACE * column])]
+                key ^= keys[begins[column] + np.int64((word >> columns[PLACE * column + 1]) & mask)]
         owners[k] = np.int64(((key >> _HALF) * np.uint64(workers)) >> _HALF)
 
 
@@ -50,22 +64,24 @@ def settle(
 ) -> None:
     """Look up the rows that belong to this worker: what is new becomes one of its rows."""
     width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
-    touch(words, table, hashes, count, width)
     bits = np.uint32(bits_for(len(table)))
-    for k in range(count):
-        if owners[k] != me:
-            continue
-        found = find(words, table, rows, k, hashes[k], width, bits)
-        if found >= 0:
-            continue
-        if size >= limit:
-            state[CUT] += 1
-            continue
-        for j in range(width):
-            words[size * width + j] = rows[k * width + j]
-        origins[size] = np.uint64(reached_from[k])
-        table[-found - 1] = ((np.uint32(hashes[k]) >> bits) << bits) | np.uint32(size + 1)
-        size += 1
+    for begin in range(0, count, BLOCK):
+        end = min(begin + BLOCK, count)
+        state[TOUCHED] = touch(words, table, hashes, begin, end, width)
+        for k in range(begin, end):
+            if owners[k] != me:
+                continue
+            found = find(words, table, rows, k, hashes[k], width, bits)
+            if found >= 0:
+                continue
+            if size >= limit:
+                state[CUT] += 1
+                continue
+            for j in range(width):
+                words[size * width + j] = rows[k * width + j]
+            origins[size] = np.uint64(reached_from[k])
+            table[-found - 1] = ((np.uint32(hashes[k]) >> bits) << bits) | np.uint32(size + 1)
+            size += 1
     state[SIZE] = size
 
 
@@ -120,25 +136,14 @@ def translate(
         for j in range(width):
             rows[to + j] = 0
         for column in range(len(numbers)):
-            where = COLUMN * column
+            where = PLACE * column
             mask = their_columns[where + 2]
             if mask != 0:
                 word = theirs[at + np.int64(their_columns[where])]
                 code = codes[begins[column] + np.int64((word >> their_columns[where + 1]) & mask)]
-                mine = COLUMN * numbers[column]
+                mine = PLACE * numbers[column]
                 rows[to + np.int64(columns[mine])] |= np.uint64(code) << columns[mine + 1]
         hashes[k] = hashed(rows, to, width)
-
-
-@njit(cache=True)
-def look_up(
-    words: Words, table: Any, rows: Words, hashes: Words, count: int, width: int, found: State
-) -> None:
-    """Note which of one's own rows each row is; less than 0 where it is none."""
-    touch(words, table, hashes, count, width)
-    bits = np.uint32(bits_for(len(table)))
-    for k in range(count):
-        found[k] = find(words, table, rows, k, hashes[k], width, bits)
 
 
 @njit(cache=True)
@@ -146,11 +151,11 @@ def mark_used(words: Words, width: int, columns: Words, begins: State, used: Any
     """Mark the values that some row has, column by column; False where a code is none of its column."""
     for row in range(len(words) // width):
         for column in range(len(begins) - 1):
-            mask = columns[COLUMN * column + 2]
+            mask = columns[PLACE * column + 2]
             code = np.int64(0)
             if mask != 0:
-                word = words[row * width + np.int64(columns[COLUMN * column])]
-                code = np.int64((word >> columns[COLUMN * column + 1]) & mask)
+                word = words[row * width + np.int64(columns[PLACE * column])]
+                code = np.int64((word >> columns[PLACE * column + 1]) & mask)
             if code < 0 or code >= begins[column + 1] - begins[column]:
                 return False
             used[begins[column] + code] = True

@@ -18,7 +18,7 @@ from checker.exploration import memory_taken
 from checker.fast import kernel as loops
 from checker.fast.columns import Packing
 from checker.fast.engine import FIRST_ROWS, MOST_ROWS, Space
-from checker.fast.kernel import AT, CROWDS, CUT, GATHERED, LIMIT, SIZE
+from checker.fast.kernel import AT, CROWDS, CUT, EXPANDED, GATHERED, LIMIT, SIZE
 from checker.fast.learner import Learner
 from checker.fast.pages import Pages
 from semantics.configuration import Configuration
@@ -127,11 +127,11 @@ class Share(Space):
         self.end = int(self.owners_of(first, 1)[0] == self.me)
         self.state[SIZE] = self.end
         self._rebuild(2 * FIRST_ROWS)
-        self._make_room()
+        self._make_room(len(self.batch.hashes))
 
     def clear(self) -> None:
         """Forget all rows, what others were told, and what they have told; what was learned is kept."""
-        self.state[[AT, SIZE, CUT, CROWDS, GATHERED]] = 0
+        self.state[[AT, EXPANDED, SIZE, CUT, CROWDS, GATHERED]] = 0
         self.state[LIMIT] = MOST_ROWS
         self.origins = Pages(np.uint64, len(self.origins.room))
         self.learner.columns.codes(self.learner.still)  # makes columns that only the first row needs
@@ -177,8 +177,9 @@ class Share(Space):
         """Expand at most so many rows of a layer, and return a parcel for each worker."""
         self.enter(layer)
         until = min(self.expanded + most, self.end)
+        self.state[AT] = self.expanded
         while self.expanded < until:
-            self._make_room()
+            self._make_room(len(self.batch.hashes))
             known = loops.gather(self.model, self.words.room, self.batch, self.state, until)
             self._deal()
             if not known:
@@ -198,6 +199,7 @@ class Share(Space):
         self.counts.used[:] += np.bincount(batch.steps[:count], minlength=len(self.counts))
         owners = self.owners_of(batch.words, count)
         self._settle(batch.origins[:count], self.me, owners)
+        self.state[EXPANDED] = self.state[AT]
         chosen = np.zeros(count, np.int64)
         found = kernel.unsent(batch.words, batch.hashes, owners, count, self.me, width, self.lately, chosen)
         others = chosen[:found]
@@ -281,7 +283,7 @@ class Share(Space):
         )  # what comes is read-only, for which the loops would be compiled once more
         columns = np.array(parcel.packing.columns)
         for first in range(0, len(parcel), len(self.batch.hashes)):
-            self._make_room()
+            self._make_room(len(self.batch.hashes))
             origins = parcel.origins[first : first + len(self.batch.hashes)].astype(np.int64)
             kernel.translate(
                 rows,
@@ -309,7 +311,7 @@ class Share(Space):
         """Learn what follows from a row of codes, which takes the place of all rows."""
         self.words.room[: self.packing.words] = self.packed(codes)
         self.state[SIZE], self.state[AT] = 1, 0
-        while not self.expanded:
+        while not self.state[AT]:
             known = loops.gather(self.model, self.words.room, self.batch, self.state, 1)
             self.state[GATHERED] = 0
             if not known:
@@ -323,7 +325,7 @@ class Share(Space):
     def look_around(self) -> None:
         """Find rows again that were put in their place."""
         self._rebuild(2 * max(self.size, FIRST_ROWS))
-        self._make_room()
+        self._make_room(len(self.batch.hashes))
 
     # --- limits, counts -------------------------------------------------------------------------------------------
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.cluster import keeping, kernel
+from checker.cluster import keeping
 from checker.cluster.parcels import Parcel
 from checker.cluster.share import Share, Standing
 from checker.exploration import Inspect
@@ -143,15 +143,13 @@ class Worker:
     def point(self, first: int, most: int) -> tuple[Parcel, ...]:
         """Find the transitions of some rows; send each worker those of its rows that they lead to."""
         share = self.share
-        expanded, until = share.expanded, min(first + most, share.expanded)
-        share.state[AT] = min(first, expanded)
-        found = []
-        while share.expanded < until:
+        until = min(first + most, share.expanded)
+        share.state[AT], found = min(first, until), []
+        while share.state[AT] < until:
             known = loops.gather(share.model, share.words.room, share.batch, share.state, until)
             found.append(self._point())
             if not known:
                 share.go_on()
-        share.state[AT] = expanded
         self.pointed = self._edges(found)
         return share.parcels()
 
@@ -169,8 +167,7 @@ class Worker:
     def _found(self, count: int) -> NDArray[np.int64]:
         """Return which of its rows each of the batch is, less than 0 where it is none."""
         share, found = self.share, np.zeros(count, np.int64)
-        words, table = share.words.room, share.table.room
-        kernel.look_up(words, table, share.batch.words, share.batch.hashes, count, share.packing.words, found)
+        loops.look_up(share.words.room, share.table.room, share.batch, found, share.state)
         return found
 
     def _edges(self, found: Sequence[tuple[NDArray[Any], ...]]) -> Edges:
