@@ -160,7 +160,7 @@ def test_a_crew_that_was_lost_altogether_is_followed_by_another(tmp_path, monkey
     undisturbed = LocalCrew(initial, 2)
     found = Expedition(undisturbed, initial, LIMITS).run(())
     calls, expected = undisturbed.calls, whole(found)
-    for call in (30, 90, calls - 20):
+    for call in (30, 90, 2 * calls - 80):
         folder = str(tmp_path / str(call))
         crew = LocalCrew(initial, 2, dies=(call, 0))
         monkeypatch.setattr(crew, "revive", lambda: None)  # it stays dead
