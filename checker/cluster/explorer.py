@@ -52,6 +52,9 @@ class Expedition:
         layer: How far the rows that are expanded are from the first.
         standings: How far each worker has come.
         bounds: What has ended it early.
+        is_lost: Whether a worker has died since all began.
+        is_whole: Whether nothing is on its way between workers.
+        is_kept: Whether the last checkpoint is of where they are.
     """
 
     def __init__(
@@ -76,6 +79,7 @@ class Expedition:
         self.standings: list[Standing] = []
         self.bounds: list[str] = []
         self.is_lost = True
+        self.is_whole = self.is_kept = False
         self.losses = 0
         self.began = time.monotonic() - (self.latest.seconds if self.latest else 0.0)
         self.reported = self.kept = time.monotonic()
@@ -157,7 +161,8 @@ class Expedition:
         except KeyboardInterrupt:
             self.bounds.append(INTERRUPTION)
             self.standings = self.crew.every("halt", self.layer)
-        self.save()
+        if self.is_whole:
+            self.save()
 
     def is_done(self) -> bool:
         """Tell whether there is nothing to be expanded, or a bound was met."""
@@ -165,14 +170,14 @@ class Expedition:
 
     def begin(self) -> None:
         """Begin, or go back to the last checkpoint."""
-        if self.bounds and self.latest is None:
-            raise ClusterError("a worker was lost when the exploration had ended, and nothing was kept of it")
+        if self.bounds and not self.is_kept:
+            raise ClusterError("a worker was lost when a bound was met, and where they were was not kept")
         self.crew.revive()
         if self.latest is None:
             self.layer, self.standings = 0, self.crew.every("start")
         else:
             self.layer, self.standings = self.latest.layer, self.load(self.latest.number)
-        self.is_lost = False
+        self.is_lost, self.is_whole = False, True
 
     def go_round(self) -> None:
         """Let each worker expand some rows, and the others take what is theirs, unless a bound is met."""
@@ -182,8 +187,10 @@ class Expedition:
         if all(each.expanded == each.end for each in self.standings):
             self.layer += 1
         before = [each.size for each in self.standings]
+        self.is_whole = self.is_kept = False
         self.standings = self.crew.exchange("expand", "take", self.layer, ROUND)
         self.trim(before)
+        self.is_whole = True
         now = time.monotonic()
         if self.report is not None and now - self.reported >= self.every:
             self.report(self.progress(now - self.began))
@@ -231,7 +238,7 @@ class Expedition:
         self.latest = Latest(before + 1, self.layer, time.monotonic() - self.began)
         write_latest(self.folder, self.latest, self.digest, self.crew.size)
         self.crew.every("drop", str(self.folder), before)
-        self.losses = 0
+        self.losses, self.is_kept = 0, True
         self.kept = time.monotonic()
 
     def load(self, number: int) -> list[Standing]:

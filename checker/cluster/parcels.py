@@ -75,6 +75,9 @@ class Told:
                 yield Entry(number, column.place, tuple(column.values[known:]))
 
 
+Arrays = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
+
+
 @dataclass(slots=True)
 class Dictionary:
     """What is known of another worker's codes.
@@ -86,6 +89,7 @@ class Dictionary:
 
     numbers: list[int] = field(default_factory=list)
     codes: list[list[int]] = field(default_factory=list)
+    _arrays: "Arrays | None" = None
 
     def add(self, column: int, number: int, codes: list[int]) -> None:
         """Note codes that are new in a column of it, by the number of one's own."""
@@ -93,12 +97,12 @@ class Dictionary:
             self.numbers.append(number)
             self.codes.append([])
         self.codes[column] += codes
+        self._arrays = None
 
-    def arrays(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    def arrays(self) -> "Arrays":
         """Return all codes, where those of each column begin, and the numbers of one's own columns."""
-        begins = np.concatenate(([0], np.cumsum([len(each) for each in self.codes]))).astype(np.int64)
-        return (
-            np.array([code for each in self.codes for code in each], np.int64),
-            begins,
-            np.array(self.numbers, np.int64),
-        )
+        if self._arrays is None:
+            begins = np.concatenate(([0], np.cumsum([len(each) for each in self.codes])))
+            codes = np.array([code for each in self.codes for code in each], np.int64)
+            self._arrays = codes, begins.astype(np.int64), np.array(self.numbers, np.int64)
+        return self._arrays

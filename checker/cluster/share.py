@@ -277,6 +277,8 @@ class Share(Space):
 
     def translated(self, peer: int, parcel: Parcel) -> Iterator[NDArray[np.int64]]:
         """Put the rows of a parcel into the batch, some at a time; yield the sender's rows they were reached from."""
+        if not len(parcel):
+            return
         codes, begins, numbers = self.dictionaries[peer].arrays()
         rows = np.array(
             parcel.rows

@@ -137,6 +137,42 @@ def test_without_time_or_memory_the_search_is_incomplete():
     assert kept_graph(found).open.tolist() == [True]
 
 
+@pytest.mark.parametrize("when", [1, 4])
+@pytest.mark.usefixtures("small_rounds")
+def test_an_interruption_keeps_what_is_whole_and_can_be_gone_on_from(tmp_path, when):
+    initial, told = start("surveillance"), []
+
+    def interrupt(progress):
+        told.append(progress)
+        if len(told) == when:
+            raise KeyboardInterrupt
+
+    found = together(initial, 2, report=interrupt, every=0.0, keeping=Keeping(str(tmp_path)))
+    assert found.bounds == ["an interruption"]
+    assert len(found.configurations) == told[-1].configurations < 153
+    resumed = together(initial, 2, keeping=Keeping(str(tmp_path), resumed=True))
+    assert whole(resumed) == whole(together(initial, 2))
+
+
+class Interrupted(LocalCrew):
+    """A crew whose leader is interrupted while rows are on their way."""
+
+    def exchange(self, giving, taking, *arguments):
+        if len(self.called) < 30:
+            return super().exchange(giving, taking, *arguments)
+        self.every(giving, *arguments)
+        raise KeyboardInterrupt
+
+
+@pytest.mark.usefixtures("small_rounds")
+def test_what_is_interrupted_while_rows_are_on_their_way_is_not_kept(tmp_path):
+    initial = start("surveillance")
+    found = Expedition(Interrupted(initial, 2), initial, LIMITS, keeping=Keeping(str(tmp_path))).run(())
+    assert found.bounds == ["an interruption"]
+    assert 1 < len(found.configurations) < 153
+    assert not list(tmp_path.rglob("latest.json"))
+
+
 # --- who is lost ----------------------------------------------------------------------------------------------
 
 
@@ -177,7 +213,7 @@ def test_what_was_found_under_a_limit_of_time_is_not_explored_otherwise(tmp_path
     crew = LocalCrew(initial, 2)
     found = Expedition(crew, initial, limits).run(())
     crew.lost = {0, 1}
-    with pytest.raises(ClusterError, match="nothing was kept of it"):
+    with pytest.raises(ClusterError, match="where they were was not kept"):
         list(found.configurations)
     crew = LocalCrew(initial, 2)
     found = Expedition(crew, initial, limits, keeping=Keeping(str(tmp_path))).run(())
