@@ -19,33 +19,62 @@ from checker.fast.kernel import (
     State,
     Words,
     bits_for,
+    code_at,
     find,
     hashed,
     touch,
 )
 
-_HALF = np.uint64(32)
+_ONE, _HALF, _TOP = np.uint64(1), np.uint64(32), np.uint64(58)
+
+_DE_BRUIJN = np.uint64(0x03F79D71B4CB0A89)
+"""A number whose 64 windows of six bits all differ: times a power of two, its top six bits tell which power."""
+
+_BITS = np.argsort(_DE_BRUIJN << np.arange(64, dtype=np.uint64) >> _TOP).astype(np.uint64)
+
+
+@njit(cache=True, inline="always")
+def key_of(words: Words, at: int, columns: Words, keys: Words, begins: State) -> np.uint64:
+    """Return the key of the row that begins there."""
+    key = np.uint64(0)
+    for column in range(len(begins) - 1):
+        if columns[PLACE * column + 2] != 0:
+            key ^= keys[begins[column] + code_at(words, at, columns, column)]
+    return key
 
 
 @njit(cache=True)
 def owners_of(
     words: Words,
-    count: int,
+    origins: State,
+    rows: Words,
     width: int,
     columns: Words,
+    column_at: State,
     keys: Words,
     begins: State,
     workers: int,
     owners: Any,
 ) -> None:
-    """Note the worker that each row belongs to."""
-    for k in range(count):
-        key = np.uint64(0)
-        for column in range(len(begins) - 1):
-            mask = columns[PLACE * column + 2]
-            if mask != 0:
-                word = words[k * width + np.int64(columns[PLACE * column])]
-                key ^= keys[begins[column] + np.int64((word >> columns[PLACE * column + 1]) & mask)]
+    """Note the worker that each row belongs to.
+
+    A row differs in a few columns from the one that it was reached from, whose key is worked out once for all that
+    were: `column_at` has the column of each bit of a row.
+    """
+    last, base = np.int64(-1), np.uint64(0)
+    for k in range(len(owners)):
+        at, to = origins[k] * width, k * width
+        if origins[k] != last:
+            last, base = origins[k], key_of(words, origins[k] * width, columns, keys, begins)
+        key = base
+        for j in range(width):
+            differing = words[at + j] ^ rows[to + j]
+            while differing != 0:
+                lowest = differing & (~differing + _ONE)
+                column = column_at[64 * j + np.int64(_BITS[(lowest * _DE_BRUIJN) >> _TOP])]
+                key ^= keys[begins[column] + code_at(words, at, columns, column)]
+                key ^= keys[begins[column] + code_at(rows, to, columns, column)]
+                differing &= ~(columns[PLACE * column + 2] << columns[PLACE * column + 1])
         owners[k] = np.int64(((key >> _HALF) * np.uint64(workers)) >> _HALF)
 
 

@@ -7,6 +7,7 @@ that has forgotten.
 
 import os
 import shutil
+import socket
 import tempfile
 import time
 import weakref
@@ -189,11 +190,13 @@ def connect(cluster: Cluster) -> None:
     Raises:
         ClusterError: There is none at the address, or Ray is not installed.
     """
-    if cluster.address is None:
+    if _is_here(cluster.address):
         os.environ["RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER"] = "0"  # so it listens on the loopback address alone
     ray = load_ray()
     if ray.is_initialized():
         return
+    if cluster.address not in (None, "auto"):
+        _reach(str(cluster.address))
     quiet = {"include_dashboard": False, "log_to_driver": False, "logging_level": "error"}
     try:
         if cluster.address is None:
@@ -206,6 +209,21 @@ def connect(cluster: Cluster) -> None:
     if cluster.address is None and not ray.util.get_node_ip_address().startswith("127."):
         ray.shutdown()
         raise ClusterError("Ray was loaded before and would listen to others: let the checker load it")
+
+
+def _is_here(address: str | None) -> bool:
+    return address is None or address.startswith(("127.", "localhost:"))
+
+
+def _reach(address: str) -> None:
+    """See whether anybody listens at an address: Ray itself would try for minutes."""
+    host, colon, port = address.rpartition(":")
+    if not colon or not host or not port.isdecimal() or int(port) > 65535:
+        raise ClusterError(f"'{address:.60}' is no address of a Ray cluster: it should be HOST:PORT, or auto")
+    try:
+        socket.create_connection((host.strip("[]"), int(port)), timeout=5).close()
+    except OSError as error:
+        raise ClusterError(f"there is no Ray cluster at {address}: {error}") from error
 
 
 def explore_with_ray(  # noqa: PLR0913, PLR0917  # as `explore`

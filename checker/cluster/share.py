@@ -16,7 +16,7 @@ from checker.cluster.keys import Keys
 from checker.cluster.parcels import Dictionary, Entry, Parcel, Told
 from checker.exploration import memory_taken
 from checker.fast import kernel as loops
-from checker.fast.columns import Packing
+from checker.fast.columns import WORD, Packing
 from checker.fast.engine import FIRST_ROWS, MOST_ROWS, Space
 from checker.fast.kernel import AT, CROWDS, CUT, EXPANDED, GATHERED, LIMIT, SIZE
 from checker.fast.learner import Learner
@@ -40,6 +40,7 @@ class Standing:
         crowded: Whether some were not followed.
         runs: How many times rules were run in Python.
         memory: How many bytes its process takes.
+        used: How many bytes rows, origins and the visited set take, room included.
         sent: How many bytes of rows it sent so far.
     """
 
@@ -51,7 +52,17 @@ class Standing:
     crowded: bool
     runs: int
     memory: int
+    used: int
     sent: int
+
+
+def column_at(where: Packing) -> NDArray[np.int64]:
+    """Return the column of each bit of a row."""
+    found = np.zeros(WORD * where.words, np.int64)
+    for column, (word, shift, mask) in enumerate(zip(where.word, where.shift, where.mask, strict=True)):
+        first = WORD * int(word) + int(shift)
+        found[first : first + int(mask).bit_length()] = column
+    return found
 
 
 class Outbox:
@@ -105,6 +116,7 @@ class Share(Space):
         happened_before: The words of what the environment did in it.
         told: What each worker was told of this one's codes.
         dictionaries: What is known of each worker's codes.
+        column_at: The column of each bit of a row, in the packing for which it was made.
     """
 
     def __init__(self, initial: Configuration, pending: int, me: int, workers: int) -> None:
@@ -114,6 +126,7 @@ class Share(Space):
         self.outbox = Outbox()
         learner = Learner(initial.setting, initial.state, pending)  # type: ignore[arg-type]  # a stored one
         self.keys = Keys(learner.columns)
+        self.located_in: Packing | None = None
         super().__init__(learner, None)
         self.start()
 
@@ -124,7 +137,7 @@ class Share(Space):
         self.clear()
         first = self.packed(self.learner.columns.codes(self.learner.still))
         self.words.room[: len(first)] = first
-        self.end = int(self.owners_of(first, 1)[0] == self.me)
+        self.end = int(self.owners_of(first, np.zeros(1, np.int64))[0] == self.me)
         self.state[SIZE] = self.end
         self._rebuild(2 * FIRST_ROWS)
         self._make_room(len(self.batch.hashes))
@@ -158,6 +171,8 @@ class Share(Space):
         """Let the loops see what is known now."""
         super()._see()
         self.keys.refresh()
+        if self.located_in is not self.packing:
+            self.column_at, self.located_in = column_at(self.packing), self.packing
 
     def _pack(self) -> None:
         """Pack the rows anew where a column has outgrown its bits, and those that wait to be sent."""
@@ -197,7 +212,7 @@ class Share(Space):
         batch, count, width = self.batch, int(self.state[GATHERED]), self.packing.words
         self.state[GATHERED] = 0
         self.counts.used[:] += np.bincount(batch.steps[:count], minlength=len(self.counts))
-        owners = self.owners_of(batch.words, count)
+        owners = self.owners_of(batch.words, batch.origins[:count])
         self._settle(batch.origins[:count], self.me, owners)
         self.state[EXPANDED] = self.state[AT]
         chosen = np.zeros(count, np.int64)
@@ -205,14 +220,16 @@ class Share(Space):
         others = chosen[:found]
         self.outbox.add(batch.words.reshape(-1, width)[others], batch.origins[others], owners[others])
 
-    def owners_of(self, rows: NDArray[np.uint64], count: int) -> NDArray[np.int32]:
-        """Return the worker that each of some rows belongs to."""
-        owners = np.zeros(count, np.int32)
+    def owners_of(self, rows: NDArray[np.uint64], origins: NDArray[np.int64]) -> NDArray[np.int32]:
+        """Return the worker that each of some rows belongs to, which were reached from these of its own."""
+        owners = np.zeros(len(origins), np.int32)
         kernel.owners_of(
+            self.words.room,
+            origins,
             rows,
-            count,
             self.packing.words,
             self.packing.columns,
+            self.column_at,
             self.keys.keys,
             self.keys.begins,
             self.workers,
@@ -358,5 +375,6 @@ class Share(Space):
             self.is_crowded,
             self.learner.runs,
             memory_taken(),
+            self.bytes_used,
             self.sent,
         )

@@ -157,7 +157,7 @@ class Worker:
         share, count = self.share, int(self.share.state[GATHERED])
         share.state[GATHERED] = 0
         batch, width = share.batch, share.packing.words
-        owners = share.owners_of(batch.words, count)
+        owners = share.owners_of(batch.words, batch.origins[:count])
         targets = self._found(count)
         targets[owners != share.me] = -1
         others = np.flatnonzero(owners != share.me)
