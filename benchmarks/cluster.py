@@ -28,6 +28,9 @@ RESULTS = Path(__file__).parent / "results" / "cluster.json"
 CHAIN = "look_before_entry"
 """A mission of which most layers have one configuration: what it takes is the rounds."""
 
+CREWS = (2, 4, 8, 16)
+"""How many workers there are where rounds are timed."""
+
 
 def initial(size: Size) -> Configuration:
     """Return where a patrol starts."""
@@ -111,7 +114,7 @@ def main() -> None:
     numbers = [int(each) for each in given.workers.split(",")]
     machine = describe() | {"ray": importlib.metadata.version("ray")}
     results = [{"size": str(size)} | measured(size, each) for size in given.sizes for each in numbers]
-    rounds = {str(each): milliseconds_a_round(each) for each in numbers if each > 1}
+    rounds = {str(each): milliseconds_a_round(each) for each in CREWS}
     sys.stdout.write("\n".join(lines(results)) + "\n")
     words = ", ".join(f"{value:.1f} ms with {each}" for each, value in rounds.items())
     sys.stdout.write(f"a round takes {words} workers\n")

@@ -35,8 +35,8 @@ from semantics.configuration import Configuration
 MOST_LOSSES = 5
 """How often workers may be lost between two checkpoints."""
 
-ROUND = 1 << 16
-"""Rows that each worker expands between two exchanges."""
+ROUND = 1 << 14
+"""Rows that each worker expands between two exchanges, for each worker that there is: so parcels stay as large."""
 
 Answer = TypeVar("Answer")
 
@@ -188,7 +188,7 @@ class Expedition:
             self.layer += 1
         before = [each.size for each in self.standings]
         self.is_whole = self.is_kept = False
-        self.standings = self.crew.exchange("expand", "take", self.layer, ROUND)
+        self.standings = self.crew.exchange("expand", "take", self.layer, ROUND * self.crew.size)
         self.trim(before)
         self.is_whole = True
         now = time.monotonic()

@@ -30,7 +30,7 @@ def start(name):
 @pytest.fixture
 def small_rounds(monkeypatch):
     """Let layers take several rounds, and rows be sent more than once."""
-    monkeypatch.setattr(explorer, "ROUND", 3)
+    monkeypatch.setattr(explorer, "ROUND", 1)
     monkeypatch.setattr(share, "SENT", 2)
 
 

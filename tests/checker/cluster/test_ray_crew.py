@@ -72,7 +72,7 @@ def run_to(found, number):
 
 @pytest.mark.parametrize("kill", ["the process", "the actor"])
 def test_a_worker_that_is_killed_in_the_middle_goes_on_from_its_checkpoint(ray, kill, monkeypatch, tmp_path):
-    monkeypatch.setattr(explorer, "ROUND", 128)
+    monkeypatch.setattr(explorer, "ROUND", 64)
     initial = load_mission(MISSIONS / "rendezvous.mission").initial
     keeping = Keeping(str(tmp_path), every=0.05)
     reports = []
