@@ -89,7 +89,7 @@ def test_each_configuration_is_one_step_behind_the_one_that_it_was_reached_from(
 
 
 @given(strategies.initial_configurations())
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_workers_visit_of_generated_missions_what_one_process_visits(initial):
     limits = Limits(configurations=60)
     one, other = inspections(), inspections()
