@@ -143,7 +143,11 @@ class Share(Space):
         self._make_room(len(self.batch.hashes))
 
     def clear(self) -> None:
-        """Forget all rows, what others were told, and what they have told; what was learned is kept."""
+        """Forget all rows, what others were told, and what they have told; the values that it knows are kept.
+
+        What was learned is learned again: rows at which it was learned are gone, and a checkpoint needs to name some.
+        """
+        self.learner.forget()
         self.state[[AT, EXPANDED, SIZE, CUT, CROWDS, GATHERED]] = 0
         self.state[LIMIT] = MOST_ROWS
         self.origins = Pages(np.uint64, len(self.origins.room))

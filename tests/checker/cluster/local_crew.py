@@ -12,11 +12,11 @@ class LocalCrew:
     """Workers that are called in turn.
 
     Attributes:
-        dies: After how many calls a worker is lost, and which; None where none is.
+        dies: After how many calls a worker is lost, and which.
     """
 
     def __init__(
-        self, initial: Configuration, workers: int, pending: int = 64, dies: tuple[int, int] | None = None
+        self, initial: Configuration, workers: int, pending: int = 64, dies: tuple[tuple[int, int], ...] = ()
     ) -> None:
         self.workers = [Worker(initial, pending, me, workers) for me in range(workers)]
         self.initial, self.pending = initial, pending
@@ -35,9 +35,9 @@ class LocalCrew:
 
     def one(self, worker: int, method: str, *arguments: Any) -> Any:
         self.called.append(method)
-        if self.dies is not None and self.calls >= self.dies[0]:
-            self.lost.add(self.dies[1])
-            self.dies = None
+        if self.dies and self.calls >= self.dies[0][0]:
+            self.lost.add(self.dies[0][1])
+            self.dies = self.dies[1:]
         if worker in self.lost:
             raise LostError
         return sent(getattr(self.workers[worker], method)(*sent(arguments)))
