@@ -22,7 +22,7 @@ from checker.cluster.crew import ClusterError, LostError
 from checker.cluster.explorer import Expedition
 from checker.cluster.parcels import WORKERS_AT_MOST
 from checker.cluster.worker import Worker
-from checker.exploration import Cluster, Exploration, Inspect, Keeping, Limits, Report
+from checker.exploration import CheckpointError, Cluster, Exploration, Inspect, Keeping, Limits, Report
 from semantics.configuration import Configuration
 
 PATIENCE = 120.0
@@ -129,6 +129,10 @@ class RayCrew:
             ForgottenError,
         ) as lost:
             raise LostError(str(lost).strip().splitlines()[0] if str(lost) else "a worker was lost") from lost
+        except errors.RayTaskError as error:
+            if isinstance(error.cause, CheckpointError):
+                raise error.cause from None  # it says all; where in a worker it was raised is of no interest
+            raise
         return found
 
     def revive(self) -> None:

@@ -152,6 +152,25 @@ def test_the_command_line_explores_with_ray(capsys):
     assert reports.count("34 configurations, 74 transitions") == 2
 
 
+def test_a_damaged_checkpoint_is_a_mistake(tmp_path, capsys):
+    line = [
+        "check",
+        "--no-traces",
+        "--engine",
+        "ray",
+        "--checkpoint",
+        str(tmp_path),
+        str(MISSIONS / "oil_spill.mission"),
+    ]
+    main(line)
+    [path] = tmp_path.rglob("share-*-1.npz")
+    path.write_bytes(b"no archive")
+    assert main([*line, "--resume"]) == 2
+    told = capsys.readouterr().err
+    assert f"{path}: this is no checkpoint" in told
+    assert "Traceback" not in told
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
