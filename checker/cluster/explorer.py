@@ -125,6 +125,7 @@ class Expedition:
             time.monotonic() - self.began,
             sum(standing.runs for standing in self.standings),
             survey=Survey(found),
+            allowed=rules.total(),
         )
 
     def surely(self, ask: Callable[[], Answer]) -> Answer:

@@ -359,9 +359,9 @@ class Share(Space):
         self._rebuild(len(self.table.room))
         return self.standing()
 
-    def rules(self) -> Counter[str]:
+    def rules(self, *, followed: bool = True) -> Counter[str]:
         """Return how many transitions each rule has."""
-        return super().rules() + self.rules_before
+        return super().rules(followed=followed) + self.rules_before
 
     @property
     def boundaries(self) -> tuple[int, ...]:
