@@ -87,10 +87,11 @@ class Expedition:
     def _folder(self) -> Path | None:
         """Return where checkpoints are kept: the search for stale observations has its own."""
         name = "monitored" if self.initial.setting.monitored else "exploration"
-        folder = self.keeping.folder and Path(self.keeping.folder) / f"{name}-ray"
-        if folder:
-            folder.mkdir(parents=True, exist_ok=True)
-        return folder or None
+        if self.keeping.folder is None:
+            return None
+        folder = Path(self.keeping.folder).resolve() / f"{name}-ray"  # workers may be in other folders
+        folder.mkdir(parents=True, exist_ok=True)
+        return folder
 
     def _resumed(self) -> Latest | None:
         if self.folder is None or not self.keeping.resumed:

@@ -40,7 +40,14 @@ def told(report):
         )
         for each in report.verdicts
     ]  # fmt: skip
-    sizes = (report.configurations, report.transitions, report.depth, report.bounds, report.rules)
+    sizes = (
+        report.configurations,
+        report.transitions,
+        report.allowed,
+        report.depth,
+        report.bounds,
+        report.rules,
+    )
     return (*verdicts, sizes, report.coverage)
 
 
