@@ -90,7 +90,9 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     formulas = [each.formula for each in asked if each.kind in ("invariant", "reachable")]
     reducer = reducing(initial, reduce, formulas)
     if reducer is not None and engine in (Engine.SYMBOLIC, Engine.RAY):
-        raise RefusedError(reducer.names[0], f"the {engine.value} explorer does not reduce; leave --engine out")
+        raise RefusedError(
+            reducer.names[0], f"the {engine.value} explorer does not reduce; leave --engine out"
+        )
     symmetric = reducer is not None and reducer.symmetry is not None
     if symmetric and engine is Engine.FAST:
         raise RefusedError(Reduction.SYMMETRY, "only the reference explorer knows it; leave --engine out")
@@ -257,6 +259,9 @@ class _Check:
                 return self.decide_invariant(asked)
 
     def decide_temporal(self, asked: Property) -> Verdict:
+        if self.keeping is not None and self.keeping.compact is not None:
+            note = "hash compaction keeps no transitions to go along"
+            return Verdict(asked, Outcome.INCOMPLETE, note=note)
         from checker.temporal.decide import Decider  # noqa: PLC0415 - numpy and scipy take their time to load
 
         try:

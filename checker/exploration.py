@@ -69,6 +69,8 @@ class Keeping:
         digest: What the checkpoint is of.
         every: Seconds between two checkpoints.
         doubted: Of how many configurations the interpreter is asked once more what follows (`--paranoid`).
+        compact: How many bits of a hash stand for each configuration, where none is compared with another: some may be
+            taken for others then (`--hash-compact`).
     """
 
     folder: str | None = None
@@ -76,6 +78,7 @@ class Keeping:
     digest: str = ""
     every: float = 60.0
     doubted: int = 0
+    compact: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -435,6 +438,11 @@ def memory_taken() -> int:
 def memory_met(limits: Limits) -> str:
     """Say that there was no more memory."""
     return f"the memory limit of {(limits.memory or 0) / 1e6:,.0f} MB"
+
+
+def omission_met(bits: int, chance: float) -> str:
+    """Say that configurations may have been taken for others."""
+    return f"hash compaction to {bits} bits: some were left out with a probability of at most {chance:.1g}"
 
 
 def crowd_met(most: int) -> str:

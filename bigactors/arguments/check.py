@@ -2,7 +2,18 @@
 
 from bigactors.arguments.common import EXITS, MISSION, varying
 from bigactors.arguments.parser import Command, Parser
-from bigactors.arguments.values import FORMATS, at_least_one, named, output, reductions, seconds, size
+from bigactors.arguments.values import (
+    FORMATS,
+    LEAST_TAG,
+    MOST_TAG,
+    at_least_one,
+    named,
+    output,
+    reductions,
+    seconds,
+    size,
+    tag_bits,
+)
 
 
 def fill(parser: Parser) -> None:
@@ -134,6 +145,14 @@ def _long_runs(parser: Parser) -> None:
         type=named,
         help="when --max-memory is reached, go on with configurations in files in DIR, which should be on a disk; they "
         "have no names and are gone at the end",
+    )
+    group.add_argument(
+        "--hash-compact",
+        metavar="BITS",
+        type=tag_bits,
+        help=f"keep {LEAST_TAG} to {MOST_TAG} bits of each hash in memory and compare nothing else; what "
+        "that may leave out is told with its probability, and nothing is said to hold (by --engine fast only; "
+        "docs/performance.md)",
     )
     group.add_argument(
         "--paranoid",

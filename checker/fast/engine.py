@@ -28,6 +28,7 @@ from checker.fast.kernel import (
     GATHERED,
     LIMIT,
     NODE,
+    PROBED,
     SIZE,
     TREE,
     TURNS,
@@ -66,11 +67,19 @@ class Space:
         origins: For each row the one that it was first reached from; the first is its own.
         counts, met: How often each transition was followed, and how often met: the same where nothing is left out.
         learned: What was not known on the way: the row, and in which tree, at which node and for which code.
+        compact: How many bits a tag has, where the table has tags instead of numbers (see `compacting`).
     """
 
-    def __init__(self, learner: Learner, limit: int | None, choosing: "Choosing | None" = None) -> None:
+    def __init__(
+        self,
+        learner: Learner,
+        limit: int | None,
+        choosing: "Choosing | None" = None,
+        compact: int | None = None,
+    ) -> None:
         self.learner = learner
         self.choosing = choosing
+        self.compact = compact
         self.state = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
         self.beside = ThreadPoolExecutor(1) if cores() > 1 else None
@@ -103,6 +112,11 @@ class Space:
     def expanded(self) -> int:
         """How many of them were expanded."""
         return int(self.state[EXPANDED])
+
+    @property
+    def probed(self) -> int:
+        """How many tags were compared with those of rows that were new."""
+        return int(self.state[PROBED])
 
     @property
     def was_cut(self) -> bool:
@@ -199,8 +213,13 @@ class Space:
             self._store(gathered, int(self.state[AT]))
 
     def _store(self, gathered: int, at: int) -> None:
-        arrays = (self.words.room, self.origins.room, self.table.room)
-        kernel.store(*arrays, self.full, gathered, at, self.counts.room, self.state)
+        arrays = (self.words.room, self.origins.room, self.table.room, self.full)
+        if self.compact is None:
+            kernel.store(*arrays, gathered, at, self.counts.room, self.state)
+            return
+        from checker.fast.compacting import store_tags  # noqa: PLC0415  # compiled where it is wanted
+
+        store_tags(*arrays, gathered, at, self.counts.room, self.state, self.compact)
 
     def _stored(self) -> None:
         """Wait until what was handed over is stored."""
@@ -411,8 +430,15 @@ class Space:
 
     def _rebuild(self, slots: int) -> None:
         self.table = Pages(np.uint32, 1)  # give the old one back before the next is taken
-        self.table = Pages(np.uint32, slots)
-        kernel.rebuild(self.words.room, self.size, self.packing.words, self.table.room)
+        rows = (self.words.room, self.size, self.packing.words)
+        if self.compact is None:
+            self.table = Pages(np.uint32, slots)
+            kernel.rebuild(*rows, self.table.room)
+            return
+        from checker.fast.compacting import rebuild_tags  # noqa: PLC0415  # compiled where it is wanted
+
+        self.table = Pages(np.uint32 if self.compact <= 32 else np.uint64, slots)
+        rebuild_tags(*rows, self.table.room, self.compact)
 
 
 def cores() -> int:

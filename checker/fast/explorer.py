@@ -21,6 +21,7 @@ from checker.exploration import (
     is_full,
     limit_met,
     memory_met,
+    omission_met,
     time_met,
 )
 from checker.fast.checkpoint import Journey, resume, save
@@ -116,7 +117,7 @@ class _Explorer:
         self.keeping = keeping
         self.learner = Learner(initial.setting, initial.state, limits.pending)  # type: ignore[arg-type]  # a stored one
         self.reduce = reduce
-        self.space = Space(self.learner, limits.configurations, self.choosing())
+        self.space = Space(self.learner, limits.configurations, self.choosing(), keeping.compact)
         self.journey = Journey(0, 1, 0.0)
         self.layers = [1]
         self.bounds: list[str] = []
@@ -200,7 +201,17 @@ class _Explorer:
     def met(self) -> list[str]:
         most = self.limits.configurations
         cut = [limit_met(most)] if self.space.was_cut and most is not None else []
-        return cut + ([crowd_met(self.limits.pending)] if self.space.is_crowded else [])
+        crowded = [crowd_met(self.limits.pending)] if self.space.is_crowded else []
+        return cut + crowded + self.omitted()
+
+    def omitted(self) -> list[str]:
+        """Return how likely something was left out by hash compaction."""
+        bits = self.space.compact
+        if bits is None:
+            return []
+        from checker.fast.compacting import omission  # noqa: PLC0415  # compiled where it is wanted
+
+        return [omission_met(bits, omission(self.space.probed, self.space.size, bits))]
 
     def visit_all(self, started: float) -> None:
         reported = kept = time.monotonic()

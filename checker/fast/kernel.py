@@ -74,15 +74,15 @@ class Batch(NamedTuple):
     leaves: Ints
 
 
-AT, SIZE, LIMIT, WORDS, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED, ALLOWED, TOUCHED = (
+AT, SIZE, LIMIT, WORDS, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED, PROBED, TOUCHED = (
     range(15)
 )
 """What stands where in the loops' state: the row that comes next, how many rows there are and may be, words a row,
 whether requests wait for their turn, the column that says which agents there are (-1: always the same), how many
 successors are gathered, what was not known, whether rows were left out or not followed, up to which row all successors
-are stored, and nothing of meaning."""
+are stored, how many tags were compared, and nothing of meaning."""
 
-STATE = 14
+STATE = 15
 BLOCK = 1 << 12
 """Successors that are looked up at once: what is touched for them fits a core's own cache."""
 
