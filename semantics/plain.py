@@ -86,11 +86,12 @@ def placement_of(data: Any) -> Placed | Carried:
             if isinstance(inner, Placed):
                 return Carried(by, inner)
         case {"at": geometry, **rest}:
-            return Placed(geometry_of(geometry), _band(rest.get("altitude")))
+            return Placed(geometry_of(geometry), band_of(rest.get("altitude")))
     raise ValueError(f"{data!r:.80} is no placement")
 
 
-def _band(data: Any) -> Band | None:
+def band_of(data: Any) -> Band | None:
+    """Read a band of altitudes."""
     match data:
         case None:
             return None
