@@ -10,7 +10,7 @@ another clock (`adapters.simulated.clock`) runs every plugin faster.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 from physical import Band, Geometry, PhysicalProperty
 
@@ -195,7 +195,24 @@ class Trouble:
     count: int = 1
 
 
-Report = Accepted | Arrived | Rejected | LinkLost | LinkRestored | Trouble
+@dataclass(frozen=True, slots=True)
+class Delivered:
+    """A parcel has come from another station: messages for an agent, or an agent (see `semantics.parting`).
+
+    Attributes:
+        station: Whose it is.
+        time: When it came.
+        number: The how-many-th parcel of that station it is; it may come again.
+        parcel: What is in it, as plain data.
+    """
+
+    station: str
+    time: float
+    number: int
+    parcel: Any
+
+
+Report = Accepted | Arrived | Rejected | LinkLost | LinkRestored | Trouble | Delivered
 
 # --- who talks to whom ------------------------------------------------------------------------------
 
@@ -250,6 +267,7 @@ __all__ = [
     "Aged",
     "Arrived",
     "Command",
+    "Delivered",
     "Follow",
     "GoTo",
     "Gone",

@@ -13,6 +13,7 @@ from semantics.configuration import Configuration, Transition
 from semantics.drive import Reach
 from semantics.environment import Observed
 from semantics.logical_model import links_cell, parent_cell
+from semantics.parting import Passage, passing
 from semantics.physical_model import Carried, PhysicalModel, Placement, channels_cell, placement_cell
 from semantics.rules import commit, env
 from semantics.signature import Name
@@ -48,8 +49,11 @@ def arriving(c: Configuration, a: Name, sight: Sight) -> Iterator[Transition]:
     yield from commit(c, a, reaching(sight.writes))
 
 
-def steps_seen(c: Configuration, sight: Sight) -> Iterator[Transition]:
-    """Yield all that an observation may mean: what happens by itself, and the ends of flights."""
+def steps_seen(c: Configuration, sight: Sight | Passage) -> Iterator[Transition]:
+    """Yield all that an observation may mean: what happens, the ends of flights, what passes between stations."""
+    if isinstance(sight, Passage):
+        yield from passing(c, sight)
+        return
     yield from happening(c, sight)
     if not sight.admits:
         for agent in c.alpha.names():

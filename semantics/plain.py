@@ -7,14 +7,18 @@ from physical.frame import E7
 from physical.shape import MAX_VERTICES, canonical
 from semantics.cells import Cell
 from semantics.observed import WRITABLE, Sight
+from semantics.parting import Passage
 from semantics.physical_model import Carried, Placed
+from semantics.plain_parcels import passage_json, passage_of
 
 MOST_WRITES = 10_000
 """The most cells that one observation may write."""
 
 
-def sight_json(sight: Sight) -> dict[str, Any]:
-    """Return an observation as plain data."""
+def sight_json(sight: Sight | Passage) -> dict[str, Any]:
+    """Return an observation, or what passes between stations, as plain data."""
+    if isinstance(sight, Passage):
+        return passage_json(sight)
     data: dict[str, Any] = {"words": sight.words}
     data["writes"] = [[list(cell), value_json(value)] for cell, value in sorted(sight.writes.items())]
     return {**data, "admits": dict(sorted(sight.admits.items()))} if sight.admits else data
@@ -43,14 +47,16 @@ def geometry_json(geometry: Geometry) -> dict[str, Any]:
     return data
 
 
-def sight_of(data: Any) -> Sight:
-    """Read an observation.
+def sight_of(data: Any) -> Sight | Passage:
+    """Read an observation, or what passes between stations.
 
     Raises:
         ValueError: The data are none; GeometryError, which is one, for what is no geometry.
     """
     if not isinstance(data, dict) or not isinstance(data.get("words"), str):
         raise ValueError("an observation should have 'words' and 'writes'")
+    if "station" in data:
+        return passage_of(data)
     writes, admits = data.get("writes", []), data.get("admits", {})
     if not isinstance(writes, list) or len(writes) > MOST_WRITES or not isinstance(admits, dict):
         raise ValueError(f"an observation has at most {MOST_WRITES:,} writes")

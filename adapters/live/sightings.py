@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
-from adapters.live.state import Heard, Sighting
+from adapters.live.state import Heard, Plan, Sighting
 from adapters.plugin import Aged, Gone
 from physical import Geometry, PhysicalError, translate_to
 from semantics.configuration import Configuration
@@ -27,14 +26,12 @@ class Refusal:
     reason: str
 
 
-def sighting_of(
-    heard: Heard, known: Sighting | None, vehicles: Mapping[Name, str], now: float
-) -> Sighting | Refusal | None:
+def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) -> Sighting | Refusal | None:
     """Return what a message makes known of its entity, None where something newer is known."""
     published = heard.published
     said = published.property if isinstance(published, Aged) else published
-    owner = vehicles.get(said.entity)
-    if owner is not None and owner != heard.plugin:
+    owner = plan.vehicles.get(said.entity)
+    if owner is not None and heard.plugin not in (owner, plan.peers):
         return Refusal(
             said.entity, f"'{heard.plugin}' speaks of {said.entity}, which is the vehicle of '{owner}'"
         )

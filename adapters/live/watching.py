@@ -8,14 +8,26 @@ from collections.abc import Iterable
 from adapters.live.assumptions import broken_by_place, clause_of_leaving
 from adapters.live.flying import arrive, renew
 from adapters.live.orders import is_authority
+from adapters.live.passing import take_in
 from adapters.live.sightings import Fences, Refusal, placement_seen, sighting_of
 from adapters.live.state import Answer, Heard, Saying, Sighting
 from adapters.live.turning import Turning
-from adapters.plugin import Accepted, Aged, Arrived, LinkLost, LinkRestored, Rejected, Report, Trouble
+from adapters.plugin import (
+    Accepted,
+    Aged,
+    Arrived,
+    Delivered,
+    LinkLost,
+    LinkRestored,
+    Rejected,
+    Report,
+    Trouble,
+)
 from semantics.cells import Cell
 from semantics.environment import Appears, Leaves, Says
 from semantics.extension import say
 from semantics.observed import Sight, admitting, happening
+from semantics.parting import is_here, station_of
 from semantics.physical_model import Carried, Placed, Placement, channels_cell, placement_cell
 from semantics.rules import env
 from semantics.signature import REGION, Name
@@ -41,7 +53,7 @@ def hear(turning: Turning, heard: Iterable[Heard]) -> None:
 def _merge(turning: Turning, heard: Heard) -> Name | None:
     published = heard.published
     entity = published.property.entity if isinstance(published, Aged) else published.entity
-    found = sighting_of(heard, turning.seen.get(entity), turning.plan.vehicles, turning.now)
+    found = sighting_of(heard, turning.seen.get(entity), turning.plan, turning.now)
     if isinstance(found, Refusal):
         turning.find("trouble", found.entity, found.reason, once=True)
         return None
@@ -211,6 +223,8 @@ def note(turning: Turning, report: Report) -> None:
     match report:
         case Accepted() | Arrived():
             pass  # recorded; positions decide
+        case Delivered():
+            take_in(turning, report)
         case Rejected(request, entity, _, reason):
             turning.find(
                 "refused", entity, f"{entity} refuses {request}: {reason}; the request stays pending"
@@ -246,6 +260,12 @@ def _restore(turning: Turning, entity: Name, *, rebooted: bool) -> None:
 def say_to(turning: Turning, saying: Saying) -> None:
     """Put a message into a mailbox, if the mission says that somebody may say it, and not too often."""
     agents = turning.c.alpha
+    if saying.agent in agents and not is_here(turning.c, saying.agent):
+        there = station_of(turning.c, saying.agent)
+        turning.answers.append(
+            Answer(saying, f"{saying.agent} runs at {there or 'no station'}: say it there")
+        )
+        return
     clauses = [each for each in turning.c.setting.environment if isinstance(each, Says)]
     for clause in clauses:
         if clause.agent == saying.agent and saying.message in (clause.message, show(clause.message)):

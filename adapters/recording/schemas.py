@@ -54,6 +54,10 @@ RUN: Final = _object(
     strict={"type": "boolean", "description": "Whether turns were kept while vehicles confirmed hand-overs."},
     vehicles={"type": "object", "description": "For each vehicle the plugin that it was."},
     resumes={"type": ["string", "null"], "description": "The recording that it goes on from."},
+    station={
+        "type": ["object", "null"],
+        "description": "Which part of the mission it is, of several stations.",
+    },
 )
 
 ARRIVAL: Final = _object(
@@ -103,13 +107,16 @@ COMMAND: Final = _object(
 REPORT: Final = _object(
     "What a plugin reported of a request, a link or its input.",
     ("report",),
-    report={"enum": ["Accepted", "Arrived", "Rejected", "LinkLost", "LinkRestored", "Trouble"]},
+    report={"enum": ["Accepted", "Arrived", "Rejected", "LinkLost", "LinkRestored", "Trouble", "Delivered"]},
     request=_TEXT,
     entity=_TEXT,
     reason=_TEXT,
     what=_TEXT,
     detail=_TEXT,
     source=_TEXT,
+    station=_TEXT,
+    number={"type": "integer", "minimum": 1},
+    parcel={"type": "object", "description": "What has come from another station (docs/stations.md)."},
 )
 
 SAYING: Final = _object(

@@ -39,7 +39,9 @@ class Bus:
         self._waiting = 0
         self._zenoh = _library()
         try:
-            self._session = self._zenoh.open(self._zenoh.Config.from_json5(json.dumps(settings(peers, topic))))
+            self._session = self._zenoh.open(
+                self._zenoh.Config.from_json5(json.dumps(settings(peers, topic)))
+            )
         except self._zenoh.ZError as error:
             where = ", ".join(peers.own.listen)
             raise PhysicalError(
@@ -152,7 +154,10 @@ def settings(peers: Peers, topic: str) -> dict[str, Any]:
         "timestamping": {"enabled": False},
         "adminspace": {"enabled": False},
         "open": {"return_conditions": {"connect_scouted": False, "declares": False}},
-        "transport": {"unicast": {"open_timeout": 5_000, "accept_timeout": 5_000}, "link": {"tx": {"lease": 5_000}}},
+        "transport": {
+            "unicast": {"open_timeout": 5_000, "accept_timeout": 5_000},
+            "link": {"tx": {"lease": 5_000}},
+        },
     }
     if peers.tls is not None:
         found["transport"]["link"]["tls"] = {
@@ -208,5 +213,7 @@ def _library() -> Any:
         import zenoh  # noqa: PLC0415 - an extra
     except ImportError as missing:
         hint = "install the extra: pip install 'bigactors[stations]'"
-        raise PhysicalError("stations-extra", "stations need Zenoh, which is not installed", hint) from missing
+        raise PhysicalError(
+            "stations-extra", "stations need Zenoh, which is not installed", hint
+        ) from missing
     return zenoh

@@ -30,7 +30,10 @@ def newer(one: Entry, other: Entry) -> Entry:
 
 
 def _numbered(entry: Entry) -> tuple[int, str]:
-    return (entry.number, repr(entry.content))  # a number is given once; a liar's two are ordered all the same
+    return (
+        entry.number,
+        repr(entry.content),
+    )  # a number is given once; a liar's two are ordered all the same
 
 
 class Merge:
@@ -97,9 +100,7 @@ def holding(words: Words, now: float) -> Said | None:
         if not isinstance(_said(entry).published, Gone) and _said(entry).until >= newest.time
     ]
     latest = _said(max(told, key=_since)) if told else newest
-    return replace(
-        newest, published=_on(newest.published, channels_of(latest.published)), since=latest.since
-    )
+    return replace(newest, published=_on(newest.published, channels_of(latest.published)), since=latest.since)
 
 
 def _said(entry: Entry) -> Said:

@@ -1,17 +1,17 @@
 """The peers file: which stations there are, where each is reached, what runs where, and whom to believe.
 
-    [gcs0]
-    listen = ["tcp/0.0.0.0:7447"]            # where it listens; without it, this machine only: `connect`
-    connect = ["tcp/gcs0.example.net:7447"]  # where others reach it
-    hosts = ["uav0"]                         # whose bigActors it runs beside its own
+[gcs0]
+listen = ["tcp/0.0.0.0:7447"]            # where it listens; without it, this machine only: `connect`
+connect = ["tcp/gcs0.example.net:7447"]  # where others reach it
+hosts = ["uav0"]                         # whose bigActors it runs beside its own
 
-    [gcs1]
-    connect = ["tcp/gcs1.example.net:7447"]
+[gcs1]
+connect = ["tcp/gcs1.example.net:7447"]
 
-    [tls]                                    # mutual TLS: endpoints are then tls/HOST:PORT
-    ca = "ca.pem"
-    certificate = "{station}.pem"            # its common name is the station's name
-    key = "{station}.key"
+[tls]                                    # mutual TLS: endpoints are then tls/HOST:PORT
+ca = "ca.pem"
+certificate = "{station}.pem"            # its common name is the station's name
+key = "{station}.key"
 """
 
 from __future__ import annotations
@@ -121,7 +121,9 @@ def _check_each_once(found: Mapping[str, Peer]) -> None:
     for peer in found.values():
         for word in (peer.name, *peer.hosts, *peer.connect):
             if seen.setdefault(word, peer.name) != peer.name:
-                raise _mistake(f"{word} belongs to {seen[word]} and to {peer.name}", "leave it to one of them")
+                raise _mistake(
+                    f"{word} belongs to {seen[word]} and to {peer.name}", "leave it to one of them"
+                )
 
 
 def _peer(name: str, table: Any, scheme: str) -> Peer:
@@ -154,7 +156,9 @@ def _endpoints(name: str, table: Mapping[str, Any], key: str, scheme: str) -> tu
             raise _mistake(f"[{name}] {key}: {endpoint!r:.80} is no endpoint", f"write {scheme}/HOST:PORT")
         if match[1] != scheme:
             why = "has no [tls]" if scheme == "tcp" else "has [tls]"
-            raise _mistake(f"[{name}] {key}: '{endpoint:.80}', but the file {why}", f"write {scheme}/HOST:PORT")
+            raise _mistake(
+                f"[{name}] {key}: '{endpoint:.80}', but the file {why}", f"write {scheme}/HOST:PORT"
+            )
     return found
 
 

@@ -1,0 +1,446 @@
+"""A station among others, as a plugin: what its own plugins see goes to the others, and what those see comes here.
+
+Everything that it says is an entry of its log, appended before anybody hears of it. Entries are put to all at once, and
+asked for by whoever has missed some: what is lost on the way is only late. A parcel stands in the log until the other
+station's log says that it was taken, so that it arrives once, whoever is killed or cut off meanwhile.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from adapters.live.sightings import MOST_AHEAD
+from adapters.live.state import Heard, Turn
+from adapters.plugin import Command, Delivered, Plugin, Published, Refused, Report, Trouble, World
+from adapters.stations.bus import Bus
+from adapters.stations.entries import (
+    Content,
+    Entry,
+    Posted,
+    Said,
+    Took,
+    entity_of,
+    entry_of,
+    entry_text,
+    stamped,
+)
+from adapters.stations.journal import Journal
+from adapters.stations.merge import Merge, channels_of
+from adapters.stations.peers import Peers
+from adapters.stations.skew import Skew, measured
+from adapters.troubles import Troubles
+from semantics.parting import Passage
+from semantics.plain_parcels import parcel_json
+
+NAME: Final = "stations"
+"""What the plugin is called."""
+
+TICK: Final = 0.02
+"""Seconds for which entries are gathered before they are put; of an entity the newest goes."""
+
+POLL: Final = 1.0
+"""Seconds between two questions to each station."""
+
+PATIENCE: Final = 2.0
+SILENCE: Final = 4.0
+"""Seconds without an answer after which a station is said not to be reached."""
+
+MOST_SKEW: Final = 1.0
+"""Seconds by which clocks may differ before it is said."""
+
+MOST_ENTRIES: Final = 500
+MOST_TEXT: Final = 2**20
+MOST_PARCELS: Final = 10_000
+"""How many parcels of one station may wait here; for more it is asked later."""
+
+
+@dataclass(slots=True)
+class Other:
+    """What is known of another station.
+
+    Attributes:
+        heard: Up to which number everything that it said has been heard.
+        parcels: Its parcels for us that have not entered yet, by index.
+        delivered: Up to which of them the run was told.
+        skew: How far its clock is ahead.
+        answered: When it answered last.
+        reached: Whether it answers; None before anybody knows.
+        awake: Set where it has to be asked at once.
+    """
+
+    heard: int = 0
+    parcels: dict[int, Posted] = field(default_factory=dict)
+    delivered: int = 0
+    skew: Skew = field(default_factory=Skew)
+    answered: float = 0.0
+    reached: bool | None = None
+    skewed: bool = False
+    awake: asyncio.Event = field(default_factory=asyncio.Event)
+
+
+class Sharing:
+    """The plugin of one station; it looks on at the run, too.
+
+    Arguments:
+        peers: Who the stations are.
+        journal: The log of this one.
+        topic: What the mission is called between them.
+        digest: Of the mission: who flies another is not listened to.
+        vehicles: The entities of which only their own links may speak.
+    """
+
+    name = NAME
+
+    def __init__(
+        self, peers: Peers, journal: Journal, topic: str, digest: str, vehicles: frozenset[str]
+    ) -> None:
+        self.merge = Merge()
+        self.others = {name: Other() for name in peers.others}
+        self._peers = peers
+        self._journal = journal
+        self._topic = topic
+        self._digest = digest
+        self._vehicles = vehicles
+        self._troubles = Troubles(NAME)
+        self._ahead: set[str] = set()
+        self._unsaid: dict[tuple[str, ...], Entry] = {}
+        self._said = journal.last
+        self._world: World | None = None
+
+    # --- a plugin
+
+    def owns(self, entity: str) -> bool:  # noqa: ARG002 - a plugin's interface
+        """Other stations' vehicles take no commands from here."""
+        return False
+
+    async def command(self, command: Command) -> None:
+        """Refuse: commands go over a vehicle's own link."""
+        raise Refused(f"{command.entity} is another station's", f"say --vehicle {command.entity}=...")
+
+    async def run(self, world: World) -> None:
+        """Share until cancelled."""
+        self._world = world
+        bus = Bus(self._peers, self._topic, self._hear, self._answer)
+        began = world.now()
+        for other in self.others.values():
+            other.answered = began
+        for entry in self._journal.entries():
+            self._take(entry)
+        try:
+            following = (self._follow(bus, name, other) for name, other in self.others.items())
+            await asyncio.gather(self._putting(bus), self._watching(), *following)
+        finally:
+            self._put(bus)
+            bus.close()
+            self._journal.close()
+
+    def sharing(self, plugin: Plugin) -> Plugin:
+        """Return a plugin that tells what it learns to all stations."""
+        return Shared(plugin, self)
+
+    # --- looking on
+
+    def arrived(self, heard: Heard, now: float) -> None:
+        """See something come in: nothing is to be done."""
+
+    def reported(self, report: Report, now: float) -> None:
+        """See what a plugin reports: nothing is to be done."""
+
+    def turned(self, turn: Turn, now: float) -> None:  # noqa: ARG002 - a watcher's interface
+        """Post what leaves, and acknowledge what has entered; the recording has both already."""
+        contents: list[Content] = [
+            Posted(each.station, each.number, parcel_json(each.parcel)) for each in turn.parcels
+        ]
+        entered = [step.sight for step in turn.steps if isinstance(step.sight, Passage)]
+        taken = {each.station: each.number for each in entered if each.parcel is not None}
+        contents += [Took(station, number) for station, number in taken.items()]
+        for station, number in taken.items():
+            self._drop(station, number)
+        self._add(contents)
+
+    # --- saying
+
+    def publish(self, plugin: Plugin, world: World, published: Published) -> None:
+        """Take what a plugin of ours publishes: it is said to all, and what holds then is told to our own world."""
+        published = stamped(published, world.now())
+        entity, owned = entity_of(published), plugin.owns(entity_of(published))
+        if entity in self._vehicles and not owned:
+            world.publish(published)  # refused there, and reported
+            return
+        known = self.merge.words.get(entity, {}).get(self._journal.station)
+        before = known.content if known is not None else None
+        said = Said(published, 0.0, owned)
+        if isinstance(before, Said) and before.time > said.time:
+            return
+        same = isinstance(before, Said) and channels_of(before.published) == channels_of(published)
+        since = before.since if same and isinstance(before, Said) else said.time
+        for entry in self._add([Said(published, since, owned)]):
+            self._join(entry)
+        self._show(world, entity)
+
+    def _add(self, contents: Sequence[Content]) -> list[Entry]:
+        entries = self._journal.add(list(contents)) if contents else []
+        for entry in entries:
+            self._unsaid.pop(entry.content.key, None)
+            self._unsaid[entry.content.key] = entry
+        return entries
+
+    async def _putting(self, bus: Bus) -> None:
+        while True:
+            await asyncio.sleep(TICK)
+            self._put(bus)
+
+    def _put(self, bus: Bus) -> None:
+        """Put what was said since; whoever has not heard what came before asks for it."""
+        if not self._unsaid:
+            return
+        batch, upto = self._fitting(list(self._unsaid.values()), self._journal.last)
+        bus.put(self._message(batch, upto, after=self._said))
+        self._said = upto
+        for entry in batch:
+            del self._unsaid[entry.content.key]
+
+    def _fitting(self, entries: Sequence[Entry], upto: int) -> tuple[list[Entry], int]:
+        """Return as many of the first entries as go into one message, and up to where they tell everything."""
+        size = 0
+        batch: list[Entry] = []
+        for entry in entries:
+            size += len(entry_text(entry))
+            if batch and (size > MOST_TEXT or len(batch) >= MOST_ENTRIES):
+                return batch, batch[-1].number
+            batch.append(entry)
+        return batch, upto
+
+    def _message(self, entries: Sequence[Entry], upto: int, after: int) -> bytes:
+        assert self._world is not None
+        head = {"mission": self._digest, "time": self._world.now(), "after": after}
+        told = ",".join(map(entry_text, entries))
+        said = f'{json.dumps(head)[:-1]}, "upto": {upto}, "last": {self._journal.last}, "entries": [{told}]}}'
+        return said.encode()
+
+    def _answer(self, _key: str, question: bytes) -> bytes:
+        """Answer what was said after a number."""
+        after = 0
+        with suppress(ValueError, RecursionError):
+            match json.loads(question):
+                case {"after": int(number)}:
+                    after = number
+        found, upto = self._journal.after(after, MOST_ENTRIES)
+        return self._message(*self._fitting(found, upto), after=after)
+
+    # --- hearing
+
+    def _hear(self, station: str, said: bytes) -> None:
+        """Take what was put; ask at once for what was missed."""
+        other = self.others[station]
+        message = self._read(station, said)
+        if message is None:
+            return
+        whole = self._take_all(station, message["entries"])
+        if whole and message["after"] <= other.heard:
+            other.heard = max(other.heard, message["upto"])
+        else:
+            other.awake.set()
+
+    async def _follow(self, bus: Bus, station: str, other: Other) -> None:
+        """Ask a station again and again for what we have not heard, and what its clock says."""
+        assert self._world is not None
+        world = self._world
+        while True:
+            asked = world.now()
+            try:
+                answer = await bus.ask(station, json.dumps({"after": other.heard}).encode(), PATIENCE)
+            except OSError:
+                self._silent(world, station, other)
+                await asyncio.sleep(POLL)
+                continue
+            more = self._told(world, station, self._read(station, answer), asked)
+            other.delivered = self._journal.took(station)  # what has not entered is told again
+            self._deliver(world, station, other)
+            if not more:
+                other.awake.clear()
+                with suppress(TimeoutError):
+                    await asyncio.wait_for(other.awake.wait(), POLL)
+
+    def _told(self, world: World, station: str, message: dict[str, Any] | None, asked: float) -> bool:
+        """Take an answer; return whether there is more to ask for."""
+        other = self.others[station]
+        if message is None:
+            return False
+        self._found(world, station, other, message["time"], asked)
+        if not self._take_all(station, message["entries"]):
+            return False
+        other.heard = max(other.heard, message["upto"])
+        return bool(message["upto"] < message["last"])
+
+    def _read(self, station: str, said: bytes) -> dict[str, Any] | None:
+        """Read a message; what is none is reported, and who flies another mission."""
+        try:
+            match json.loads(said):
+                case {
+                    "mission": str(mission),
+                    "time": int() | float(),
+                    "after": int(),
+                    "upto": int(),
+                    "last": int(),
+                    "entries": [*_],
+                } as message:
+                    if mission == self._digest:
+                        return dict(message)
+                    detail = f"{station} flies another mission, or another version of it: give all the same"
+                    self._troubles.note("another mission", detail)
+                    return None
+        except (ValueError, RecursionError):
+            pass
+        self._troubles.note("unreadable message", f"from {station}")
+        return None
+
+    def _take_all(self, station: str, entries: Sequence[Any]) -> bool:
+        """Take entries; return whether there was room for all."""
+        for data in entries[: 2 * MOST_ENTRIES]:
+            try:
+                entry = entry_of(station, data)
+                if isinstance(entry.content, Posted) and len(self.others[station].parcels) >= MOST_PARCELS:
+                    return False
+                self._take(entry)
+            except ValueError as error:
+                self._troubles.note("unreadable entry", f"from {station}: {error!s:.200}")
+        return len(entries) <= 2 * MOST_ENTRIES
+
+    def _take(self, entry: Entry) -> None:
+        assert self._world is not None
+        match entry.content:
+            case Said(_, _, owned) as said:
+                if said.entity in self._vehicles and not owned:
+                    detail = f"{entry.station} speaks of {said.entity}, which is a vehicle, without its link"
+                    self._troubles.note("not its vehicle", detail)
+                elif self._join(entry):
+                    self._show(self._world, said.entity)
+            case Posted(to, index) as posted:
+                waits = index > self._journal.took(entry.station)
+                if to == self._journal.station and waits:
+                    other = self.others[entry.station]
+                    other.parcels[index] = posted
+                    self._deliver(self._world, entry.station, other)
+            case Took(of, index):
+                if of == self._journal.station:
+                    self._journal.taken(entry.station, index)
+
+    def _join(self, entry: Entry) -> bool:
+        """Join a word to what is known; return whether it made a difference."""
+        assert self._world is not None
+        if self.merge.hear(entry) is None:
+            return False
+        said, now = entry.content, self._world.now()
+        if isinstance(said, Said) and said.time > now + MOST_AHEAD:
+            self._ahead.add(said.entity)
+            detail = (
+                f"{entry.station} says of {said.entity} what is {said.time - now:.0f} s ahead: set its clock"
+            )
+            self._troubles.note("time stamp in the future", detail)
+        return True
+
+    def _show(self, world: World, entity: str) -> None:
+        said = self.merge.holds(entity, world.now())
+        if said is not None:
+            world.publish(said.published)
+
+    def _deliver(self, world: World, station: str, other: Other) -> None:
+        """Tell the run of parcels that wait, in their order."""
+        other.delivered = max(other.delivered, self._journal.took(station))
+        while (index := other.delivered + 1) in other.parcels:
+            world.report(Delivered(station, world.now(), index, other.parcels[index].parcel))
+            other.delivered = index
+
+    def _drop(self, station: str, upto: int) -> None:
+        parcels = self.others[station].parcels
+        for index in [index for index in parcels if index <= upto]:
+            del parcels[index]
+
+    # --- links and clocks
+
+    async def _watching(self) -> None:
+        """Let words count whose time has come, and report what went wrong."""
+        assert self._world is not None
+        world = self._world
+        while True:
+            await asyncio.sleep(POLL)
+            early = (
+                {entry.content.key[1] for entry in self.merge.ahead(world.now())} if self._ahead else set()
+            )
+            for entity in sorted(self._ahead - early):
+                self._show(world, entity)
+            self._ahead &= early
+            self._troubles.report(world)
+
+    def _silent(self, world: World, station: str, other: Other) -> None:
+        if other.reached is not False and world.now() - other.answered > SILENCE:
+            other.reached = False
+            where = ", ".join(self._peers.others[station].connect)
+            waiting = self._journal.waiting(station)
+            kept = f"; {waiting:,} parcels wait for it" if waiting else ""
+            detail = f"nothing of {station} at {where} for {world.now() - other.answered:.0f} s; it is tried on{kept}"
+            world.report(Trouble(NAME, world.now(), f"{station} is not reached", detail))
+
+    def _found(self, world: World, station: str, other: Other, theirs: float, asked: float) -> None:
+        now = world.now()
+        if other.reached is False:
+            world.report(Trouble(NAME, now, f"{station} is reached again"))
+        other.reached, other.answered = True, now
+        other.skew.add(measured(asked, theirs, now))
+        best = other.skew.best
+        skewed = best is not None and best.exceeds(MOST_SKEW)
+        if best is not None and skewed and not other.skewed:
+            detail = f"it is {best.ahead:+.1f} s off ours (to {best.error:.2f} s): set both, as by NTP"
+            world.report(Trouble(NAME, now, f"the clock of {station}", detail))
+        other.skewed = skewed
+
+
+@dataclass(frozen=True, slots=True)
+class Shared:
+    """A plugin whose world is that of all stations."""
+
+    plugin: Plugin
+    station: Sharing
+
+    @property
+    def name(self) -> str:
+        """What reports call it."""
+        return self.plugin.name
+
+    def owns(self, entity: str) -> bool:
+        """Whether the entity takes commands from it."""
+        return self.plugin.owns(entity)
+
+    async def command(self, command: Command) -> None:
+        """Hand on a command."""
+        await self.plugin.command(command)
+
+    async def run(self, world: World) -> None:
+        """Publish until cancelled."""
+        await self.plugin.run(SharedWorld(world, self))
+
+
+@dataclass(frozen=True, slots=True)
+class SharedWorld:
+    """The world of a plugin at a station."""
+
+    world: World
+    shared: Shared
+
+    def publish(self, published: Published) -> None:
+        """Take what is known of an entity now."""
+        self.shared.station.publish(self.shared.plugin, self.world, published)
+
+    def now(self) -> float:
+        """Return the time."""
+        return self.world.now()
+
+    def report(self, report: Report) -> None:
+        """Take a report."""
+        self.world.report(report)
