@@ -43,8 +43,8 @@ class Company:
         return replace(plan, first=first, vehicles={**plan.vehicles, **elsewhere}, peers=NAME)
 
     def plugins(self, plugins: Sequence[Plugin]) -> tuple[Plugin, ...]:
-        """Return the plugins, each telling the others what it learns, and the one by which they are heard."""
-        return (*map(self.sharing.sharing, plugins), self.sharing)
+        """Return the plugin by which the others are heard, begun first, and ours, each telling them what it learns."""
+        return (self.sharing, *map(self.sharing.sharing, plugins))
 
 
 def own_station(options: Namespace) -> str | None:

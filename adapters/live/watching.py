@@ -234,9 +234,8 @@ def note(turning: Turning, report: Report) -> None:
         case LinkRestored(entity, _, rebooted):
             _restore(turning, entity, rebooted=rebooted)
         case Trouble(source, _, what, detail, count):
-            turning.find(
-                "trouble", source, f"{source}: {what} ({count:,} times){': ' if detail else ''}{detail}"
-            )
+            often = f" ({count:,} times)" if count > 1 else ""
+            turning.find("trouble", source, f"{source}: {what}{often}{': ' if detail else ''}{detail}")
 
 
 def _lose(turning: Turning, entity: Name, since: float) -> None:

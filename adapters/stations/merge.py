@@ -94,6 +94,8 @@ def holding(words: Words, now: float) -> Said | None:
     newest = _said(max(found, key=_stamp))
     if isinstance(newest.published, Gone):
         return newest
+    if newest.until <= now:  # whoever hears of it only now comes to the same world as who saw it grow old
+        return Said(Gone(newest.entity, newest.time, ""), newest.since, newest.owned)
     told = [
         entry
         for entry in found
