@@ -13,6 +13,7 @@ MISSION = (
     + """
 BigActor op0 hosted_at gcs0 with_behavior { loop { react { case "ready" => skip } } }
 environment { boat0 drifts among point (37.005, -8.605), point (37.005, -8.645)
+              boat1 drifts among point (37.005, -8.605), point (37.005, -8.645)
               says "ready" to op0 at most once }
 """
 )
