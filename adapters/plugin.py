@@ -212,7 +212,16 @@ class Delivered:
     parcel: Any
 
 
-Report = Accepted | Arrived | Rejected | LinkLost | LinkRestored | Trouble | Delivered
+@dataclass(frozen=True, slots=True)
+class Underway:
+    """Another station has sent a vehicle to a node; with no name: it is not under way any more."""
+
+    entity: str
+    time: float
+    to: str
+
+
+Report = Accepted | Arrived | Rejected | LinkLost | LinkRestored | Trouble | Delivered | Underway
 
 # --- who talks to whom ------------------------------------------------------------------------------
 
@@ -282,5 +291,6 @@ __all__ = [
     "Report",
     "Return",
     "Trouble",
+    "Underway",
     "World",
 ]

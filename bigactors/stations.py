@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import time
 from argparse import Namespace
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from adapters.live.state import Plan
 from adapters.plugin import Plugin
-from adapters.stations.entries import Posted, Took
+from adapters.stations.entries import Posted, Sent, Took
 from adapters.stations.journal import Journal, JournalError
 from adapters.stations.peers import Peers, read_peers
 from adapters.stations.sharing import NAME, Sharing
@@ -114,6 +115,7 @@ def _check_hosts(peers: Peers, mission: ElaboratedMission, place: str) -> None:
 def _parting(peers: Peers, journal: Journal, before: Resumed | None) -> Parting:
     """Return which part of a mission is a station's; a run that is resumed tells its log what it had not yet."""
     here = peers.own.name
+    journal.add([Sent(vehicle, to, time.time()) for vehicle, to in _legs(journal, before)])
     if before is None:
         sent = {name: journal.sent(name) for name in peers.others}
         return Parting(here, peers.hosts, sent, {name: journal.took(name) for name in peers.others})
@@ -127,6 +129,16 @@ def _parting(peers: Peers, journal: Journal, before: Resumed | None) -> Parting:
         if taken > journal.took(name):
             journal.add([Took(name, taken)])
     return before.station
+
+
+def _legs(journal: Journal, before: Resumed | None) -> Iterator[tuple[str, str]]:
+    """Yield where the log has vehicles under way that the run does not, or otherwise: it was killed in between."""
+    for entry in list(journal.entries()):
+        if isinstance(entry.content, Sent):
+            physical = None if before is None else before.configuration.structure.physical
+            to = "" if physical is None else physical.going_to(entry.content.entity)
+            if to != entry.content.to:
+                yield entry.content.entity, to
 
 
 def parting_json(parting: Parting) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from physical.shape import MAX_VERTICES, canonical
 from semantics.cells import Cell
 from semantics.observed import WRITABLE, Sight
 from semantics.parting import Passage
-from semantics.physical_model import Carried, Placed
+from semantics.physical_model import Carried, InTransit, Placed, Placement
 from semantics.plain_parcels import passage_json, passage_of
 
 MOST_WRITES = 10_000
@@ -33,6 +33,8 @@ def value_json(value: Any) -> Any:
             )
         case Carried(by, shape):
             return {"by": by, "shape": value_json(shape)}
+        case InTransit(origin, to):
+            return {"from": value_json(origin), "to": to}
         case tuple():
             return list(value)
         case _:
@@ -84,9 +86,13 @@ def _value(what: str, value: Any) -> Any:
     raise ValueError(f"{value!r:.80} is no value of '{what}'")
 
 
-def placement_of(data: Any) -> Placed | Carried:
+def placement_of(data: Any) -> Placement:
     """Read a placement."""
     match data:
+        case {"from": origin, "to": str(to)}:
+            start = placement_of(origin)
+            if isinstance(start, Placed):
+                return InTransit(start, to)
         case {"by": str(by), "shape": shape}:
             inner = placement_of(shape)
             if isinstance(inner, Placed):

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from adapters.live.assumptions import broken_by_place, clause_of_leaving
-from adapters.live.flying import arrive, renew
+from adapters.live.flying import arrive, fly_elsewhere, renew
 from adapters.live.orders import is_authority
 from adapters.live.passing import take_in
 from adapters.live.sightings import Fences, Refusal, placement_seen, sighting_of
@@ -22,6 +22,7 @@ from adapters.plugin import (
     Rejected,
     Report,
     Trouble,
+    Underway,
 )
 from semantics.cells import Cell
 from semantics.environment import Appears, Leaves, Says
@@ -225,6 +226,8 @@ def note(turning: Turning, report: Report) -> None:
             pass  # recorded; positions decide
         case Delivered():
             take_in(turning, report)
+        case Underway(entity, _, to):
+            fly_elsewhere(turning, entity, to)
         case Rejected(request, entity, _, reason):
             turning.find(
                 "refused", entity, f"{entity} refuses {request}: {reason}; the request stays pending"

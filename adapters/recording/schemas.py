@@ -104,10 +104,27 @@ COMMAND: Final = _object(
     join=_TEXT,
 )
 
+REPORTS: Final = (
+    *("Accepted", "Arrived", "Rejected", "LinkLost", "LinkRestored", "Trouble"),
+    *("Delivered", "Underway"),
+)
+"""Those of a vehicle or a feed, then those of other stations."""
+
 REPORT: Final = _object(
     "What a plugin reported of a request, a link or its input.",
     ("report",),
-    report={"enum": ["Accepted", "Arrived", "Rejected", "LinkLost", "LinkRestored", "Trouble", "Delivered"]},
+    report={
+        "enum": [
+            "Accepted",
+            "Arrived",
+            "Rejected",
+            "LinkLost",
+            "LinkRestored",
+            "Trouble",
+            "Delivered",
+            "Underway",
+        ]
+    },
     request=_TEXT,
     entity=_TEXT,
     reason=_TEXT,
@@ -116,6 +133,7 @@ REPORT: Final = _object(
     source=_TEXT,
     station=_TEXT,
     number={"type": "integer", "minimum": 1},
+    to={**_TEXT, "description": "Where another station has sent a vehicle; empty when it has come there."},
     parcel={"type": "object", "description": "What has come from another station (docs/stations.md)."},
 )
 

@@ -58,6 +58,20 @@ class Said:
 
 
 @dataclass(frozen=True, slots=True)
+class Sent:
+    """A vehicle was sent to a node, or (an empty name) is not under way any more."""
+
+    entity: str
+    to: str
+    time: float
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What it replaces: where the vehicle was sent before."""
+        return ("sent", self.entity)
+
+
+@dataclass(frozen=True, slots=True)
 class Posted:
     """The `index`-th parcel for another station; `parcel` is plain data."""
 
@@ -84,7 +98,7 @@ class Took:
         return ("took", self.of)
 
 
-Content = Said | Posted | Took
+Content = Said | Sent | Posted | Took
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +134,8 @@ def entry_json(entry: Entry) -> dict[str, Any]:
     match entry.content:
         case Said(published, since, owned):
             return {"n": entry.number, **_published_json(published), "since": since, "owned": owned}
+        case Sent(entity, to, time):
+            return {"n": entry.number, "sent": entity, "to": to, "time": time}
         case Posted(to, index, parcel):
             return {"n": entry.number, "to": to, "index": index, "parcel": parcel}
         case Took(of, index):
@@ -143,11 +159,14 @@ def entry_of(station: str, data: Any) -> Entry:
     match data:
         case {"took": str()}:
             return Entry(station, number, Took(_word(data, "took"), _whole(data, "index")))
+        case {"sent": str(), "to": str(to)}:
+            goal = _word(data, "to") if to else ""
+            return Entry(station, number, Sent(_word(data, "sent"), goal, _time(data.get("time"))))
         case {"to": str(), "parcel": parcel}:
             return Entry(station, number, Posted(_word(data, "to"), _whole(data, "index"), parcel))
         case {"entity": str(), "since": since, "owned": bool(owned)}:
             return Entry(station, number, Said(_published(station, data), _time(since), owned))
-    raise ValueError("an entry says something of an entity, posts a parcel, or took one")
+    raise ValueError("an entry says or does none of what stations do")
 
 
 def _published_json(published: Published) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from typing import Final
 
 from adapters.live.sightings import MOST_AHEAD
 from adapters.plugin import Aged, Gone, Published
-from adapters.stations.entries import Entry, Said
+from adapters.stations.entries import Entry, Said, Sent
 from physical import PhysicalProperty
 
 MOST_ENTITIES: Final = 20_000
@@ -41,10 +41,12 @@ class Merge:
 
     Attributes:
         words: For each entity the newest word of each station.
+        legs: For each vehicle where each station has sent it last.
     """
 
     def __init__(self) -> None:
         self.words: dict[str, dict[str, Entry]] = {}
+        self.legs: dict[str, dict[str, Entry]] = {}
         self._counts: dict[str, int] = {}
 
     def hear(self, entry: Entry) -> str | None:
@@ -53,20 +55,29 @@ class Merge:
         Raises:
             ValueError: The station speaks of too many entities.
         """
-        said = entry.content
-        if not isinstance(said, Said):
-            return None
-        words = self.words.get(said.entity, {})
-        known = words.get(entry.station)
+        match entry.content:
+            case Said() as said:
+                return said.entity if self._join(self.words, said.entity, entry) else None
+            case Sent(entity):
+                return entity if self._join(self.legs, entity, entry) else None
+            case _:
+                return None
+
+    def _join(self, registers: dict[str, dict[str, Entry]], entity: str, entry: Entry) -> bool:
+        known = registers.get(entity, {}).get(entry.station)
         if known is None:
             count = self._counts.get(entry.station, 0)
             if count >= MOST_ENTITIES:
                 raise ValueError(f"it speaks of more than {MOST_ENTITIES:,} entities")
             self._counts[entry.station] = count + 1
         elif newer(known, entry) is known:
-            return None
-        self.words.setdefault(said.entity, words)[entry.station] = entry
-        return said.entity
+            return False
+        registers.setdefault(entity, {})[entry.station] = entry
+        return True
+
+    def leg(self, entity: str) -> Entry | None:
+        """Return where a vehicle was sent last, by the time stamps of those who sent it."""
+        return max(self.legs.get(entity, {}).values(), key=_sent, default=None)
 
     def holds(self, entity: str, now: float) -> Said | None:
         """Return what holds of an entity at a time, None if nobody has said anything that counts yet."""
@@ -116,6 +127,11 @@ def _counts(content: object, now: float) -> bool:
 
 def _stamp(entry: Entry) -> tuple[float, str, int]:
     return (_said(entry).time, entry.station, entry.number)
+
+
+def _sent(entry: Entry) -> tuple[float, str, int]:
+    assert isinstance(entry.content, Sent)
+    return (entry.content.time, entry.station, entry.number)
 
 
 def _since(entry: Entry) -> tuple[float, str, int]:

@@ -15,14 +15,15 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 from adapters.live.sightings import MOST_AHEAD
-from adapters.live.state import Heard, Turn
-from adapters.plugin import Command, Delivered, Plugin, Published, Refused, Report, Trouble, World
+from adapters.live.state import Heard, LiveStep, Turn
+from adapters.plugin import Command, Delivered, Plugin, Published, Refused, Report, Trouble, Underway, World
 from adapters.stations.bus import Bus
 from adapters.stations.entries import (
     Content,
     Entry,
     Posted,
     Said,
+    Sent,
     Took,
     entity_of,
     entry_of,
@@ -42,6 +43,9 @@ NAME: Final = "stations"
 
 TICK: Final = 0.02
 """Seconds for which entries are gathered before they are put; of an entity the newest goes."""
+
+FLYING: Final = frozenset({"command", "commit"})
+"""The rules by which a vehicle is sent somewhere, and has come there."""
 
 POLL: Final = 1.0
 """Seconds between two questions to each station."""
@@ -152,7 +156,7 @@ class Sharing:
         """See what a plugin reports: nothing is to be done."""
 
     def turned(self, turn: Turn, now: float) -> None:  # noqa: ARG002 - a watcher's interface
-        """Post what leaves, and acknowledge what has entered; the recording has both already."""
+        """Post what leaves, acknowledge what has entered, say who was sent where; the recording has it all already."""
         contents: list[Content] = [
             Posted(each.station, each.number, parcel_json(each.parcel)) for each in turn.parcels
         ]
@@ -161,7 +165,20 @@ class Sharing:
         contents += [Took(station, number) for station, number in taken.items()]
         for station, number in taken.items():
             self._drop(station, number)
-        self._add(contents)
+        for step in turn.steps:
+            if step.transition.label.rule in FLYING:
+                contents += self._sent(step)
+        for entry in self._add(contents):
+            self.merge.hear(entry)
+
+    def _sent(self, step: LiveStep) -> list[Content]:
+        """Return which vehicles a step has sent somewhere, and which have come there."""
+        before, after = step.source.structure.physical, step.transition.target.structure.physical
+        return [
+            Sent(vehicle, after.going_to(vehicle), step.time)
+            for vehicle in sorted(self._vehicles)
+            if before.going_to(vehicle) != after.going_to(vehicle)
+        ]
 
     # --- saying
 
@@ -321,6 +338,10 @@ class Sharing:
                     self._troubles.note("not its vehicle", detail)
                 elif self._join(entry):
                     self._show(self._world, said.entity)
+            case Sent(entity):
+                leg = self.merge.leg(entity) if self.merge.hear(entry) else None
+                if leg is not None and leg.station != self._journal.station and isinstance(leg.content, Sent):
+                    self._world.report(Underway(entity, self._world.now(), leg.content.to))
             case Posted(to, index) as posted:
                 waits = index > self._journal.took(entry.station)
                 if to == self._journal.station and waits:
