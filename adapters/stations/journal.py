@@ -38,9 +38,13 @@ class Journal:
         self._sent: dict[str, int] = {}
         self._spare = 0
         self._file = _locked(path)
-        if not self._read():
-            self.last = time.time_ns() // 1_000_000
-            self._rewrite()
+        try:
+            if not self._read():
+                self.last = time.time_ns() // 1_000_000
+                self._rewrite()
+        except BaseException:
+            self._file.close()
+            raise
 
     # --- what it knows
 
