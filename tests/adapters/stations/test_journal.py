@@ -19,7 +19,7 @@ def said(entity, time):
 
 
 @pytest.fixture
-def opened():
+def opened(tmp_path):
     """Open the log of a station; what is open at the end is closed."""
     found = []
 
