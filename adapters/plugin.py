@@ -221,7 +221,28 @@ class Underway:
     to: str
 
 
-Report = Accepted | Arrived | Rejected | LinkLost | LinkRestored | Trouble | Delivered | Underway
+@dataclass(frozen=True, slots=True)
+class Hosts:
+    """A bigActor that runs at another station is hosted there at `host`."""
+
+    agent: str
+    time: float
+    host: str
+
+
+@dataclass(frozen=True, slots=True)
+class Broken:
+    """Another station says which assumption of the mission broke."""
+
+    station: str
+    time: float
+    assumption: str
+
+
+Elsewhere = Delivered | Underway | Hosts | Broken
+"""What is reported of other stations."""
+
+Report = Accepted | Arrived | Rejected | LinkLost | LinkRestored | Trouble | Elsewhere
 
 # --- who talks to whom ------------------------------------------------------------------------------
 
@@ -275,13 +296,16 @@ __all__ = [
     "Accepted",
     "Aged",
     "Arrived",
+    "Broken",
     "Command",
     "Delivered",
+    "Elsewhere",
     "Follow",
     "GoTo",
     "Gone",
     "HandOver",
     "Hold",
+    "Hosts",
     "LinkLost",
     "LinkRestored",
     "Plugin",

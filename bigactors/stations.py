@@ -11,7 +11,7 @@ from typing import Any
 
 from adapters.live.state import Plan
 from adapters.plugin import Plugin
-from adapters.stations.entries import Posted, Sent, Took
+from adapters.stations.entries import Broke, Content, Posted, Sent, Took
 from adapters.stations.journal import Journal, JournalError
 from adapters.stations.peers import Peers, read_peers
 from adapters.stations.sharing import NAME, Sharing
@@ -115,7 +115,7 @@ def _check_hosts(peers: Peers, mission: ElaboratedMission, place: str) -> None:
 def _parting(peers: Peers, journal: Journal, before: Resumed | None) -> Parting:
     """Return which part of a mission is a station's; a run that is resumed tells its log what it had not yet."""
     here = peers.own.name
-    journal.add([Sent(vehicle, to, time.time()) for vehicle, to in _legs(journal, before)])
+    journal.add([*_amended(journal, before)])
     if before is None:
         sent = {name: journal.sent(name) for name in peers.others}
         return Parting(here, peers.hosts, sent, {name: journal.took(name) for name in peers.others})
@@ -131,14 +131,18 @@ def _parting(peers: Peers, journal: Journal, before: Resumed | None) -> Parting:
     return before.station
 
 
-def _legs(journal: Journal, before: Resumed | None) -> Iterator[tuple[str, str]]:
-    """Yield where the log has vehicles under way that the run does not, or otherwise: it was killed in between."""
+def _amended(journal: Journal, before: Resumed | None) -> Iterator[Content]:
+    """Yield what the log has otherwise than the run: it was killed in between, or begins anew."""
+    now = time.time()
+    physical = None if before is None else before.configuration.structure.physical
     for entry in list(journal.entries()):
-        if isinstance(entry.content, Sent):
-            physical = None if before is None else before.configuration.structure.physical
-            to = "" if physical is None else physical.going_to(entry.content.entity)
-            if to != entry.content.to:
-                yield entry.content.entity, to
+        match entry.content:
+            case Sent(entity, known):
+                to = "" if physical is None else physical.going_to(entity)
+                if to != known:
+                    yield Sent(entity, to, now)
+            case Broke(assumption) if assumption and before is None:
+                yield Broke("", now)
 
 
 def parting_json(parting: Parting) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from semantics.configuration import Configuration, Transition
 from semantics.drive import Reach
 from semantics.environment import Observed
 from semantics.logical_model import links_cell, parent_cell
-from semantics.parting import Passage, passing
+from semantics.parting import Elsewhere, passing
 from semantics.physical_model import (
     Carried,
     InTransit,
@@ -58,9 +58,9 @@ def arriving(c: Configuration, a: Name, sight: Sight) -> Iterator[Transition]:
     yield from commit(c, a, reaching(sight.writes))
 
 
-def steps_seen(c: Configuration, sight: Sight | Passage) -> Iterator[Transition]:
+def steps_seen(c: Configuration, sight: Sight | Elsewhere) -> Iterator[Transition]:
     """Yield all that an observation may mean: what happens, the ends of flights, what passes between stations."""
-    if isinstance(sight, Passage):
+    if not isinstance(sight, Sight):
         yield from passing(c, sight)
         return
     yield from happening(c, sight)

@@ -91,6 +91,18 @@ class Passage:
     parcel: Parcel | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Whereabouts:
+    """Another station says where an agent is hosted."""
+
+    agent: Name
+    host: Name
+
+
+Elsewhere = Passage | Whereabouts
+"""What other stations have a part in: as steps say it."""
+
+
 def parted(c: Configuration, parting: Parting) -> Configuration:
     """Return a station's part of a configuration: of agents that run elsewhere it has their hosts alone."""
     cells: Changes = {HERE: parting.here}
@@ -221,8 +233,27 @@ def _asked(query: Query) -> tuple[Name, ...]:
     return query.names if isinstance(query, Nodes) else ()
 
 
-def passing(c: Configuration, passage: Passage) -> Iterator[Transition]:
-    """Yield the step that a passage is."""
+def learn(c: Configuration, a: Name, host: Name) -> Iterator[Transition]:
+    """Learn where an agent is that runs at another station: as far as it concerns this one, nothing else has changed.
+
+    a does not run here      h is a host of another station, and not the one known
+    ────────────────────────────────────────────────────────────────────────────────  ⟨learn : a, h⟩
+    ⟨α | S | η⟩  →  ⟨α[host(a) ↦ h] | S | η⟩
+    """
+    station = c.read(station_cell(host))
+    if station is None or station == c.read(HERE):  # premise: h is a host of another station
+        return
+    if a not in c.alpha:
+        yield Transition(Label("learn", a, host), _arriving(c, a, Running(host, (), (), ())))
+    elif not is_here(c, a) and c.alpha.host(a) != host:  # premises: a does not run here, h is news
+        yield Transition(Label("learn", a, host), c.with_(c.alpha.hosting(a, host)))
+
+
+def passing(c: Configuration, passage: Elsewhere) -> Iterator[Transition]:
+    """Yield the step that something of other stations is."""
+    if isinstance(passage, Whereabouts):
+        yield from learn(c, passage.agent, passage.host)
+        return
     if passage.parcel is not None:
         yield from enter(c, passage.station, passage.number, passage.parcel)
         return

@@ -7,18 +7,18 @@ from physical.frame import E7
 from physical.shape import MAX_VERTICES, canonical
 from semantics.cells import Cell
 from semantics.observed import WRITABLE, Sight
-from semantics.parting import Passage
+from semantics.parting import Elsewhere
 from semantics.physical_model import Carried, InTransit, Placed, Placement
-from semantics.plain_parcels import passage_json, passage_of
+from semantics.plain_parcels import elsewhere_json, elsewhere_of
 
 MOST_WRITES = 10_000
 """The most cells that one observation may write."""
 
 
-def sight_json(sight: Sight | Passage) -> dict[str, Any]:
+def sight_json(sight: Sight | Elsewhere) -> dict[str, Any]:
     """Return an observation, or what passes between stations, as plain data."""
-    if isinstance(sight, Passage):
-        return passage_json(sight)
+    if not isinstance(sight, Sight):
+        return elsewhere_json(sight)
     data: dict[str, Any] = {"words": sight.words}
     data["writes"] = [[list(cell), value_json(value)] for cell, value in sorted(sight.writes.items())]
     return {**data, "admits": dict(sorted(sight.admits.items()))} if sight.admits else data
@@ -49,7 +49,7 @@ def geometry_json(geometry: Geometry) -> dict[str, Any]:
     return data
 
 
-def sight_of(data: Any) -> Sight | Passage:
+def sight_of(data: Any) -> Sight | Elsewhere:
     """Read an observation, or what passes between stations.
 
     Raises:
@@ -57,8 +57,8 @@ def sight_of(data: Any) -> Sight | Passage:
     """
     if not isinstance(data, dict) or not isinstance(data.get("words"), str):
         raise ValueError("an observation should have 'words' and 'writes'")
-    if "station" in data:
-        return passage_of(data)
+    if "agent" in data:
+        return elsewhere_of(data)
     writes, admits = data.get("writes", []), data.get("admits", {})
     if not isinstance(writes, list) or len(writes) > MOST_WRITES or not isinstance(admits, dict):
         raise ValueError(f"an observation has at most {MOST_WRITES:,} writes")

@@ -10,7 +10,7 @@ from functools import cache
 from types import UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
-from semantics.parting import Parcel, Passage, Running
+from semantics.parting import Elsewhere, Parcel, Passage, Running, Whereabouts
 from semantics.queries import All, Fact, Nodes, Observation, Of, Query, Swept
 from semantics.reactions import (
     LinkVariable,
@@ -39,21 +39,26 @@ TYPES: Mapping[str, type] = {
 NAMES: Mapping[str, Any] = {**TYPES, "Query": Query, "Observation": Observation, "Request": Request}
 
 
-def passage_json(passage: Passage) -> dict[str, Any]:
-    """Return a passage as plain data."""
-    verb = "leaves for" if passage.parcel is None else "enters from"
-    data: dict[str, Any] = {"words": f"{passage.agent} {verb} {passage.station}", "writes": []}
-    data |= {"agent": passage.agent, "station": passage.station, "number": passage.number}
-    return data if passage.parcel is None else {**data, "parcel": parcel_json(passage.parcel)}
+def elsewhere_json(seen: Elsewhere) -> dict[str, Any]:
+    """Return what other stations have a part in as plain data."""
+    if isinstance(seen, Whereabouts):
+        data: dict[str, Any] = {"words": f"{seen.agent} is at {seen.host}", "writes": []}
+        return {**data, "agent": seen.agent, "host": seen.host}
+    verb = "leaves for" if seen.parcel is None else "enters from"
+    data = {"words": f"{seen.agent} {verb} {seen.station}", "writes": []}
+    data |= {"agent": seen.agent, "station": seen.station, "number": seen.number}
+    return data if seen.parcel is None else {**data, "parcel": parcel_json(seen.parcel)}
 
 
-def passage_of(data: Any) -> Passage:
-    """Read a passage; raises ValueError."""
+def elsewhere_of(data: Any) -> Elsewhere:
+    """Read what other stations have a part in; raises ValueError."""
     match data:
+        case {"agent": str(agent), "host": str(host)}:
+            return Whereabouts(agent, host)
         case {"agent": str(agent), "station": str(station), "number": int(number)} if number > 0:
             parcel = parcel_of(data["parcel"]) if "parcel" in data else None
             return Passage(agent, station, number, parcel)
-    raise ValueError("a passage has an agent, a station and a number")
+    raise ValueError("what passes between stations has an agent, a station and a number, or a host")
 
 
 def parcel_json(parcel: Parcel) -> Any:

@@ -10,10 +10,10 @@ from adapters.live.state import Order
 from adapters.live.turning import Turning
 from adapters.plugin import HandOver
 from semantics.control import commits, realisations
-from semantics.observed import Sight, arriving, happening
-from semantics.physical_model import InTransit, Placed, placement_cell
+from semantics.observed import Sight, arriving
+from semantics.physical_model import placement_cell
 from semantics.requests import CTR, FLY, Request
-from semantics.signature import REGION, Name
+from semantics.signature import Name
 
 
 def arrive(turning: Turning, entity: Name) -> bool:
@@ -33,26 +33,6 @@ def arrive(turning: Turning, entity: Name) -> bool:
     for other in together:
         del turning.orders[other]
     return True
-
-
-def fly_elsewhere(turning: Turning, entity: Name, to: Name) -> None:
-    """Take in that another station has sent a vehicle, or that it has come where it was sent.
-
-    In between it is in transit here too: what it passes over is nobody's observation.
-    """
-    here = turning.c.structure.physical.placement(entity)
-    if entity in turning.orders or entity not in turning.plan.vehicles:
-        return
-    if to in turning.c.setting.kinds and isinstance(here, Placed | InTransit):
-        going = InTransit(here if isinstance(here, Placed) else here.origin, to)
-        sight = Sight(f"{entity} is sent to {to}", {placement_cell(entity): going})
-    elif not to and isinstance(here, InTransit):
-        at = turning.where_seen(entity) or here.origin
-        around = sorted(turning.around(entity, turning.c.setting.kind(entity), at))
-        sight = Sight(f"{entity} is seen in {', '.join(around) or REGION}", {placement_cell(entity): at})
-    else:
-        return
-    turning.observe(sight, happening(turning.c, sight))
 
 
 def renew(turning: Turning, place: Name) -> None:

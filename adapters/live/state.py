@@ -10,7 +10,7 @@ from adapters.plugin import Command, GoTo, HandOver, Published, Report
 from physical import PhysicalProperty
 from semantics.configuration import Configuration, Transition
 from semantics.observed import Sight
-from semantics.parting import Parcel, Passage
+from semantics.parting import Elsewhere, Parcel
 from semantics.precautions import Precautions
 from semantics.requests import Request
 from semantics.signature import Name
@@ -172,7 +172,7 @@ class LiveStep:
     source: Configuration
     transition: Transition
     choice: int
-    sight: Sight | Passage | None
+    sight: Sight | Elsewhere | None
     time: float
 
 
@@ -186,6 +186,7 @@ class Finding:
         message: One line.
         time: When.
         fallback: What is done about it: `hold`, `return`, or nothing.
+        elsewhere: Whether it was another station that found it.
     """
 
     kind: str
@@ -193,6 +194,7 @@ class Finding:
     message: str
     time: float
     fallback: str = ""
+    elsewhere: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,17 @@ from semantics.control import Realisation, obstacle, realisations
 from semantics.eta import Pending
 from semantics.expressions import Fault
 from semantics.observed import Sight
-from semantics.parting import HERE, Passage, is_here, is_parted, leave, parcel_of, sent_cell, station_of
+from semantics.parting import (
+    HERE,
+    Elsewhere,
+    Passage,
+    is_here,
+    is_parted,
+    leave,
+    parcel_of,
+    sent_cell,
+    station_of,
+)
 from semantics.physical_model import Carried, Placed, Placement
 from semantics.precautions import Fallback
 from semantics.requests import CTR, FLY, SND
@@ -101,7 +111,7 @@ class Turning:
         self,
         transition: Transition,
         alike: tuple[Transition, ...],
-        sight: Sight | Passage | None = None,
+        sight: Sight | Elsewhere | None = None,
     ) -> None:
         """Take a step; `alike` are all that could be taken by that rule here.
 
@@ -326,9 +336,7 @@ class Turning:
         if not self.answers_for(about):
             return
         fallback = self.plan.precautions.on_broken
-        if (
-            self.find("broken assumption", about, assumption, fallback.value, once=True)
-            and not self.suspended
-        ):
+        found = self.find("broken assumption", about, assumption, fallback.value, once=True)
+        if found and not self.suspended:
             self.suspended = fallback is not Fallback.CONTINUE
             self.fall_back(fallback, tuple(sorted(self.plan.vehicles)))

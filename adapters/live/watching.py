@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterable
 
 from adapters.live.assumptions import broken_by_place, clause_of_leaving
-from adapters.live.flying import arrive, fly_elsewhere, renew
+from adapters.live.elsewhere import hear_of
+from adapters.live.flying import arrive, renew
 from adapters.live.orders import is_authority
-from adapters.live.passing import take_in
 from adapters.live.sightings import Fences, Refusal, placement_seen, sighting_of
 from adapters.live.state import Answer, Heard, Saying, Sighting
 from adapters.live.turning import Turning
@@ -16,7 +16,9 @@ from adapters.plugin import (
     Accepted,
     Aged,
     Arrived,
+    Broken,
     Delivered,
+    Hosts,
     LinkLost,
     LinkRestored,
     Rejected,
@@ -224,10 +226,8 @@ def note(turning: Turning, report: Report) -> None:
     match report:
         case Accepted() | Arrived():
             pass  # recorded; positions decide
-        case Delivered():
-            take_in(turning, report)
-        case Underway(entity, _, to):
-            fly_elsewhere(turning, entity, to)
+        case Delivered() | Underway() | Hosts() | Broken():
+            hear_of(turning, report)
         case Rejected(request, entity, _, reason):
             turning.find(
                 "refused", entity, f"{entity} refuses {request}: {reason}; the request stays pending"
@@ -246,6 +246,8 @@ def _lose(turning: Turning, entity: Name, since: float) -> None:
         return
     turning.lost.add(entity)
     turning.find("lost link", entity, f"nothing was heard of {entity} for {turning.now - since:.0f} s")
+    if not turning.answers_for(entity):
+        return  # over which link another station commands it is for that to say
     for channel in filter(is_authority, turning.c.structure.physical.links(entity)):
         off_channel(turning, entity, channel, f"the link to {entity} over {channel} is lost")
 

@@ -106,25 +106,14 @@ COMMAND: Final = _object(
 
 REPORTS: Final = (
     *("Accepted", "Arrived", "Rejected", "LinkLost", "LinkRestored", "Trouble"),
-    *("Delivered", "Underway"),
+    *("Delivered", "Underway", "Hosts", "Broken"),
 )
 """Those of a vehicle or a feed, then those of other stations."""
 
 REPORT: Final = _object(
     "What a plugin reported of a request, a link or its input.",
     ("report",),
-    report={
-        "enum": [
-            "Accepted",
-            "Arrived",
-            "Rejected",
-            "LinkLost",
-            "LinkRestored",
-            "Trouble",
-            "Delivered",
-            "Underway",
-        ]
-    },
+    report={"enum": [*REPORTS]},
     request=_TEXT,
     entity=_TEXT,
     reason=_TEXT,
@@ -134,6 +123,9 @@ REPORT: Final = _object(
     station=_TEXT,
     number={"type": "integer", "minimum": 1},
     to={**_TEXT, "description": "Where another station has sent a vehicle; empty when it has come there."},
+    agent=_TEXT,
+    host=_TEXT,
+    assumption=_TEXT,
     parcel={"type": "object", "description": "What has come from another station (docs/stations.md)."},
 )
 

@@ -16,6 +16,7 @@ MOST_BYTES: Final = 256 * 1024
 
 LONGEST: Final = 200
 MOST_CHANNELS: Final = 100
+MOST_WORDS: Final = 2_000
 LARGEST: Final = 10**15
 """No number, index or time is larger."""
 
@@ -72,6 +73,33 @@ class Sent:
 
 
 @dataclass(frozen=True, slots=True)
+class Hosted:
+    """A bigActor that runs at the station is hosted at a node."""
+
+    agent: str
+    host: str
+    time: float
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What it replaces: where the agent was hosted before."""
+        return ("hosted", self.agent)
+
+
+@dataclass(frozen=True, slots=True)
+class Broke:
+    """The station has seen an assumption of the mission break; an empty text is said when a run begins anew."""
+
+    assumption: str
+    time: float
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What it replaces: what broke before."""
+        return ("broke",)
+
+
+@dataclass(frozen=True, slots=True)
 class Posted:
     """The `index`-th parcel for another station; `parcel` is plain data."""
 
@@ -98,7 +126,7 @@ class Took:
         return ("took", self.of)
 
 
-Content = Said | Sent | Posted | Took
+Content = Said | Sent | Hosted | Broke | Posted | Took
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,6 +164,10 @@ def entry_json(entry: Entry) -> dict[str, Any]:
             return {"n": entry.number, **_published_json(published), "since": since, "owned": owned}
         case Sent(entity, to, time):
             return {"n": entry.number, "sent": entity, "to": to, "time": time}
+        case Hosted(agent, host, time):
+            return {"n": entry.number, "hosted": agent, "host": host, "time": time}
+        case Broke(assumption, time):
+            return {"n": entry.number, "broke": assumption, "time": time}
         case Posted(to, index, parcel):
             return {"n": entry.number, "to": to, "index": index, "parcel": parcel}
         case Took(of, index):
@@ -162,6 +194,11 @@ def entry_of(station: str, data: Any) -> Entry:
         case {"sent": str(), "to": str(to)}:
             goal = _word(data, "to") if to else ""
             return Entry(station, number, Sent(_word(data, "sent"), goal, _time(data.get("time"))))
+        case {"hosted": str()}:
+            home = Hosted(_word(data, "hosted"), _word(data, "host"), _time(data.get("time")))
+            return Entry(station, number, home)
+        case {"broke": str(assumption)} if len(assumption) <= MOST_WORDS and assumption.isprintable():
+            return Entry(station, number, Broke(assumption, _time(data.get("time"))))
         case {"to": str(), "parcel": parcel}:
             return Entry(station, number, Posted(_word(data, "to"), _whole(data, "index"), parcel))
         case {"entity": str(), "since": since, "owned": bool(owned)}:

@@ -14,7 +14,7 @@ from typing import Final
 
 from adapters.live.sightings import MOST_AHEAD
 from adapters.plugin import Aged, Gone, Published
-from adapters.stations.entries import Entry, Said, Sent
+from adapters.stations.entries import Entry, Hosted, Said, Sent
 from physical import PhysicalProperty
 
 MOST_ENTITIES: Final = 20_000
@@ -42,11 +42,13 @@ class Merge:
     Attributes:
         words: For each entity the newest word of each station.
         legs: For each vehicle where each station has sent it last.
+        homes: For each bigActor where each station has hosted it last.
     """
 
     def __init__(self) -> None:
         self.words: dict[str, dict[str, Entry]] = {}
         self.legs: dict[str, dict[str, Entry]] = {}
+        self.homes: dict[str, dict[str, Entry]] = {}
         self._counts: dict[str, int] = {}
 
     def hear(self, entry: Entry) -> str | None:
@@ -60,6 +62,8 @@ class Merge:
                 return said.entity if self._join(self.words, said.entity, entry) else None
             case Sent(entity):
                 return entity if self._join(self.legs, entity, entry) else None
+            case Hosted(agent):
+                return agent if self._join(self.homes, agent, entry) else None
             case _:
                 return None
 
@@ -77,7 +81,11 @@ class Merge:
 
     def leg(self, entity: str) -> Entry | None:
         """Return where a vehicle was sent last, by the time stamps of those who sent it."""
-        return max(self.legs.get(entity, {}).values(), key=_sent, default=None)
+        return max(self.legs.get(entity, {}).values(), key=_stamp, default=None)
+
+    def home(self, agent: str) -> Entry | None:
+        """Return where a bigActor was hosted last."""
+        return max(self.homes.get(agent, {}).values(), key=_stamp, default=None)
 
     def holds(self, entity: str, now: float) -> Said | None:
         """Return what holds of an entity at a time, None if nobody has said anything that counts yet."""
@@ -126,11 +134,7 @@ def _counts(content: object, now: float) -> bool:
 
 
 def _stamp(entry: Entry) -> tuple[float, str, int]:
-    return (_said(entry).time, entry.station, entry.number)
-
-
-def _sent(entry: Entry) -> tuple[float, str, int]:
-    assert isinstance(entry.content, Sent)
+    assert isinstance(entry.content, Said | Sent | Hosted)
     return (entry.content.time, entry.station, entry.number)
 
 

@@ -14,29 +14,45 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from adapters.live.orders import is_authority
 from adapters.live.sightings import MOST_AHEAD
-from adapters.live.state import Heard, LiveStep, Turn
-from adapters.plugin import Command, Delivered, Plugin, Published, Refused, Report, Trouble, Underway, World
+from adapters.live.state import Heard, Turn
+from adapters.plugin import (
+    Broken,
+    Command,
+    Delivered,
+    Hosts,
+    Plugin,
+    Published,
+    Refused,
+    Report,
+    Trouble,
+    Underway,
+    World,
+)
 from adapters.stations.bus import Bus
 from adapters.stations.entries import (
+    Broke,
     Content,
     Entry,
+    Hosted,
     Posted,
     Said,
     Sent,
     Took,
     entity_of,
     entry_of,
-    entry_text,
     stamped,
 )
 from adapters.stations.journal import Journal
 from adapters.stations.merge import Merge, channels_of
+from adapters.stations.messages import MOST_ENTRIES, Message, fitting, read, written
 from adapters.stations.peers import Peers
+from adapters.stations.shared import Shared
 from adapters.stations.skew import Skew, measured
+from adapters.stations.telling import entered, moved, told
 from adapters.troubles import Troubles
-from semantics.parting import Passage
-from semantics.plain_parcels import parcel_json
+from semantics.reactions import CONTROL_AUTHORITY
 
 NAME: Final = "stations"
 """What the plugin is called."""
@@ -44,8 +60,8 @@ NAME: Final = "stations"
 TICK: Final = 0.02
 """Seconds for which entries are gathered before they are put; of an entity the newest goes."""
 
-FLYING: Final = frozenset({"command", "commit"})
-"""The rules by which a vehicle is sent somewhere, and has come there."""
+MOVING: Final = frozenset({"migrate", "spawn", "enter"})
+"""The rules by which an agent comes to be hosted somewhere."""
 
 POLL: Final = 1.0
 """Seconds between two questions to each station."""
@@ -57,8 +73,6 @@ SILENCE: Final = 4.0
 MOST_SKEW: Final = 1.0
 """Seconds by which clocks may differ before it is said."""
 
-MOST_ENTRIES: Final = 500
-MOST_TEXT: Final = 2**20
 MOST_PARCELS: Final = 10_000
 """How many parcels of one station may wait here; for more it is asked later."""
 
@@ -115,6 +129,7 @@ class Sharing:
         self._unsaid: dict[tuple[str, ...], Entry] = {}
         self._said = journal.last
         self._world: World | None = None
+        self._introduced = False
 
     # --- a plugin
 
@@ -145,7 +160,7 @@ class Sharing:
 
     def sharing(self, plugin: Plugin) -> Plugin:
         """Return a plugin that tells what it learns to all stations."""
-        return Shared(plugin, self)
+        return Shared(plugin, self.publish)
 
     # --- looking on
 
@@ -155,30 +170,16 @@ class Sharing:
     def reported(self, report: Report, now: float) -> None:
         """See what a plugin reports: nothing is to be done."""
 
-    def turned(self, turn: Turn, now: float) -> None:  # noqa: ARG002 - a watcher's interface
-        """Post what leaves, acknowledge what has entered, say who was sent where; the recording has it all already."""
-        contents: list[Content] = [
-            Posted(each.station, each.number, parcel_json(each.parcel)) for each in turn.parcels
-        ]
-        entered = [step.sight for step in turn.steps if isinstance(step.sight, Passage)]
-        taken = {each.station: each.number for each in entered if each.parcel is not None}
-        contents += [Took(station, number) for station, number in taken.items()]
-        for station, number in taken.items():
+    def turned(self, turn: Turn, now: float) -> None:
+        """Tell the others what concerns them; the recording has it all already."""
+        for station, number in entered(turn).items():
             self._drop(station, number)
-        for step in turn.steps:
-            if step.transition.label.rule in FLYING:
-                contents += self._sent(step)
+        contents = [*told(turn, self._vehicles)]
+        if not self._introduced or any(step.transition.label.rule in MOVING for step in turn.steps):
+            contents += moved(turn.state.configuration, self.merge, now)
+            self._introduced = True
         for entry in self._add(contents):
             self.merge.hear(entry)
-
-    def _sent(self, step: LiveStep) -> list[Content]:
-        """Return which vehicles a step has sent somewhere, and which have come there."""
-        before, after = step.source.structure.physical, step.transition.target.structure.physical
-        return [
-            Sent(vehicle, after.going_to(vehicle), step.time)
-            for vehicle in sorted(self._vehicles)
-            if before.going_to(vehicle) != after.going_to(vehicle)
-        ]
 
     # --- saying
 
@@ -189,16 +190,27 @@ class Sharing:
         if entity in self._vehicles and not owned:
             world.publish(published)  # refused there, and reported
             return
-        known = self.merge.words.get(entity, {}).get(self._journal.station)
-        before = known.content if known is not None else None
-        said = Said(published, 0.0, owned)
-        if isinstance(before, Said) and before.time > said.time:
+        before = self._journal.word(("said", entity))
+        if isinstance(before, Said) and before.time > Said(published, 0.0).time:
             return
-        same = isinstance(before, Said) and channels_of(before.published) == channels_of(published)
-        since = before.since if same and isinstance(before, Said) else said.time
-        for entry in self._add([Said(published, since, owned)]):
+        for entry in self._add(
+            [Said(published, self._since(before, published, world.now(), owned=owned), owned)]
+        ):
             self._join(entry)
         self._show(world, entity)
+
+    def _since(self, before: Content | None, published: Published, now: float, *, owned: bool) -> float:
+        """Return since when an entity is on the channels that a plugin gives.
+
+        A link that does not know whom its vehicle obeys, or has lost it, says so only of our own authority.
+        """
+        channels = channels_of(published)
+        if isinstance(before, Said) and channels_of(before.published) == channels:
+            return before.since
+        known = self.merge.holds(entity_of(published), now)
+        ours = f"{CONTROL_AUTHORITY}:{self._journal.station}"
+        knows = any(map(is_authority, channels)) or (known and ours in channels_of(known.published))
+        return now if knows or not owned else 0.0
 
     def _add(self, contents: Sequence[Content]) -> list[Entry]:
         entries = self._journal.add(list(contents)) if contents else []
@@ -214,31 +226,17 @@ class Sharing:
 
     def _put(self, bus: Bus) -> None:
         """Put what was said since; whoever has not heard what came before asks for it."""
-        if not self._unsaid:
-            return
-        batch, upto = self._fitting(list(self._unsaid.values()), self._journal.last)
-        bus.put(self._message(batch, upto, after=self._said))
-        self._said = upto
-        for entry in batch:
-            del self._unsaid[entry.content.key]
+        if self._unsaid:
+            entries = list(self._unsaid.values())
+            texts, upto = fitting(entries, self._journal.last)
+            bus.put(self._message(texts, upto, after=self._said))
+            self._said = upto
+            for entry in entries[: len(texts)]:
+                del self._unsaid[entry.content.key]
 
-    def _fitting(self, entries: Sequence[Entry], upto: int) -> tuple[list[Entry], int]:
-        """Return as many of the first entries as go into one message, and up to where they tell everything."""
-        size = 0
-        batch: list[Entry] = []
-        for entry in entries:
-            size += len(entry_text(entry))
-            if batch and (size > MOST_TEXT or len(batch) >= MOST_ENTRIES):
-                return batch, batch[-1].number
-            batch.append(entry)
-        return batch, upto
-
-    def _message(self, entries: Sequence[Entry], upto: int, after: int) -> bytes:
+    def _message(self, texts: Sequence[str], upto: int, after: int) -> bytes:
         assert self._world is not None
-        head = {"mission": self._digest, "time": self._world.now(), "after": after}
-        told = ",".join(map(entry_text, entries))
-        said = f'{json.dumps(head)[:-1]}, "upto": {upto}, "last": {self._journal.last}, "entries": [{told}]}}'
-        return said.encode()
+        return written(Message(self._digest, self._world.now(), after, upto, self._journal.last), texts)
 
     def _answer(self, _key: str, question: bytes) -> bytes:
         """Answer what was said after a number."""
@@ -247,20 +245,19 @@ class Sharing:
             match json.loads(question):
                 case {"after": int(number)}:
                     after = number
-        found, upto = self._journal.after(after, MOST_ENTRIES)
-        return self._message(*self._fitting(found, upto), after=after)
+        texts, upto = fitting(*self._journal.after(after, MOST_ENTRIES))
+        return self._message(texts, upto, after)
 
     # --- hearing
 
     def _hear(self, station: str, said: bytes) -> None:
         """Take what was put; ask at once for what was missed."""
-        other = self.others[station]
-        message = self._read(station, said)
+        other, message = self.others[station], self._read(station, said)
         if message is None:
             return
-        whole = self._take_all(station, message["entries"])
-        if whole and message["after"] <= other.heard:
-            other.heard = max(other.heard, message["upto"])
+        whole = self._take_all(station, message.entries)
+        if whole and message.after <= other.heard:
+            other.heard = max(other.heard, message.upto)
         else:
             other.awake.set()
 
@@ -284,42 +281,33 @@ class Sharing:
                 with suppress(TimeoutError):
                     await asyncio.wait_for(other.awake.wait(), POLL)
 
-    def _told(self, world: World, station: str, message: dict[str, Any] | None, asked: float) -> bool:
+    def _told(self, world: World, station: str, message: Message | None, asked: float) -> bool:
         """Take an answer; return whether there is more to ask for."""
         other = self.others[station]
         if message is None:
             return False
-        self._found(world, station, other, message["time"], asked)
-        if not self._take_all(station, message["entries"]):
+        self._found(world, station, other, message.time, asked)
+        if not self._take_all(station, message.entries):
             return False
-        other.heard = max(other.heard, message["upto"])
-        return bool(message["upto"] < message["last"])
+        other.heard = max(other.heard, message.upto)
+        return message.upto < message.last
 
-    def _read(self, station: str, said: bytes) -> dict[str, Any] | None:
+    def _read(self, station: str, said: bytes) -> Message | None:
         """Read a message; what is none is reported, and who flies another mission."""
         try:
-            match json.loads(said):
-                case {
-                    "mission": str(mission),
-                    "time": int() | float(),
-                    "after": int(),
-                    "upto": int(),
-                    "last": int(),
-                    "entries": [*_],
-                } as message:
-                    if mission == self._digest:
-                        return dict(message)
-                    detail = f"{station} flies another mission, or another version of it: give all the same"
-                    self._troubles.note("another mission", detail)
-                    return None
-        except (ValueError, RecursionError):
-            pass
-        self._troubles.note("unreadable message", f"from {station}")
-        return None
+            message = read(said)
+        except ValueError as error:
+            self._troubles.note("unreadable message", f"from {station}: {error!s:.200}")
+            return None
+        if message.mission != self._digest:
+            detail = f"{station} flies another mission, or another version of it: give all the same"
+            self._troubles.note("another mission", detail)
+            return None
+        return message
 
     def _take_all(self, station: str, entries: Sequence[Any]) -> bool:
         """Take entries; return whether there was room for all."""
-        for data in entries[: 2 * MOST_ENTRIES]:
+        for data in entries:
             try:
                 entry = entry_of(station, data)
                 if isinstance(entry.content, Posted) and len(self.others[station].parcels) >= MOST_PARCELS:
@@ -327,7 +315,7 @@ class Sharing:
                 self._take(entry)
             except ValueError as error:
                 self._troubles.note("unreadable entry", f"from {station}: {error!s:.200}")
-        return len(entries) <= 2 * MOST_ENTRIES
+        return True
 
     def _take(self, entry: Entry) -> None:
         assert self._world is not None
@@ -338,10 +326,12 @@ class Sharing:
                     self._troubles.note("not its vehicle", detail)
                 elif self._join(entry):
                     self._show(self._world, said.entity)
-            case Sent(entity):
-                leg = self.merge.leg(entity) if self.merge.hear(entry) else None
-                if leg is not None and leg.station != self._journal.station and isinstance(leg.content, Sent):
-                    self._world.report(Underway(entity, self._world.now(), leg.content.to))
+            case Sent(entity) if self.merge.hear(entry):
+                self._pass_on(self.merge.leg(entity))
+            case Hosted(agent) if self.merge.hear(entry):
+                self._pass_on(self.merge.home(agent))
+            case Broke(assumption) if assumption and entry.station != self._journal.station:
+                self._world.report(Broken(entry.station, self._world.now(), assumption))
             case Posted(to, index) as posted:
                 waits = index > self._journal.took(entry.station)
                 if to == self._journal.station and waits:
@@ -351,6 +341,18 @@ class Sharing:
             case Took(of, index):
                 if of == self._journal.station:
                     self._journal.taken(entry.station, index)
+
+    def _pass_on(self, entry: Entry | None) -> None:
+        """Tell the run what another station has said the latest, of a vehicle that it sent or an agent that it has."""
+        assert self._world is not None
+        now = self._world.now()
+        match entry:
+            case Entry(station) if station == self._journal.station:
+                pass  # the run knows
+            case Entry(content=Sent(entity, to)):
+                self._world.report(Underway(entity, now, to))
+            case Entry(content=Hosted(agent, host)):
+                self._world.report(Hosts(agent, now, host))
 
     def _join(self, entry: Entry) -> bool:
         """Join a word to what is known; return whether it made a difference."""
@@ -420,48 +422,3 @@ class Sharing:
             detail = f"it is {best.ahead:+.1f} s off ours (to {best.error:.2f} s): set both, as by NTP"
             world.report(Trouble(NAME, now, f"the clock of {station}", detail))
         other.skewed = skewed
-
-
-@dataclass(frozen=True, slots=True)
-class Shared:
-    """A plugin whose world is that of all stations."""
-
-    plugin: Plugin
-    station: Sharing
-
-    @property
-    def name(self) -> str:
-        """What reports call it."""
-        return self.plugin.name
-
-    def owns(self, entity: str) -> bool:
-        """Whether the entity takes commands from it."""
-        return self.plugin.owns(entity)
-
-    async def command(self, command: Command) -> None:
-        """Hand on a command."""
-        await self.plugin.command(command)
-
-    async def run(self, world: World) -> None:
-        """Publish until cancelled."""
-        await self.plugin.run(SharedWorld(world, self))
-
-
-@dataclass(frozen=True, slots=True)
-class SharedWorld:
-    """The world of a plugin at a station."""
-
-    world: World
-    shared: Shared
-
-    def publish(self, published: Published) -> None:
-        """Take what is known of an entity now."""
-        self.shared.station.publish(self.shared.plugin, self.world, published)
-
-    def now(self) -> float:
-        """Return the time."""
-        return self.world.now()
-
-    def report(self, report: Report) -> None:
-        """Take a report."""
-        self.world.report(report)
