@@ -5,7 +5,7 @@ package alone: `snd`, `migrate` and `spawn` are taken where the agent runs whose
 agent that runs elsewhere then *leaves* in a parcel, and *enters* there: which changes nothing of the whole.
 """
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from semantics.agents import Code, Store, code_cell, host_cell, mailbox_cell, store_cell
@@ -247,6 +247,10 @@ def learn(c: Configuration, a: Name, host: Name) -> Iterator[Transition]:
         yield Transition(Label("learn", a, host), _arriving(c, a, Running(host, (), (), ())))
     elif not is_here(c, a) and c.alpha.host(a) != host:  # premises: a does not run here, h is news
         yield Transition(Label("learn", a, host), c.with_(c.alpha.hosting(a, host)))
+
+
+PASSING: tuple[Callable[..., Iterator[Transition]], ...] = (leave, enter, learn)
+"""What happens between stations."""
 
 
 def passing(c: Configuration, passage: Elsewhere) -> Iterator[Transition]:
