@@ -32,7 +32,8 @@ RULES_HEAD = """\
 
 Above the bar of each rule stand its premises, below it the conclusion. A configuration is ⟨α | S | η⟩: the bigActors,
 the structure S = (L, P, β, γ) of the logical and the physical model, and the pending requests. The rules are the
-functions of `semantics/rules.py` and `semantics/extension.py`, between stations of `semantics/parting.py`; this page is made of their docstrings.
+functions of `semantics/rules.py` and `semantics/extension.py`, between stations those of `semantics/parting.py`; this
+page is made of their docstrings.
 """
 
 CODES_HEAD = """\
@@ -69,9 +70,9 @@ cells of P that were written, each as `[cell, value]`. A cell is a list of words
 another station); a ring gives latitude and longitude
 in 1e-7 degree, with `of` and `anchor` where a polygon is another one, moved. Replayed, an `env` with an observation may
 write nothing but P, and nothing that is in transit; a `commit` places the vehicle where it was observed, and is a step
-only where the rule's premises hold there. Of several stations each has a recording of its part ([stations.md](stations.md)):
-`observed` then has the agent with the station, the number and the parcel that has entered, with the station and the
-number of what left, or with the host that was learned.
+only where the rule's premises hold there. Of several stations each has a recording of its part
+([stations.md](stations.md)): `observed` then has the agent with the station, the number and the parcel that has
+entered, with the station and the number of what left, or with the host that was learned.
 
 The topics, and what their messages hold:
 """

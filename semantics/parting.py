@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from semantics.agents import Code, Store, code_cell, host_cell, mailbox_cell, store_cell
 from semantics.cells import Cell, Changes
 from semantics.configuration import Configuration, Label, Transition
+from semantics.environment import Says
 from semantics.queries import Nodes, Of, Query
 from semantics.requests import CTR, FLY, MGR, OBS, READY, Request
 from semantics.signature import REGION, Name
@@ -57,12 +58,21 @@ class Parting:
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """A bigActor on its way: where it goes, what is left of it to run, its variables and its requests."""
+    """A bigActor on its way.
+
+    Attributes:
+        host: Where it goes.
+        code: What is left of it to run.
+        store: Its variables.
+        requests: What it has asked for.
+        says: How often each thing may still be said to it, in the order of the environment's clauses.
+    """
 
     host: Name
-    code: Code
-    store: Store
-    requests: tuple[Request, ...]
+    code: Code = ()
+    store: Store = ()
+    requests: tuple[Request, ...] = ()
+    says: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,8 +148,15 @@ def parcel_of(c: Configuration, a: Name) -> Parcel | None:
     """Return what is here of an agent, None where nothing is."""
     code, store, mail = c.alpha.code(a), c.alpha.store(a), c.alpha.mailbox(a)
     requests = tuple(pending.request for pending in c.eta.of(a))
-    running = Running(c.alpha.host(a), code, store, requests) if code or requests else None
+    says = tuple(c.read(counter) for counter in _counters(c, a))
+    running = Running(c.alpha.host(a), code, store, requests, says) if code or requests else None
     return Parcel(a, mail, running) if mail or running else None
+
+
+def _counters(c: Configuration, a: Name) -> tuple[Cell, ...]:
+    """Return the cells that count how often something may still be said to an agent: they go where it goes."""
+    clauses = c.setting.environment
+    return tuple(each.counter for each in clauses if isinstance(each, Says) and each.agent == a)
 
 
 def leave(c: Configuration, a: Name) -> Iterator[Transition]:
@@ -187,6 +204,8 @@ def objection(c: Configuration, parcel: Parcel) -> str:
         return f"{a:.60} runs here already"
     if not all(0 <= number < len(c.setting.program.statements) for number in running.code):
         return "what it is to run is not in this mission"
+    if len(running.says) != len(_counters(c, a)) or any(count < 0 for count in running.says):
+        return "what may be said to it is not what this mission says"
     if any(request.agent != a for request in running.requests):
         return "it holds requests of another agent"
     if not all(_is_closed(request) for request in running.requests):
@@ -244,7 +263,7 @@ def learn(c: Configuration, a: Name, host: Name) -> Iterator[Transition]:
     if station is None or station == c.read(HERE):  # premise: h is a host of another station
         return
     if a not in c.alpha:
-        yield Transition(Label("learn", a, host), _arriving(c, a, Running(host, (), (), ())))
+        yield Transition(Label("learn", a, host), _arriving(c, a, Running(host)))
     elif not is_here(c, a) and c.alpha.host(a) != host:  # premises: a does not run here, h is news
         yield Transition(Label("learn", a, host), c.with_(c.alpha.hosting(a, host)))
 
@@ -269,6 +288,7 @@ def passing(c: Configuration, passage: Elsewhere) -> Iterator[Transition]:
 def _arriving(c: Configuration, a: Name, running: Running) -> Configuration:
     known = a in c.alpha
     cells: Changes = {host_cell(a): running.host, code_cell(a): running.code, store_cell(a): running.store}
+    cells |= dict(zip(_counters(c, a), running.says, strict=False))
     there = c.with_(cells if known else {**joining(c, a), **cells, mailbox_cell(a): ()})
     for request in running.requests:
         there = there.with_(there.eta.adding(request))

@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, Final
 
 from adapters.stations.peers import Peers
@@ -75,7 +76,7 @@ class Bus:
         handler = self._zenoh.handlers.Callback(reply, done)
         key = self._key(station, "log")
         self._session.get(key, handler, payload=question, timeout=patience)
-        answer = await answered
+        answer = await asyncio.wait_for(answered, patience + 1.0)
         if answer is None:
             raise OSError(f"{station} does not answer")
         return answer
@@ -121,7 +122,7 @@ class Bus:
             query.reply(key, self._answer(key, question))
 
     def _call(self, function: Callable[..., None], *arguments: Any) -> None:
-        if not self._loop.is_closed():
+        with suppress(RuntimeError):  # the loop has ended
             self._loop.call_soon_threadsafe(function, *arguments)
 
 

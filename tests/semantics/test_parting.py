@@ -66,6 +66,8 @@ def Childhood(word) = { send word to op0
 BigActor op1 hosted_at gcs1 with_behavior { loop { react {
   case "hello" => send "hello" to op0
   case x => send "more" to child } } }
+environment { says "come" to nomad at most 3 times
+              says "go" to op0 at most 2 times }
 """
 STATIONS = ("gcs0", "gcs1", "gcs2")
 HOSTS = {name: name for name in STATIONS}
@@ -181,7 +183,7 @@ def test_parcels_enter_once_and_in_order():
 
 def running(**changes):
     asked = parcel_of(FIRST, "nomad").running
-    return replace(Running("gcs1", asked.code, asked.store, ()), **changes)
+    return replace(Running("gcs1", asked.code, asked.store, (), asked.says), **changes)
 
 
 REACTION = next(
@@ -202,6 +204,7 @@ REACTION = next(
         (Parcel("nobody", ("x",)), "no bigActor nobody"),
         (Parcel("op1", (), running()), "runs here already"),
         (Parcel("nomad", (), running(code=(10_000,))), "not in this mission"),
+        (Parcel("nomad", (), running(says=())), "what may be said to it"),
         (Parcel("nomad", (), running(host="gcs9")), "nothing is known of gcs9"),
         (Parcel("nomad", (), running(requests=(MGR("op1", "gcs1"),))), "another agent"),
         (Parcel("nomad", (), running(requests=(MGR("nomad", "gcs8"),))), "nothing is known of gcs8"),
@@ -243,10 +246,10 @@ def deep(levels):
         [],
         {"Parcel": []},
         {"Parcel": ["nomad", "x", None]},
-        {"Parcel": ["nomad", [], {"Running": ["gcs0", ["one"], [], []]}]},
-        {"Parcel": ["nomad", [], {"Running": ["gcs0", [True], [], []]}]},
-        {"Parcel": ["nomad", [], {"Running": ["gcs0", [1], [["x"]], []]}]},
-        {"Parcel": ["nomad", [], {"Running": ["gcs0", [1], [], [{"Parcel": []}]]}]},
+        {"Parcel": ["nomad", [], {"Running": ["gcs0", ["one"], [], [], []]}]},
+        {"Parcel": ["nomad", [], {"Running": ["gcs0", [True], [], [], []]}]},
+        {"Parcel": ["nomad", [], {"Running": ["gcs0", [1], [["x"]], [], []]}]},
+        {"Parcel": ["nomad", [], {"Running": ["gcs0", [1], [], [{"Parcel": []}], []]}]},
         {"Parcel": ["nomad", [1.5], None]},
         {"Parcel": ["nomad", [{"truth": "maybe"}], None]},
         {"Parcel": ["nomad", [10**30], None]},
@@ -274,6 +277,18 @@ def test_no_change_of_a_parcel_breaks_more_than_itself(data):
     except ValueError:
         return
     list(enter(parted(FIRST, parting("gcs1")), "gcs0", 1, parcel))
+
+
+def test_what_may_be_said_to_an_agent_goes_where_it_goes():
+    together = Together()
+    part = together.parts["gcs0"]
+    counted = part.with_({each.counter: 1 for each in part.setting.environment if each.agent == "nomad"})
+    assert parcel_of(counted, "nomad").running.says == (1,)
+    gone = next(leave(counted.with_(counted.alpha.hosting("nomad", "gcs1")), "nomad")).target
+    (there,) = enter(together.parts["gcs1"], "gcs0", 1, Parcel("nomad", (), running(says=(1,))))
+    clause = next(each for each in part.setting.environment if each.agent == "nomad")
+    assert there.target.read(clause.counter) == 1
+    assert parcel_of(gone, "nomad") is None
 
 
 def test_requests_are_served_where_their_agent_went():

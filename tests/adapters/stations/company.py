@@ -143,7 +143,7 @@ class Station:
             "--station-log",
             str(folder / f"{name}.log"),
         ]
-        self._line += ["--unverified", "--socket", str(self.socket), *more]
+        self._line += ["--socket", str(self.socket), *(more or ["--unverified"])]
         self._process = None
 
     def start(self):

@@ -64,12 +64,17 @@ def stations(tmp_path):
     """Two stations that both hear the vehicle over a link of their own, and one that hears it from them alone."""
     mission = tmp_path / "handover.mission"
     mission.write_text(MISSION)
+    assert (
+        main(["check", "--no-traces", "--control", "timed", "--verdict", str(tmp_path / "v"), str(mission)])
+        == 0
+    )
     ports = {name: free_port() for name in ("gcs0", "gcs1", "gcs2")}
     peers = tmp_path / "peers.toml"
     peers.write_text(peers_toml(ports))
     vehicle = free_port()
-    more = ["--vehicle", f"uav0=udpout:127.0.0.1:{vehicle}"]
-    found = [Station(tmp_path, name, peers, mission, *(more if name != "gcs2" else [])) for name in ports]
+    rest = ["--verdict", str(tmp_path / "v")]
+    more = [*rest, "--vehicle", f"uav0=udpout:127.0.0.1:{vehicle}"]
+    found = [Station(tmp_path, name, peers, mission, *(more if name != "gcs2" else rest)) for name in ports]
     with flying(f"udp:127.0.0.1:{vehicle}"), running(found):
         yield found
 

@@ -1,0 +1,162 @@
+"""What stations say to each other, on links that lose, double, reorder and part: all come to know all of it."""
+
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from live_missions import EAST, WEST
+from test_sharing import MISSION, Node
+
+from adapters.plugin import Delivered
+from adapters.stations.entries import Entry, Posted, Said
+from adapters.stations.messages import Message, fitting, read, written
+from adapters.stations.peers import peers_of
+
+NAMES = ("gcs0", "gcs1", "gcs2")
+TABLE = {name: {"connect": [f"tcp/127.0.0.1:{port}"]} for port, name in enumerate(NAMES, 1)}
+
+
+class Wire:
+    """Takes what is put, in the place of the bus."""
+
+    def __init__(self):
+        self.put_there = []
+
+    def put(self, said):
+        self.put_there.append(said)
+
+
+class Company:
+    """Three stations; the test carries what they say."""
+
+    def __init__(self, folder):
+        self.nodes = {name: Node(peers_of(TABLE, name, folder), folder) for name in NAMES}
+        for node in self.nodes.values():
+            node.sharing._world = node.world
+        self.under_way = []
+
+    def put(self, name):
+        wire = Wire()
+        self.nodes[name].sharing._put(wire)
+        self.under_way += [(name, other, said) for said in wire.put_there for other in NAMES if other != name]
+
+    def carry(self, index, keep):
+        name, other, said = self.under_way[index]
+        self.nodes[other].sharing._hear(name, said)
+        if not keep:
+            del self.under_way[index]
+
+    def ask(self, name, of):
+        """Ask once, as is done each second."""
+        mine, theirs = self.nodes[name].sharing, self.nodes[of].sharing
+        other = mine.others[of]
+        answer = theirs._answer("", b'{"after": %d}' % other.heard)
+        return mine._told(self.nodes[name].world, of, mine._read(of, answer), self.nodes[name].world.now())
+
+
+@contextmanager
+def company_of_three():
+    with tempfile.TemporaryDirectory() as folder:
+        company = Company(Path(folder))
+        try:
+            yield company
+        finally:
+            for node in company.nodes.values():
+                node.journal.close()
+
+
+def happens(data, company):
+    what = data.draw(
+        st.sampled_from(["see", "see", "post", "put", "put", "carry", "carry", "double", "lose", "ask"])
+    )
+    name, other = data.draw(st.permutations(NAMES))[:2]
+    node = company.nodes[name]
+    if what == "see":
+        node.see(data.draw(st.sampled_from(["boat0", "boat1"])), data.draw(st.sampled_from([WEST, EAST])))
+    elif what == "post":
+        number = node.journal.sent(other) + 1
+        node.sharing._add([Posted(other, number, {"from": name})])
+    elif what == "put":
+        company.put(name)
+    elif what == "ask":
+        company.ask(name, other)
+    elif company.under_way:
+        index = data.draw(st.integers(0, len(company.under_way) - 1))
+        if what == "lose":
+            del company.under_way[index]
+        else:
+            company.carry(index, keep=what == "double")
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.data())
+def test_whatever_was_lost_doubled_or_reordered_all_come_to_one_world(data):
+    with company_of_three() as company:
+        for _ in range(data.draw(st.integers(0, 40))):
+            happens(data, company)
+        for name in NAMES:
+            for other in NAMES:
+                while name != other and company.ask(name, other):
+                    pass
+        worlds = [
+            {entity: node.world.at(entity) for entity in ("boat0", "boat1")}
+            for node in company.nodes.values()
+        ]
+        for node in company.nodes.values():
+            for other in NAMES:
+                if other != node.journal.station:
+                    sent = company.nodes[other].journal.sent(node.journal.station)
+                    told = [each.number for each in node.world.of(Delivered) if each.station == other]
+                    assert told == list(range(1, sent + 1))  # in order, and once as long as nobody asks again
+        assert worlds[0] == worlds[1] == worlds[2]
+
+
+def test_a_message_tells_up_to_where_it_is_whole():
+    entries = [Entry("gcs0", number, Posted("gcs1", number, "x" * 200_000)) for number in range(1, 9)]
+    texts, upto = fitting(entries, 20)
+    assert (len(texts), upto) == (5, 5)
+    assert fitting(entries[:2], 20)[1] == 20
+    assert len(fitting(entries[:1] * 2_000, 7)[0]) <= 500
+    message = read(written(Message(MISSION, 1.5, 3, upto, 20), texts))
+    assert (message.mission, message.time, message.after, message.upto, message.last) == (
+        MISSION,
+        1.5,
+        3,
+        5,
+        20,
+    )
+    assert len(message.entries) == 5
+
+
+@given(st.binary(max_size=200))
+def test_what_is_no_message_is_refused(data):
+    company = read_or_none(data)
+    assert company is None or isinstance(company, Message)
+
+
+def read_or_none(data):
+    try:
+        return read(data)
+    except ValueError:
+        return None
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.data())
+def test_no_change_of_a_message_breaks_more_than_itself(data):
+    with company_of_three() as company:
+        company.nodes["gcs0"].see("boat0", WEST)
+        company.nodes["gcs0"].sharing._add([Posted("gcs1", 1, {"x": 1})])
+        said = company.nodes["gcs0"].sharing._answer("", b'{"after": 0}').decode()
+        for _ in range(data.draw(st.integers(1, 3))):
+            at = data.draw(st.integers(0, 999)) % len(said)
+            said = (
+                said[:at]
+                + data.draw(st.sampled_from(['"', "0", "9", "[", "]", "null", "-", ",", "e"]))
+                + said[at + 1 :]
+            )
+        company.nodes["gcs1"].sharing._hear("gcs0", said.encode())
+        words = company.nodes["gcs1"].sharing.merge.words
+        assert all(isinstance(entry.content, Said) for each in words.values() for entry in each.values())
