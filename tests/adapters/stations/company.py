@@ -11,7 +11,8 @@ import time
 from contextlib import ExitStack, contextmanager, suppress
 
 from adapters.recording.mcap_files import RecordingError
-from bigactors.recordings import mission_of, open_recording, trace_of
+from adapters.recording.reading import read_recording
+from bigactors.recordings import mission_of, trace_of
 from semantics.abstraction import as_it_is
 
 WORLD = """
@@ -41,7 +42,7 @@ def free_port():
         return found.getsockname()[1]
 
 
-def until(what, seconds=30.0):
+def until(what, seconds=60.0):
     end = time.monotonic() + seconds
     while not (found := what()):
         assert time.monotonic() < end, "it did not come to pass in time"
@@ -145,6 +146,7 @@ class Station:
         ]
         self._line += ["--socket", str(self.socket), *(more or ["--unverified"])]
         self._process = None
+        self._replayed = (None, None)
 
     def start(self):
         environment = {**os.environ, "PYTHONPATH": os.getcwd()}
@@ -185,19 +187,23 @@ class Station:
 
     def trace(self):
         """Return the run so far, replayed from the recording; None while there is none."""
+        size = self.recording.stat().st_size if self.recording.exists() else 0
+        if self._replayed[0] != (self.recording, size):
+            recording = self._read()
+            trace = None if recording is None else trace_of(recording, mission_of(recording))
+            self._replayed = ((self.recording, size), trace)
+        return self._replayed[1]
+
+    def _read(self):
         try:
-            recording = open_recording(str(self.recording))
-            return trace_of(recording, mission_of(recording))
+            return read_recording(self.recording)
         except (RecordingError, FileNotFoundError):
-            return None
-        except Exception as error:
-            if "no such file" in str(error).lower() or "records no run" in str(error):
-                return None
-            raise
+            return None  # it has only just begun
 
     def steps(self):
-        trace = self.trace()
-        return [] if trace is None else [str(step.label) for step in trace.steps]
+        """Return the labels of the steps that are recorded."""
+        recording = self._read()
+        return [] if recording is None else [message.data["label"] for message in recording.of("steps")]
 
     def places(self, *names):
         """Return where A(P) has these entities."""

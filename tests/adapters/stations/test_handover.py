@@ -49,7 +49,7 @@ run(Simulator(address, [Vehicle(Kind.COPTER, (37.01, -8.65, 20.0))]).run(), floa
 
 
 @contextmanager
-def flying(address, speed=30):
+def flying(address, speed=60):
     environment = {**os.environ, "PYTHONPATH": os.getcwd()}
     process = subprocess.Popen([sys.executable, "-c", SIMULATOR, address, str(speed)], env=environment)
     try:
