@@ -67,6 +67,10 @@ def company_of(options: Namespace, mission: ElaboratedMission, before: Resumed |
         return None
     peers = _peers(options, station)
     _check_hosts(peers, mission, options.peers)
+    if before is not None and not _is_same(before.station, peers):
+        raise Mistake(
+            "it records another station, or other peers", f"resume it as {station} was run", options.resume
+        )
     digest = digest_of(mission)
     path = Path(options.station_log or f"{file_stem(mission.name)}.{station}.log")
     try:
@@ -112,6 +116,10 @@ def _check_hosts(peers: Peers, mission: ElaboratedMission, place: str) -> None:
             raise Mistake(f"no station runs the bigActor {agent}, which is hosted at {host}", hint, place)
 
 
+def _is_same(flown: Parting | None, peers: Peers) -> bool:
+    return flown is not None and (flown.here, flown.hosts) == (peers.own.name, peers.hosts)
+
+
 def _parting(peers: Peers, journal: Journal, before: Resumed | None) -> Parting:
     """Return which part of a mission is a station's; a run that is resumed tells its log what it had not yet."""
     here = peers.own.name
@@ -119,8 +127,7 @@ def _parting(peers: Peers, journal: Journal, before: Resumed | None) -> Parting:
     if before is None:
         sent = {name: journal.sent(name) for name in peers.others}
         return Parting(here, peers.hosts, sent, {name: journal.took(name) for name in peers.others})
-    if before.station is None or (before.station.here, before.station.hosts) != (here, peers.hosts):
-        raise Mistake("it records another station, or other peers", f"resume it as {here} was run")
+    assert before.station is not None
     for left in before.left:
         if left.number > journal.sent(left.station):
             journal.add([Posted(left.station, left.number, parcel_json(left.parcel))])

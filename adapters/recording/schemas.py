@@ -25,6 +25,11 @@ _OBSERVED: Final = {
             "type": "object",
             "description": "Entities that the mission does not name, with their kinds.",
         },
+        "agent": {**_TEXT, "description": "Who left for another station, has entered, or was learned of."},
+        "station": {**_TEXT, "description": "Where to, or where from."},
+        "number": {"type": "integer", "minimum": 1},
+        "parcel": {"type": "object", "description": "What has entered (docs/stations.md)."},
+        "host": {**_TEXT, "description": "Where the agent is hosted."},
     },
 }
 

@@ -121,7 +121,7 @@ def holding(words: Words, now: float) -> Said | None:
         if not isinstance(_said(entry).published, Gone) and _said(entry).until >= newest.time
     ]
     latest = _said(max(told, key=_since)) if told else newest
-    return replace(newest, published=_on(newest.published, channels_of(latest.published)), since=latest.since)
+    return replace(newest, published=on(newest.published, channels_of(latest.published)), since=latest.since)
 
 
 def _said(entry: Entry) -> Said:
@@ -153,7 +153,8 @@ def channels_of(published: Published) -> tuple[str, ...]:
             return ()
 
 
-def _on(published: Published, channels: Iterable[str]) -> Published:
+def on(published: Published, channels: Iterable[str]) -> Published:
+    """Return a publication with other channels."""
     match published:
         case Aged(said, time_to_live):
             return Aged(said.on(channels), time_to_live)

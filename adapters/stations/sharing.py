@@ -45,7 +45,7 @@ from adapters.stations.entries import (
     stamped,
 )
 from adapters.stations.journal import Journal
-from adapters.stations.merge import Merge, channels_of
+from adapters.stations.merge import Merge, channels_of, on
 from adapters.stations.messages import MOST_ENTRIES, Message, fitting, read, written
 from adapters.stations.peers import Peers
 from adapters.stations.shared import Shared
@@ -156,7 +156,11 @@ class Sharing:
         finally:
             self._put(bus)
             bus.close()
-            self._journal.close()
+            self.close()
+
+    def close(self) -> None:
+        """Give the log free; for a run that has not begun, too."""
+        self._journal.close()
 
     def sharing(self, plugin: Plugin) -> Plugin:
         """Return a plugin that tells what it learns to all stations."""
@@ -193,24 +197,27 @@ class Sharing:
         before = self._journal.word(("said", entity))
         if isinstance(before, Said) and before.time > Said(published, 0.0).time:
             return
-        for entry in self._add(
-            [Said(published, self._since(before, published, world.now(), owned=owned), owned)]
-        ):
+        channels, since = self._channels(before, published, world.now(), owned=owned)
+        for entry in self._add([Said(on(published, channels), since, owned)]):
             self._join(entry)
         self._show(world, entity)
 
-    def _since(self, before: Content | None, published: Published, now: float, *, owned: bool) -> float:
-        """Return since when an entity is on the channels that a plugin gives.
+    def _channels(
+        self, before: Content | None, published: Published, now: float, *, owned: bool
+    ) -> tuple[tuple[str, ...], float]:
+        """Return the channels that an entity is on as far as a plugin knows, and since when.
 
-        A link that does not know whom its vehicle obeys, or has lost it, says so only of our own authority.
+        A link that does not know whom its vehicle obeys, or has lost it, says so only of our own authority; of another
+        station's it says what is known.
         """
         channels = channels_of(published)
         if isinstance(before, Said) and channels_of(before.published) == channels:
-            return before.since
+            return channels, before.since
         known = self.merge.holds(entity_of(published), now)
         ours = f"{CONTROL_AUTHORITY}:{self._journal.station}"
-        knows = any(map(is_authority, channels)) or (known and ours in channels_of(known.published))
-        return now if knows or not owned else 0.0
+        if not owned or any(map(is_authority, channels)) or (known and ours in channels_of(known.published)):
+            return channels, now
+        return (channels, 0.0) if known is None else (channels_of(known.published), known.since)
 
     def _add(self, contents: Sequence[Content]) -> list[Entry]:
         entries = self._journal.add(list(contents)) if contents else []

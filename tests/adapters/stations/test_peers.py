@@ -1,6 +1,8 @@
+import sys
+
 import pytest
 
-from adapters.stations.bus import settings
+from adapters.stations.bus import _library, settings
 from adapters.stations.peers import MOST_BYTES, peers_of, read_peers
 from physical import PhysicalError
 
@@ -66,6 +68,14 @@ def test_what_is_no_peers_file_says_why_and_what_to_do(tmp_path, text, says):
         read(tmp_path, text)
     assert says in caught.value.message
     assert caught.value.hint
+
+
+def test_without_zenoh_the_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "zenoh", None)
+    with pytest.raises(PhysicalError) as caught:
+        _library()
+    assert caught.value.message == "stations need Zenoh, which is not installed"
+    assert "bigactors[stations]" in caught.value.hint
 
 
 def test_a_certificate_may_say_and_ask_only_what_its_name_allows(tmp_path):

@@ -3,18 +3,22 @@
 import asyncio
 import time
 from contextlib import asynccontextmanager, suppress
+from dataclasses import replace
 
 import pytest
 from certificates import Authority
 from company import free_port
-from live_missions import EAST, WEST
+from live_missions import EAST, TOUR, WEST, plan_of
 
-from adapters.plugin import Aged, Delivered, Gone, Refused, Trouble, Underway
+from adapters.live.state import Finding, LiveState, LiveStep, Turn
+from adapters.plugin import Aged, Broken, Delivered, Gone, Hosts, Refused, Trouble, Underway
 from adapters.stations.entries import Posted, Sent, Took
 from adapters.stations.journal import Journal
 from adapters.stations.peers import peers_of
 from adapters.stations.sharing import Sharing
 from physical import PhysicalError, PhysicalProperty, point
+from semantics.configuration import Label, Transition
+from semantics.parting import Parting, parted
 
 MISSION = "sha256:mission"
 VEHICLES = frozenset({"uav0"})
@@ -202,6 +206,57 @@ def test_of_a_vehicle_only_its_own_links_speak(tmp_path):
     asyncio.run(spoofing())
     with pytest.raises(Refused, match="another station's"):
         asyncio.run(gcs0.sharing.command(Underway("uav0", 0.0, "")))
+
+
+def test_where_bigactors_are_and_what_broke_all_know(tmp_path):
+    table = both()
+    gcs0, gcs1 = (Node(peers_of(table, name, tmp_path), tmp_path) for name in ("gcs0", "gcs1"))
+    text = TOUR + "BigActor op0 hosted_at gcs0 with_behavior { skip }"
+    part = parted(
+        plan_of(text).first, Parting("gcs0", {"gcs0": "gcs0", "uav0": "gcs0", "gcs1": "gcs1"}, {}, {})
+    )
+    broke = Finding("broken assumption", "boat0", "boat0 is in east0", 1.0)
+    other = replace(broke, message="at gcs1: it rains", elsewhere=True)
+    moved = LiveStep(1, part, Transition(Label("migrate", "op0"), part), 0, None, 1.0)
+
+    async def telling():
+        async with running(gcs0, gcs1):
+            gcs0.sharing.turned(Turn(LiveState(part)), time.time())
+            await until(lambda: [each.host for each in gcs1.world.of(Hosts)] == ["gcs0"])
+            there = LiveState(part.with_(part.alpha.hosting("op0", "uav0")))
+            gcs0.sharing.turned(Turn(there, steps=(moved,), findings=(broke, other)), time.time())
+            await until(lambda: [each.host for each in gcs1.world.of(Hosts)] == ["gcs0", "uav0"])
+            await until(lambda: gcs1.world.of(Broken))
+            assert [each.assumption for each in gcs1.world.of(Broken)] == ["boat0 is in east0"]
+            assert gcs0.world.of(Broken) == gcs0.world.of(Hosts) == []
+
+    asyncio.run(telling())
+
+
+def test_a_link_that_lost_its_vehicle_says_so_only_of_its_own_authority(tmp_path):
+    table = both()
+    gcs0, gcs1 = (Node(peers_of(table, name, tmp_path), tmp_path) for name in ("gcs0", "gcs1"))
+
+    def channels():
+        found = [node.sharing.merge.holds("uav0", node.world.now()) for node in (gcs0, gcs1)]
+        return [each.published.property.channels if each else None for each in found]
+
+    async def losing():
+        async with running(gcs0, gcs1):
+            gcs0.see("uav0", WEST, owned=True, channels=("control:gcs0",))
+            gcs1.see("uav0", WEST, owned=True)  # it has not read yet whom the vehicle obeys
+            await until(lambda: channels() == [("control:gcs0",)] * 2)
+            gcs0.see("uav0", WEST, owned=True, channels=("control:gcs1",))  # handed over
+            await until(lambda: channels() == [("control:gcs1",)] * 2)
+            gcs0.see("uav0", WEST, owned=True)  # lost, but it is not gcs0's any more
+            gcs0.see("boat0", EAST)
+            await until(lambda: gcs1.world.at("boat0") == EAST)
+            assert channels() == [("control:gcs1",)] * 2
+            gcs1.see("uav0", WEST, owned=True, channels=("control:gcs1",))
+            gcs1.see("uav0", WEST, owned=True)  # lost
+            await until(lambda: channels() == [()] * 2)
+
+    asyncio.run(losing())
 
 
 def test_who_flies_another_mission_is_not_listened_to(tmp_path):
