@@ -101,11 +101,19 @@ class Broke:
 
 @dataclass(frozen=True, slots=True)
 class Posted:
-    """The `index`-th parcel for another station; `parcel` is plain data."""
+    """A parcel for another station.
+
+    Attributes:
+        to: Where it goes.
+        index: The how-many-th it is.
+        parcel: What is in it, as plain data.
+        knows: The last numbers of other stations that the sender had heard of: what it did may rest on them.
+    """
 
     to: str
     index: int
     parcel: Any
+    knows: tuple[tuple[str, int], ...] = ()
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -168,8 +176,9 @@ def entry_json(entry: Entry) -> dict[str, Any]:
             return {"n": entry.number, "hosted": agent, "host": host, "time": time}
         case Broke(assumption, time):
             return {"n": entry.number, "broke": assumption, "time": time}
-        case Posted(to, index, parcel):
-            return {"n": entry.number, "to": to, "index": index, "parcel": parcel}
+        case Posted(to, index, parcel, knows):
+            data = {"n": entry.number, "to": to, "index": index, "parcel": parcel}
+            return data | ({"knows": dict(knows)} if knows else {})
         case Took(of, index):
             return {"n": entry.number, "took": of, "index": index}
 
@@ -200,7 +209,8 @@ def entry_of(station: str, data: Any) -> Entry:
         case {"broke": str(assumption)} if len(assumption) <= MOST_WORDS and assumption.isprintable():
             return Entry(station, number, Broke(assumption, _time(data.get("time"))))
         case {"to": str(), "parcel": parcel}:
-            return Entry(station, number, Posted(_word(data, "to"), _whole(data, "index"), parcel))
+            knows = _knows(data.get("knows", {}))
+            return Entry(station, number, Posted(_word(data, "to"), _whole(data, "index"), parcel, knows))
         case {"entity": str(), "since": since, "owned": bool(owned)}:
             return Entry(station, number, Said(_published(station, data), _time(since), owned))
     raise ValueError("an entry says or does none of what stations do")
@@ -239,6 +249,12 @@ def _published(station: str, data: dict[str, Any]) -> Published:
         _velocity(data.get("velocity")),
     )
     return Aged(said, _time(data["ttl"])) if "ttl" in data else said
+
+
+def _knows(data: Any) -> tuple[tuple[str, int], ...]:
+    if not isinstance(data, dict) or len(data) > MOST_CHANNELS:
+        raise ValueError("'knows' should give a number to each station")
+    return tuple((name, _whole(data, name)) for name in sorted(data))
 
 
 def _channels(data: Any) -> tuple[str, ...]:

@@ -11,7 +11,6 @@ import asyncio
 import json
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
 from typing import Any, Final
 
 from adapters.live.orders import is_authority
@@ -47,9 +46,10 @@ from adapters.stations.entries import (
 from adapters.stations.journal import Journal
 from adapters.stations.merge import Merge, channels_of, on
 from adapters.stations.messages import MOST_ENTRIES, Message, fitting, read, written
+from adapters.stations.others import Other
 from adapters.stations.peers import Peers
 from adapters.stations.shared import Shared
-from adapters.stations.skew import Skew, measured
+from adapters.stations.skew import measured
 from adapters.stations.telling import entered, moved, told
 from adapters.troubles import Troubles
 from semantics.reactions import CONTROL_AUTHORITY
@@ -75,30 +75,6 @@ MOST_SKEW: Final = 1.0
 
 MOST_PARCELS: Final = 10_000
 """How many parcels of one station may wait here; for more it is asked later."""
-
-
-@dataclass(slots=True)
-class Other:
-    """What is known of another station.
-
-    Attributes:
-        heard: Up to which number everything that it said has been heard.
-        parcels: Its parcels for us that have not entered yet, by index.
-        delivered: Up to which of them the run was told.
-        skew: How far its clock is ahead.
-        answered: When it answered last.
-        reached: Whether it answers; None before anybody knows.
-        awake: Set where it has to be asked at once.
-    """
-
-    heard: int = 0
-    parcels: dict[int, Posted] = field(default_factory=dict)
-    delivered: int = 0
-    skew: Skew = field(default_factory=Skew)
-    answered: float = 0.0
-    reached: bool | None = None
-    skewed: bool = False
-    awake: asyncio.Event = field(default_factory=asyncio.Event)
 
 
 class Sharing:
@@ -177,11 +153,13 @@ class Sharing:
     def turned(self, turn: Turn, now: float) -> None:
         """Tell the others what concerns them; the recording has it all already."""
         for station, number in entered(turn).items():
-            self._drop(station, number)
-        contents = [*told(turn, self._vehicles)]
+            self.others[station].drop(number)
+        contents: list[Content] = []
         if not self._introduced or any(step.transition.label.rule in MOVING for step in turn.steps):
             contents += moved(turn.state.configuration, self.merge, now)
             self._introduced = True
+        known = {name: other.last for name, other in self.others.items() if other.last}
+        contents += told(turn, self._vehicles, known)
         for entry in self._add(contents):
             self.merge.hear(entry)
 
@@ -262,11 +240,9 @@ class Sharing:
         other, message = self.others[station], self._read(station, said)
         if message is None:
             return
-        whole = self._take_all(station, message.entries)
-        if whole and message.after <= other.heard:
-            other.heard = max(other.heard, message.upto)
-        else:
+        if not other.follow(message, whole=self._take_all(station, message.entries)):
             other.awake.set()
+        self._deliver()
 
     async def _follow(self, bus: Bus, station: str, other: Other) -> None:
         """Ask a station again and again for what we have not heard, and what its clock says."""
@@ -281,8 +257,8 @@ class Sharing:
                 await asyncio.sleep(POLL)
                 continue
             more = self._told(world, station, self._read(station, answer), asked)
-            other.delivered = self._journal.took(station)  # what has not entered is told again
-            self._deliver(world, station, other)
+            other.delivered = 0  # what has not entered is told again
+            self._deliver()
             if not more:
                 other.awake.clear()
                 with suppress(TimeoutError):
@@ -294,10 +270,9 @@ class Sharing:
         if message is None:
             return False
         self._found(world, station, other, message.time, asked)
-        if not self._take_all(station, message.entries):
-            return False
-        other.heard = max(other.heard, message.upto)
-        return message.upto < message.last
+        return (
+            other.follow(message, whole=self._take_all(station, message.entries)) and other.heard < other.last
+        )
 
     def _read(self, station: str, said: bytes) -> Message | None:
         """Read a message; what is none is reported, and who flies another mission."""
@@ -340,11 +315,8 @@ class Sharing:
             case Broke(assumption) if assumption and entry.station != self._journal.station:
                 self._world.report(Broken(entry.station, self._world.now(), assumption))
             case Posted(to, index) as posted:
-                waits = index > self._journal.took(entry.station)
-                if to == self._journal.station and waits:
-                    other = self.others[entry.station]
-                    other.parcels[index] = posted
-                    self._deliver(self._world, entry.station, other)
+                if to == self._journal.station and index > self._journal.took(entry.station):
+                    self.others[entry.station].parcels[index] = posted
             case Took(of, index):
                 if of == self._journal.station:
                     self._journal.taken(entry.station, index)
@@ -380,17 +352,13 @@ class Sharing:
         if said is not None:
             world.publish(said.published)
 
-    def _deliver(self, world: World, station: str, other: Other) -> None:
-        """Tell the run of parcels that wait, in their order."""
-        other.delivered = max(other.delivered, self._journal.took(station))
-        while (index := other.delivered + 1) in other.parcels:
-            world.report(Delivered(station, world.now(), index, other.parcels[index].parcel))
-            other.delivered = index
-
-    def _drop(self, station: str, upto: int) -> None:
-        parcels = self.others[station].parcels
-        for index in [index for index in parcels if index <= upto]:
-            del parcels[index]
+    def _deliver(self) -> None:
+        """Tell the run of the parcels that may enter."""
+        assert self._world is not None
+        for station, other in self.others.items():
+            if other.parcels:
+                for index, posted in other.due(self.others, self._journal.took(station)):
+                    self._world.report(Delivered(station, self._world.now(), index, posted.parcel))
 
     # --- links and clocks
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 
 from adapters.live.state import Turn
 from adapters.stations.entries import Broke, Content, Hosted, Posted, Sent, Took
@@ -15,10 +15,14 @@ A_MOMENT = 1e-6
 """Seconds by which what is said of an agent is later than what was said of it before, whatever clocks say."""
 
 
-def told(turn: Turn, vehicles: Collection[str]) -> Iterator[Content]:
-    """Yield what a turn tells, in an order in which it may be read."""
-    yield from (Posted(each.station, each.number, parcel_json(each.parcel)) for each in turn.parcels)
-    yield from (Took(station, number) for station, number in entered(turn).items())
+def told(turn: Turn, vehicles: Collection[str], known: Mapping[str, int]) -> Iterator[Content]:
+    """Yield what a turn tells: what others have to know before a parcel enters comes before it.
+
+    Args:
+        turn: The turn.
+        vehicles: Who may be sent somewhere.
+        known: The last numbers of the other stations that had been heard of.
+    """
     for step in turn.steps:
         before, after = step.source.structure.physical, step.transition.target.structure.physical
         if step.transition.label.rule in ("command", "commit"):
@@ -28,6 +32,10 @@ def told(turn: Turn, vehicles: Collection[str]) -> Iterator[Content]:
     for finding in turn.findings:
         if finding.kind == "broken assumption" and not finding.elsewhere:
             yield Broke(finding.message, finding.time)
+    yield from (Took(station, number) for station, number in entered(turn).items())
+    for each in turn.parcels:
+        knows = tuple((name, number) for name, number in sorted(known.items()) if name != each.station)
+        yield Posted(each.station, each.number, parcel_json(each.parcel), knows)
 
 
 def entered(turn: Turn) -> dict[str, int]:

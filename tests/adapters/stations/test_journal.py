@@ -5,7 +5,7 @@ from test_merge import word
 
 from adapters.plugin import Aged, Gone
 from adapters.stations import journal as journals
-from adapters.stations.entries import Entry, Posted, Said, Sent, Took, entry_of, entry_text
+from adapters.stations.entries import Broke, Entry, Hosted, Posted, Said, Sent, Took, entry_of, entry_text
 from adapters.stations.journal import Journal, JournalError
 from physical import Band, PhysicalProperty, Velocity, box
 
@@ -127,6 +127,9 @@ def test_what_is_no_log_is_refused(opened, tmp_path, text):
         Sent("uav0", "east0", 5.0),
         Sent("uav0", "", 5.0),
         Posted("gcs1", 3, {"x": [1]}),
+        Posted("gcs1", 3, {}, (("gcs2", 7),)),
+        Hosted("op0", "gcs0", 5.0),
+        Broke("it rains", 5.0),
         Took("gcs1", 3),
     ],
 )
@@ -148,6 +151,9 @@ GOOD = json.loads(entry_text(Entry("gcs0", 7, Said(EVERYTHING, 3.0))))
         {"n": 10**20, "took": "a", "index": 1},
         {"n": 1, "took": "a", "index": -1},
         {"n": 1, "sent": "a\n", "to": "", "time": 1},
+        {"n": 1, "to": "a", "index": 1, "parcel": {}, "knows": {"gcs0": -1}},
+        {"n": 1, "to": "a", "index": 1, "parcel": {}, "knows": [1]},
+        {"n": 1, "broke": "x" * 9_000, "time": 1},
         GOOD | {"entity": "x" * 300},
         GOOD | {"time": float("nan")},
         GOOD | {"time": None},

@@ -4,10 +4,11 @@ import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from live_missions import EAST, WEST
-from test_sharing import MISSION, Node
+from test_sharing import MISSION, Node, World
 
 from adapters.plugin import Delivered
 from adapters.stations.entries import Entry, Posted, Said
@@ -16,6 +17,17 @@ from adapters.stations.peers import peers_of
 
 NAMES = ("gcs0", "gcs1", "gcs2")
 TABLE = {name: {"connect": [f"tcp/127.0.0.1:{port}"]} for port, name in enumerate(NAMES, 1)}
+
+
+class Reader(World):
+    """A run that looks, whenever a parcel comes, whether all is known that its sender knew."""
+
+    def report(self, report):
+        super().report(report)
+        if isinstance(report, Delivered):
+            for station, entity, number in report.parcel:
+                known = self.words.get(entity, {}).get(station)
+                assert station == self.station or (known is not None and known.number >= number)
 
 
 class Wire:
@@ -34,6 +46,8 @@ class Company:
     def __init__(self, folder):
         self.nodes = {name: Node(peers_of(TABLE, name, folder), folder) for name in NAMES}
         for node in self.nodes.values():
+            node.world.__class__ = Reader
+            node.world.words, node.world.station = node.sharing.merge.words, node.journal.station
             node.sharing._world = node.world
         self.under_way = []
 
@@ -56,7 +70,9 @@ class Company:
         mine, theirs = self.nodes[name].sharing, self.nodes[of].sharing
         other = mine.others[of]
         answer = theirs._answer("", b'{"after": %d}' % other.heard)
-        return mine._told(self.nodes[name].world, of, mine._read(of, answer), self.nodes[name].world.now())
+        more = mine._told(self.nodes[name].world, of, mine._read(of, answer), self.nodes[name].world.now())
+        mine._deliver()
+        return more
 
 
 @contextmanager
@@ -80,8 +96,13 @@ def happens(data, company):
     if what == "see":
         node.see(data.draw(st.sampled_from(["boat0", "boat1"])), data.draw(st.sampled_from([WEST, EAST])))
     elif what == "post":
+        words = node.sharing.merge.words.values()
+        rests_on = [
+            (entry.station, entry.content.entity, entry.number) for each in words for entry in each.values()
+        ]
+        knows = tuple((each, known.last) for each, known in node.sharing.others.items() if each != other)
         number = node.journal.sent(other) + 1
-        node.sharing._add([Posted(other, number, {"from": name})])
+        node.sharing._add([Posted(other, number, rests_on, tuple(known for known in knows if known[1]))])
     elif what == "put":
         company.put(name, data.draw(st.tuples(FATES, FATES)))
     elif what == "ask":
@@ -111,6 +132,34 @@ def test_whatever_was_lost_doubled_or_reordered_all_come_to_one_world(data):
                     told = [each.number for each in node.world.of(Delivered) if each.station == other]
                     assert told == list(range(1, sent + 1))  # in order, and once as long as nobody asks again
         assert worlds[0] == worlds[1] == worlds[2]
+
+
+def test_a_parcel_enters_after_what_its_sender_had_said_before():
+    with company_of_three() as company:
+        gcs0, gcs1 = company.nodes["gcs0"], company.nodes["gcs1"]
+        gcs0.see("boat0", WEST)
+        company.put("gcs0", ("lost", "lost"))
+        gcs0.sharing._add([Posted("gcs1", 1, [])])
+        company.put("gcs0", ("at once", "lost"))
+        assert (gcs1.world.of(Delivered), gcs1.world.at("boat0")) == ([], None)
+        company.ask("gcs1", "gcs0")
+        assert ([each.number for each in gcs1.world.of(Delivered)], gcs1.world.at("boat0")) == ([1], WEST)
+
+
+@pytest.mark.parametrize("reached", [True, False])
+def test_a_parcel_enters_after_what_its_sender_had_heard_of_others_that_can_be_reached(reached):
+    with company_of_three() as company:
+        gcs0, gcs1, gcs2 = company.nodes.values()
+        gcs0.see("boat0", WEST)
+        company.put("gcs0", ("at once", "lost"))
+        gcs2.sharing.others["gcs0"].reached = reached
+        known = gcs1.sharing.others["gcs0"].last
+        gcs1.sharing._add([Posted("gcs2", 1, [], (("gcs0", known),))])
+        company.put("gcs1", ("lost", "at once"))
+        assert len(gcs2.world.of(Delivered)) == (0 if reached else 1)
+        company.ask("gcs2", "gcs0")
+        assert len(gcs2.world.of(Delivered)) == 1
+        assert gcs2.world.at("boat0") == WEST
 
 
 def test_a_message_tells_up_to_where_it_is_whole():
@@ -148,7 +197,7 @@ def read_or_none(data):
 def test_no_change_of_a_message_breaks_more_than_itself(data):
     with company_of_three() as company:
         company.nodes["gcs0"].see("boat0", WEST)
-        company.nodes["gcs0"].sharing._add([Posted("gcs1", 1, {"x": 1})])
+        company.nodes["gcs0"].sharing._add([Posted("gcs1", 1, [])])
         said = company.nodes["gcs0"].sharing._answer("", b'{"after": 0}').decode()
         for _ in range(data.draw(st.integers(1, 3))):
             at = data.draw(st.integers(0, 999)) % len(said)

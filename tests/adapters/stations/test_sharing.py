@@ -159,7 +159,7 @@ def test_a_parcel_comes_again_until_it_is_taken_and_the_acknowledgement_ends_it(
             told = [(each.number, each.parcel) for each in gcs1.world.of(Delivered)]
             assert told[:4] == [(1, parcels[0]), (2, parcels[1])] * 2
             gcs1.sharing._add([Took("gcs0", 2)])
-            gcs1.sharing._drop("gcs0", 2)
+            gcs1.sharing.others["gcs0"].drop(2)
             await until(lambda: gcs0.journal.waiting("gcs1") == 0)
             before = len(gcs1.world.of(Delivered))
             await asyncio.sleep(1.2)
