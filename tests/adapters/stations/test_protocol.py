@@ -74,6 +74,13 @@ class Company:
         mine._deliver()
         return more
 
+    def meet(self):
+        """Let each ask each, until there is nothing more to ask for."""
+        for name in NAMES:
+            for other in NAMES:
+                while name != other and self.ask(name, other):
+                    pass
+
 
 @contextmanager
 def company_of_three():
@@ -117,10 +124,7 @@ def test_whatever_was_lost_doubled_or_reordered_all_come_to_one_world(data):
     with company_of_three() as company:
         for _ in range(data.draw(st.integers(0, 40))):
             happens(data, company)
-        for name in NAMES:
-            for other in NAMES:
-                while name != other and company.ask(name, other):
-                    pass
+        company.meet()
         worlds = [
             {entity: node.world.at(entity) for entity in ("boat0", "boat1")}
             for node in company.nodes.values()
@@ -137,6 +141,7 @@ def test_whatever_was_lost_doubled_or_reordered_all_come_to_one_world(data):
 def test_a_parcel_enters_after_what_its_sender_had_said_before():
     with company_of_three() as company:
         gcs0, gcs1 = company.nodes["gcs0"], company.nodes["gcs1"]
+        company.meet()
         gcs0.see("boat0", WEST)
         company.put("gcs0", ("lost", "lost"))
         gcs0.sharing._add([Posted("gcs1", 1, [])])
@@ -150,6 +155,7 @@ def test_a_parcel_enters_after_what_its_sender_had_said_before():
 def test_a_parcel_enters_after_what_its_sender_had_heard_of_others_that_can_be_reached(reached):
     with company_of_three() as company:
         gcs0, gcs1, gcs2 = company.nodes.values()
+        company.meet()
         gcs0.see("boat0", WEST)
         company.put("gcs0", ("at once", "lost"))
         gcs2.sharing.others["gcs0"].reached = reached
