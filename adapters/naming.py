@@ -1,7 +1,9 @@
 """The naming service: which entity of the mission an identity of the world is, and that no two share a name.
 
-An identity is a kind of number and the number: `mavlink:1` (a system id), `mmsi:244660274`, or `name:oilSpill1` of what
-already comes with one. The mission's own table goes first; what it doesn't name is named by its identity.
+An identity is a kind of number and the number: `mavlink:1` (a system id), `serial:2F003B` (an autopilot's own),
+`mmsi:244660274`, or `name:oilSpill1` of what already comes with one. The mission's own table goes first; what it
+doesn't name is named by its identity. Own vehicles and the places that never move have their names before anything is
+heard: nobody else can take them.
 """
 
 from __future__ import annotations
@@ -26,13 +28,16 @@ class NamingService:
 
     Arguments:
         table: The mission's own names, by identity.
+        own: Names that are taken: whose vehicles and places they are, by identity (`mavlink:1`, `place:harbour0`).
 
-    Raises NameClash where the table gives one name to two identities, PhysicalError where it has no identity.
+    Raises NameClash where two identities get one name, PhysicalError where the table has no identity.
     """
 
-    def __init__(self, table: Mapping[str, str] | None = None) -> None:
+    def __init__(self, table: Mapping[str, str] | None = None, own: Mapping[str, str] | None = None) -> None:
         self._names: dict[str, str] = {}
         self._identities: dict[str, str] = {}
+        for identity, name in (own or {}).items():
+            self._give(identity, name)
         for identity, name in sorted((table or {}).items()):
             _check(identity)
             self._give(identity, name)

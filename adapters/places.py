@@ -8,7 +8,7 @@ from typing import Final
 
 from adapters.plugin import Command, Gone, Refused, World
 from adapters.troubles import Troubles
-from physical import PhysicalError, PhysicalProperty, read_geojson, read_plan, read_waypoints, waypoint_places
+from physical import PhysicalError, PhysicalProperty, read_places
 
 EVERY: Final = 1.0
 """Seconds between two looks at the file."""
@@ -61,25 +61,13 @@ class StaticPlaces:
         if stamp == self._seen:
             return
         self._seen = stamp
-        places = {place.entity: place for place in _places(self._path)}
+        places = {place.entity: place for place in read_places(self._path.suffix, _read(self._path))}
         for name in sorted(self._known.keys() - places.keys()):
             world.publish(Gone(name, world.now(), self._name))
         for name, place in places.items():
             if self._known.get(name) != place:
                 world.publish(place)
         self._known = places
-
-
-def _places(path: Path) -> tuple[PhysicalProperty, ...]:
-    if path.suffix == ".waypoints":
-        return waypoint_places(read_waypoints(_text(path)))
-    if path.suffix == ".plan":
-        return waypoint_places(read_plan(_text(path)))
-    return read_geojson(_read(path))
-
-
-def _text(path: Path) -> str:
-    return _read(path).decode("utf-8", errors="replace")  # what isn't text is refused with its line
 
 
 def _stamp(path: Path) -> tuple[int, int, int]:

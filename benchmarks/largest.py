@@ -8,7 +8,7 @@ import argparse
 import json
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import oil_spill
@@ -29,19 +29,57 @@ COUNTS = {
 Row = dict[str, object]
 
 
-def climb(family: str, missions: dict[str, str], limits: tuple[str, ...]) -> Iterator[Row]:
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What one search may take."""
+
+    minutes: float
+    gigabytes: float
+
+    def have_room(self, wanted: float, before: Explored) -> bool:
+        """Tell whether so many configurations may find room and time, if each takes what it took before."""
+        memory = wanted * (before.bytes_per_configuration or 0)
+        return memory < self.gigabytes * 1e9 and wanted / before.rate < self.minutes * 60
+
+    def options(self) -> tuple[str, ...]:
+        """Return them as `ours.py` takes them."""
+        return ("--minutes", str(self.minutes), "--gigabytes", str(self.gigabytes))
+
+
+def climb(family: str, missions: dict[str, str], limits: Limits) -> Iterator[Row]:
     """Explore missions, each larger than the one before: in full until a limit is met, from there on reduced."""
-    reduced = False
+    reduced, found = False, list[Explored]()
     for name, text in missions.items():
         if not reduced:
-            found = explored(text, "--engine", "fast", *limits)
-            yield _row(family, name, found, reduced=False)
-            reduced = bool(found.bounds)
+            found.append(_search(name, text, limits, found, reduced=False))
+            yield _row(family, name, found[-1], reduced=False)
+            if found[-1].bounds:
+                reduced, found = True, []
         if reduced:
-            found = explored(text, "--engine", "reference", "--reduce", *limits)
-            yield _row(family, name, found, reduced=True)
-            if found.bounds:
+            found.append(_search(name, text, limits, found, reduced=True))
+            yield _row(family, name, found[-1], reduced=True)
+            if found[-1].bounds:
                 return
+
+
+def _search(name: str, text: str, limits: Limits, before: list[Explored], *, reduced: bool) -> Explored:
+    """Search, unless the last two searches let expect far more than there is room for."""
+    wanted = expected(before)
+    if wanted is not None and not limits.have_room(wanted, before[-1]):
+        say(f"{name}: some {wanted:.1g} configurations are expected")
+        return Explored(0, 0, [f"not tried: some {wanted:.0e} expected"], 0.0)
+    return explored(text, "--engine", "fast", *(["--reduce"] if reduced else []), *limits.options())
+
+
+def expected(before: Sequence[Explored]) -> float | None:
+    """Return how many configurations the next search may have, if it grows as the last one did.
+
+    >>> expected([Explored(10, 0, [], 0.0), Explored(300, 0, [], 0.0)])
+    9000.0
+    """
+    if len(before) < 2:
+        return None
+    return before[-1].configurations ** 2 / before[-2].configurations
 
 
 def _row(family: str, name: str, found: Explored, *, reduced: bool) -> Row:
@@ -52,7 +90,9 @@ def _row(family: str, name: str, found: Explored, *, reduced: bool) -> Row:
     say(
         f"{name}, {how}: {found.configurations:,}, {', '.join(found.bounds) or 'complete'}, {found.seconds:.1f} s"
     )
-    return {"family": family, "name": name, "reduced": reduced, "complete": not found.bounds} | asdict(found)
+    ended = ", ".join(found.bounds) or "complete"
+    row = {"family": family, "name": name, "reduced": reduced, "complete": not found.bounds, "ended": ended}
+    return row | asdict(found)
 
 
 def largest(rows: Sequence[Row]) -> dict[str, Row]:
@@ -96,13 +136,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--robots", type=int, default=12, help="at most (default 12)")
     parser.add_argument("--output", type=Path, default=RESULTS, help="where the figures are kept")
     given = parser.parse_args(arguments)
-    limits = ("--minutes", str(given.minutes), "--gigabytes", str(given.gigabytes))
+    limits = Limits(given.minutes, given.gigabytes)
     machine, rows = describe(), []
     for family, missions in families(given.uavs, given.spills, given.robots).items():
         rows += climb(family, missions(), limits)
     kept = {
         "machine": machine,
-        "limits": {"minutes": given.minutes, "gigabytes": given.gigabytes},
+        "limits": asdict(limits),
         "largest": {name: row["name"] for name, row in largest(rows).items()},
         "searches": rows,
     }

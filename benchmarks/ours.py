@@ -120,13 +120,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("mission", type=Path, metavar="FILE")
     parser.add_argument("--engine", choices=("fast", "reference"), default="fast")
-    parser.add_argument(
-        "--reduce", action="store_true", help="by partial order; the reference engine does it"
-    )
+    parser.add_argument("--reduce", action="store_true", help="by partial order")
+    parser.add_argument("--cores", type=int, help="on how many cores at most")
     parser.add_argument("--minutes", type=float, help="how long at most")
     parser.add_argument("--gigabytes", type=float, help="how much memory at most")
     parser.add_argument("--marks", help="numbers of configurations at which to look, and stop at the last")
     given = parser.parse_args(arguments)
+    if given.cores is not None:
+        os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: given.cores])
     with Compiling() as compiled:
         import checker.fast.explorer  # noqa: F401, PLC0415  # its time is measured, apart from the search's
 

@@ -23,7 +23,8 @@ RESULTS = Path(__file__).parent / "results" / "patrol.json"
 FEW = 20_000
 """Up to so many configurations the reference engine takes part."""
 
-FAST, REFERENCE, SPIN = "bigactors, fast", "bigactors, reference", "SPIN, no reduction"
+FAST, ONE_CORE = "bigactors, fast", "bigactors, fast, one core"
+REFERENCE, SPIN = "bigactors, reference", "SPIN, no reduction"
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +81,7 @@ def measure(size: Size, turns: int) -> dict[str, list[Run]]:
         model = prepared(promela_text(size.agents, size.side, size.handover), Path(folder))
         tools: dict[str, Callable[[], Run]] = {
             FAST: lambda: explored(size.text),
+            ONE_CORE: lambda: explored(size.text, "--cores", "1"),
             SPIN: lambda: searched(model),
         }
         if size.counts is not None and size.counts[0] <= FEW:
@@ -97,7 +99,7 @@ def _assert_counts(size: Size, runs: dict[str, list[Run]]) -> None:
     counts = {(run.configurations, run.transitions) for several in runs.values() for run in several}
     if len(counts) != 1 or size.counts not in (None, *counts):
         raise SystemExit(f"{size}: the counts are {sorted(counts)}, and should all be {size.counts}")
-    for run in runs[FAST]:
+    for run in (*runs[FAST], *runs[ONE_CORE]):
         if isinstance(run, Explored) and run.bounds:
             raise SystemExit(f"{size}: incomplete, {', '.join(run.bounds)}")
 
@@ -108,10 +110,11 @@ def median(runs: Sequence[Run]) -> Run:
     return next(run for run in runs if run.seconds == middle)
 
 
-def ratios(ours: Run, peer: Run) -> dict[str, float]:
-    """Return how many times SPIN's rate ours is, and what part of its memory ours takes."""
+def ratios(ours: Run, alone: Run, peer: Run) -> dict[str, float]:
+    """Return how many times SPIN's rate ours is, on all cores and on one, and what part of its memory it takes."""
     return {
         "configurations_per_second": peer.seconds / ours.seconds,
+        "on_one_core": peer.seconds / alone.seconds,
         "memory": ours.memory / peer.memory,
         "search_alone": peer.seconds / (getattr(ours, "searching", None) or ours.seconds),
     }
@@ -124,7 +127,7 @@ def result(size: Size, runs: dict[str, list[Run]]) -> dict[str, object]:
         "size": str(size),
         "configurations": medians[FAST].configurations,
         "transitions": medians[FAST].transitions,
-        "ratio_to_spin": ratios(medians[FAST], medians[SPIN]),
+        "ratio_to_spin": ratios(medians[FAST], medians[ONE_CORE], medians[SPIN]),
         "median": {name: figures(run) for name, run in medians.items()},
         "turns": {name: [asdict(run) for run in several] for name, several in runs.items()},
     }

@@ -27,6 +27,7 @@ def patrol_tables(kept: Kept) -> str:
             each["size"],
             f"{each['configurations']:,}",
             f"{each['ratio_to_spin']['configurations_per_second']:.2f}",
+            f"{each['ratio_to_spin']['on_one_core']:.2f}",
             f"{each['ratio_to_spin']['search_alone']:.2f}",
             f"{each['ratio_to_spin']['memory']:.2f}",
         )
@@ -38,7 +39,7 @@ def patrol_tables(kept: Kept) -> str:
     ]
     heads = (
         "UAVs, grid|tool|configurations|transitions|seconds|configurations/s|peak MB|bytes each|rules run in Python",
-        "UAVs, grid|configurations|rate, SPIN's = 1|with all learned|memory, SPIN's = 1",
+        "UAVs, grid|configurations|rate, SPIN's = 1|on one core|with all learned|memory, SPIN's = 1",
         f"start ({start['size']})|import, load|compile|learn|search, load loops|whole process",
     )
     tables = (_table(head, rows) for head, rows in zip(heads, (tools, beside, phases), strict=True))
@@ -94,7 +95,7 @@ def largest_tables(kept: Kept) -> str:
             f"{row['seconds']:.1f}",
             f"{row['memory']:,.0f}",
             "" if row["rule_runs"] is None else f"{row['rule_runs']:,}",
-            "complete" if row["complete"] else "cut",
+            row["ended"],
         )
         for row in kept["searches"]
     ]

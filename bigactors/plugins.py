@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
-from adapters.addresses import parse_address
-from adapters.ais import AisFeed
-from adapters.detections import Detections
-from adapters.location import LocationService
 from adapters.mavlink.autopilot import Autopilot, Tap
 from adapters.mavlink.fleet import Craft, Stations
+from adapters.mavlink.keys import Keeper
 from adapters.naming import NamingService
-from adapters.places import StaticPlaces
 from adapters.plugin import Plugin
-from adapters.web import Listen
+from bigactors.arguments.links import LIVING
+from bigactors.feeds import feeds_of
+from bigactors.fences import fence_of
 from bigactors.mistakes import Mistake, suggestion
 from bigactors.stations import driven, own_station
 from physical import PhysicalError
+from semantics.physical_model import Placed
 from semantics.reactions import CONTROL_AUTHORITY
 from specs.elaboration import ElaboratedMission
 
@@ -30,25 +29,51 @@ def plugins_of(
 ) -> tuple[tuple[Plugin, ...], dict[str, str]]:
     """Return the plugins of a run, and which of them owns each vehicle; `tap` is told every frame; raises Mistake."""
     try:
-        vehicles = _vehicles(options, mission, tap)
-        naming = NamingService(dict(options.name))
-        feeds = tuple(_feed(kind, address, n, naming) for n, (kind, address) in enumerate(options.feed, 1))
+        crafts = _crafts(options, mission)
+        vehicles = _vehicles(options, mission, crafts, tap)
+        feeds = feeds_of(
+            options, mission, NamingService(dict(options.name), _own_names(options, mission, crafts))
+        )
     except PhysicalError as error:
-        raise Mistake(error.message, error.hint) from error
-    owners = {name: plugin.name for plugin in vehicles for name, _, _ in options.vehicle if plugin.owns(name)}
+        raise Mistake(error.message, error.hint, error.where) from error
+    owners = {name: plugin.name for plugin in vehicles for name in crafts if plugin.owns(name)}
     return (*vehicles, *feeds), owners
 
 
-def _vehicles(options: Namespace, mission: ElaboratedMission, tap: Tap | None) -> tuple[Plugin, ...]:
+def _vehicles(
+    options: Namespace, mission: ElaboratedMission, crafts: dict[str, Craft], tap: Tap | None
+) -> tuple[Plugin, ...]:
     links: dict[str, list[Craft]] = {}
-    for name, system, address in options.vehicle:
-        links.setdefault(address, []).append(_craft(name, system, mission))
+    for name, _, address in options.vehicle:
+        links.setdefault(address, []).append(crafts[name])
     _check_all_driven(options, mission)
     stations = _stations(options, mission)
+    keeper = None if options.key is None else Keeper(Path(options.key))
     return tuple(
-        Autopilot(f"autopilot {address}", address, crafts, stations, tap=tap)
+        Autopilot(f"autopilot {address}", address, crafts, stations, keeper, tap)
         for address, crafts in links.items()
     )
+
+
+def _crafts(options: Namespace, mission: ElaboratedMission) -> dict[str, Craft]:
+    """Return the vehicles that are given, known by what --vehicle or --name says of them."""
+    found: dict[str, Craft] = {}
+    for name, system, _ in options.vehicle:
+        if name in found:
+            raise Mistake(f"'{name}' is given twice", "give each vehicle one --vehicle")
+        found[name] = _craft(name, system, mission)
+    fence = fence_of(options.fence, mission)
+    living = (LIVING | dict(options.time_to_live))["vehicles"]
+    for name, craft in found.items():
+        serial, system = _told(options, "serial", name), _told(options, "mavlink", name)
+        found[name] = replace(
+            craft,
+            system=_system(name, craft.system, system),
+            serial=serial,
+            fence=fence,
+            time_to_live=living,
+        )
+    return found
 
 
 def _craft(name: str, system: int | None, mission: ElaboratedMission) -> Craft:
@@ -64,6 +89,48 @@ def _craft(name: str, system: int | None, mission: ElaboratedMission) -> Craft:
         )
     channels = mission.initial.structure.physical.channels(name)
     return Craft(name, kind, system, tuple(each for each in channels if not _is_authority(each)))
+
+
+def _told(options: Namespace, scheme: str, name: str) -> str | None:
+    """Return the number of a kind that the mission's table gives a name."""
+    found = (identity.partition(":") for identity, called in options.name if called == name)
+    return next((number for of, _, number in found if of == scheme), None)
+
+
+def _system(name: str, given: int | None, told: str | None) -> int | None:
+    """Return the system id of a vehicle, by --vehicle or by --name."""
+    if told is None:
+        return given
+    if not told.isdigit() or not 0 < int(told) < 256:
+        raise Mistake(f"'mavlink:{told:.20}' is no system id", "they are from 1 to 255")
+    if given not in (None, int(told)):
+        raise Mistake(f"'{name}' has two system ids: {given} and {told}", "give it one")
+    return int(told)
+
+
+def _own_names(options: Namespace, mission: ElaboratedMission, crafts: dict[str, Craft]) -> dict[str, str]:
+    """Return the names that nobody else can take: of the vehicles, and of places that never move.
+
+    A place of a kind that detections are told to be of can be detected: where it is otherwise, an assumption breaks.
+    """
+    detected = dict(options.kinds).get("detections", frozenset())
+    own = {
+        f"place:{name}": name
+        for name in sorted(mission.fixed - crafts.keys())
+        if _has_border(name, mission) and mission.setting.kinds[name] not in detected
+    }
+    for name, craft in crafts.items():
+        known = f"serial:{craft.serial}" if craft.serial else f"mavlink:{craft.system}"
+        anonymous = craft.serial is None and craft.system is None
+        own[f"vehicle:{name}" if anonymous or known in own else known] = (
+            name  # ids are unique on one link only
+        )
+    return own
+
+
+def _has_border(name: str, mission: ElaboratedMission) -> bool:
+    at = mission.initial.structure.physical.placement(name)
+    return isinstance(at, Placed) and not at.geometry.is_point
 
 
 def _check_all_driven(options: Namespace, mission: ElaboratedMission) -> None:
@@ -99,40 +166,3 @@ def _stations(options: Namespace, mission: ElaboratedMission) -> Stations:
 
 def _is_authority(channel: str) -> bool:
     return channel.partition(":")[0] == CONTROL_AUTHORITY
-
-
-def _ais(name: str, address: str, naming: NamingService) -> Plugin:
-    return AisFeed(name, address, naming)
-
-
-def _places(name: str, address: str, _naming: NamingService) -> Plugin:
-    return StaticPlaces(name, Path(address.removeprefix("file:")))
-
-
-def _detections(name: str, address: str, naming: NamingService) -> Plugin:
-    scheme, _, rest = address.partition(":")
-    if scheme == "folder" and rest:
-        return Detections(name, folder=Path(rest), naming=naming)
-    listen = parse_address(address.replace("http:", "tcpin:", 1))
-    return Detections(name, listen=Listen(listen.port, listen.host), naming=naming)
-
-
-def _locations(name: str, address: str, naming: NamingService) -> Plugin:
-    return LocationService(name, address, naming=naming)
-
-
-FEEDS: dict[str, Callable[[str, str, NamingService], Plugin]] = {
-    "ais": _ais,
-    "detections": _detections,
-    "locations": _locations,
-    "places": _places,
-}
-"""For each kind of feed what makes its plugin from a name, an address and the names of the mission."""
-
-
-def _feed(kind: str, address: str, number: int, naming: NamingService) -> Plugin:
-    make = FEEDS.get(kind)
-    if make is None:
-        hint = suggestion(kind, FEEDS) or f"the feeds are {', '.join(FEEDS) or 'none in this version'}"
-        raise Mistake(f"there is no feed '{kind:.40}'", hint)
-    return make(f"{kind}{number}", address, naming)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -33,30 +35,39 @@ PARTS = {
 def verdict_json(checked: Checked, engine: str) -> dict[str, Any]:
     """Return the verdict on a mission as plain data."""
     report, mission = checked.report, checked.mission
-    return {
-        "schema": SCHEMA,
-        "mission": checked.name,
-        "version": __version__,
-        "engine": engine,
-        "scheduler": mission.setting.scheduler.value,
-        "control": mission.setting.control.value,
-        "digest": checked.digest,
-        "parts": parts_of(mission),
-        "holds": report.exit_code == 0,
-        "complete": report.complete,
-        "configurations": report.configurations,
-        "transitions": report.transitions,
-        "properties": [
-            {
-                "name": verdict.property.name,
-                "kind": verdict.property.kind,
-                "verdict": verdict.outcome.value,
-                "note": verdict.note,
-                "rests_on": "text" if verdict.note.startswith("by ownership") else "environment",
-            }
-            for verdict in report.verdicts
-        ],
-    }
+    return _sealed(
+        {
+            "schema": SCHEMA,
+            "mission": checked.name,
+            "version": __version__,
+            "engine": engine,
+            "scheduler": mission.setting.scheduler.value,
+            "control": mission.setting.control.value,
+            "digest": checked.digest,
+            "parts": parts_of(mission),
+            "holds": report.exit_code == 0,
+            "complete": report.complete,
+            "configurations": report.configurations,
+            "transitions": report.transitions,
+            "properties": [
+                {
+                    "name": verdict.property.name,
+                    "kind": verdict.property.kind,
+                    "verdict": verdict.outcome.value,
+                    "note": verdict.note,
+                    "rests_on": "text" if verdict.note.startswith("by ownership") else "environment",
+                }
+                for verdict in report.verdicts
+            ],
+        }
+    )
+
+
+def _sealed(data: dict[str, Any]) -> dict[str, Any]:
+    """Add a digest of all that a verdict says: that it was changed by hand is seen, whatever part it was."""
+    said = {name: value for name, value in data.items() if name != "seal"}
+    text = json.dumps(said, sort_keys=True, ensure_ascii=True)
+    return {**said, "seal": "sha256:" + hashlib.sha256(text.encode("ascii")).hexdigest()}
 
 
 def parts_of(mission: ElaboratedMission) -> dict[str, str]:
@@ -113,6 +124,8 @@ def licence_for(name: str, path: str, variation: Variation) -> Licence:
         raise Mistake(
             "the verdict is not that everything holds", f"bigactors check {name} says what fails", path
         )
+    if data.get("seal") != _sealed(data)["seal"]:
+        raise Mistake("the verdict was changed after it was reached", _hint(name, path), path)
     properties = data.get("properties")
     listed = properties if isinstance(properties, list) else []
     resting = tuple(str(each.get("name")) for each in listed if each.get("rests_on") == "environment")

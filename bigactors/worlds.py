@@ -7,18 +7,17 @@ from pathlib import Path
 
 from bigactors.files import read_bytes
 from bigactors.mistakes import Mistake
-from physical import GeoJSONError, PhysicalError, PhysicalProperty, box, check_places, contains, read_geojson
+from physical import GeoJSONError, PhysicalError, PhysicalProperty, box, check_places, contains, read_places
 from physical.ais_recording import Counts, read_recording
 from physical.ais_world import world_at
 from physical.geojson import MAX_BYTES
+from physical.place_files import PLACES
 from semantics.configuration import Configuration
 from semantics.initial import initial
 from semantics.physical_model import Carried, Placed, Placement
 from semantics.program import Program
 from semantics.setting import Setting
 from semantics.signature import REGION, Kind, Signature
-
-GEOJSON = (".geojson", ".json")
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +47,7 @@ def read_world(
     within: tuple[float, float, float, float] | None = None,
     kinds: Iterable[str] = (),
 ) -> World:
-    """Read GeoJSON files and AIS recordings; raises Mistake.
+    """Read files of places and AIS recordings; raises Mistake.
 
     Args:
         paths: The files.
@@ -65,19 +64,22 @@ def read_world(
                 raise Mistake(f"{each.entity} is in {origins[each.entity]} too", "names are unique", path)
             found[each.entity], origins[each.entity] = each, path
     if time is not None and not accounts:
-        raise Mistake("--at is a time of a recording", "GeoJSON files have no times: leave it out")
+        raise Mistake("--at is a time of a recording", "files of places have no times: leave it out")
     kept = tuple(_kept(found, within, frozenset(kinds)))
     return World(tuple(sorted(kept, key=lambda each: each.entity)), tuple(accounts), len(found) - len(kept))
 
 
 def _read(path: str, time: float | None, accounts: list[tuple[str, Counts]]) -> tuple[PhysicalProperty, ...]:
     try:
-        if Path(path).suffix.lower() in GEOJSON:
-            return read_geojson(read_bytes(path, MAX_BYTES))
+        suffix = Path(path).suffix.lower()
+        if suffix in PLACES:
+            return read_places(suffix, read_bytes(path, MAX_BYTES))
         recording = read_recording(path)
         if recording.counts.lines and not recording.counts.sentences:
             found = f"none of its {recording.counts.lines:,} lines is an AIS sentence"
-            raise Mistake(found, "give an AIS recording, or GeoJSON in a file called .geojson or .json", path)
+            raise Mistake(
+                found, f"give an AIS recording, or places in a file called {', '.join(PLACES)}", path
+            )
         accounts.append((path, recording.counts))
         return world_at(recording, time)
     except GeoJSONError as error:
@@ -86,7 +88,8 @@ def _read(path: str, time: float | None, accounts: list[tuple[str, Counts]]) -> 
             error.message, place=path, rendered="\n".join(f"{path}: {line}" for line in said.split("\n"))
         ) from error
     except PhysicalError as error:
-        raise Mistake(error.message, error.hint, path) from error
+        where = f"{path}: {error.where}" if error.where else path
+        raise Mistake(error.message, error.hint, where) from error
 
 
 def _said(problem: PhysicalError) -> str:

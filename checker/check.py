@@ -75,7 +75,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
         notes: What the report is to say besides.
         engine: How to explore; by default whichever is quicker for the mission's size.
         violations: Of each property so many different ones are shown at the most, each with a shortest trace.
-        reduce: What may let it visit less: the reference explorer, the only one that reduces.
+        reduce: What may let it visit less; by symmetry only the reference explorer can.
         keeping: What the fast explorer keeps on the way, and what it doubts; where it is said, that one explores.
 
     Raises:
@@ -85,8 +85,9 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     asked, limits = tuple(properties), limits or Limits()
     formulas = [each.formula for each in asked if each.kind in ("invariant", "reachable")]
     reducer = reducing(initial, reduce, formulas)
-    if reducer is not None and engine is Engine.FAST:
-        raise RefusedError(reducer.names[0], "the fast explorer does not reduce; leave --engine out")
+    symmetric = reducer is not None and reducer.symmetry is not None
+    if symmetric and engine is Engine.FAST:
+        raise RefusedError(Reduction.SYMMETRY, "only the reference explorer knows it; leave --engine out")
 
     def run(engine: Engine, limits: Limits) -> Report:
         return _Check(initial, asked, limits, report, engine, violations, reducer, keeping).run(notes)
@@ -94,7 +95,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     if keeping is not None and reducer is None:
         engine = engine or Engine.FAST
     impatient = limits.seconds is None or limits.seconds > PATIENCE
-    if engine is None and reducer is None and impatient:
+    if engine is None and not symmetric and impatient:
         tried = run(Engine.REFERENCE, replace(limits, seconds=PATIENCE))
         late = any(bound.startswith(time_met(PATIENCE)) for bound in tried.bounds)
         return run(Engine.FAST, limits) if late else tried

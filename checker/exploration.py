@@ -18,6 +18,7 @@ from semantics.successors import Expansion, expand
 
 if TYPE_CHECKING:
     from checker.fast.survey import Survey
+    from checker.reduction.ample import Ample
 
 MOST_PENDING = 64
 """Requests of one agent, or messages in one mailbox, beyond which a configuration is not explored further."""
@@ -88,6 +89,10 @@ class Engine(Enum):
 
 class Reducer(Protocol):
     """What lets an exploration visit less: see `checker.reduction`."""
+
+    @property
+    def ample(self) -> "Ample | None":
+        """What chooses the transitions that are followed, None where all are."""
 
     @property
     def putting_off(self) -> bool:
@@ -189,13 +194,15 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
         every: Seconds.
         engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
         edges: Whether every transition is kept, as temporal properties need; the fast explorer finds them again.
-        reduce: What lets it visit less; only the reference explorer can.
+        reduce: What lets it visit less; by symmetry only the reference explorer can.
         keeping: What the fast explorer keeps on the way, and what it doubts.
     """
     if engine is Engine.FAST:
         from checker.fast.explorer import explore_fast  # noqa: PLC0415  # numba takes its time to load
 
-        return explore_fast(initial, tuple(inspect), limits or Limits(), report, every, keeping or Keeping())
+        return explore_fast(
+            initial, tuple(inspect), limits or Limits(), report, every, keeping or Keeping(), reduce
+        )
     explorer = _Explorer(initial, tuple(inspect), limits or Limits(), report, every)
     explorer.found.edges = Edges() if edges else None
     if reduce is not None:

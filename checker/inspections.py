@@ -9,6 +9,7 @@ from semantics.patterns import bind
 from semantics.propositions import Proposition, holds
 from semantics.reactions import moved
 from semantics.requests import CTR, FLY, MGR, OBS, SND
+from semantics.setting import Setting
 from semantics.signature import Name
 from semantics.statements import Block, Call, Loop, React
 from semantics.stepping import next_statement
@@ -105,10 +106,14 @@ class DeadlockFreedom:
 
 def is_unfair(c: Configuration, transition: Transition) -> bool:
     """Tell whether a transition is the end of a flight of which the mission doesn't say that it arrives."""
-    if transition.served is None or not isinstance(transition.served.request, FLY):
+    return transition.served is not None and never_ends(c.setting, transition.served.request)
+
+
+def never_ends(setting: Setting, request: object) -> bool:
+    """Tell whether a request is a flight of which the mission doesn't say that it arrives."""
+    if not isinstance(request, FLY):
         return False
-    fly = transition.served.request
-    return not all(node in c.setting.arriving for node, _ in moved(fly.reaction, fly.match))
+    return not all(node in setting.arriving for node, _ in moved(request.reaction, request.match))
 
 
 def stuck_requests(c: Configuration) -> list[str]:

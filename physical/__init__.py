@@ -11,6 +11,7 @@ from physical.errors import GeometryError, PhysicalError
 from physical.geojson import GeoJSONError, read_geojson, write_geojson
 from physical.measure import area, centroid, distance, interior_point, waypoint
 from physical.mobility import JoinChannel, LeaveChannel, MobilityCommand, Waypoint, go_to, rechannel
+from physical.place_files import read_places
 from physical.placement import nearest_placement, translate_to
 from physical.plan import read_plan, write_plan
 from physical.property import PhysicalProperty, Velocity
@@ -53,6 +54,7 @@ __all__ = [
     "point",
     "polygon",
     "read_geojson",
+    "read_places",
     "read_plan",
     "read_waypoints",
     "rechannel",

@@ -7,7 +7,7 @@ from physical import waypoint
 from semantics.configuration import Configuration
 from semantics.control import Realisation, commits
 from semantics.physical_model import Carried, InTransit, Placed, placement_cell
-from semantics.reactions import CONTROL_AUTHORITY, relinked
+from semantics.reactions import CONTROL_AUTHORITY, moved, relinked
 from semantics.requests import CTR, FLY
 from semantics.signature import Name
 
@@ -49,6 +49,28 @@ def hand_overs(
         if node in vehicles and leave and join:
             told.append(HandOver("", node, leave, join))
     return tuple(told)
+
+
+def unshown(c: Configuration, request: CTR, found: Realisation, vehicles: frozenset[Name]) -> str:
+    """Return what of a control nothing would ever show to be done; nothing if all of it is seen or confirmed.
+
+    What travels is seen to arrive, and a vehicle shows whom it obeys. That a load was put down, or a channel joined,
+    nobody tells.
+    """
+    travelling = {node for node, _ in found.flying}
+    for node, place in moved(request.reaction, found.match):
+        if node not in travelling:
+            return f"nothing shows that {node} is put into {place}"
+    for node, lost, gained in relinked(request.reaction, found.match, c.structure.logical):
+        handed = node in vehicles and all(map(is_authority, lost | gained)) and len(lost) == len(gained) == 1
+        if not lost and gained.issubset(c.structure.logical.links(node)):
+            continue
+        if not handed or travelling:
+            while_flying = " while others travel" if travelling else ""
+            return (
+                f"nothing shows that {node} joins or leaves {', '.join(sorted(lost | gained))}{while_flying}"
+            )
+    return ""
 
 
 def _authority(channels: frozenset[Name]) -> Name:

@@ -7,7 +7,7 @@ from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import replace
 
-from adapters.live.orders import destination, hand_overs, is_authority, is_done
+from adapters.live.orders import destination, hand_overs, is_authority, is_done, unshown
 from adapters.live.serving import PATIENCE, STEPS_PER_SECOND, in_turn, own_steps, refilled, served
 from adapters.live.sightings import Fences, placement_seen
 from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Outgoing, Pace, Plan, Turn
@@ -244,6 +244,11 @@ class Turning:
         self, request: CTR, way: Realisation, found: tuple[Transition, ...]
     ) -> tuple[tuple[Transition, ...], bool]:
         """Give the orders that a control takes, and return it once it may be taken."""
+        vehicles = frozenset(self.plan.vehicles)
+        unseen = unshown(self.c, request, way, vehicles)
+        if unseen:
+            self.find("blocked", request.agent, f"{request}: {unseen}; it stays pending", once=True)
+            return (), True
         for node, _ in way.flying:
             if not self._hears(node):
                 return (), False
@@ -255,7 +260,6 @@ class Turning:
                 self.orders[node] = Order(going, request.agent, self.now)
                 self.commands.append(going)
             return found, False
-        vehicles = frozenset(self.plan.vehicles)
         waiting = [told for told in hand_overs(self.c, request, way, vehicles) if not self._confirmed(told)]
         for told in waiting:
             self._hand_over(told, request.agent)

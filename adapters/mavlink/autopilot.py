@@ -6,26 +6,24 @@ import asyncio
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Final
 
 from adapters.addresses import parse_address
 from adapters.mavlink import pilot as piloting
-from adapters.mavlink import signing
+from adapters.mavlink import roster as rosters
 from adapters.mavlink.codec import Decoder, Encoder, Garbage
 from adapters.mavlink.fleet import Craft, Stations
+from adapters.mavlink.keys import Keeper
 from adapters.mavlink.message import Message, say
-from adapters.mavlink.numbers import (
-    AUTOPILOT_COMPONENT,
-    GROUND_COMPONENT,
-    GROUND_STATION,
-    NO_AUTOPILOT,
-)
+from adapters.mavlink.numbers import GROUND_COMPONENT, GROUND_STATION, NO_AUTOPILOT
+from adapters.mavlink.objections import unfit
 from adapters.mavlink.pilot import Outcome, Pilot
-from adapters.plugin import Command, Refused, World
+from adapters.mavlink.roster import Roster
+from adapters.mavlink.signing import Verdict
+from adapters.plugin import Command, GoTo, Refused, World
 from adapters.transport import Port, Remote, open_port
 from adapters.troubles import Troubles
-from physical import PhysicalError
+from physical import Geometry, PhysicalError
 
 TICK: Final = 0.2
 HEARTBEAT: Final = 1.0
@@ -47,7 +45,7 @@ class Autopilot:
         address: Where they are heard, such as `udp:127.0.0.1:14550`.
         crafts: The vehicles that are expected there.
         stations: Who may command them.
-        key_file: Where the signing key stands (see `signing.save`); unsigned packets are not believed then.
+        keeper: The signing key, if packets are signed; unsigned ones are not believed then.
         tap: Is told every frame.
 
     Raises PhysicalError where two vehicles cannot be told apart.
@@ -59,16 +57,16 @@ class Autopilot:
         address: str,
         crafts: Sequence[Craft],
         stations: Stations | None = None,
-        key_file: Path | None = None,
+        keeper: Keeper | None = None,
         tap: Tap | None = None,
     ) -> None:
         self._stations = stations or Stations()
         _check_crafts(crafts, self._stations)
         self._name = name
         self._address = parse_address(address)
-        self._pilots = {craft.entity: Pilot(craft, self._stations, craft.system or 0) for craft in crafts}
-        self._key_file = key_file
-        self._signing = signing.load(key_file) if key_file else None
+        self._pilots = {craft.entity: Pilot(craft, self._stations, _bound(craft)) for craft in crafts}
+        self._roster = Roster()
+        self._keeper = keeper
         self._tap = tap
         self._decoders: OrderedDict[Remote, Decoder] = OrderedDict()
         self._encoders: dict[int, Encoder] = {}
@@ -94,6 +92,11 @@ class Autopilot:
     def local(self) -> Remote | None:
         """Where it listens, once it does."""
         return self._port.local if self._port else None
+
+    def objection(self, entity: str, place: Geometry, name: str) -> str | None:
+        """Return why a place is none for a vehicle, as far as its kind is known; None if nothing is against it."""
+        pilot = self._pilots[entity]
+        return unfit(GoTo("", entity, place, name=name), pilot.craft, pilot.known.profile)
 
     async def command(self, command: Command) -> None:
         """Take on a command; raises Refused."""
@@ -131,12 +134,12 @@ class Autopilot:
         return decoder
 
     def _believed(self, message: Message) -> bool:
-        if self._signing is None:
+        if self._keeper is None:
             return True
-        self._signing, verdict = signing.check(self._signing, message)
-        if verdict is not signing.Verdict.GOOD:
+        verdict = self._keeper.judge(message)
+        if verdict is not Verdict.GOOD:
             self._troubles.note(verdict.value, f"{message.name} of system {message.system}")
-        return verdict is signing.Verdict.GOOD
+        return verdict is Verdict.GOOD
 
     def _hear(self, remote: Remote, message: Message) -> None:
         assert self._world is not None
@@ -146,7 +149,7 @@ class Autopilot:
         if message.system in self._stations.ids.values() or message.fields.get("type") == GROUND_STATION:
             self._overheard(message)
             return
-        pilot = self._pilot_of(message)
+        pilot = self._pilot_of(message, remote, now)
         if pilot is None or not self._is_for_us(message):
             return
         self._routes[message.system] = remote
@@ -161,18 +164,18 @@ class Autopilot:
     def _is_for_us(self, message: Message) -> bool:
         return message.target in (0, *(self._stations.ids[name] for name in self._stations.own))
 
-    def _pilot_of(self, message: Message) -> Pilot | None:
-        if message.system == 0 or message.component != AUTOPILOT_COMPONENT:
-            return None
-        known = next((pilot for pilot in self._pilots.values() if pilot.system == message.system), None)
-        if known is not None or message.name != "HEARTBEAT" or message["autopilot"] == NO_AUTOPILOT:
-            return known
-        unbound = next((pilot for pilot in self._pilots.values() if pilot.system == 0), None)
-        if unbound is None:
-            detail = f"system {message.system} is no vehicle of the mission; add it, or keep it off this link"
+    def _pilot_of(self, message: Message, remote: Remote, now: float) -> Pilot | None:
+        found = rosters.find(self._roster, self._pilots.values(), message, now)
+        self._roster = found.roster
+        if found.question is not None:
+            for name in self._stations.own:  # it may obey any of them, and only that
+                self._send(replace(found.question, system=self._stations.ids[name]), remote)
+        if found.stranger:
+            serial = self._roster.serials.get(message.system)
+            called = f"system {message.system}" + (f" with serial number {serial}" if serial else "")
+            detail = f"{called} is no vehicle of the mission; add it, or keep it off this link"
             self._troubles.note("unknown vehicle", detail)
-            return None
-        return replace(unbound, system=message.system)
+        return found.pilot
 
     # --- what is said -----------------------------------------------------------------------------
 
@@ -191,16 +194,15 @@ class Autopilot:
         if self._port is None:
             return
         now = self._world.now()
-        if self._signing is not None:
-            self._signing = signing.stamp(self._signing, now)
-        frame = self._encoder(message.system).pack(message, self._signing.timestamp if self._signing else 0)
+        timestamp = self._keeper.stamp(now) if self._keeper else 0
+        frame = self._encoder(message.system).pack(message, timestamp)
         self._port.send(frame, remote)
         if self._tap:
             self._tap(now, frame)
 
     def _encoder(self, system: int) -> Encoder:
         if system not in self._encoders:
-            key = self._signing.key if self._signing else None
+            key = self._keeper.key if self._keeper else None
             self._encoders[system] = Encoder(system, GROUND_COMPONENT, key)
         return self._encoders[system]
 
@@ -226,8 +228,8 @@ class Autopilot:
             await asyncio.sleep(SAVE)
 
     def _save(self) -> None:
-        if self._signing is not None and self._key_file is not None:
-            signing.save(self._signing, self._key_file)
+        if self._keeper is not None:
+            self._keeper.save()
 
 
 def _heartbeat() -> Message:
@@ -242,8 +244,13 @@ def _heartbeat() -> Message:
     )
 
 
+def _bound(craft: Craft) -> int:
+    """Return the system id by which a vehicle is known from the start, 0 where it has yet to show who it is."""
+    return craft.system or 0 if craft.serial is None else 0
+
+
 def _check_crafts(crafts: Sequence[Craft], stations: Stations) -> None:
-    systems = [craft.system for craft in crafts]
+    systems = [craft.system or craft.serial for craft in crafts]
     if set(systems) & set(stations.ids.values()):
         raise PhysicalError(
             "vehicles", "a vehicle and a station share a system id", "give the station another"
@@ -253,9 +260,9 @@ def _check_crafts(crafts: Sequence[Craft], stations: Stations) -> None:
         raise PhysicalError(
             "vehicles",
             "two vehicles on one link have the same name or system id, or more than one has none",
-            "give each a system id of its own",
+            "give each a system id or a serial number of its own",
         )
-    if any(system is not None and not 0 < system < 256 for system in systems):
+    if any(craft.system is not None and not 0 < craft.system < 256 for craft in crafts):
         raise PhysicalError(
             "vehicles", "a system id is not from 1 to 255", "take the vehicle's own (SYSID_THISMAV)"
         )

@@ -26,6 +26,7 @@ class Craft:
         circle: The radius in metres that it needs to stay somewhere; its kind's if None.
         height: Metres above home at which it travels if nothing else is said; its kind's if None.
         time_to_live: Seconds for which a position of it counts.
+        serial: Its autopilot's serial number in hexadecimal digits: nothing else is taken for it then.
     """
 
     entity: str
@@ -36,6 +37,7 @@ class Craft:
     circle: float | None = None
     height: float | None = None
     time_to_live: float = 30.0
+    serial: str | None = None
 
     def circle_of(self, profile: Profile) -> float:
         """Return the radius that it needs to stay somewhere."""

@@ -24,6 +24,9 @@ GEOFENCE: Final = 0x100000
 """The bit of SYS_STATUS that says that a fence is kept."""
 
 FIX_3D: Final = 3
+AUTOPILOT_VERSION: Final = 148
+"""The number of the message that tells an autopilot's serial number."""
+
 AUTHORITY_PARAMETER: Final = "SYSID_MYGCS"
 """ArduPilot's parameter that says which ground station it obeys."""
 

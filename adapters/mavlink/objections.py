@@ -25,9 +25,18 @@ def _objections(command: Command, craft: Craft, stations: Stations, known: Telem
         yield from _of_hand_over(command, stations, known)
     if isinstance(command, Follow) and not 0 < len(command.path) <= MAX_PATH:
         yield f"a path has 1 to {MAX_PATH} points, this one {len(command.path)}"
-    yield from _of_fence(command, craft, known.profile)
-    if isinstance(command, GoTo) and known.profile is not None:
-        yield from _of_size(command, craft, known.profile)
+    yield from _of_place(command, craft, known.profile)
+
+
+def unfit(command: GoTo, craft: Craft, profile: Profile | None) -> str | None:
+    """Return why a place is none for a vehicle, whoever commands it: it is too small, or outside the fence."""
+    return next(_of_place(command, craft, profile), None)
+
+
+def _of_place(command: Command, craft: Craft, profile: Profile | None) -> Iterator[str]:
+    yield from _of_fence(command, craft, profile)
+    if isinstance(command, GoTo) and profile is not None:
+        yield from _of_size(command, craft, profile)
 
 
 def _of_authority(stations: Stations, known: Telemetry) -> Iterator[str]:

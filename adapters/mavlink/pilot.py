@@ -157,15 +157,22 @@ def _asked(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
     """Ask for the messages that are missing, and whom the vehicle obeys."""
     flow, missing = streams.tick(pilot.streams, pilot.system, now)
     pilot = replace(pilot, streams=flow)
-    every = ASK_AUTHORITY if pilot.known.authority is None else CHECK_AUTHORITY
+    unsure = pilot.known.authority is None or (pilot.handing is not None and not pilot.handing.over)
+    every = ASK_AUTHORITY if unsure else CHECK_AUTHORITY
     if pilot.asked is not None and now - pilot.asked < every:
         return pilot, missing
-    return replace(pilot, asked=now), (*missing, read_parameter(pilot.system, AUTHORITY_PARAMETER))
+    return replace(pilot, asked=now), (*missing, *_who_commands(pilot))
+
+
+def _who_commands(pilot: Pilot) -> tuple[Message, ...]:
+    """Ask as each station: a vehicle may answer only the one that it obeys, and its last answer may be lost."""
+    question = read_parameter(pilot.system, AUTHORITY_PARAMETER)
+    return tuple(replace(question, system=pilot.stations.ids[name]) for name in pilot.stations.own)
 
 
 def _spoken(pilot: Pilot, sent: tuple[Message, ...]) -> tuple[Message, ...]:
     speaker = pilot.stations.speaker(pilot.known.authority)
-    return tuple(replace(message, system=speaker) for message in sent)
+    return tuple(message if message.system else replace(message, system=speaker) for message in sent)
 
 
 def _advance(pilot: Pilot, now: float) -> Outcome:
@@ -233,7 +240,7 @@ def _with_height(pilot: Pilot, task: Task) -> Task:
 def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Published, ...], tuple[Report, ...]]:
     """Publish the vehicle where anything that is shown of it has changed."""
     position, authority = pilot.known.position, pilot.known.authority
-    if position is None:
+    if position is None or pilot.known.profile is None:  # a run begins when it is known what flies
         return replace(pilot, since=None), (), ()
     pilot = replace(pilot, since=now if pilot.since is None else pilot.since)
     shown = (position, authority, pilot.link.lost)

@@ -99,7 +99,7 @@ def load(path: Path) -> Signing:
 
     Raises PhysicalError where the file is no such state.
     """
-    hint = "write it by adapters.mavlink.signing.save, or give the vehicle a new key"
+    hint = "make one: python -m adapters.mavlink.new_key FILE"
     try:
         data = json.loads(path.read_text(encoding="ascii"))
         key, timestamp = bytes.fromhex(data["key"]), int(data["timestamp"])

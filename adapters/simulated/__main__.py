@@ -3,7 +3,9 @@
 import argparse
 import time
 from contextlib import suppress
+from pathlib import Path
 
+from adapters.mavlink.signing import Signing, load
 from adapters.simulated.clock import run
 from adapters.simulated.disturbance import Disturbance
 from adapters.simulated.serving import Simulator
@@ -40,13 +42,19 @@ def arguments() -> argparse.ArgumentParser:
     parser.add_argument(
         "--delay", default=0.0, type=float, metavar="SECONDS", help="the longest delay of a packet"
     )
+    parser.add_argument("--serial", default=b"", type=bytes.fromhex, metavar="HEX", help="serial number")
+    parser.add_argument(
+        "--key", type=Path, metavar="FILE", help="the key file that its packets are signed with"
+    )
     return parser
 
 
 def main() -> None:
     """Fly until interrupted."""
     options = arguments().parse_args()
-    vehicle = Vehicle(Kind[options.kind.upper()], options.home, options.system)
+    signed = Signing(load(options.key).key) if options.key else None
+    vehicle = Vehicle(Kind[options.kind.upper()], options.home, options.system, signing=signed)
+    vehicle.serial = options.serial[:18]
     disturbance = Disturbance(options.loss, delay=(0.0, options.delay))
     simulator = Simulator(options.to, [vehicle], disturbance, epoch=time.time())
     with suppress(KeyboardInterrupt):

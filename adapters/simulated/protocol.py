@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Final
 
 from adapters.mavlink.message import Message, is_for, say
-from adapters.mavlink.numbers import AUTHORITY_PARAMETER, STREAMS, Cmd, MissionType, Result
+from adapters.mavlink.numbers import AUTHORITY_PARAMETER, AUTOPILOT_VERSION, STREAMS, Cmd, MissionType, Result
 from adapters.mavlink.profiles import TakeOff
 from adapters.mavlink.signing import EPOCH, UNITS, Signing, Verdict, check
 from adapters.simulated.body import metres_to
@@ -17,7 +17,9 @@ from physical import PhysicalError, polygon
 
 Answer = list[Message]
 
-_NAMES: Final[Mapping[float, str]] = MappingProxyType({number: name for name, (number, _) in STREAMS.items()})
+_NAMES: Final[Mapping[float, str]] = MappingProxyType(
+    {**{number: name for name, (number, _) in STREAMS.items()}, AUTOPILOT_VERSION: "AUTOPILOT_VERSION"}
+)
 
 FARTHEST: Final = 50_000.0
 """Metres from home beyond which no target is taken."""

@@ -21,6 +21,8 @@ DEFAULT: Final = {
 """Seconds between two of a kind, before anybody asks for others."""
 
 SHORTEST: Final = 0.05
+CAPABILITIES: Final = 2 | 4 | 8 | 8192 | 16384
+"""MAV_PROTOCOL_CAPABILITY: float parameters, MISSION_INT, COMMAND_INT, MAVLink 2, fences by the mission protocol."""
 
 
 class Reporter:
@@ -182,6 +184,14 @@ def _home(vehicle: Vehicle) -> Message:
     )
 
 
+def _version(vehicle: Vehicle) -> Message:
+    numbers = ["capabilities", "flight_sw_version", "middleware_sw_version", "os_sw_version", "board_version"]
+    nothing: dict[str, Any] = dict.fromkeys([*numbers, "vendor_id", "product_id", "uid"], 0)
+    custom = {f"{part}_custom_version": [0] * 8 for part in ("flight", "middleware", "os")}
+    nothing["capabilities"] = CAPABILITIES
+    return say("AUTOPILOT_VERSION", uid2=list(vehicle.serial.ljust(18, b"\0")), **nothing, **custom)
+
+
 def _e7(degrees: float) -> int:
     return round(degrees * 1e7)
 
@@ -204,5 +214,6 @@ _MESSAGES: Final[Mapping[str, Callable[[Vehicle], Message]]] = MappingProxyType(
         "MISSION_CURRENT": _current,
         "POSITION_TARGET_GLOBAL_INT": _target,
         "HOME_POSITION": _home,
+        "AUTOPILOT_VERSION": _version,
     }
 )

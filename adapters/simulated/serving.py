@@ -64,6 +64,10 @@ class Simulator:
         vehicle.reboot(armed=armed)
         reporter.reset()
 
+    def every(self, system: int, name: str, seconds: float) -> None:
+        """Let a vehicle say a message at an interval, before anybody asks for it."""
+        self._vehicles[system][1].every(name, seconds)
+
     async def run(self) -> None:
         """Fly until cancelled."""
         async with open_port(self._address, self._receive) as self._port:

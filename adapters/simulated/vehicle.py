@@ -75,6 +75,7 @@ class Vehicle:
         accept_unsigned: Whether unsigned packets are obeyed although it has a key, as on ArduPilot's first link.
         fixed: Whether its receiver has satellites.
         fence: The polygon that it keeps within.
+        serial: Its autopilot's serial number: at most 18 bytes.
     """
 
     kind: Kind
@@ -93,6 +94,7 @@ class Vehicle:
     fence: Geometry | None = None
     parameters: dict[str, float] = field(default_factory=lambda: dict(PARAMETERS))
     signing: Signing | None = None
+    serial: bytes = b""
     body: Body = field(init=False)
     store: Store = field(init=False)
     reached: list[int] = field(default_factory=list)

@@ -28,7 +28,7 @@ def fill(parser: Parser) -> None:
         metavar="N",
         type=at_least_one,
         help="visit no more than N configurations (default 100,000,000, of which each takes some 30 bytes; 2,000,000 "
-        "with --engine reference or --reduce)",
+        "with --engine reference or --reduce symmetry)",
     )
     parser.add_argument(
         "--max-time",

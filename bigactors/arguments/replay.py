@@ -4,7 +4,7 @@ from typing import Final
 
 from bigactors.arguments.common import varying
 from bigactors.arguments.parser import Command, Parser
-from bigactors.arguments.values import identity, named, seconds
+from bigactors.arguments.values import identity, named, route, seconds
 
 DESCRIPTION: Final = """\
 Run a trace, or the recording of a live run, again through the rules, step by step. A step that they do not
@@ -41,6 +41,15 @@ def fill(parser: Parser) -> None:
         type=identity,
         help="what the mission calls who is in a recording of others: mavlink:1=uav0, mmsi:244660274=drifter0",
     )
+    parser.add_argument(
+        "--waypoints",
+        metavar="VEHICLE=FILE",
+        action="append",
+        default=[],
+        type=route,
+        help="write the points that the trace sends a vehicle to, for ground stations, as QGC WPL 110 (.waypoints) "
+        "or as a plan (.plan); may be repeated",
+    )
     parser.add_argument("--step", action="store_true", help="wait for Enter before each step")
     varying(parser)
 
@@ -53,6 +62,7 @@ COMMAND = Command(
         "bigactors replay traces/oil_spill/over_the_spill-witness/trace.json",
         "bigactors replay run.json --mission changed.mission",
         "bigactors replay run.mcap --speed 10",
+        "bigactors replay run.json --waypoints uav0=uav0.plan",
         "bigactors replay flight.tlog --mission oil_spill --name mavlink:1=uav0",
     ),
     fill,

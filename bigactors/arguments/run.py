@@ -5,6 +5,7 @@ import re
 from typing import Final
 
 from bigactors.arguments.common import MISSION
+from bigactors.arguments.links import fill_links
 from bigactors.arguments.parser import Command, Parser
 from bigactors.arguments.values import identity, named, seconds, substitute
 
@@ -69,8 +70,10 @@ def fill(parser: Parser) -> None:
         action="append",
         default=[],
         type=identity,
-        help="what the mission calls a transponder, such as mmsi:244660274=drifter0; may be repeated",
+        help="what the mission calls whom: a transponder (mmsi:244660274=drifter0), a vehicle by its system id "
+        "(mavlink:3=uav0) or by its autopilot's serial number (serial:2F003B=uav0); may be repeated",
     )
+    fill_links(parser)
     parser.add_argument(
         "--record",
         metavar="FILE",

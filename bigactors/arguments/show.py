@@ -2,7 +2,7 @@
 
 from bigactors.arguments.common import MISSION, varying
 from bigactors.arguments.parser import Command, Parser
-from bigactors.arguments.values import at_least_zero, named
+from bigactors.arguments.values import at_least_zero, identity, named
 
 
 def fill(parser: Parser) -> None:
@@ -17,7 +17,11 @@ def fill(parser: Parser) -> None:
         "whole trace, .html",
     )
     parser.add_argument(
-        "--trace", metavar="TRACE", type=named, help="a trace in JSON, as check --trace and simulate write it"
+        "--trace",
+        metavar="TRACE",
+        type=named,
+        help="a trace in JSON, as check --trace and simulate write it, a recording of run, or a telemetry log (.tlog) "
+        "or AIS recording, seen in the mission's places",
     )
     parser.add_argument(
         "--step",
@@ -36,6 +40,14 @@ def fill(parser: Parser) -> None:
         type=named,
         help="say where the trace and this one part, and what differs after that; draw nothing",
     )
+    parser.add_argument(
+        "--name",
+        metavar="IDENTITY=NAME",
+        action="append",
+        default=[],
+        type=identity,
+        help="what the mission calls who is in a recording of others: mavlink:1=uav0, mmsi:244660274=drifter0",
+    )
     varying(parser)
 
 
@@ -50,6 +62,7 @@ COMMAND = Command(
         "bigactors show --trace run.json --lanes",
         "bigactors show --trace run.json --output run.html",
         "bigactors show --trace run.json --against other.json",
+        "bigactors show oil_spill --trace flight.tlog --name mavlink:1=uav0 --output flight.html",
     ),
     fill,
 )

@@ -106,17 +106,30 @@ def _number(text: str) -> float | None:
 
 
 def identity(word: str) -> tuple[str, str]:
-    """Read IDENTITY=NAME.
+    """Read IDENTITY=NAME; the digits of a serial number are written large.
 
-    >>> identity("mmsi:244660274=drifter0")
-    ('mmsi:244660274', 'drifter0')
+    >>> identity("mmsi:244660274=drifter0"), identity("serial:2f003b=uav0")
+    (('mmsi:244660274', 'drifter0'), ('serial:2F003B', 'uav0'))
     """
-    found = re.fullmatch(r"(\w+:\w+)=(\w+)", word)
+    found = re.fullmatch(r"(\w+):(\w+)=(\w+)", word)
     if not found:
         raise argparse.ArgumentTypeError(
             f"'{word:.60}' is not IDENTITY=NAME, such as mmsi:244660274=drifter0"
         )
-    return found[1], found[2]
+    number = found[2].upper() if found[1] == "serial" else found[2]
+    return f"{found[1]}:{number}", found[3]
+
+
+def route(word: str) -> tuple[str, str]:
+    """Read VEHICLE=FILE.
+
+    >>> route("uav0=uav0.plan")
+    ('uav0', 'uav0.plan')
+    """
+    name, _, file = word.partition("=")
+    if not (name and file):
+        raise argparse.ArgumentTypeError(f"'{word:.60}' is not VEHICLE=FILE, such as uav0=uav0.plan")
+    return name, file
 
 
 REDUCTIONS: Final = ("por", "symmetry")

@@ -6,14 +6,17 @@ from bigactors.arguments.parser import Command, Parser
 from bigactors.arguments.values import corners, named, time_of
 
 DESCRIPTION: Final = """\
-Read what is where from GeoJSON files and AIS recordings together, print the bigraph A(P) that it makes,
-and what of the recordings could not be used."""
+Read what is where from GeoJSON, waypoint files, plans of QGroundControl and AIS recordings together, print the
+bigraph A(P) that it makes, and what of the recordings could not be used."""
 
 
 def fill(parser: Parser) -> None:
     """Add the arguments of `bigactors world`."""
     parser.add_argument(
-        "files", nargs="+", metavar="FILE", help="GeoJSON (.geojson, .json), or an AIS recording (NMEA)"
+        "files",
+        nargs="+",
+        metavar="FILE",
+        help="places (.geojson, .json, .waypoints, .plan), or AIS (NMEA)",
     )
     parser.add_argument(
         "--at",
@@ -33,11 +36,12 @@ def fill(parser: Parser) -> None:
 
 COMMAND = Command(
     "world",
-    "print and draw the bigraph of a GeoJSON or AIS world",
+    "print and draw the bigraph of what files say is where",
     DESCRIPTION,
     (
         "bigactors world harbour.geojson --output harbour.svg",
         "bigactors world harbour.geojson vessels.nmea --at 2020-04-07T21:42:00Z --kinds Vessel,Harbour",
+        "bigactors world survey.plan harbour.geojson",
         "bigactors world vessels.nmea --within 52.83,5.66,52.87,5.72",
     ),
     fill,

@@ -68,7 +68,8 @@ MOST, MOST_OF_REFERENCE = 100_000_000, 2_000_000
 
 def most_of(options: Namespace) -> int:
     """Return how many configurations are visited at most."""
-    usual = MOST_OF_REFERENCE if options.engine == "reference" or options.reduce else MOST
+    symmetric = Reduction.SYMMETRY.value in options.reduce
+    usual = MOST_OF_REFERENCE if options.engine == "reference" or symmetric else MOST
     return options.max_configurations or usual
 
 

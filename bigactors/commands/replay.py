@@ -11,10 +11,11 @@ from typing import Any
 from adapters.recording.reading import Recording, is_recording
 from bigactors.exits import Exit
 from bigactors.files import read_bytes, read_json
-from bigactors.foreign import TELEMETRY, watched
+from bigactors.foreign import TELEMETRY, Shown, watched
 from bigactors.missions import digest_of, open_mission, shipped_missions, variation_of
 from bigactors.mistakes import Mistake
 from bigactors.recordings import mission_of, open_recording, trace_of
+from bigactors.routes import write_route
 from bigactors.terminal import is_terminal, paint, say, tell
 from bigraphs import draw_text
 from checker import ReplayError, Trace, print_loop, print_trace, replay
@@ -42,6 +43,8 @@ def run(options: Namespace) -> Exit:
     say(f"c{len(trace)} = {print_configuration(trace.configurations[-1])}")
     again = f", and {print_loop(trace)}" if trace.loop is not None else ""
     say(f"{options.trace}: {len(trace)} steps replayed on {mission.name}{again}")
+    for vehicle, path in options.waypoints:
+        tell(f"{write_route(trace, vehicle, path)} waypoints of {vehicle} written to {path}")
     return Exit.HOLDS
 
 
@@ -53,11 +56,11 @@ def is_foreign(path: str) -> bool:
 
 def show_foreign(options: Namespace) -> Exit:
     """Print what a recording of others shows of a mission's world, and the bigraph that it ends in."""
-    if options.mission is None:
-        hint = "say in which mission's places it is to be seen: --mission FILE"
-        raise Mistake("this is no trace of ours", hint, options.trace)
-    mission = open_mission(options.mission, variation_of(options))
-    shown = watched(options.trace, mission, dict(options.name))
+    if options.waypoints:
+        raise Mistake(
+            "nothing is sent anywhere in a recording of others", "leave out --waypoints", options.trace
+        )
+    _, shown = _watched(options.trace, options.mission, variation_of(options), dict(options.name))
     for line in paced(shown.trace, shown.times, options.speed, stepwise=options.step):
         say(line)
     for finding in shown.findings:
@@ -68,8 +71,22 @@ def show_foreign(options: Namespace) -> Exit:
     return Exit.HOLDS
 
 
-def read_trace(path: str, mission_file: str | None, variation: Variation) -> tuple[ElaboratedMission, Trace]:
+def _watched(
+    path: str, mission_file: str | None, variation: Variation, names: dict[str, str]
+) -> tuple[ElaboratedMission, Shown]:
+    if mission_file is None:
+        hint = "say in which mission's places it is to be seen: replay --mission FILE, show FILE"
+        raise Mistake("this is no trace of ours", hint, path)
+    mission = open_mission(mission_file, variation)
+    return mission, watched(path, mission, names)
+
+
+def read_trace(
+    path: str, mission_file: str | None, variation: Variation, names: dict[str, str] | None = None
+) -> tuple[ElaboratedMission, Trace]:
     """Return the mission of a trace or recording and the trace, replayed; warn where it was written of another mission.
+
+    Of a recording of others it is what it shows of the mission's world; `names` is what the mission calls whom in it.
 
     Raises:
         Mistake: The file holds no trace, or its mission cannot be read.
@@ -77,6 +94,9 @@ def read_trace(path: str, mission_file: str | None, variation: Variation) -> tup
     """
     if is_recording(path):
         return _read_recording(path, mission_file, variation)
+    if is_foreign(path):
+        mission, shown = _watched(path, mission_file, variation, names or {})
+        return mission, shown.trace
     data = read_json(path)
     named = data.get("mission") if isinstance(data, dict) else None
     if mission_file is None and not isinstance(named, str):
@@ -108,14 +128,15 @@ def _introduce(recording: Recording) -> None:
 
 def paced(trace: Trace, times: Sequence[float], speed: float | None, *, stepwise: bool) -> Iterator[str]:
     """Yield the lines of a trace: at once, at a multiple of the speed it was recorded at, or step by step."""
-    step = -1
+    step, began = -1, time.monotonic()
     for line in print_trace(trace):
         if line.startswith("c"):
             step += 1
             if stepwise and is_terminal(sys.stdin):
                 sys.stdin.readline()
             elif speed is not None and 0 < step < len(times):
-                time.sleep(max(0.0, (times[step] - times[step - 1]) / speed))
+                due = began + (times[step] - times[0]) / speed
+                time.sleep(max(0.0, due - time.monotonic()))
         yield line
 
 

@@ -24,6 +24,7 @@ from bigactors.exits import Exit
 from bigactors.missions import digest_of, locate, open_mission
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.plugins import plugins_of
+from bigactors.preflight import check_flyable, check_places
 from bigactors.recordings import Resumed, resume
 from bigactors.sockets import socket_of
 from bigactors.stations import Company, company_of, parting_json
@@ -93,6 +94,7 @@ def prepare(options: Namespace) -> Flight:
     licence = _licence(options, live)
     log = None if options.record is None else Log(Path(options.record).with_suffix(".tlog"))
     plugins, owners = plugins_of(options, mission, log)
+    check_flyable(mission)
     strict = licence is not None and licence.scheduler is Scheduler.FCFS
     plan = Plan(mission.initial, owners, mission.precautions, strict)
     before = None if options.resume is None else resume(options.resume, mission)
@@ -184,6 +186,7 @@ async def fly(flight: Flight, watchers: Sequence[Watcher]) -> Ending:
         except OSError as error:
             raise Mistake(error.strerror or str(error), "give another with --socket", str(path)) from error
         await live.begin(options.wait, forced=options.unverified)
+        check_places(flight.mission, flight.plugins)
         say(f"{flight.mission.name} begins; bigactors say AGENT MESSAGE reaches it at {path}")
         return await live.go(seconds=options.duration)
 

@@ -42,8 +42,9 @@ def _compare(options: Namespace) -> Exit:
     """Print where two traces part, and what differs after that."""
     if options.trace is None:
         raise Mistake("--against is for two traces", "give the other one with --trace")
-    variation = variation_of(options)
-    one, other = (read_trace(path, options.file, variation)[1] for path in (options.trace, options.against))
+    variation, names = variation_of(options), dict(options.name)
+    both = (options.trace, options.against)
+    one, other = (read_trace(path, options.file, variation, names)[1] for path in both)
     for line in comparison_text(one, other, (options.trace, options.against)):
         say(line)
     return Exit.HOLDS
@@ -95,7 +96,7 @@ def _chosen(options: Namespace) -> tuple[str, Trace, int]:
             raise Mistake(f"{word} a trace", "give the trace with --trace")
         mission = open_mission(options.file, variation_of(options))
         return mission.name, Trace(mission.initial), 0
-    mission, trace = read_trace(options.trace, options.file, variation_of(options))
+    mission, trace = read_trace(options.trace, options.file, variation_of(options), dict(options.name))
     step = len(trace) if options.step is None else options.step
     if step > len(trace):
         raise Mistake(

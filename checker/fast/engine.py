@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import accumulate
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +37,7 @@ from checker.fast.trees import RECORD
 from semantics.cells import AGENTS, Row
 from semantics.configuration import Configuration
 from semantics.setting import Scheduler
+from semantics.signature import Name
 from semantics.successors import by_clause, moves, served
 
 BATCH = 1 << 15
@@ -49,6 +51,10 @@ MOST_ACTORS = 512
 MOST_ROWS = (1 << 31) - 1
 
 
+if TYPE_CHECKING:
+    from checker.fast.reducing import Choosing
+
+
 class Space:
     """The configurations reached so far, as rows, and how far their expansion has come.
 
@@ -56,11 +62,13 @@ class Space:
         learner: What is known of the rules.
         packing: Where each column stands in a row.
         origins: For each row the one that it was first reached from; the first is its own.
+        counts, met: How often each transition was followed, and how often met: the same where nothing is left out.
         learned: What was not known on the way: the row, and in which tree, at which node and for which code.
     """
 
-    def __init__(self, learner: Learner, limit: int | None) -> None:
+    def __init__(self, learner: Learner, limit: int | None, choosing: "Choosing | None" = None) -> None:
         self.learner = learner
+        self.choosing = choosing
         self.state = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
         self.beside = ThreadPoolExecutor(1) if cores() > 1 else None
@@ -71,6 +79,7 @@ class Space:
         self.learned: list[tuple[int, int, int, int]] = []
         self.clauses = [learner.tree(Actor(by_clause, clause)) for clause in learner.setting.environment]
         self.counts = Growing(np.int64)
+        self.met = self.counts if choosing is None else Growing(np.int64)
         self.masks = Growing(np.uint64)
         self.located = 0
         self.words = Pages(np.uint64, FIRST_ROWS)
@@ -108,11 +117,11 @@ class Space:
         """How many bytes rows, origins and the visited set take, room included."""
         return sum(each.room.nbytes for each in (self.words, self.origins, self.table))
 
-    def rules(self) -> Counter[str]:
-        """Return how many transitions each rule has."""
+    def rules(self, *, followed: bool = True) -> Counter[str]:
+        """Return how many transitions each rule has: those that were followed, or all."""
         names = {number: name for name, number in self.learner.rules.items()}
         found: Counter[str] = Counter()
-        counts = self.counts.room[: len(self.learner.leaves.rule)]
+        counts = self.counts.used if followed else self.met.used
         for step in np.flatnonzero(counts):
             found[names[int(self.learner.leaves.rule.room[step])]] += int(counts[step])
         return found
@@ -135,6 +144,9 @@ class Space:
 
     def advance(self, until: int) -> None:
         """Expand rows up to a number, learning what is not known on the way."""
+        if self.choosing is not None:
+            self._advance_reduced(self.choosing, until)
+            return
         self.state[AT], self.state[GATHERED] = self.expanded, 0
         try:
             while self.state[AT] < until:
@@ -145,6 +157,28 @@ class Space:
                     self._miss()
         finally:
             self._stored()
+
+    def _advance_reduced(self, choosing: "Choosing", until: int) -> None:
+        from checker.fast import choosing as loops  # noqa: PLC0415  # compiled where something is reduced
+
+        self.state[AT] = self.expanded
+        while self.state[AT] < until:
+            ended = loops.advance_reduced(
+                self.model,
+                choosing.members,
+                self.words.room,
+                self.origins.room,
+                self.table.room,
+                self.batch,
+                self.met.room,
+                self.counts.room,
+                self.state,
+                until,
+            )
+            if ended == loops.FULL:
+                self._make_room(len(self.batch.hashes))
+            elif ended == loops.MISSED:
+                self._miss()
 
     def _hand_over(self) -> None:
         """Let what was gathered be stored, and another batch take what comes next."""
@@ -192,6 +226,7 @@ class Space:
     def _miss(self) -> None:
         if self.state[NODE] == kernel.WIDE:
             self._make_batches(2 * len(self.batch.hashes))
+            self._see()
         else:
             self._learn(int(self.state[AT]))
 
@@ -227,7 +262,7 @@ class Space:
             found = (rows[row][where.word] >> where.shift) & where.mask
             self.learned.append((row, tree, node, code))
             self._learn_from([int(each) for each in found], tree, node, code)
-            self._agents()  # plants the trees of agents that are new, in the same order
+            self._agents(self._groups())  # plants the trees of agents that are new, in the same order
         if len(where.mask) != len(self.learner.columns):
             raise ValueError("it has other columns")
         self.packing, self.state[WORDS], self.state[SIZE] = where, where.words, len(origins)
@@ -243,7 +278,8 @@ class Space:
     def _see(self) -> None:
         """Let the loops see what is known now."""
         self._pack()
-        agents, begins = self._agents()
+        groups = self._groups()
+        agents, begins = self._agents(groups)
         trees, leaves = self.learner.trees, self.learner.leaves
         self._locate()
         self._make_masks()
@@ -260,6 +296,8 @@ class Space:
         self.model = kernel.Model._make(
             (*(each.room for each in learned), self.masks.room, self.packing.columns, *actors)
         )
+        if self.choosing is not None:
+            self.choosing.see(groups, self.packing, len(self.batch.hashes))
 
     def _locate(self) -> None:
         """Let inner nodes that are new know where their columns stand; all of them where the packing is."""
@@ -272,7 +310,8 @@ class Space:
         leaves, width = self.learner.leaves, 2 * self.packing.words
         known = self.masks.size // width
         self.masks.extend((len(leaves.rule) - known) * width)
-        self.counts.extend(len(leaves.rule) - len(self.counts))
+        for counts in (self.counts, self.met):
+            counts.extend(len(leaves.rule) - len(counts))
         kernel.make_masks(
             self.masks.used,
             leaves.steps.room,
@@ -282,14 +321,18 @@ class Space:
             known,
         )
 
-    def _agents(self) -> tuple[list[int], list[int]]:
-        """Return the trees of the agents, for each value of the cell that says which there are, and where it begins."""
+    def _groups(self) -> list[tuple[Name, ...]]:
+        """Return the agents that there are, for each value of the cell that says so."""
         learner = self.learner
-        groups = [learner.still.read(AGENTS)]
         self.state[ALPHA] = -1
-        if AGENTS in learner.varying:
-            self.state[ALPHA] = number = learner.columns.numbers[(AGENTS,)]
-            groups = learner.columns.all[number].values
+        if AGENTS not in learner.varying:
+            return [learner.still.read(AGENTS)]
+        self.state[ALPHA] = number = learner.columns.numbers[(AGENTS,)]
+        return learner.columns.all[number].values
+
+    def _agents(self, groups: list[tuple[Name, ...]]) -> tuple[list[int], list[int]]:
+        """Return the trees of the agents, group by group, and where each group begins."""
+        learner = self.learner
         trees = [
             [learner.tree(Actor(rules, a)) for rules in (served, moves) for a in group] for group in groups
         ]

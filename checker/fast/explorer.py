@@ -4,7 +4,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import overload
+from typing import TYPE_CHECKING, overload
 
 from checker.exploration import (
     INTERRUPTION,
@@ -13,6 +13,7 @@ from checker.exploration import (
     Keeping,
     Limits,
     Progress,
+    Reducer,
     Report,
     crowd_met,
     is_full,
@@ -27,6 +28,9 @@ from checker.fast.inspecting import inspect_fast
 from checker.fast.learner import Learner
 from checker.fast.survey import Survey
 from semantics.configuration import Configuration
+
+if TYPE_CHECKING:
+    from checker.fast.reducing import Choosing
 
 CHUNK = 1 << 15
 """Configurations that are expanded between two looks at the clock."""
@@ -74,20 +78,21 @@ class Configurations(Sequence[Configuration]):
         return self.space.configuration(range(len(self))[number])
 
 
-def explore_fast(  # as `explore`
+def explore_fast(  # noqa: PLR0913, PLR0917  # as `explore`
     initial: Configuration,
     inspect: tuple[Inspect, ...],
     limits: Limits,
     report: Report | None,
     every: float,
     keeping: Keeping,
+    reduce: Reducer | None = None,
 ) -> Exploration:
     """Visit everything that is reachable (see `checker.exploration.explore`).
 
     Raises:
         CheckpointError: There is none to go on from, or it is of something else.
     """
-    return _Explorer(initial, limits, report, every, keeping).run(inspect)
+    return _Explorer(initial, limits, report, every, keeping, reduce).run(inspect)
 
 
 class _Explorer:
@@ -98,15 +103,26 @@ class _Explorer:
         report: Report | None,
         every: float,
         keeping: Keeping,
+        reduce: Reducer | None,
     ) -> None:
         self.limits = limits
         self.report = report
         self.every = every
         self.keeping = keeping
         self.learner = Learner(initial.setting, initial.state, limits.pending)  # type: ignore[arg-type]  # a stored one
-        self.space = Space(self.learner, limits.configurations)
+        self.reduce = reduce
+        self.space = Space(self.learner, limits.configurations, self.choosing())
         self.journey = Journey(0, 1, 0.0)
         self.bounds: list[str] = []
+
+    def choosing(self) -> "Choosing | None":
+        """Return what chooses the transitions that are followed, None where all are."""
+        ample = None if self.reduce is None else self.reduce.ample
+        if ample is None:
+            return None
+        from checker.fast.reducing import Choosing  # noqa: PLC0415  # compiled where something is reduced
+
+        return Choosing(self.learner, ample)
 
     @property
     def checkpoint(self) -> Path | None:
@@ -140,6 +156,8 @@ class _Explorer:
             time.monotonic() - began + self.journey.seconds,
             self.learner.runs,
             survey=survey,
+            allowed=int(space.met.used.sum()),
+            reducer=self.reduce,
         )
 
     def keep(self, seconds: float) -> None:

@@ -146,7 +146,7 @@ def look_at_computation(survey: Survey, inspection: Computation) -> None:
     tallies: list[Tally] = [(key, each.count, each.first) for each in answers for key in each.value[1]]
     firsts = [each.first for each in answers if each.value[0]]
     if firsts:
-        tallies.append((None, survey.space.rules()["fun"], min(firsts)))
+        tallies.append((None, survey.space.rules(followed=False)["fun"], min(firsts)))
 
     def again(number: int) -> Collected:
         found: Collected = _again(survey, lambda: Computation(ALL), number).collected
@@ -203,7 +203,7 @@ def look_at_deadlocks(survey: Survey, inspection: DeadlockFreedom) -> None:
             deadlocks += [(None, int(count), number)] * seen.collected.examined
             late += [(key, int(count), number) for key in seen.arrival.first]
     if commits:
-        late.append((None, survey.space.rules()["commit"], min(commits)))
+        late.append((None, survey.space.rules(followed=False)["commit"], min(commits)))
     _collect(inspection.collected, deadlocks, lambda number: again(number).collected)
     _collect(inspection.arrival, late, lambda number: again(number).arrival)
 
@@ -420,7 +420,7 @@ def look_at_visited(survey: Survey, inspection: Visited) -> None:
                 inspection.codes.setdefault(a, set()).add(code)
                 inspection.passed |= passed
     space = survey.space
-    for step in np.flatnonzero(space.counts.used):
+    for step in np.flatnonzero(space.met.used):
         label = space.learner.steps.get(int(step))
         if label is not None and label.agent is None:
             inspection.happened.add(str(label.about))

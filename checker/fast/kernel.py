@@ -74,7 +74,9 @@ class Batch(NamedTuple):
     leaves: Ints
 
 
-AT, SIZE, LIMIT, WORDS, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED, TOUCHED = range(14)
+AT, SIZE, LIMIT, WORDS, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED, ALLOWED, TOUCHED = (
+    range(15)
+)
 """What stands where in the loops' state: the row that comes next, how many rows there are and may be, words a row,
 whether requests wait for their turn, the column that says which agents there are (-1: always the same), how many
 successors are gathered, what was not known, whether rows were left out or not followed, up to which row all successors

@@ -109,6 +109,7 @@ class Learner:
         answers: What a question is answered with, leaf by leaf.
         reads: For each leaf of an actor what was asked of which column to come there, with the answer.
         steps: The label of each transition, as it was when it was learned.
+        whose: The actor of each transition.
     """
 
     setting: Setting
@@ -125,6 +126,7 @@ class Learner:
     rules: dict[str, int] = field(default_factory=dict)
     labels: dict[Hashable, Known] = field(default_factory=dict)
     steps: dict[int, Label] = field(default_factory=dict)
+    whose: dict[int, Actor] = field(default_factory=dict)
     answers: dict[int, Hashable] = field(default_factory=dict)
     reads: dict[int, tuple[tuple[int, Ask, Any], ...]] = field(default_factory=dict)
     runs: int = 0
@@ -181,6 +183,7 @@ class Learner:
         for each, trees in zip(concluded, parts, strict=True):
             each.effect.parts = trees
         leaf = self.leaves.add(self._steps(actor, concluded), CROWDED if is_full else 0)
+        self.whose |= dict.fromkeys(self.leaves.steps_of(leaf), actor)
         self.reads[leaf] = tuple((self._column(ask), ask, said) for ask, said in recorder.scopes[0].items())
         self._grow(tree, recorder.scopes[0], recorder.taken, leaf, source)
         for part in (part for trees in parts for part in trees):

@@ -20,7 +20,7 @@ from checker.reduction.roles import Roles
 from checker.reduction.slots import NOTHING, Footprint, joined
 from semantics.agents import Code, code_cell, host_cell
 from semantics.cells import Cell
-from semantics.configuration import Configuration, Transition
+from semantics.configuration import Configuration, Label
 from semantics.environment import Says
 from semantics.eta import line_cell, sends_cell
 from semantics.expressions import Fault
@@ -80,7 +80,7 @@ class Actors:
         self._forget()  # what was bounded before it was known what is settled
 
     def _forget(self) -> None:
-        self.of_agent = lru_cache(maxsize=1 << 16)(self._agent)
+        self._known_agent = lru_cache(maxsize=1 << 16)(self._agent)
         self._of_request = lru_cache(maxsize=1 << 16)(self._request)
         self._of_statement = lru_cache(maxsize=1 << 14)(self._statement)
         self._of_code = lru_cache(maxsize=1 << 14)(self._code)
@@ -110,17 +110,28 @@ class Actors:
         """
         found: dict[Actor, Acting] = {}
         for agent in c.alpha.names():
-            code, line, sends, host = (c.read(cell) for cell in self.local(agent))
-            found.update(self.of_agent(agent, code, line, sends or (), host))
-        for number, clause in enumerate(c.setting.environment):
-            if not isinstance(clause, Says) or c.read(clause.counter):
-                does = self.clause(clause)
-                found[Actor("clause", number)] = Acting(does, does, does)
+            found.update(self.of_agent(c, agent))
+        for number in range(len(c.setting.environment)):
+            found.update(self.of_clause(c, number))
         return found
 
-    def actor_of(self, transition: Transition) -> Actor:
-        """Return which of an agent's actors a transition belongs to."""
-        label = transition.label
+    def of_agent(self, c: Configuration, agent: Name) -> dict[Actor, Acting]:
+        """Return the actors of one agent that is there; what it has observed, but not received, doesn't matter."""
+        code, line, sends, host = (c.read(cell) for cell in self.local(agent))
+        asked = tuple(each for each in (*line, *(sends or ())) if not isinstance(each, READY))
+        told = self.ordered and any(isinstance(each, READY) for each in line)
+        return self._known_agent(agent, code, asked, told, host)
+
+    def of_clause(self, c: Configuration, number: int) -> dict[Actor, Acting]:
+        """Return the actor that a clause of the environment is, unless it is over."""
+        clause = c.setting.environment[number]
+        if isinstance(clause, Says) and not c.read(clause.counter):
+            return {}
+        does = self.clause(clause)
+        return {Actor("clause", number): Acting(does, does, does)}
+
+    def actor_of(self, label: Label) -> Actor:
+        """Return which of an agent's actors takes a transition, by its label."""
         assert label.agent is not None
         if isinstance(label.about, str | Received):
             return Actor("program", label.agent)
@@ -129,10 +140,7 @@ class Actors:
 
     # --- of the values of an agent's cells --------------------------------------------------------------------
 
-    def _agent(
-        self, agent: Name, code: Code, line: Requests, sends: Requests, host: Name
-    ) -> dict[Actor, Acting]:
-        asked = [each for each in (*line, *sends) if not isinstance(each, READY)]
+    def _agent(self, agent: Name, code: Code, asked: Requests, told: bool, host: Name) -> dict[Actor, Acting]:
         in_line = [each for each in asked if self.ordered and not isinstance(each, SND)]
         found: dict[Actor, Acting] = {}
         for request in asked:
@@ -145,7 +153,6 @@ class Actors:
             ever = joined(self._of_request(agent, request) for request in in_line)
             found[Actor("line", agent)] = Acting(self._serve(agent, in_line[0], {host}), ever, ever)
         if code:
-            told = self.ordered and any(isinstance(each, READY) for each in line)
             ever, aside = self._of_code(agent, code)
             found[Actor("program", agent)] = Acting(self._next(agent, code[0], told), ever, aside)
         return found

@@ -56,7 +56,7 @@ class Ample:
         """Return the steps of persistent sets of actors that leave some step out, the smallest first."""
         if len(expansion.transitions) < 2:
             return []
-        movable = dict.fromkeys(self.actors.actor_of(each) for each in expansion.by_agents)
+        movable = dict.fromkeys(self.actors.actor_of(each.label) for each in expansion.by_agents)
         sets = dict.fromkeys(persistent(self.actors.of(c), movable))
         found = (self.steps_of(c, expansion, actors) for actors in sets)
         return sorted((each for each in found if len(each) < len(expansion.transitions)), key=len)
@@ -67,7 +67,7 @@ class Ample:
         """Return the transitions of some actors, in the order of the expansion."""
         clauses = (c.setting.environment[int(each.owner)] for each in actors if each.kind == "clause")
         around = {step for clause in clauses for step in by_clause(c, clause)}
-        ours = [step for step in expansion.by_agents if self.actors.actor_of(step) in actors]
+        ours = [step for step in expansion.by_agents if self.actors.actor_of(step.label) in actors]
         return (*ours, *(step for step in expansion.by_environment if step in around))
 
 

@@ -29,10 +29,9 @@ class Reduced:
     ) -> None:
         asked = set(reductions)
         self.names = tuple(each for each in Reduction if each in asked)
-        self.ample: Ample | None = None
         if Reduction.POR in asked:
             refuse_partial_order(initial)
-            self.ample = Ample(initial, formulas, proviso)
+        self.ample = Ample(initial, formulas, proviso) if Reduction.POR in asked else None
         self.symmetry: Symmetry | None = None
         if Reduction.SYMMETRY in asked:
             refuse_symmetry(initial)

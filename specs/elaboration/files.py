@@ -1,4 +1,4 @@
-"""Worlds from files: GeoJSON, and recordings of AIS as of a time."""
+"""Worlds from files: GeoJSON, waypoint files, plans, and recordings of AIS as of a time."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
-from physical import GeoJSONError, Geometry, PhysicalProperty, contains, read_geojson
+from physical import GeoJSONError, Geometry, PhysicalError, PhysicalProperty, contains, read_places
 from physical.ais_recording import read_recording
 from physical.ais_reports import AisError
 from physical.ais_world import world_at
 from physical.geojson import MAX_BYTES as MAX_GEOJSON
 from physical.mmsi import KINDS
+from physical.place_files import PLACES
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import shorten
@@ -22,7 +23,6 @@ from specs.elaboration.geometry import elaborate_geometry
 from specs.elaboration.names import Names
 from specs.grammar import RESERVED
 
-GEOJSON: Final = (".geojson", ".json")
 AIS: Final = (".nmea", ".ais", ".txt", ".log")
 _NAME: Final = re.compile(r"[^\W\d_]\w*")
 _CHANNEL: Final = re.compile(r"\w+(?:[:.\-]\w+)*")
@@ -90,13 +90,13 @@ def read_source(
 
 def _read(entry: s.FromSource, path: Path, area: Geometry | None) -> tuple[PhysicalProperty, ...]:
     suffix = path.suffix.lower()
-    if suffix in GEOJSON:
+    if suffix in PLACES:
         if entry.time is not None:
-            raise Refused(Code.BAD_FILE, "a GeoJSON file has no times", "leave out 'at'")
-        return tuple(sorted(_geojson(path), key=lambda item: item.entity))
+            raise Refused(Code.BAD_FILE, "a file of places has no times", "leave out 'at'")
+        return tuple(sorted(_places(suffix, path), key=lambda item: item.entity))
     if suffix in AIS:
         return _ais(entry, path, area)
-    known = ", ".join((*GEOJSON, *AIS))
+    known = ", ".join((*PLACES, *AIS))
     raise Refused(
         Code.BAD_FILE,
         f"'{shorten(suffix)}' is the ending of no format that is read here",
@@ -104,17 +104,20 @@ def _read(entry: s.FromSource, path: Path, area: Geometry | None) -> tuple[Physi
     )
 
 
-def _geojson(path: Path) -> tuple[PhysicalProperty, ...]:
+def _places(suffix: str, path: Path) -> tuple[PhysicalProperty, ...]:
     try:
         with path.open("rb") as file:
             data = file.read(MAX_GEOJSON + 1)
-        return read_geojson(data)
+        return read_places(suffix, data)
     except OSError as error:
         raise Refused(Code.UNREADABLE_FILE, f"it cannot be read: {error.strerror or error}") from error
     except GeoJSONError as error:
         several = f" (and {len(error.problems) - 1} more)" if len(error.problems) > 1 else ""
         where = f"{error.where}: " if error.where else ""
         raise Refused(Code.BAD_FILE, f"{where}{error.message}{several}", error.hint) from error
+    except PhysicalError as error:
+        where = f"{error.where}: " if error.where else ""
+        raise Refused(Code.BAD_FILE, f"{where}{error.message}", error.hint) from error
 
 
 def _ais(entry: s.FromSource, path: Path, area: Geometry | None) -> tuple[PhysicalProperty, ...]:

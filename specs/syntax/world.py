@@ -155,8 +155,8 @@ class Keep(Node):
 class FromSource(Node):
     """`from "workum.nmea" at "2020-04-07T21:42:00Z" within box (53.1, 5.3) (52.9, 5.5) limit 12`.
 
-    A GeoJSON file or an AIS recording beside the mission; everything after the file is optional. Before
-    `limit`, `keep Vessel, BaseStation as Station` may choose among the recorded kinds.
+    A file of places (GeoJSON, a waypoint file, a plan) or an AIS recording beside the mission; everything after the
+    file is optional. Before `limit`, `keep Vessel, BaseStation as Station` may choose among the recorded kinds.
     """
 
     file: TextLiteral

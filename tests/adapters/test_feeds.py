@@ -14,7 +14,7 @@ from adapters.ais import AisFeed
 from adapters.detections import Detections
 from adapters.lines import MAX_LINE, Lines
 from adapters.location import LocationService
-from adapters.naming import NameClash, NamingService
+from adapters.naming import NamingService
 from adapters.places import StaticPlaces
 from adapters.plugin import Aged, Gone, Trouble
 from adapters.simulated import run
@@ -459,6 +459,16 @@ def test_an_answer_that_cannot_be_used_is_reported(document, what):
     run(main())
 
 
+def test_a_location_cannot_take_the_name_of_a_vehicle():
+    async def main():
+        naming = NamingService(own={"vehicle:uav0": "uav0"})
+        world = await located({"entities": [DRIFTER | {"name": "uav0"}, DRIFTER]}, naming=naming)
+        assert names(world) == {"drifter0"}
+        assert "name:uav0 would be called uav0, as vehicle:uav0 is" in world.of(Trouble)[0].detail
+
+    run(main())
+
+
 def test_a_service_that_is_not_there_or_fails_is_reported():
     async def main():
         world = await located({}, status=500)
@@ -469,23 +479,3 @@ def test_a_service_that_is_not_there_or_fails_is_reported():
         assert world.troubles() == {"no answer"}
 
     run(main())
-
-
-# --- naming -----------------------------------------------------------------------------------------
-
-
-def test_an_identity_keeps_its_name_and_two_cannot_have_one():
-    naming = NamingService({"mavlink:1": "uav0"})
-    assert naming.name("mavlink:1") == "uav0"
-    assert naming.name("mmsi:244660274") == naming.name("mmsi:244660274") == "mmsi244660274"
-    assert naming.identity("uav0") == "mavlink:1"
-    with pytest.raises(NameClash, match="name:uav0 would be called uav0, as mavlink:1 is"):
-        naming.name("name:uav0")
-
-
-@pytest.mark.parametrize(
-    "table", [{"mavlink:1": "uav0", "mmsi:244660274": "uav0"}, {"tail number": "uav0"}, {"mmsi:": "uav0"}]
-)
-def test_a_table_with_a_clash_or_without_identities_is_an_error(table):
-    with pytest.raises(PhysicalError):
-        NamingService(table)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from adapters.mavlink import Autopilot, Craft, Stations
+from adapters.mavlink.keys import Keeper
 from adapters.plugin import Aged, Arrived, Gone, Rejected, Trouble
 from adapters.simulated import Disturbance, Kind, Simulator, Vehicle
 from physical import box, circle
@@ -113,7 +114,8 @@ async def flight(
     **vehicle,
 ) -> AsyncIterator[Flight]:
     world = World()
-    plugin = Autopilot("autopilot", "udp:127.0.0.1:0", [craft or Craft("uav0")], stations, key_file, tap)
+    keeper = Keeper(key_file) if key_file else None
+    plugin = Autopilot("autopilot", "udp:127.0.0.1:0", [craft or Craft("uav0")], stations, keeper, tap)
     async with running(plugin.run(world)):
         await until(lambda: plugin.local)
         flown = Vehicle(kind, HOME, **vehicle)

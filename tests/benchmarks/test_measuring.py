@@ -64,10 +64,20 @@ def test_an_oil_spill_without_room_is_refused(size):
 def test_the_patrol_is_kept_with_its_ratios_to_spin(tmp_path):
     data, printed = kept("run", tmp_path, "--turns", "1", "1x3+handover")
     assert data["machine"].keys() == MACHINE
-    assert data["ratio_to_spin"].keys() == {"configurations_per_second", "memory", "search_alone"}
+    assert data["ratio_to_spin"].keys() == {
+        "configurations_per_second",
+        "on_one_core",
+        "memory",
+        "search_alone",
+    }
     (size,) = data["sizes"]
     assert (size["configurations"], size["transitions"]) == (1_434, 4_788)
-    assert size["median"].keys() == {"bigactors, fast", "bigactors, reference", "SPIN, no reduction"}
+    assert size["median"].keys() == {
+        "bigactors, fast",
+        "bigactors, fast, one core",
+        "bigactors, reference",
+        "SPIN, no reduction",
+    }
     fast = size["median"]["bigactors, fast"]
     assert 0 < fast["rule_runs"] < size["transitions"]
     assert fast["memory"] > 0

@@ -107,3 +107,14 @@ def test_an_ais_recording_of_others_is_shown_in_the_places_of_a_mission(capsys):
     shown = capsys.readouterr()
     assert "⟨env : mmsi244999004 is seen in basin0, marina0⟩" in shown.out
     assert "78 positions, 4 changes of the bigraph" in shown.out
+
+
+def test_a_recording_of_others_is_shown_step_by_step_as_traces_are(there, capsys):
+    path = str(Path(__file__).parents[2] / "specs/missions/harbour_watch.nmea")
+    assert main(["show", "harbour_watch", "--trace", path, "--lanes", "--output", "watch.svg"]) == 0
+    assert "mmsi244999004" in capsys.readouterr().out
+    assert main(["show", "harbour_watch", "--trace", path, "--output", "watch.html"]) == 0
+    assert main(["show", "harbour_watch", "--trace", path, "--step", "2", "--output", "c2.svg"]) == 0
+    assert all((there / name).exists() for name in ("watch.svg", "watch.html", "c2.svg"))
+    assert main(["replay", path, "--mission", "harbour_watch", "--waypoints", "uav0=x.plan"]) == 2
+    assert "nothing is sent anywhere" in capsys.readouterr().err

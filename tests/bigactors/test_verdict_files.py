@@ -79,6 +79,9 @@ def test_a_verdict_of_another_mission_says_what_differs(verdict):
         ({"schema": "other"}, "no verdict"),
         ({"scheduler": "random"}, "no scheduler"),
         ({"holds": 1}, "not that everything holds"),
+        ({"engine": "reference"}, "changed after it was reached"),
+        ({"properties": []}, "changed after it was reached"),
+        ({"seal": None}, "changed after it was reached"),
     ],
 )
 def test_a_verdict_that_was_tampered_with_is_none(verdict, members, says):

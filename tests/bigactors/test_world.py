@@ -3,6 +3,8 @@ from pathlib import Path
 
 import pytest
 
+from physical import point, write_plan, write_waypoints
+
 NMEA = Path(__file__).parents[2] / "specs" / "missions" / "harbour_watch.nmea"
 
 
@@ -100,6 +102,18 @@ def test_places_that_do_not_nest_are_warned_of(missions, bigactors):
 
 
 @pytest.mark.parametrize(
+    ("name", "write_file"), [("way.plan", write_plan), ("way.waypoints", write_waypoints)]
+)
+def test_the_points_of_a_plan_or_waypoint_file_are_read_as_places(harbour, bigactors, name, write_file):
+    (harbour / name).write_text(write_file([point(1.5, 1.2), point(30, 30)], 100.0))
+    code, out, err = bigactors("world", "harbour.geojson", name)
+    assert (code, err) == (0, "")
+    assert "3 Waypoint" in out
+    berth = out[out.index("berth0") :]
+    assert "waypoint1" in berth[: berth.index("buoy0") if "buoy0" in berth else None]
+
+
+@pytest.mark.parametrize(
     ("features", "said"),
     [
         ([feature("a", "Place", [0, 95]), feature("b", "Place", [0, 96])], "feature 1 (b)"),
@@ -131,9 +145,13 @@ def test_a_world_that_makes_no_sense_is_told(missions, bigactors, features, said
         (("nowhere.nmea",), "nowhere.nmea: "),
         (("harbour.geojson", "--output", "world.gif"), "world.gif: "),
         (("holds.mission",), "is an AIS sentence"),
+        (("bad.plan",), "bad.plan: "),
+        (("bad.waypoints",), "bad.waypoints: line 2: 1 columns where 12 were expected"),
     ],
 )
-def test_what_cannot_be_shown_is_told(bigactors, words, said):
+def test_what_cannot_be_shown_is_told(missions, bigactors, words, said):
+    (missions / "bad.plan").write_text("{")
+    (missions / "bad.waypoints").write_text("QGC WPL 110\n1\n")
     code, _, err = bigactors("world", *words)
     assert code == 2
     assert said in err

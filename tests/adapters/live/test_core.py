@@ -386,3 +386,15 @@ def test_a_hand_over_that_was_done_while_nobody_looked_is_no_broken_assumption()
     assert again.findings == []
     assert "actuate" in again.rules
     assert again.commands == []
+
+
+def test_a_channel_that_nothing_shows_to_be_joined_is_never_committed():
+    text = TOUR.replace(
+        "boat0: Vessel = point (37.03, -8.63)", "boat0: Vessel = point (37.03, -8.63) linked wifi"
+    )
+    run = Run(plan_of(text + "BigActor a hosted_at uav0 with_behavior { control(CONNECT_HOST_TO boat0) }"))
+    run.turn(1.0, seen("uav0", WEST, 1.0))
+    assert "actuate" not in run.rules
+    assert run.kinds() == ["blocked"]
+    assert "nothing shows that uav0 joins or leaves wifi" in run.findings[0].message
+    assert run.state.configuration.structure.physical.channels("uav0") == ("control:gcs0",)

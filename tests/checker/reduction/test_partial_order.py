@@ -37,12 +37,12 @@ REFUSED = ("race_freedom", *TEMPORAL)
 """Kinds of properties that the reduction does not preserve: they are left undecided."""
 
 
-def compared(initial, formulas=(), most=3_000, engine=Engine.REFERENCE):
+def compared(initial, formulas=(), most=3_000):
     """Return how many configurations the full and the reduced search visit, once they found the same."""
     full, whole = everything(initial, formulas, most=most)
     if full is None:
         return None
-    reduced, part = everything(initial, formulas, Reduced(initial, POR, formulas), most=most, engine=engine)
+    reduced, part = everything(initial, formulas, Reduced(initial, POR, formulas), most=most)
     assert reduced == full
     return len(whole.configurations), len(part.configurations)
 
@@ -91,10 +91,88 @@ def test_the_rendezvous_has_the_verdicts_of_the_full_search():
     assert {each.outcome for each in report.verdicts} == {Outcome.HOLDS}  # as in tests/missions
 
 
-def test_the_fast_explorer_refuses_to_reduce():
-    mission = load_mission(MISSIONS / "takeover.mission")
-    with pytest.raises(RefusedError, match="the fast explorer does not reduce"):
-        check(mission.initial, mission.properties, engine=Engine.FAST, reduce=POR)
+# --- the fast explorer ----------------------------------------------------------------------------------------
+
+
+def visited(initial, engine, formulas=(), most=600):
+    """Return everything that a reduced search tells, configuration for configuration."""
+    reduce = Reduced(initial, POR, formulas)
+    found = explore(initial, limits=Limits(configurations=most), engine=engine, reduce=reduce)
+    origins = list(map(int, found.origins))
+    counts = (found.transitions, found.allowed, found.rules, found.depth, found.expanded, found.bounds)
+    return list(found.configurations), origins, counts
+
+
+def agreed(initial, formulas=(), most=600):
+    """Assert that both explorers choose the same; return whether anything was left out."""
+    fast = visited(initial, Engine.FAST, formulas, most)
+    assert fast == visited(initial, Engine.REFERENCE, formulas, most)
+    return fast[2][0] < fast[2][1]
+
+
+@pytest.mark.parametrize("variation", VARIATIONS.values(), ids=VARIATIONS)
+@pytest.mark.parametrize("name", NAMES)
+def test_both_explorers_follow_the_same_steps_of_a_mission(name, variation):
+    mission = load_mission(MISSIONS / f"{name}.mission", variation)
+    formulas = [each.formula for each in mission.properties if each.kind in ("invariant", "reachable")]
+    agreed(mission.initial, formulas)
+
+
+def test_the_fast_explorer_leaves_something_out():
+    assert agreed(load_mission(MISSIONS / "rendezvous.mission").initial)
+
+
+@pytest.mark.parametrize("name", ["takeover", "rendezvous", "oil_spill"])
+def test_both_explorers_report_the_same(name):
+    mission = load_mission(MISSIONS / f"{name}.mission")
+    reports = [check(mission.initial, mission.properties, reduce=POR, engine=engine) for engine in Engine]
+    assert reports[0].reduced == ("por",)
+    told = [
+        [
+            (each.outcome, each.note, each.count, each.examined, len(each.violations))
+            for each in report.verdicts
+        ]
+        for report in reports
+    ]
+    assert told[0] == told[1]
+    sizes = [
+        (report.configurations, report.transitions, report.allowed, report.depth, report.rules)
+        for report in reports
+    ]
+    assert sizes[0] == sizes[1]
+
+
+@given(
+    strategies.initial_configurations(
+        schedulers=(Scheduler.PROGRAM_ORDER, Scheduler.UNORDERED), monitored=False
+    ),
+    st.data(),
+)
+@settings(max_examples=60)
+def test_both_explorers_follow_the_same_steps_of_generated_programs(initial, data):
+    agreed(initial, data.draw(st.lists(atoms_of(initial), max_size=2)), most=120)
+
+
+@given(missions(), st.sampled_from(["", "scheduler unordered\n"]))
+@settings(max_examples=25)
+def test_both_explorers_follow_the_same_steps_of_generated_missions(text, scheduler):
+    with suppress(MissionError):
+        agreed(load(text + scheduler).initial, [Inside("uav0", "gate0", actually=True), Ended("a")], most=200)
+
+
+# --- generated ------------------------------------------------------------------------------------------------
+
+
+def atoms_of(initial):
+    """Return a strategy of propositions about a mission's entities and agents."""
+    name = st.sampled_from(sorted(initial.setting.kinds))
+    agent = st.sampled_from(initial.alpha.names())
+    return st.one_of(
+        st.builds(Inside, name, name, st.booleans()),
+        st.builds(LinkedWith, name, name, st.booleans()),
+        st.builds(Present, name),
+        *(st.builds(atom, agent) for atom in (Ended, Waiting, HasPending)),
+    )
 
 
 @given(
@@ -105,15 +183,7 @@ def test_the_fast_explorer_refuses_to_reduce():
 )
 @settings(max_examples=40)
 def test_generated_programs_have_the_same_findings(initial, data):
-    name = st.sampled_from(sorted(initial.setting.kinds))
-    agent = st.sampled_from(initial.alpha.names())
-    atoms = st.one_of(
-        st.builds(Inside, name, name, st.booleans()),
-        st.builds(LinkedWith, name, name, st.booleans()),
-        st.builds(Present, name),
-        *(st.builds(atom, agent) for atom in (Ended, Waiting, HasPending)),
-    )
-    compared(initial, data.draw(st.lists(atoms, max_size=2)), most=300)
+    compared(initial, data.draw(st.lists(atoms_of(initial), max_size=2)), most=300)
 
 
 @given(missions(), st.sampled_from(["", "scheduler unordered\n"]))

@@ -11,7 +11,7 @@ from everything_found import everything
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from checker import Limits, Reduction, RefusedError, check, explore
+from checker import Engine, Limits, Reduction, RefusedError, check, explore
 from checker.reduction import Reduced
 from checker.reduction.renaming import Renaming
 from checker.reduction.symmetry import Symmetry
@@ -73,6 +73,12 @@ def classes(loaded):
 
 def test_robots_that_start_in_one_place_and_run_one_behaviour_are_interchangeable():
     assert classes(mission(LOOKS, robots=3)) == [(("r0", "robot0"), ("r1", "robot1"), ("r2", "robot2"))]
+
+
+def test_the_fast_explorer_refuses_symmetry():
+    asked = mission(LOOKS)
+    with pytest.raises(RefusedError, match="only the reference explorer knows it; leave --engine out"):
+        check(asked.initial, asked.properties, engine=Engine.FAST, reduce=SYMMETRY)
 
 
 def test_texts_written_out_for_each_are_alike_but_for_names_and_variables():

@@ -1,0 +1,84 @@
+"""Who is who on a link: which vehicle of the mission a system is, by its id or serial number, or as the first heard.
+
+A pure state machine. A vehicle that is known by its serial number is asked for it (AUTOPILOT_VERSION) until it tells,
+and until then nothing that it says counts: a system id is quickly set to another's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from adapters.mavlink.command import long
+from adapters.mavlink.message import Message
+from adapters.mavlink.numbers import AUTOPILOT_COMPONENT, AUTOPILOT_VERSION, NO_AUTOPILOT, Cmd
+from adapters.mavlink.pilot import Pilot
+
+ASK_EVERY: Final = 1.0
+"""Seconds between two questions for a serial number."""
+
+VERSION: Final = "AUTOPILOT_VERSION"
+
+
+@dataclass(frozen=True, slots=True)
+class Roster:
+    """The serial numbers that systems have told, and when each was last asked."""
+
+    serials: Mapping[int, str] = field(default_factory=dict)
+    asked: Mapping[int, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """Whose message it is: `pilot` with its system id, None for nobody's; `question` is to be sent to its sender."""
+
+    roster: Roster
+    pilot: Pilot | None = None
+    question: Message | None = None
+    stranger: bool = False
+
+
+def find(roster: Roster, pilots: Iterable[Pilot], message: Message, now: float) -> Found:
+    """Return the pilot whose vehicle says a message, and what has to be asked to know it."""
+    if message.system == 0 or message.component != AUTOPILOT_COMPONENT:
+        return Found(roster)
+    everyone = tuple(pilots)
+    known = next((pilot for pilot in everyone if pilot.system == message.system), None)
+    if known is not None:
+        return Found(roster, known)
+    if message.name == VERSION:
+        roster = replace(roster, serials={**roster.serials, message.system: serial_of(message)})
+    elif message.name != "HEARTBEAT" or message["autopilot"] == NO_AUTOPILOT:
+        return Found(roster)
+    unbound = [pilot for pilot in everyone if pilot.system == 0]
+    serial = roster.serials.get(message.system)
+    if serial is None and any(pilot.craft.serial for pilot in unbound):
+        return _asked(roster, message.system, now)
+    fitting = next((pilot for pilot in unbound if _fits(pilot, message.system, serial)), None)
+    if fitting is None:
+        return Found(roster, stranger=True)
+    return Found(roster, replace(fitting, system=message.system))
+
+
+def serial_of(version: Message) -> str:
+    """Return an autopilot's serial number in hexadecimal digits, empty where it tells none."""
+    long_one = bytes(version["uid2"]).rstrip(b"\0")
+    if long_one:
+        return long_one.hex().upper()
+    return f"{version['uid']:016X}" if version["uid"] else ""
+
+
+def _fits(pilot: Pilot, system: int, serial: str | None) -> bool:
+    craft = pilot.craft
+    if craft.serial is None:
+        return craft.system is None
+    return craft.serial == serial and craft.system in (None, system)
+
+
+def _asked(roster: Roster, system: int, now: float) -> Found:
+    last = roster.asked.get(system)
+    if last is not None and now - last < ASK_EVERY:
+        return Found(roster)
+    roster = replace(roster, asked={**roster.asked, system: now})
+    return Found(roster, question=long(Cmd.REQUEST_MESSAGE, system, AUTOPILOT_VERSION))

@@ -1,0 +1,136 @@
+"""From what the command line says of feeds to the plugins that hear them."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from adapters.addresses import LOOPBACK, parse_address
+from adapters.ais import AisFeed
+from adapters.detections import Detections
+from adapters.location import LocationService
+from adapters.naming import NamingService
+from adapters.places import StaticPlaces
+from adapters.plugin import Plugin
+from adapters.web import Listen
+from bigactors.arguments.links import LIVING
+from bigactors.files import read_bytes
+from bigactors.mistakes import Mistake, suggestion
+from physical import Geometry, box
+from specs.elaboration import ElaboratedMission
+
+LONGEST_TOKEN = 1_000
+
+
+@dataclass(frozen=True, slots=True)
+class Hearing:
+    """How feeds are to be heard.
+
+    Attributes:
+        naming: Whose names are whose.
+        kinds: The kinds of which a feed may speak; all where there are none.
+        area: Of AIS, what lies outside is passed over.
+        token: What posts must carry.
+        living: For how many seconds a position of each feed counts.
+    """
+
+    naming: NamingService
+    kinds: dict[str, frozenset[str]]
+    area: Geometry | None
+    token: str | None
+    living: dict[str, float]
+
+
+def feeds_of(options: Namespace, mission: ElaboratedMission, naming: NamingService) -> tuple[Plugin, ...]:
+    """Return the plugins of the feeds that are given; raises Mistake, PhysicalError."""
+    hearing = Hearing(
+        naming,
+        {"detections": _expected(mission)} | _told(options, mission),
+        None if options.within is None else box(options.within[:2], options.within[2:]),
+        None if options.token is None else _token(options.token),
+        LIVING | dict(options.time_to_live),
+    )
+    return tuple(_feed(kind, address, n, hearing) for n, (kind, address) in enumerate(options.feed, 1))
+
+
+def _told(options: Namespace, mission: ElaboratedMission) -> dict[str, frozenset[str]]:
+    """Return the kinds that are told; those of detections are the mission's."""
+    told = dict(options.kinds)
+    known = mission.setting.signature.kinds
+    for kind in sorted(told.get("detections", frozenset()) - known.keys()):
+        hint = suggestion(kind, known) or f"its kinds are {', '.join(known)}"
+        raise Mistake(f"the mission has no kind '{kind:.60}' that could be detected", hint)
+    return told
+
+
+def _expected(mission: ElaboratedMission) -> frozenset[str]:
+    """Return the kinds that may be detected: of the mission, and nothing that is driven."""
+    kinds = mission.setting.signature.kinds.values()
+    return frozenset(kind.name for kind in kinds if not kind.driven)
+
+
+def _token(path: str) -> str:
+    token = read_bytes(path, LONGEST_TOKEN).decode("ascii", "replace").strip()
+    if not token or len(token) > LONGEST_TOKEN or not token.isascii() or not token.isprintable():
+        raise Mistake(
+            f"the token is not one line of at most {LONGEST_TOKEN:,} letters and digits",
+            f"make one: openssl rand -hex 32 > {path}",
+            path,
+        )
+    return token
+
+
+def _ais(name: str, address: str, hearing: Hearing) -> Plugin:
+    kinds, living = hearing.kinds.get("ais"), hearing.living["ais"]
+    return AisFeed(name, address, hearing.naming, area=hearing.area, kinds=kinds, time_to_live=living)
+
+
+def _places(name: str, address: str, _hearing: Hearing) -> Plugin:
+    return StaticPlaces(name, Path(address.removeprefix("file:")))
+
+
+def _detections(name: str, address: str, hearing: Hearing) -> Plugin:
+    scheme, _, rest = address.partition(":")
+    if scheme == "folder" and rest:
+        return _detector(name, hearing, folder=Path(rest))
+    at = parse_address(address.replace("http:", "tcpin:", 1))
+    if at.host != LOOPBACK and hearing.token is None:
+        hint = "say which token posts must carry: --token FILE"
+        raise Mistake(f"whoever reaches {at.host} could post detections", hint, address)
+    return _detector(name, hearing, listen=Listen(at.port, at.host, hearing.token))
+
+
+def _detector(
+    name: str, hearing: Hearing, *, listen: Listen | None = None, folder: Path | None = None
+) -> Plugin:
+    return Detections(
+        name,
+        listen=listen,
+        folder=folder,
+        kinds=hearing.kinds["detections"],
+        naming=hearing.naming,
+        time_to_live=hearing.living["detections"],
+    )
+
+
+def _locations(name: str, address: str, hearing: Hearing) -> Plugin:
+    return LocationService(name, address, naming=hearing.naming, time_to_live=hearing.living["locations"])
+
+
+FEEDS: dict[str, Callable[[str, str, Hearing], Plugin]] = {
+    "ais": _ais,
+    "detections": _detections,
+    "locations": _locations,
+    "places": _places,
+}
+"""For each kind of feed what makes its plugin from a name, an address and how it is to be heard."""
+
+
+def _feed(kind: str, address: str, number: int, hearing: Hearing) -> Plugin:
+    make = FEEDS.get(kind)
+    if make is None:
+        hint = suggestion(kind, FEEDS) or f"the feeds are {', '.join(FEEDS)}"
+        raise Mistake(f"there is no feed '{kind:.40}'", hint)
+    return make(f"{kind}{number}", address, hearing)

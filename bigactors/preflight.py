@@ -1,0 +1,148 @@
+"""What of a mission no vehicle here can do: said before take-off, not when a request turns out to wait for ever.
+
+A control is committed when something has shown that it is done. Vehicles show where they are, and whom they obey. That
+one is aboard another, that a load was put down, or that a channel was joined, nothing shows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from itertools import islice, product
+
+from adapters.live.orders import is_authority
+from adapters.mavlink.autopilot import Autopilot
+from adapters.plugin import Plugin
+from bigactors.fences import placements_of
+from bigactors.mistakes import Mistake
+from bigactors.terminal import tell
+from checker.reduction.bounds import Bounds
+from checker.reduction.roles import Roles
+from semantics.expressions import Fault
+from semantics.reactions import CONTROL_AUTHORITY, LinkTerm, NodeTerm, PlaceTerm, Reaction
+from semantics.signature import Name
+from semantics.statements import ControlBy
+from specs.elaboration import ElaboratedMission
+
+MOST_INSTANCES = 5_000
+"""Of a control that may be about more than these, the first are looked at."""
+
+Objection = Callable[[Reaction], str]
+"""Returns what stands against a control, nothing if it can be done."""
+
+
+def check_flyable(mission: ElaboratedMission) -> None:
+    """Refuse controls that nothing would ever confirm, warn of those that may be; raises Mistake."""
+    _judge(mission, lambda reaction: next(_unshown(reaction, mission), ""))
+
+
+def check_places(mission: ElaboratedMission, plugins: tuple[Plugin, ...]) -> None:
+    """Refuse places that are too small for a vehicle, now that its kind is known, or outside its fence.
+
+    Raises Mistake.
+    """
+    pilots = [plugin for plugin in plugins if isinstance(plugin, Autopilot)]
+
+    def objection(reaction: Reaction) -> str:
+        reasons = (
+            plugin.objection(str(vehicle), geometry, str(place))
+            for vehicle, place in _moves(reaction)
+            for plugin in pilots
+            if plugin.owns(str(vehicle)) and isinstance(place, str)
+            for geometry in placements_of(place, mission)
+        )
+        return next((f"it cannot: {reason}" for reason in reasons if reason), "")
+
+    _judge(mission, objection)
+
+
+def _judge(mission: ElaboratedMission, objection: Objection) -> None:
+    """Raise Mistake for a control that cannot be done whoever it is about, and warn where that depends."""
+    for agent, line, reactions in _controls(mission):
+        reasons = {str(reaction): objection(reaction) for reaction in reactions}
+        bad = [f"{control}: {reason}" for control, reason in reasons.items() if reason]
+        if bad and len(bad) == len(reasons):
+            hint = "nothing has been commanded; change the mission, or what flies it"
+            raise Mistake(
+                f"{agent} would ask for what cannot be flown: {bad[0]}", hint, _place(mission, line)
+            )
+        if bad:
+            tell(f"{_place(mission, line)}: warning: {agent} may ask for what cannot be flown: {bad[0]}")
+
+
+def _place(mission: ElaboratedMission, line: int) -> str:
+    return f"{mission.source.name}:{line}" if line else mission.source.name
+
+
+def _controls(mission: ElaboratedMission) -> Iterator[tuple[Name, int, tuple[Reaction, ...]]]:
+    """Yield the controls of each agent, with their lines, for all that their arguments may name."""
+    program, roles = mission.setting.program, Roles(Bounds(mission.initial))
+    for agent in roles.agents:
+        for number in sorted(roles[agent].statements):
+            statement = program.statements[number]
+            if isinstance(statement, ControlBy):
+                arguments = (roles.entities(agent, each) for each in statement.arguments)
+                several: tuple[Sequence[Name], ...] = (sorted(roles[agent].hosts), *arguments)
+                found = _instances(mission, program.reactions[statement.name], several)
+                yield agent, program.line(number), tuple(found)
+
+
+def _instances(
+    mission: ElaboratedMission, make: Callable[..., Reaction], several: Iterable[Sequence[Name]]
+) -> Iterator[Reaction]:
+    for chosen in islice(product(*several), MOST_INSTANCES):
+        with suppress(Fault):  # not every name is one that the command takes
+            reaction = make(*chosen)
+            if all(_may_be(mission, *move) for move in _moves(reaction)):
+                yield reaction
+
+
+def _may_be(mission: ElaboratedMission, node: NodeTerm, place: PlaceTerm) -> bool:
+    """Tell whether a place may hold a node at all."""
+    of, holder = _kind(mission, node), _kind(mission, place)
+    unknown = of is None or holder is None
+    return node != place and (unknown or mission.setting.signature[str(holder)].may_contain(str(of)))
+
+
+def _unshown(reaction: Reaction, mission: ElaboratedMission) -> Iterator[str]:
+    signature = mission.setting.signature
+    for node, place in _moves(reaction):
+        of, holder = _kind(mission, node), _kind(mission, place)
+        if of is not None and not signature[of].driven:
+            yield f"nothing shows that {node} is put into {place}"
+        elif of is not None and holder is not None and of in signature[holder].carries:
+            yield f"nothing shows that {node} is aboard {place}"
+    flies = any(True for _ in _moves(reaction))
+    for node, links in _links(reaction):
+        of = _kind(mission, node)
+        if flies or any(_is_other(link) for link in links) or (of is not None and not signature[of].driven):
+            which = sorted(link if isinstance(link, str) else "a channel" for link in links)
+            yield f"nothing shows that {node} joins or leaves {' and '.join(dict.fromkeys(which))}"
+
+
+def _moves(reaction: Reaction) -> Iterator[tuple[NodeTerm, PlaceTerm]]:
+    """Yield what a reaction moves, and where to."""
+    before = dict(reaction.redex.parents)
+    return ((node, place) for node, place in reaction.reactum.parents if before.get(node) != place)
+
+
+def _links(reaction: Reaction) -> Iterator[tuple[NodeTerm, frozenset[LinkTerm]]]:
+    """Yield the nodes whose links a reaction changes, with those links."""
+    changed = set(reaction.redex.links) ^ set(reaction.reactum.links)
+    for node in dict.fromkeys(node for _, node in (*reaction.redex.links, *reaction.reactum.links)):
+        links = frozenset(link for link, point in changed if point == node)
+        if links:
+            yield node, links
+
+
+def _is_other(link: LinkTerm) -> bool:
+    """Tell whether a link is certainly no control authority."""
+    if isinstance(link, str):
+        return not is_authority(link)
+    return link.but == CONTROL_AUTHORITY or link.kind not in (None, CONTROL_AUTHORITY)
+
+
+def _kind(mission: ElaboratedMission, term: NodeTerm | PlaceTerm) -> str | None:
+    if isinstance(term, str):
+        return mission.setting.kinds.get(term)
+    return getattr(term, "kind", None)

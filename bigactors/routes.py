@@ -1,0 +1,65 @@
+"""The waypoints that a trace sends a vehicle to, as a file that ground stations read (paper, Example 1)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+from bigactors.files import write_text
+from bigactors.mistakes import Mistake, suggestion
+from checker import Trace
+from physical import Geometry, MobilityCommand, visited, write_plan, write_waypoints
+from physical.place_files import PLAN, WAYPOINTS
+from semantics.configuration import Configuration
+from semantics.control import Realisation, realisations
+from semantics.mobility import mobility_commands
+from semantics.physical_model import InTransit
+from semantics.requests import CTR
+from semantics.signature import Name
+
+HEIGHT = 100.0
+"""Metres above home at which what has no band of its own travels."""
+
+WRITERS = {PLAN: write_plan, WAYPOINTS: write_waypoints}
+
+
+def write_route(trace: Trace, vehicle: Name, path: str) -> int:
+    """Write the points that a trace sends a vehicle to; return how many there are; raises Mistake."""
+    write = WRITERS.get(Path(path).suffix)
+    if write is None:
+        raise Mistake("a route is written as one of " + ", ".join(WRITERS), "name the file so", path)
+    start = trace.initial
+    if vehicle not in start.setting.kinds:
+        hint = suggestion(vehicle, start.setting.kinds) or "name a vehicle of the mission"
+        raise Mistake(f"the mission has no entity '{vehicle:.60}'", hint)
+    told = tuple(_told(trace))
+    points = visited(told, vehicle)
+    if not points:
+        raise Mistake(f"nothing sends '{vehicle}' anywhere in this trace", "name another vehicle")
+    write_text(path, write(points, HEIGHT, _home(start, vehicle)))
+    return len(points)
+
+
+def _home(c: Configuration, vehicle: Name) -> Geometry | None:
+    at = c.structure.physical.position(vehicle)
+    return at.geometry if at is not None and at.geometry.is_point else None
+
+
+def _told(trace: Trace) -> Iterator[MobilityCommand]:
+    """Yield what vehicles are told in a trace: when a control is commanded, or actuated at once."""
+    for (before, after), step in zip(pairwise(trace.configurations), trace.steps, strict=True):
+        request = step.label.about
+        if step.label.rule in ("command", "actuate") and isinstance(request, CTR):
+            ways = realisations(before, request)
+            found = next((way for way in ways if _led_to(way, after)), None)
+            yield from () if found is None else mobility_commands(before, found)
+
+
+def _led_to(way: Realisation, after: Configuration) -> bool:
+    """Tell whether a way of making a control true is the one that was taken."""
+    if all(after.read(cell) == value for cell, value in way.physical.items()):
+        return True
+    physical = after.structure.physical
+    under_way = ((physical.placement(node), place) for node, place in way.flying)
+    return bool(way.flying) and all(isinstance(at, InTransit) and at.to == to for at, to in under_way)

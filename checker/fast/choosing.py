@@ -1,0 +1,296 @@
+"""The compiled loop that follows ample sets only: `checker.reduction.ample`, over rows and footprints as words.
+
+Rows are expanded one after another, since whether a step may be put off depends on what was visited before. Which
+actors there are is told by trees of their own; what may disturb what is worked out where it is first asked for.
+"""
+
+# mypy: disable-error-code="return-value, assignment, arg-type"
+# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from checker.fast.kernel import (
+    ALPHA,
+    AT,
+    CUT,
+    EXPANDED,
+    GATHERED,
+    LIMIT,
+    SIZE,
+    TOUCHED,
+    TREE,
+    WORDS,
+    Batch,
+    Ints,
+    Model,
+    State,
+    Words,
+    bits_for,
+    code_at,
+    find,
+    gather,
+    touch,
+    walk,
+)
+
+DONE, MISSED, FULL = 0, 1, 2
+"""How `advance_reduced` ends: all rows were expanded; something is not known; there is no room."""
+
+MOST_HERE = 64
+"""A configuration with more actors than these is expanded in full."""
+
+FAIR, AGENTS_OWN = 1, 2
+"""Flags of a transition: an agent's, and one that must be taken some time; an agent's."""
+
+MEMBER, NOW, EVER, ASIDE, FOLLOWER = range(5)
+RECORD = 5
+"""Numbers of an actor in a configuration: which it is, its footprints, and which comes behind it (-1: none)."""
+
+READS, WRITES, MERGES = range(3)
+PARTS = 3
+"""What a footprint has, each as words of bits."""
+
+
+class Members(NamedTuple):
+    """Who may move, and what that may disturb, as the loop sees it.
+
+    Attributes:
+        trees_from, trees: Trees that tell the actors, in groups: one for each value of the cell that names agents.
+        begins: For each leaf of these where its actors begin in `actors`, and where they end.
+        actors: `RECORD` numbers an actor.
+        footprints: For each footprint the words of its parts.
+        disturbed: For each two footprints whether one disturbs the other: 0 where it was not asked, 1 no, 2 yes.
+        step_actor, step_flags: For each transition whose it is, and its flags.
+        seen_masks: For each word of a row the bits that properties look at.
+        seen: Columns that properties look at through a question, each with where its answers begin.
+        answers: What that question makes of each code.
+        seen_whole: For each word of a row the bits that properties look at as they are.
+        here, whose, sets, sizes: Room for one row: its actors, whose each successor is, sets of actors, and how
+            many successors each has.
+    """
+
+    trees_from: Ints
+    trees: Ints
+    begins: Ints
+    actors: Ints
+    footprints: Words
+    disturbed: Any
+    step_actor: Ints
+    step_flags: Ints
+    seen_masks: Words
+    seen_whole: Words
+    seen: Ints
+    answers: Any
+    here: Ints
+    whose: Ints
+    sets: Words
+    sizes: State
+
+
+@njit(cache=True)
+def disturbs(m: Members, count: int, one: int, other: int) -> bool:
+    """Tell whether one footprint disturbs another (see `checker.reduction.slots.Footprint`)."""
+    known = m.disturbed[one * count + other]
+    if known == 0:
+        words = len(m.footprints) // (PARTS * count)
+        a, b = one * PARTS * words, other * PARTS * words
+        known = np.uint8(1)
+        for k in range(words):
+            reads, writes = m.footprints[a + k], m.footprints[a + words + k]
+            merges = m.footprints[a + 2 * words + k]
+            its_reads, its_writes = m.footprints[b + k], m.footprints[b + words + k]
+            its_merges = m.footprints[b + 2 * words + k]
+            met = writes & (its_reads | its_writes | its_merges)
+            met |= its_writes & (reads | merges)
+            met |= (merges & its_reads) | (its_merges & reads)
+            if met != np.uint64(0):
+                known = np.uint8(2)
+        m.disturbed[one * count + other] = known
+    return bool(known == 2)
+
+
+@njit(cache=True)
+def meet(m: Model, r: Members, words: Words, at: int, here: Ints, state: State) -> int:
+    """Note the actors of a row; return how many there are, -1 where something is not known."""
+    group = np.int64(0)
+    if state[ALPHA] >= 0:
+        group = code_at(words, at, m.columns, state[ALPHA])
+    count = np.int64(0)
+    for k in range(r.trees_from[group], r.trees_from[group + 1]):
+        reference = walk(words, at, m.root[r.trees[k]], m.nodes, m.next, state)
+        if reference == 0:
+            state[TREE] = r.trees[k]
+            return -1
+        leaf = -reference - 1
+        for actor in range(r.begins[2 * leaf], r.begins[2 * leaf + 1]):
+            if count < len(here):
+                here[count] = actor
+            count += 1
+    return count
+
+
+@njit(cache=True)
+def persistent(r: Members, here: Ints, count: int, seed: int) -> np.uint64:
+    """Return the least set around an actor such that nothing outside ever disturbs what those inside may do now."""
+    footprints = np.int64(np.sqrt(len(r.disturbed)))
+    inside = np.uint64(1) << np.uint64(seed)
+    waiting = inside
+    while waiting != np.uint64(0):
+        k = np.int64(0)
+        while not (waiting >> np.uint64(k)) & np.uint64(1):
+            k += 1
+        waiting &= ~(np.uint64(1) << np.uint64(k))
+        actor = RECORD * here[k]
+        for j in range(count):
+            bit = np.uint64(1) << np.uint64(j)
+            if inside & bit:
+                continue
+            other = RECORD * here[j]
+            behind = (
+                r.actors[actor + FOLLOWER] >= 0 and r.actors[actor + FOLLOWER] == r.actors[other + MEMBER]
+            )
+            may = r.actors[other + (ASIDE if behind else EVER)]
+            if disturbs(r, footprints, r.actors[actor + NOW], may):
+                inside |= bit
+                waiting |= bit
+    return inside
+
+
+@njit(cache=True)
+def is_seen(m: Model, r: Members, words: Words, at: int, target: Words, to: int, width: int) -> bool:
+    """Tell whether properties see a difference between a row and a successor."""
+    asked = False
+    for j in range(width):
+        changed = words[at + j] ^ target[to + j]
+        if changed & r.seen_whole[j]:
+            return True
+        asked = asked or (changed & r.seen_masks[j]) != np.uint64(0)
+    if asked:
+        for k in range(len(r.seen) // 2):
+            column, begin = r.seen[2 * k], r.seen[2 * k + 1]
+            before = r.answers[begin + code_at(words, at, m.columns, column)]
+            if before != r.answers[begin + code_at(target, to, m.columns, column)]:
+                return True
+    return False
+
+
+@njit(cache=True)
+def choose(  # one step of the search, with what it looks at
+    m: Model, r: Members, words: Words, table: Any, batch: Batch, row: int, count: int, state: State
+) -> tuple[bool, np.uint64]:
+    """Return whether all is known, and the actors whose steps are to be followed: all bits where it is everybody's.
+
+    Whose each successor is is left in `whose`, as a number among the actors of the row.
+    """
+    everybody = ~np.uint64(0)
+    width, at = state[WORDS], row * state[WORDS]
+    if count < 2:
+        return True, everybody
+    here, whose, sets, sizes = r.here, r.whose, r.sets, r.sizes
+    actors = meet(m, r, words, at, here, state)
+    if actors < 0:
+        return False, everybody
+    if actors > MOST_HERE:
+        return True, everybody
+    bits = np.uint32(bits_for(len(table)))
+    found = np.int64(0)
+    for k in range(count):
+        whose[k] = 0
+        while r.actors[RECORD * here[whose[k]] + MEMBER] != r.step_actor[batch.steps[k]]:
+            whose[k] += 1
+    for k in range(count):
+        if not r.step_flags[batch.steps[k]] & AGENTS_OWN:
+            continue
+        inside = persistent(r, here, actors, whose[k])
+        known = False
+        for j in range(found):
+            known = known or sets[j] == inside
+        if not known:
+            size = np.int64(0)
+            for j in range(count):
+                size += np.int64((inside >> np.uint64(whose[j])) & np.uint64(1))
+            sets[found], sizes[found] = inside, size
+            found += 1
+    for _ in range(found):
+        least = np.int64(-1)
+        for j in range(found):
+            if 0 <= sizes[j] < count and (least < 0 or sizes[j] < sizes[least]):
+                least = j
+        if least < 0:
+            break
+        inside, sizes[least] = sets[least], -1
+        seen, fair, later = False, False, False
+        for k in range(count):
+            if (inside >> np.uint64(whose[k])) & np.uint64(1):
+                seen = seen or is_seen(m, r, words, at, batch.words, k * width, width)
+                fair = fair or bool(r.step_flags[batch.steps[k]] & FAIR)
+        if seen or not fair:
+            continue
+        for k in range(count):
+            if (inside >> np.uint64(whose[k])) & np.uint64(1):
+                number = find(words, table, batch.words, k, batch.hashes[k], width, bits)
+                later = later or number < 0 or number > row
+        if later:
+            return True, inside
+    return True, everybody
+
+
+@njit(cache=True)
+def advance_reduced(
+    m: Model,
+    r: Members,
+    words: Words,
+    origins: Any,
+    table: Any,
+    batch: Batch,
+    met: State,
+    counts: State,
+    state: State,
+    until: int,
+) -> int:
+    """Expand rows up to a number, in their order, following ample sets where there are any.
+
+    It is counted how often each transition was met, and how often it was followed.
+    """
+    most = min(len(origins), len(words) // state[WORDS], len(table) * 3 // 4)
+    width, limit = state[WORDS], state[LIMIT]
+    bits = np.uint32(bits_for(len(table)))
+    while state[AT] < until:
+        if min(state[SIZE] + len(batch.hashes), limit) > most:
+            return FULL
+        row = state[AT]
+        state[GATHERED] = 0
+        known = gather(m, words, batch, state, row + 1)
+        count = state[GATHERED]
+        inside = ~np.uint64(0)
+        if known:
+            state[TOUCHED] = touch(words, table, batch.hashes, 0, count, width)
+            known, inside = choose(m, r, words, table, batch, row, count, state)
+        state[GATHERED] = 0
+        if not known:
+            state[AT] = row
+            return MISSED
+        everybody = inside == ~np.uint64(0)
+        size = state[SIZE]
+        for k in range(count):
+            met[batch.steps[k]] += 1
+            if not everybody and not (inside >> np.uint64(r.whose[k])) & np.uint64(1):
+                continue
+            counts[batch.steps[k]] += 1
+            found = find(words, table, batch.words, k, batch.hashes[k], width, bits)
+            if found >= 0:
+                continue
+            if size >= limit:
+                state[CUT] += 1
+                continue
+            for j in range(width):
+                words[size * width + j] = batch.words[k * width + j]
+            origins[size] = row
+            table[-found - 1] = ((np.uint32(batch.hashes[k]) >> bits) << bits) | np.uint32(size + 1)
+            size += 1
+        state[SIZE] = size
+        state[EXPANDED] = row + 1
+    return DONE

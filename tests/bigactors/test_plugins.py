@@ -1,0 +1,189 @@
+"""From the options of `bigactors run` to its plugins: names, filters, fence, key, times."""
+
+import stat
+import subprocess
+import sys
+
+import pytest
+
+from adapters.mavlink.signing import load
+from bigactors.arguments import parse_arguments
+from bigactors.cli import main
+from bigactors.fences import fence_of
+from bigactors.missions import open_mission
+from bigactors.mistakes import Mistake
+from bigactors.plugins import plugins_of
+from physical import box, contains, point
+from semantics.setting import Control, Scheduler
+from specs.elaboration import Variation
+
+LIVE = Variation(Scheduler.FCFS, Control.TIMED)
+UAV = "--vehicle=uav0=udp:127.0.0.1:0"
+HEAD = """
+signature { kind Location contains Location, UAV kind UAV driven kind Drifter }
+world {
+"""
+
+
+def plugins(*more, mission="spill_watch", vehicle=UAV):
+    found, _ = plugins_of(parse_arguments(["run", mission, vehicle, *more]), open_mission(mission, LIVE))
+    return found
+
+
+@pytest.fixture
+def mission(tmp_path):
+    def write(*world):
+        path = tmp_path / "m.mission"
+        path.write_text(HEAD + "\n".join(world) + "\n}\n")
+        return open_mission(str(path), LIVE)
+
+    return write
+
+
+# --- the fence ------------------------------------------------------------------------------------------
+
+
+def test_the_fence_is_the_place_that_holds_all_places_where_vehicles_may_be(mission):
+    found = mission(
+        "sea0: Location = box (37.2, -8.5) (36.9, -8.8)",
+        "bay0: Location = box (37.1, -8.6) (37.0, -8.7)",
+        "uav0: UAV = point (37.05, -8.65)",
+    )
+    assert fence_of("world", found) == box((37.2, -8.5), (36.9, -8.8))
+    assert fence_of("bay0", found) == box((37.1, -8.6), (37.0, -8.7))
+    assert fence_of("none", found) is None
+
+
+def test_without_such_a_place_it_is_a_box_half_a_kilometre_around_them(mission):
+    found = mission(
+        "west0: Location = box (37.1, -8.6) (37.0, -8.7)",
+        "east0: Location = box (37.1, -8.4) (37.0, -8.5)",
+        "uav0: UAV = point (37.2, -8.65)",
+    )
+    fence = fence_of("world", found)
+    south, west = fence.vertices[0]
+    north, east = fence.vertices[2]
+    assert (south, west, north, east) == pytest.approx((36.9955, -8.7056, 37.2045, -8.3944), abs=2e-4)
+    assert contains(fence, point(37.2, -8.65))
+
+
+def test_the_fence_of_a_mission_holds_what_may_appear_in_it():
+    found = open_mission("spill_watch", LIVE)
+    assert contains(fence_of("world", found), box((37.0, -8.7), (37.006, -8.706)))
+
+
+@pytest.mark.parametrize("word", ["uav0", "nowhere0", "drifter0"])
+def test_what_is_no_place_with_a_border_is_no_fence(word):
+    with pytest.raises(Mistake, match=f"'{word}' is no fence"):
+        fence_of(word, open_mission("spill_watch", LIVE))
+
+
+def test_each_vehicle_gets_the_fence_and_how_long_its_positions_count():
+    (autopilot,) = plugins("--time-to-live=vehicles=12")
+    craft = autopilot.pilot("uav0").craft
+    assert craft.fence == fence_of("world", open_mission("spill_watch", LIVE))
+    assert craft.time_to_live == 12.0
+
+
+# --- who is who -----------------------------------------------------------------------------------------
+
+
+def test_a_vehicle_is_known_by_what_the_table_says():
+    assert plugins("--name=mavlink:3=uav0")[0].pilot("uav0").craft.system == 3
+    assert plugins("--name=serial:2f003b=uav0")[0].pilot("uav0").craft.serial == "2F003B"
+
+
+@pytest.mark.parametrize(
+    ("more", "vehicle", "says"),
+    [
+        (["--name=mavlink:3=uav0"], "--vehicle=uav0:4=udp:1", "'uav0' has two system ids: 4 and 3"),
+        (["--name=mavlink:300=uav0"], UAV, "'mavlink:300' is no system id"),
+        (["--name=mavlink:3=uav0", "--name=serial:2F=uav0"], UAV, "would be called uav0, as serial:2F is"),
+        (["--name=mmsi:263999001=uav0"], UAV, "mmsi:263999001 would be called uav0, as vehicle:uav0 is"),
+        (["--name=mmsi:263999001=uav0"], "--vehicle=uav0:3=udp:1", "would be called uav0, as mavlink:3 is"),
+        (
+            ["--name=name:camera=searchArea0"],
+            UAV,
+            "name:camera would be called searchArea0, as place:searchArea0",
+        ),
+        (["--vehicle=uav0=udp:2"], UAV, "'uav0' is given twice"),
+        (["--kinds=detections=OilSpil"], UAV, "no kind 'OilSpil' that could be detected"),
+        (["--feed=ais=udp:1", "--kinds=ais=OilSpill"], UAV, "no station is of kind 'OilSpill'"),
+        (["--feed=detections=http:0.0.0.0:0"], UAV, "whoever reaches 0.0.0.0 could post detections"),
+        (["--feed=detections=http:0", "--token=nowhere"], UAV, "No such file"),
+        (["--key=nowhere.json"], UAV, "cannot read the signing key"),
+        (["--fence=uav0"], UAV, "'uav0' is no fence"),
+        (["--within=99,0,98,1"], UAV, "latitude"),
+    ],
+)
+def test_what_cannot_be_so_is_a_mistake_that_says_why(more, vehicle, says):
+    with pytest.raises(Mistake) as error:
+        plugins(*more, vehicle=vehicle)
+    assert says in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "word", ["--kinds=OilSpill", "--kinds=radar=x", "--time-to-live=ais", "--time-to-live=x=1"]
+)
+def test_what_is_no_value_of_an_option_is_told(word, capsys):
+    assert main(["run", "spill_watch", UAV, word]) == 2
+    assert "is not FEED=" in capsys.readouterr().err
+
+
+def test_vehicles_with_one_system_id_on_two_links_both_have_their_names(mission, tmp_path):
+    mission(
+        "sea0: Location = box (37.2, -8.5) (36.9, -8.8)",
+        "uav0: UAV = point (37.05, -8.65)",
+        "uav1: UAV = point (37.06, -8.65)",
+    )
+    more = ["--vehicle=uav1:1=udp:2", "--feed=detections=folder:."]
+    *_, feed = plugins(*more, mission=str(tmp_path / "m.mission"), vehicle="--vehicle=uav0:1=udp:1")
+    assert (feed._naming.identity("uav0"), feed._naming.identity("uav1")) == ("mavlink:1", "vehicle:uav1")
+
+
+# --- feeds ----------------------------------------------------------------------------------------------
+
+
+def test_of_ais_only_a_box_and_some_kinds_are_heard_and_for_how_long():
+    more = ("--within=36,-9,38,-8", "--kinds=ais=Vessel", "--time-to-live=ais=90")
+    _, feed = plugins("--feed=ais=udp:0", *more)
+    assert (feed._area, feed._kinds, feed._time_to_live) == (box((36, -9), (38, -8)), {"Vessel"}, 90.0)
+
+
+def test_detections_are_of_the_kinds_of_the_mission_that_nothing_drives():
+    _, feed = plugins("--feed=detections=http:0")
+    assert feed._kinds == {"Location", "OilSpill", "Drifter", "Station"}
+    assert feed._listen.host == "127.0.0.1"
+
+
+def test_who_listens_to_the_network_asks_for_a_token(tmp_path):
+    (tmp_path / "token").write_text("sesame\n")
+    _, feed = plugins("--feed=detections=http:0.0.0.0:0", f"--token={tmp_path / 'token'}")
+    assert (feed._listen.host, feed._listen.token) == ("0.0.0.0", "sesame")
+    (tmp_path / "token").write_text("two\nlines\n")
+    with pytest.raises(Mistake, match="the token is not one line"):
+        plugins("--feed=detections=http:0", f"--token={tmp_path / 'token'}")
+
+
+def test_a_place_that_never_moves_can_be_detected_where_its_kind_is_expected():
+    for more, clashes in (((), True), (("--kinds=detections=Location",), False)):
+        _, feed = plugins("--feed=detections=folder:.", *more)
+        assert (feed._naming.identity("searchArea0") == "place:searchArea0") == clashes
+        if not clashes:
+            assert feed._naming.name("name:searchArea0") == "searchArea0"
+
+
+# --- keys -----------------------------------------------------------------------------------------------
+
+
+def test_a_key_is_made_of_a_passphrase_and_shared_by_all_links(tmp_path):
+    path = tmp_path / "key.json"
+    make = [sys.executable, "-m", "adapters.mavlink.new_key", str(path)]
+    subprocess.run(make, input="open sesame\n", text=True, check=True)
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert len(load(path).key) == 32
+    again = subprocess.run(make, input="open sesame\n", text=True, check=False, capture_output=True)
+    assert again.returncode == 2
+    assert "is there already" in again.stderr
+    (autopilot,) = plugins(f"--key={path}")
+    assert autopilot._keeper.key == load(path).key

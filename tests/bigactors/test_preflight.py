@@ -1,0 +1,122 @@
+"""What no vehicle can do is said before take-off."""
+
+import asyncio
+from contextlib import suppress
+
+import pytest
+
+from adapters.simulated import Kind, Simulator, Vehicle, run
+from bigactors.arguments import parse_arguments
+from bigactors.cli import main
+from bigactors.commands.run import fly, prepare
+from bigactors.mistakes import Mistake
+
+WORLD = """
+mission carrier
+signature {
+  kind Location contains Location, Ship, UAV, Buoy, Mast, Pad
+  kind Pad contains UAV
+  kind Ship carries UAV
+  kind UAV driven carries Buoy
+  kind Buoy
+  kind Mast
+}
+world {
+  west0: Location = box (37.02, -8.64) (37.00, -8.66)
+  east0: Location = box (37.02, -8.60) (37.00, -8.62)
+  pad0: Pad = circle (37.01, -8.61) radius 40 m
+  ship0: Ship = point (37.012, -8.615) linked wifi
+  mast0: Mast = point (37.011, -8.616) linked wifi
+  gcs0: Mast = point (37.03, -8.63) linked control:gcs0
+  gcs1: Mast = point (37.04, -8.63) linked control:gcs1
+  uav0: UAV = point (37.01, -8.65) linked control:gcs0
+  buoy0: Buoy carried by uav0
+}
+"""
+
+
+def mission(folder, *statements):
+    path = folder / "carrier.mission"
+    body = "\n".join(f"  {each}" for each in statements)
+    path.write_text(f"{WORLD}\nBigActor a hosted_at uav0 with_behavior {{\n{body}\n}}\n")
+    return str(path)
+
+
+def line(folder, *statements):
+    return ["run", mission(folder, *statements), "--unverified", "--vehicle=uav0=udp:127.0.0.1:0"]
+
+
+@pytest.mark.parametrize(
+    ("statement", "reason"),
+    [
+        ("control(MOVE_HOST_TO ship0)", "nothing shows that uav0 is aboard ship0"),
+        ("control(PUT buoy0 IN west0)", "nothing shows that buoy0 is put into west0"),
+        ("control(CONNECT_HOST_TO mast0)", "nothing shows that uav0 joins or leaves a channel"),
+        (
+            "control({ HOST[c].$0 || gcs1[d].$1 || east0.$2 -> gcs1[d].$1 || east0.(HOST[d].$0 | $2) })",
+            "uav0 joins or leaves a channel",  # handed over and moved at once
+        ),
+        ("control({ HOST || mast0[wifi] -> HOST[wifi] || mast0[wifi] })", "uav0 joins or leaves wifi"),
+    ],
+)
+def test_what_nothing_would_ever_confirm_is_refused_before_anything_is_heard(
+    tmp_path, capsys, statement, reason
+):
+    assert main([*line(tmp_path, statement), "--wait", "0.1"]) == 2
+    told = capsys.readouterr().err
+    assert "carrier.mission:24: a would ask for what cannot be flown" in told
+    assert reason in told
+    assert "nothing was heard" not in told
+
+
+def test_what_only_may_be_asked_for_is_a_warning(tmp_path, capsys):
+    options = parse_arguments(
+        line(tmp_path, "choose place in {west0, ship0} { control(MOVE_HOST_TO place) }")
+    )
+    prepare(options)
+    told = capsys.readouterr().err
+    assert "warning: a may ask for what cannot be flown: MOVE_HOST_TO ship0" in told
+
+
+async def flown(flight, vehicle):
+    task = asyncio.ensure_future(fly(flight, ()))
+    while not flight.plugins[0].local and not task.done():
+        await asyncio.sleep(0.05)
+    simulator = Simulator(f"udpout:127.0.0.1:{flight.plugins[0].local[1]}", [vehicle])
+    simulation = asyncio.ensure_future(simulator.run())
+    try:
+        return await task
+    finally:
+        simulation.cancel()
+        with suppress(asyncio.CancelledError):
+            await simulation
+
+
+def options(folder, *statements):
+    return parse_arguments([*line(folder, *statements), "--socket", str(folder / "s"), "--for", "600"])
+
+
+def test_a_later_place_too_small_for_the_planes_circle_is_refused_before_take_off(tmp_path):
+    plane = Vehicle(Kind.PLANE, (37.01, -8.65, 20.0))
+    flight = prepare(options(tmp_path, "control(MOVE_HOST_TO east0)", "control(MOVE_HOST_TO pad0)"))
+    with pytest.raises(Mistake, match="pad0 is too small: the plane needs a circle of 80 m") as error:
+        run(flown(flight, plane))
+    assert error.value.place.endswith("carrier.mission:25")
+    assert not plane.armed
+
+
+def test_a_place_outside_the_fence_is_refused_before_take_off(tmp_path):
+    plane = Vehicle(Kind.PLANE, (37.01, -8.65, 20.0))
+    asked = options(tmp_path, "control(MOVE_HOST_TO east0)")
+    asked.fence = "west0"
+    with pytest.raises(Mistake, match="lies outside the fence"):
+        run(flown(prepare(asked), plane))
+    assert not plane.armed
+
+
+def test_a_copter_flies_where_a_plane_could_not(tmp_path):
+    copter = Vehicle(Kind.COPTER, (37.01, -8.65, 20.0))
+    ending = run(flown(prepare(options(tmp_path, "control(MOVE_HOST_TO pad0)")), copter))
+    assert ending.reason == "the mission has ended"
+    assert ending.state.configuration.structure.logical.parent("uav0") == "pad0"
+    assert copter.fence is not None
