@@ -1,21 +1,29 @@
-"""A plugin of a station: whatever it publishes is told to the station, which tells all."""
+"""A plugin of a station: whatever it publishes, and is told to do, is told to the station, which tells all."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 from adapters.plugin import Command, Plugin, Published, Report, World
 
-Publish = Callable[[Plugin, World, Published], None]
+
+class Station(Protocol):
+    """Who shares."""
+
+    def publish(self, plugin: Plugin, world: World, published: Published) -> None:
+        """Take what a plugin publishes."""
+
+    def commanded(self, command: Command) -> None:
+        """Take note of what a plugin was told."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shared:
-    """A plugin whose world is that of all stations; `publish` takes what it publishes."""
+    """A plugin whose world is that of all stations."""
 
     plugin: Plugin
-    publish: Publish
+    station: Station
 
     @property
     def name(self) -> str:
@@ -28,6 +36,7 @@ class Shared:
 
     async def command(self, command: Command) -> None:
         """Hand on a command."""
+        self.station.commanded(command)
         await self.plugin.command(command)
 
     async def run(self, world: World) -> None:
@@ -44,7 +53,7 @@ class SharedWorld:
 
     def publish(self, published: Published) -> None:
         """Take what is known of an entity now."""
-        self.shared.publish(self.shared.plugin, self.world, published)
+        self.shared.station.publish(self.shared.plugin, self.world, published)
 
     def now(self) -> float:
         """Return the time."""

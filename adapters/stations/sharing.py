@@ -13,13 +13,13 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any, Final
 
-from adapters.live.orders import is_authority
 from adapters.live.sightings import MOST_AHEAD
 from adapters.live.state import Heard, Turn
 from adapters.plugin import (
     Broken,
     Command,
     Delivered,
+    HandOver,
     Hosts,
     Plugin,
     Published,
@@ -29,6 +29,7 @@ from adapters.plugin import (
     Underway,
     World,
 )
+from adapters.stations.authority import Authority
 from adapters.stations.bus import Bus
 from adapters.stations.entries import (
     Broke,
@@ -44,7 +45,7 @@ from adapters.stations.entries import (
     stamped,
 )
 from adapters.stations.journal import Journal
-from adapters.stations.merge import Merge, channels_of, on
+from adapters.stations.merge import Merge, on
 from adapters.stations.messages import MOST_ENTRIES, Message, fitting, read, written
 from adapters.stations.others import Other
 from adapters.stations.peers import Peers
@@ -52,7 +53,6 @@ from adapters.stations.shared import Shared
 from adapters.stations.skew import measured
 from adapters.stations.telling import entered, moved, told
 from adapters.troubles import Troubles
-from semantics.reactions import CONTROL_AUTHORITY
 
 NAME: Final = "stations"
 """What the plugin is called."""
@@ -100,6 +100,7 @@ class Sharing:
         self._topic = topic
         self._digest = digest
         self._vehicles = vehicles
+        self._authority = Authority(journal.station)
         self._troubles = Troubles(NAME)
         self._ahead: set[str] = set()
         self._unsaid: dict[tuple[str, ...], Entry] = {}
@@ -140,7 +141,7 @@ class Sharing:
 
     def sharing(self, plugin: Plugin) -> Plugin:
         """Return a plugin that tells what it learns to all stations."""
-        return Shared(plugin, self.publish)
+        return Shared(plugin, self)
 
     # --- looking on
 
@@ -175,27 +176,19 @@ class Sharing:
         before = self._journal.word(("said", entity))
         if isinstance(before, Said) and before.time > Said(published, 0.0).time:
             return
-        channels, since = self._channels(before, published, world.now(), owned=owned)
-        for entry in self._add([Said(on(published, channels), since, owned)]):
+        said = Said(published, world.now(), owned)
+        if owned:
+            known = self.merge.holds(entity, world.now())
+            channels, since = self._authority.channels(entity, published, known, world.now())
+            said = Said(on(published, channels), since, owned)
+        for entry in self._add([said]):
             self._join(entry)
         self._show(world, entity)
 
-    def _channels(
-        self, before: Content | None, published: Published, now: float, *, owned: bool
-    ) -> tuple[tuple[str, ...], float]:
-        """Return the channels that an entity is on as far as a plugin knows, and since when.
-
-        A link that does not know whom its vehicle obeys, or has lost it, says so only of our own authority; of another
-        station's it says what is known.
-        """
-        channels = channels_of(published)
-        if isinstance(before, Said) and channels_of(before.published) == channels:
-            return channels, before.since
-        known = self.merge.holds(entity_of(published), now)
-        ours = f"{CONTROL_AUTHORITY}:{self._journal.station}"
-        if not owned or any(map(is_authority, channels)) or (known and ours in channels_of(known.published)):
-            return channels, now
-        return (channels, 0.0) if known is None else (channels_of(known.published), known.since)
+    def commanded(self, command: Command) -> None:
+        """Take note of a hand-over that one of our vehicles is told."""
+        if isinstance(command, HandOver):
+            self._authority.handing[command.entity] = command
 
     def _add(self, contents: Sequence[Content]) -> list[Entry]:
         entries = self._journal.add(list(contents)) if contents else []

@@ -233,32 +233,6 @@ def test_where_bigactors_are_and_what_broke_all_know(tmp_path):
     asyncio.run(telling())
 
 
-def test_a_link_that_lost_its_vehicle_says_so_only_of_its_own_authority(tmp_path):
-    table = both()
-    gcs0, gcs1 = (Node(peers_of(table, name, tmp_path), tmp_path) for name in ("gcs0", "gcs1"))
-
-    def channels():
-        found = [node.sharing.merge.holds("uav0", node.world.now()) for node in (gcs0, gcs1)]
-        return [each.published.property.channels if each else None for each in found]
-
-    async def losing():
-        async with running(gcs0, gcs1):
-            gcs0.see("uav0", WEST, owned=True, channels=("control:gcs0",))
-            gcs1.see("uav0", WEST, owned=True)  # it has not read yet whom the vehicle obeys
-            await until(lambda: channels() == [("control:gcs0",)] * 2)
-            gcs0.see("uav0", WEST, owned=True, channels=("control:gcs1",))  # handed over
-            await until(lambda: channels() == [("control:gcs1",)] * 2)
-            gcs0.see("uav0", WEST, owned=True)  # lost, but it is not gcs0's any more
-            gcs0.see("boat0", EAST)
-            await until(lambda: gcs1.world.at("boat0") == EAST)
-            assert channels() == [("control:gcs1",)] * 2
-            gcs1.see("uav0", WEST, owned=True, channels=("control:gcs1",))
-            gcs1.see("uav0", WEST, owned=True)  # lost
-            await until(lambda: channels() == [()] * 2)
-
-    asyncio.run(losing())
-
-
 def test_who_flies_another_mission_is_not_listened_to(tmp_path):
     table = both()
     gcs0 = Node(peers_of(table, "gcs0", tmp_path), tmp_path)
