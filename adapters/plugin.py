@@ -231,6 +231,16 @@ class Hosts:
 
 
 @dataclass(frozen=True, slots=True)
+class Believes:
+    """Another station has written into a slot of L: `parent` (of what L has not, no name) or `links` of a node."""
+
+    node: str
+    time: float
+    slot: str
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Broken:
     """Another station says which assumption of the mission broke."""
 
@@ -239,7 +249,7 @@ class Broken:
     assumption: str
 
 
-Elsewhere = Delivered | Underway | Hosts | Broken
+Elsewhere = Delivered | Underway | Hosts | Believes | Broken
 """What is reported of other stations."""
 
 Report = Accepted | Arrived | Rejected | LinkLost | LinkRestored | Trouble | Elsewhere
@@ -296,6 +306,7 @@ __all__ = [
     "Accepted",
     "Aged",
     "Arrived",
+    "Believes",
     "Broken",
     "Command",
     "Delivered",

@@ -11,7 +11,7 @@ from typing import Any
 
 from adapters.live.state import Plan
 from adapters.plugin import Plugin
-from adapters.stations.entries import Broke, Content, Posted, Sent, Took
+from adapters.stations.entries import Believed, Broke, Content, Posted, Sent, Took
 from adapters.stations.journal import Journal, JournalError
 from adapters.stations.peers import Peers, read_peers
 from adapters.stations.sharing import NAME, Sharing
@@ -148,6 +148,13 @@ def _amended(journal: Journal, before: Resumed | None) -> Iterator[Content]:
                 to = "" if physical is None else physical.going_to(entity)
                 if to != known:
                     yield Sent(entity, to, now)
+            case Believed(node, slot, known) if before is not None:
+                logical = before.configuration.structure.logical
+                parent = logical.parent(node)
+                nested = () if parent is None else (parent,)
+                names = nested if slot == "parent" else logical.links(node)
+                if names != known:
+                    yield Believed(node, slot, names, now)
             case Broke(assumption) if assumption and before is None:
                 yield Broke("", now)
 

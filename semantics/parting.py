@@ -12,6 +12,7 @@ from semantics.agents import Code, Store, code_cell, host_cell, mailbox_cell, st
 from semantics.cells import Cell, Changes
 from semantics.configuration import Configuration, Label, Transition
 from semantics.environment import Says
+from semantics.logical_model import links_cell, parent_cell
 from semantics.queries import Nodes, Of, Query
 from semantics.requests import CTR, FLY, MGR, OBS, READY, Request
 from semantics.signature import REGION, Name
@@ -109,7 +110,22 @@ class Whereabouts:
     host: Name
 
 
-Elsewhere = Passage | Whereabouts
+@dataclass(frozen=True, slots=True)
+class Belief:
+    """Another station says what it has written into a slot of L.
+
+    Attributes:
+        node: Of which node.
+        slot: `parent` or `links`.
+        names: Where it is, nothing for what L does not have; or on which links.
+    """
+
+    node: Name
+    slot: str
+    names: tuple[Name, ...]
+
+
+Elsewhere = Passage | Whereabouts | Belief
 """What other stations have a part in: as steps say it."""
 
 
@@ -268,7 +284,38 @@ def learn(c: Configuration, a: Name, host: Name) -> Iterator[Transition]:
         yield Transition(Label("learn", a, host), c.with_(c.alpha.hosting(a, host)))
 
 
-PASSING: tuple[Callable[..., Iterator[Transition]], ...] = (leave, enter, learn)
+def believe(c: Configuration, belief: Belief) -> Iterator[Transition]:
+    """Take over what another station's `sense`, `actuate` or `commit` has written into L: there is one L for all.
+
+    station s has written parent(n) = p, or links(n) = l      L stays a forest
+    ──────────────────────────────────────────────────────────────────────────  ⟨believe : n⟩
+    ⟨α | (L, P, β, γ) | η⟩  →  ⟨α | (L[n ↦ p], P, β, γ) | η⟩, or L[n ↦ l]
+    """
+    node = belief.node
+    if node not in c.setting.kinds:
+        return
+    cells: Changes = {links_cell(node): tuple(sorted(set(belief.names)))}
+    if belief.slot == "parent":
+        parent = belief.names[0] if belief.names else None
+        if parent is not None and parent not in {*c.setting.kinds, REGION}:
+            return
+        cells = _nesting(c, node, parent)
+    target = c.with_(cells)
+    if target != c:
+        yield Transition(Label("believe", None, node), target)
+
+
+def _nesting(c: Configuration, node: Name, parent: Name | None) -> Changes:
+    """Write parent(node), and keep L a forest: what would be in itself is in the region, and so is what is new."""
+    logical = c.structure.logical
+    if parent is None or parent == REGION:
+        return {parent_cell(node): parent}
+    if logical.parent(parent) is None:
+        return {parent_cell(parent): REGION, parent_cell(node): parent}
+    return {parent_cell(node): REGION if node in (parent, *logical.ancestors(parent)) else parent}
+
+
+PASSING: tuple[Callable[..., Iterator[Transition]], ...] = (leave, enter, learn, believe)
 """What happens between stations."""
 
 
@@ -276,6 +323,9 @@ def passing(c: Configuration, passage: Elsewhere) -> Iterator[Transition]:
     """Yield the step that something of other stations is."""
     if isinstance(passage, Whereabouts):
         yield from learn(c, passage.agent, passage.host)
+        return
+    if isinstance(passage, Belief):
+        yield from believe(c, passage)
         return
     if passage.parcel is not None:
         yield from enter(c, passage.station, passage.number, passage.parcel)

@@ -57,7 +57,7 @@ def sight_of(data: Any) -> Sight | Elsewhere:
     """
     if not isinstance(data, dict) or not isinstance(data.get("words"), str):
         raise ValueError("an observation should have 'words' and 'writes'")
-    if "agent" in data:
+    if "agent" in data or "node" in data:
         return elsewhere_of(data)
     writes, admits = data.get("writes", []), data.get("admits", {})
     if not isinstance(writes, list) or len(writes) > MOST_WRITES or not isinstance(admits, dict):

@@ -10,7 +10,7 @@ from functools import cache
 from types import UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
-from semantics.parting import Elsewhere, Parcel, Passage, Running, Whereabouts
+from semantics.parting import Belief, Elsewhere, Parcel, Passage, Running, Whereabouts
 from semantics.queries import All, Fact, Nodes, Observation, Of, Query, Swept
 from semantics.reactions import (
     LinkVariable,
@@ -44,6 +44,9 @@ def elsewhere_json(seen: Elsewhere) -> dict[str, Any]:
     if isinstance(seen, Whereabouts):
         data: dict[str, Any] = {"words": f"{seen.agent} is at {seen.host}", "writes": []}
         return {**data, "agent": seen.agent, "host": seen.host}
+    if isinstance(seen, Belief):
+        data = {"words": f"{seen.slot} of {seen.node}: {', '.join(seen.names)}", "writes": []}
+        return {**data, "node": seen.node, "slot": seen.slot, "names": list(seen.names)}
     verb = "leaves for" if seen.parcel is None else "enters from"
     data = {"words": f"{seen.agent} {verb} {seen.station}", "writes": []}
     data |= {"agent": seen.agent, "station": seen.station, "number": seen.number}
@@ -53,6 +56,8 @@ def elsewhere_json(seen: Elsewhere) -> dict[str, Any]:
 def elsewhere_of(data: Any) -> Elsewhere:
     """Read what other stations have a part in; raises ValueError."""
     match data:
+        case {"node": str(node), "slot": "parent" | "links" as slot, "names": [*names]}:
+            return Belief(node, slot, _tuple((str, ...), names, 0))
         case {"agent": str(agent), "host": str(host)}:
             return Whereabouts(agent, host)
         case {"agent": str(agent), "station": str(station), "number": int(number)} if number > 0:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from adapters.live.turning import Turning
-from adapters.plugin import Broken, Delivered, Elsewhere, Hosts, Underway
+from adapters.plugin import Believes, Broken, Delivered, Elsewhere, Hosts, Underway
 from semantics.observed import Sight, happening
-from semantics.parting import Passage, Whereabouts, enter, learn, objection, took_cell
+from semantics.parting import Belief, Passage, Whereabouts, believe, enter, learn, objection, took_cell
 from semantics.physical_model import InTransit, Placed, placement_cell
 from semantics.plain_parcels import parcel_of
 from semantics.signature import REGION, Name
@@ -23,6 +23,10 @@ def hear_of(turning: Turning, report: Elsewhere) -> None:
         case Hosts(agent, _, host):
             for found in learn(turning.c, agent, host):
                 turning.take(found, (found,), Whereabouts(agent, host))
+        case Believes(node, _, slot, names):
+            belief = Belief(node, slot, names)
+            for found in believe(turning.c, belief):
+                turning.take(found, (found,), belief)
         case Broken(station, _, assumption):
             count = len(turning.findings)
             turning.breaks(f"at {station}: {assumption}", station)

@@ -16,6 +16,7 @@ from adapters.plugin import (
     Accepted,
     Aged,
     Arrived,
+    Believes,
     Broken,
     Delivered,
     Hosts,
@@ -226,7 +227,7 @@ def note(turning: Turning, report: Report) -> None:
     match report:
         case Accepted() | Arrived():
             pass  # recorded; positions decide
-        case Delivered() | Underway() | Hosts() | Broken():
+        case Delivered() | Underway() | Hosts() | Believes() | Broken():
             hear_of(turning, report)
         case Rejected(request, entity, _, reason):
             turning.find(

@@ -30,6 +30,9 @@ _OBSERVED: Final = {
         "number": {"type": "integer", "minimum": 1},
         "parcel": {"type": "object", "description": "What has entered (docs/stations.md)."},
         "host": {**_TEXT, "description": "Where the agent is hosted."},
+        "node": {**_TEXT, "description": "Of what another station has written into L,"},
+        "slot": {"enum": ["parent", "links"], "description": "in which slot,"},
+        "names": {**_TEXTS, "description": "and what is there now."},
     },
 }
 
@@ -111,7 +114,7 @@ COMMAND: Final = _object(
 
 REPORTS: Final = (
     *("Accepted", "Arrived", "Rejected", "LinkLost", "LinkRestored", "Trouble"),
-    *("Delivered", "Underway", "Hosts", "Broken"),
+    *("Delivered", "Underway", "Hosts", "Believes", "Broken"),
 )
 """Those of a vehicle or a feed, then those of other stations."""
 
@@ -131,6 +134,9 @@ REPORT: Final = _object(
     agent=_TEXT,
     host=_TEXT,
     assumption=_TEXT,
+    node=_TEXT,
+    slot=_TEXT,
+    names=_TEXTS,
     parcel={"type": "object", "description": "What has come from another station (docs/stations.md)."},
 )
 

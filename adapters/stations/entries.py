@@ -87,6 +87,21 @@ class Hosted:
 
 
 @dataclass(frozen=True, slots=True)
+class Believed:
+    """What the station has written into a slot of L: `parent` (of what L has not, no name) or `links` of a node."""
+
+    node: str
+    slot: str
+    names: tuple[str, ...]
+    time: float
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What it replaces: what it had written there before."""
+        return ("believed", self.slot, self.node)
+
+
+@dataclass(frozen=True, slots=True)
 class Broke:
     """The station has seen an assumption of the mission break; an empty text is said when a run begins anew."""
 
@@ -134,7 +149,7 @@ class Took:
         return ("took", self.of)
 
 
-Content = Said | Sent | Hosted | Broke | Posted | Took
+Content = Said | Sent | Hosted | Believed | Broke | Posted | Took
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,6 +189,9 @@ def entry_json(entry: Entry) -> dict[str, Any]:
             return {"n": entry.number, "sent": entity, "to": to, "time": time}
         case Hosted(agent, host, time):
             return {"n": entry.number, "hosted": agent, "host": host, "time": time}
+        case Believed(node, slot, names, time):
+            data = {"n": entry.number, "believed": node, "slot": slot, "names": list(names)}
+            return {**data, "time": time}
         case Broke(assumption, time):
             return {"n": entry.number, "broke": assumption, "time": time}
         case Posted(to, index, parcel, knows):
@@ -206,6 +224,9 @@ def entry_of(station: str, data: Any) -> Entry:
         case {"hosted": str()}:
             home = Hosted(_word(data, "hosted"), _word(data, "host"), _time(data.get("time")))
             return Entry(station, number, home)
+        case {"believed": str(), "slot": "parent" | "links" as slot, "names": names}:
+            node, time = _word(data, "believed"), _time(data.get("time"))
+            return Entry(station, number, Believed(node, slot, _channels(names), time))
         case {"broke": str(assumption)} if len(assumption) <= MOST_WORDS and assumption.isprintable():
             return Entry(station, number, Broke(assumption, _time(data.get("time"))))
         case {"to": str(), "parcel": parcel}:

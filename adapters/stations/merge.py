@@ -14,7 +14,7 @@ from typing import Final
 
 from adapters.live.sightings import MOST_AHEAD
 from adapters.plugin import Aged, Gone, Published
-from adapters.stations.entries import Entry, Hosted, Said, Sent
+from adapters.stations.entries import Believed, Entry, Hosted, Said, Sent
 from physical import PhysicalProperty
 
 MOST_ENTITIES: Final = 20_000
@@ -43,12 +43,14 @@ class Merge:
         words: For each entity the newest word of each station.
         legs: For each vehicle where each station has sent it last.
         homes: For each bigActor where each station has hosted it last.
+        beliefs: For each slot of L what each station has written there last.
     """
 
     def __init__(self) -> None:
         self.words: dict[str, dict[str, Entry]] = {}
         self.legs: dict[str, dict[str, Entry]] = {}
         self.homes: dict[str, dict[str, Entry]] = {}
+        self.beliefs: dict[str, dict[str, Entry]] = {}
         self._counts: dict[str, int] = {}
 
     def hear(self, entry: Entry) -> str | None:
@@ -64,6 +66,8 @@ class Merge:
                 return entity if self._join(self.legs, entity, entry) else None
             case Hosted(agent):
                 return agent if self._join(self.homes, agent, entry) else None
+            case Believed(node, slot):
+                return node if self._join(self.beliefs, f"{slot} {node}", entry) else None
             case _:
                 return None
 
@@ -86,6 +90,10 @@ class Merge:
     def home(self, agent: str) -> Entry | None:
         """Return where a bigActor was hosted last."""
         return max(self.homes.get(agent, {}).values(), key=_stamp, default=None)
+
+    def belief(self, slot: str, node: str) -> Entry | None:
+        """Return what was written into a slot of L last."""
+        return max(self.beliefs.get(f"{slot} {node}", {}).values(), key=_stamp, default=None)
 
     def holds(self, entity: str, now: float) -> Said | None:
         """Return what holds of an entity at a time, None if nobody has said anything that counts yet."""
@@ -134,7 +142,7 @@ def _counts(content: object, now: float) -> bool:
 
 
 def _stamp(entry: Entry) -> tuple[float, str, int]:
-    assert isinstance(entry.content, Said | Sent | Hosted)
+    assert isinstance(entry.content, Said | Sent | Hosted | Believed)
     return (entry.content.time, entry.station, entry.number)
 
 

@@ -16,6 +16,7 @@ from typing import Any, Final
 from adapters.live.sightings import MOST_AHEAD
 from adapters.live.state import Heard, Turn
 from adapters.plugin import (
+    Believes,
     Broken,
     Command,
     Delivered,
@@ -32,6 +33,7 @@ from adapters.plugin import (
 from adapters.stations.authority import Authority
 from adapters.stations.bus import Bus
 from adapters.stations.entries import (
+    Believed,
     Broke,
     Content,
     Entry,
@@ -51,7 +53,7 @@ from adapters.stations.others import Other
 from adapters.stations.peers import Peers
 from adapters.stations.shared import Shared
 from adapters.stations.skew import measured
-from adapters.stations.telling import entered, moved, told
+from adapters.stations.telling import believed, entered, moved, told
 from adapters.troubles import Troubles
 
 NAME: Final = "stations"
@@ -155,7 +157,7 @@ class Sharing:
         """Tell the others what concerns them; the recording has it all already."""
         for station, number in entered(turn).items():
             self.others[station].drop(number)
-        contents: list[Content] = []
+        contents: list[Content] = [*believed(turn, self.merge)]
         if not self._introduced or any(step.transition.label.rule in MOVING for step in turn.steps):
             contents += moved(turn.state.configuration, self.merge, now)
             self._introduced = True
@@ -305,6 +307,8 @@ class Sharing:
                 self._pass_on(self.merge.leg(entity))
             case Hosted(agent) if self.merge.hear(entry):
                 self._pass_on(self.merge.home(agent))
+            case Believed(node, slot) if self.merge.hear(entry):
+                self._pass_on(self.merge.belief(slot, node))
             case Broke(assumption) if assumption and entry.station != self._journal.station:
                 self._world.report(Broken(entry.station, self._world.now(), assumption))
             case Posted(to, index) as posted:
@@ -319,6 +323,8 @@ class Sharing:
         assert self._world is not None
         now = self._world.now()
         match entry:
+            case Entry(content=Believed(node, slot, names)):
+                self._world.report(Believes(node, now, slot, names))
             case Entry(station) if station == self._journal.station:
                 pass  # the run knows
             case Entry(content=Sent(entity, to)):

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 
-from adapters.live.state import Turn
-from adapters.stations.entries import Broke, Content, Hosted, Posted, Sent, Took
+from adapters.live.state import LiveStep, Turn
+from adapters.stations.entries import Believed, Broke, Content, Hosted, Posted, Sent, Took
 from adapters.stations.merge import Merge
+from semantics.canonical import written
+from semantics.cells import Cell
 from semantics.configuration import Configuration
 from semantics.parting import Passage, is_here
 from semantics.plain_parcels import parcel_json
@@ -36,6 +38,21 @@ def told(turn: Turn, vehicles: Collection[str], known: Mapping[str, int]) -> Ite
     for each in turn.parcels:
         knows = tuple((name, number) for name, number in sorted(known.items()) if name != each.station)
         yield Posted(each.station, each.number, parcel_json(each.parcel), knows)
+
+
+def believed(turn: Turn, merge: Merge) -> Iterator[Believed]:
+    """Yield what a turn has written into L, each later than what was known to be there before."""
+    steps: dict[Cell, LiveStep] = {}
+    for step in turn.steps:
+        if step.transition.label.rule in ("sense", "actuate", "commit"):
+            cells = written(step.source, step.transition.target)
+            steps |= dict.fromkeys((cell for cell in cells if cell[0] in ("parent", "links")), step)
+    for (slot, node), step in sorted(steps.items(), key=lambda item: item[0]):
+        last, logical = merge.belief(slot, node), step.transition.target.structure.logical
+        parent = logical.parent(node)
+        nested = () if parent is None else (parent,)
+        after = last.content.time + A_MOMENT if last and isinstance(last.content, Believed) else step.time
+        yield Believed(node, slot, nested if slot == "parent" else logical.links(node), max(step.time, after))
 
 
 def entered(turn: Turn) -> dict[str, int]:
