@@ -2,6 +2,6 @@
 
 The paper's communication service. `entries` are what a station says, `merge` makes one world of what all say (pure),
 `journal` keeps a station's own entries on disk, `telling` says what a turn of the run is to others, `messages` carry
-entries, `peers` reads who the others are, `others` and `skew` are what is known of them, `bus` is Zenoh (the only file
+entries, `authority` is whom vehicles obey by several links, `peers` reads who the others are, `others` and `skew` are what is known of them, `bus` is Zenoh (the only file
 that imports it), and `sharing` joins them: a plugin of the live loop, whose own plugins are `shared`.
 """

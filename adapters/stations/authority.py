@@ -1,8 +1,8 @@
 """Whom a vehicle obeys, as several links know it: each reads it now and then, and another has handed it on meanwhile.
 
-No message of a vehicle says when it began to obey whom, and the network between stations may be faster than a link. So
-a change counts at once where it was commanded, and where our own link is lost; what else contradicts what is known
-counts once it has lasted so long that the link has read it again.
+No message of a vehicle says when it began to obey whom, a vehicle may answer nobody else, and the network between
+stations may be faster than a link. So a change counts at once where it was commanded, and where our own link is lost.
+What else a link tells *anew* counts once it has lasted so long that it was read again, if nothing was commanded since.
 """
 
 from __future__ import annotations
@@ -32,35 +32,47 @@ class Authority:
     Attributes:
         station: The station.
         handing: The hand-over that each vehicle was told, and has not shown yet.
-        doubts: What each link says otherwise than is known, and since when.
+        shown: What each link has shown last.
+        doubts: What each link has shown anew and otherwise than was known, when, and since when that had been so.
     """
 
     station: str
     handing: dict[str, HandOver] = field(default_factory=dict)
-    doubts: dict[str, Channels] = field(default_factory=dict)
+    shown: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    doubts: dict[str, tuple[float, float]] = field(default_factory=dict)
 
     def channels(self, entity: str, published: Published, known: Said | None, now: float) -> Channels:
         """Return what counts of a vehicle's channels where its link shows some, and others are known."""
         shown = channels_of(published)
+        news = shown != self.shown.get(entity)
+        self.shown[entity] = shown
         if known is None:
             return shown, now
         believed = (channels_of(known.published), known.since)
-        if shown == believed[0]:
+        if news or shown == believed[0]:
             self.doubts.pop(entity, None)
+        if shown == believed[0]:
             return believed
-        if self._counts(entity, shown, believed[0], now):
+        if news:
+            self.doubts[entity] = (now, known.since)
+        if self._counts(entity, shown, believed, now):
             return shown, max(now, known.since + A_MOMENT)
         return believed
 
-    def _counts(self, entity: str, shown: tuple[str, ...], believed: tuple[str, ...], now: float) -> bool:
+    def lags(self, entity: str, known: Said | None) -> bool:
+        """Tell whether a vehicle obeys us, and our link does not know it yet: it would refuse what it is told."""
+        ours = f"{CONTROL_AUTHORITY}:{self.station}"
+        shown = [channel for channel in self.shown.get(entity, ()) if is_authority(channel)]
+        return (
+            known is not None and ours in channels_of(known.published) and bool(shown) and ours not in shown
+        )
+
+    def _counts(self, entity: str, shown: tuple[str, ...], believed: Channels, now: float) -> bool:
         told = self.handing.get(entity)
         if told is not None and is_done(told, shown):
             del self.handing[entity]
             return True
         if not any(map(is_authority, shown)):  # it is lost, or does not tell
-            return f"{CONTROL_AUTHORITY}:{self.station}" in believed
-        doubted, since = self.doubts.get(entity, ((), now))
-        if doubted != shown:
-            self.doubts[entity] = (shown, now)
-            return False
-        return now - since >= LASTING
+            return f"{CONTROL_AUTHORITY}:{self.station}" in believed[0]
+        since, known = self.doubts.get(entity, (now, believed[1]))
+        return known == believed[1] and now - since >= LASTING

@@ -187,6 +187,11 @@ class Sharing:
             self._join(entry)
         self._show(world, entity)
 
+    def lags(self, entity: str) -> bool:
+        """Tell whether a vehicle obeys us, and our link does not know it yet."""
+        now = 0.0 if self._world is None else self._world.now()
+        return self._authority.lags(entity, self.merge.holds(entity, now))
+
     def commanded(self, command: Command) -> None:
         """Take note of a hand-over that one of our vehicles is told."""
         if isinstance(command, HandOver):

@@ -9,7 +9,7 @@ import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
 from adapters.live.state import Plan, Saying
-from adapters.plugin import Broken, Delivered, GoTo, Hold, Hosts, LinkLost, Underway
+from adapters.plugin import Believes, Broken, Delivered, GoTo, Hold, Hosts, LinkLost, Underway
 from adapters.recording.encoding import report_json, step_json
 from adapters.recording.schemas import REPORT
 from checker import replay
@@ -164,6 +164,42 @@ def test_what_broke_at_another_station_holds_this_one_too():
     assert [type(told) for told in run.commands] == [Hold]
     run.turn(2.0, boat(EAST, 2.0), sayings=[Saying("op0", "fly")])
     assert "command" not in run.rules
+
+
+def test_what_another_station_has_written_into_l_is_written_here():
+    run = at("gcs1")
+    run.turn(0.0, seen("uav0", WEST, 0.0, channels=("control:gcs1",)))
+    assert run.state.configuration.structure.logical.links("uav0") == ("control:gcs0",)
+    run.turn(
+        1.0, reports=[Believes("uav0", 1.0, "links", ("control:gcs1",)), Believes("nobody", 1.0, "links", ())]
+    )
+    assert run.labels[-1] == "⟨believe : uav0⟩"
+    logical = run.state.configuration.structure.logical
+    assert (logical.links("uav0"), logical.parent("uav0")) == (("control:gcs1",), "west0")
+    run.turn(2.0, reports=[Believes("uav0", 1.0, "links", ("control:gcs1",))])
+    assert run.rules.count("believe") == 1
+    assert replayed(run) == run.state.configuration
+
+
+@pytest.mark.parametrize(
+    ("node", "names", "parent"),
+    [
+        ("uav0", ("east0",), "east0"),
+        ("uav0", (), None),
+        ("east0", ("east0",), "region"),
+        ("uav0", ("x",), "west0"),
+    ],
+)
+def test_l_stays_a_forest_whatever_others_write_into_it(node, names, parent):
+    run = at("gcs1")
+    run.turn(0.0, reports=[Believes(node, 0.0, "parent", names)])
+    assert run.state.configuration.structure.logical.parent(node) == parent
+    run.turn(
+        1.0,
+        reports=[Believes("west0", 1.0, "parent", ("east0",)), Believes("east0", 1.0, "parent", ("west0",))],
+    )
+    assert run.state.configuration.structure.logical.parent("east0") == "region"
+    assert replayed(run) == run.state.configuration
 
 
 def test_where_an_agent_went_is_learned_and_messages_follow_it():

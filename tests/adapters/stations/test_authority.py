@@ -51,6 +51,20 @@ def test_what_lasts_is_believed():
     assert believed(authority, GCS2, known(GCS0), 10.0 + LASTING) == (GCS2, 10.0 + LASTING)
 
 
+def test_what_a_link_has_shown_all_along_is_no_news_when_others_have_handed_on():
+    """A vehicle may answer only whom it obeys: another's link shows for ever what it has read last."""
+    authority = Authority("gcs2")
+    assert believed(authority, GCS0, known(GCS0)) == (GCS0, 5.0)
+    for now in (20.0, 20.0 + 2 * LASTING):
+        assert believed(authority, GCS0, known(GCS1, 19.0), now) == (GCS1, 19.0)
+
+
+def test_what_was_commanded_since_is_newer_than_a_doubt():
+    authority = Authority("gcs2")
+    assert believed(authority, GCS0, known(GCS1, 9.0), 10.0) == (GCS1, 9.0)
+    assert believed(authority, GCS0, known(GCS1, 11.0), 10.0 + LASTING) == (GCS1, 11.0)
+
+
 @pytest.mark.parametrize(("of", "counts"), [(GCS0, True), (GCS1, False)])
 def test_a_link_that_is_lost_says_so_only_of_its_own_authority(of, counts):
     assert believed(Authority("gcs0"), (), known(of)) == (((), 10.0) if counts else (of, 5.0))

@@ -44,7 +44,7 @@ SIMULATOR = """
 import sys
 from adapters.simulated import Kind, Simulator, Vehicle, run
 address, speed = sys.argv[1:]
-run(Simulator(address, [Vehicle(Kind.COPTER, (37.01, -8.65, 20.0))]).run(), float(speed))
+run(Simulator(address, [Vehicle(Kind.COPTER, (37.01, -8.65, 20.0), enforce=False)]).run(), float(speed))
 """
 
 

@@ -5,7 +5,18 @@ from test_merge import word
 
 from adapters.plugin import Aged, Gone
 from adapters.stations import journal as journals
-from adapters.stations.entries import Broke, Entry, Hosted, Posted, Said, Sent, Took, entry_of, entry_text
+from adapters.stations.entries import (
+    Believed,
+    Broke,
+    Entry,
+    Hosted,
+    Posted,
+    Said,
+    Sent,
+    Took,
+    entry_of,
+    entry_text,
+)
 from adapters.stations.journal import Journal, JournalError
 from physical import Band, PhysicalProperty, Velocity, box
 
@@ -130,6 +141,8 @@ def test_what_is_no_log_is_refused(opened, tmp_path, text):
         Posted("gcs1", 3, {}, (("gcs2", 7),)),
         Hosted("op0", "gcs0", 5.0),
         Broke("it rains", 5.0),
+        Believed("uav0", "links", ("control:gcs0",), 5.0),
+        Believed("uav0", "parent", (), 5.0),
         Took("gcs1", 3),
     ],
 )

@@ -8,10 +8,23 @@ from dataclasses import replace
 import pytest
 from certificates import Authority
 from company import free_port
-from live_missions import EAST, TOUR, WEST, plan_of
+from live_missions import EAST, TOUR, WEST, Run, boat, plan_of
 
-from adapters.live.state import Finding, LiveState, LiveStep, Turn
-from adapters.plugin import Aged, Broken, Delivered, Gone, Hosts, Refused, Trouble, Underway
+from adapters.live.state import Finding, LiveState, LiveStep, Plan, Turn
+from adapters.plugin import (
+    Aged,
+    Believes,
+    Broken,
+    Delivered,
+    Gone,
+    HandOver,
+    Hold,
+    Hosts,
+    Refused,
+    Rejected,
+    Trouble,
+    Underway,
+)
 from adapters.stations.entries import Posted, Sent, Took
 from adapters.stations.journal import Journal
 from adapters.stations.peers import peers_of
@@ -229,6 +242,78 @@ def test_where_bigactors_are_and_what_broke_all_know(tmp_path):
             await until(lambda: gcs1.world.of(Broken))
             assert [each.assumption for each in gcs1.world.of(Broken)] == ["boat0 is in east0"]
             assert gcs0.world.of(Broken) == gcs0.world.of(Hosts) == []
+
+    asyncio.run(telling())
+
+
+class Link(Camera):
+    """The link of a vehicle, which refuses what a station tells that it does not know to have the authority."""
+
+    def __init__(self):
+        super().__init__(("uav0",))
+        self.obeys, self.told = "control:gcs0", []
+
+    async def command(self, command):
+        if self.obeys != "control:gcs1":
+            raise Refused(f"it obeys {self.obeys}")
+        self.told.append(command)
+
+    async def run(self, world):
+        while True:
+            said = PhysicalProperty("uav0", "UAV", point(*WEST), channels=(self.obeys,), time=world.now())
+            world.publish(Aged(said, 60.0))
+            await asyncio.sleep(0.02)
+
+
+@pytest.mark.parametrize("learns", [True, False])
+def test_a_command_waits_for_the_link_to_learn_that_the_vehicle_was_handed_to_us(
+    tmp_path, monkeypatch, learns
+):
+    monkeypatch.setattr("adapters.stations.shared.LASTING", 1.0)
+    table = both()
+    gcs0, gcs1 = (Node(peers_of(table, name, tmp_path), tmp_path) for name in ("gcs0", "gcs1"))
+    link = Link()
+    shared = gcs1.sharing.sharing(link)
+
+    async def lagging():
+        async with running(gcs0, gcs1):
+            task = asyncio.ensure_future(shared.run(gcs1.world))
+            gcs0.see("uav0", WEST, owned=True, channels=("control:gcs0",))
+            await until(lambda: gcs1.sharing.merge.holds("uav0", time.time()))
+            gcs0.sharing.commanded(HandOver("op0-1", "uav0", "control:gcs0", "control:gcs1"))
+            gcs0.see("uav0", WEST, owned=True, channels=("control:gcs1",))
+            await until(lambda: gcs1.sharing.lags("uav0"))
+            await shared.command(Hold("op1-1", "uav0"))
+            await asyncio.sleep(0.2)
+            assert link.told == gcs1.world.of(Rejected) == []
+            if learns:
+                link.obeys = "control:gcs1"
+                await until(lambda: link.told == [Hold("op1-1", "uav0")])
+            else:
+                await until(
+                    lambda: [each.reason for each in gcs1.world.of(Rejected)] == ["it obeys control:gcs0"]
+                )
+            task.cancel()
+            with suppress(asyncio.CancelledError):
+                await task
+
+    asyncio.run(lagging())
+
+
+def test_what_is_written_into_l_all_have(tmp_path):
+    table = both()
+    gcs0, gcs1 = (Node(peers_of(table, name, tmp_path), tmp_path) for name in ("gcs0", "gcs1"))
+    text = TOUR + "BigActor op0 hosted_at gcs0 with_behavior { observe(CHILDREN(east0)) }"
+    run = Run(Plan(parted(plan_of(text).first, Parting("gcs0", {"gcs0": "gcs0", "gcs1": "gcs1"}, {}, {}))))
+    run.turn(0.0, boat(EAST, 0.0))
+    seen_by_op0 = run.turn(1.0)
+
+    async def telling():
+        async with running(gcs0, gcs1):
+            gcs0.sharing.turned(replace(seen_by_op0, steps=tuple(run.steps)), time.time())
+            await until(lambda: gcs1.world.of(Believes))
+            told = [(each.node, each.slot, each.names) for each in gcs1.world.of(Believes)]
+            assert ("boat0", "parent", ("east0",)) in told
 
     asyncio.run(telling())
 
