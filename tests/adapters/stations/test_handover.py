@@ -8,6 +8,7 @@ from contextlib import contextmanager
 import pytest
 from company import WORLD, Station, free_port, peers_toml, running, until
 
+from adapters.recording.reading import read_recording
 from bigactors.cli import main
 from checker.lanes import lanes_of
 
@@ -32,6 +33,7 @@ BigActor op1 hosted_at gcs1 with_behavior {
   control(MOVE uav0 TO east0)
   observe(CHILDREN(east0))
   react { case view => display(view) }
+  control(HAND uav0 TO gcs0)
 }
 environment { says "handover" to op0 at most once
               says "where" to op0 at most 9 times }
@@ -93,6 +95,12 @@ def test_both_stations_show_where_the_uav_is_before_during_and_after(stations):
     until(lambda: "⟨env : uav0 is sent to east0⟩" in gcs0.steps())
     until(lambda: all(each.places("uav0") == {"uav0": "east0"} for each in stations))
     until(lambda: "op1: {east0, uav0}" in gcs1.said)
+    # Back again, which is no identity though gcs1 has seen the UAV on both authorities.
+    until(lambda: all(each.links("uav0") == ("control:gcs0",) for each in stations))
+    told = [message.data for message in read_recording(gcs1.recording).of("commands")]
+    assert [(each["leave"], each["join"]) for each in told if each["command"] == "HandOver"] == [
+        ("control:gcs1", "control:gcs0")
+    ]
     assert "broken assumption" not in gcs0.said + gcs1.said + gcs2.said
     for each in (gcs0, gcs2):  # what it passes over on its way is nobody's observation
         assert [label for label in each.steps() if " seen in " in label] == ["⟨env : uav0 is seen in east0⟩"]
