@@ -48,6 +48,7 @@ class Explored:
         learning: Seconds of it in which rules were run in Python and remembered.
         importing: Seconds before it: importing, parsing, elaborating.
         wall: Seconds of the process from its start to its end.
+        processor: Seconds of the processor, whatever else it did meanwhile, from the start to the exploration's end.
         memory: Of the process at its peak, in MB.
         bytes_per_configuration: What rows, parent links and visited set take, room included.
         rule_runs: How often rules were run in Python.
@@ -63,6 +64,7 @@ class Explored:
     learning: float = 0.0
     importing: float = 0.0
     wall: float = 0.0
+    processor: float = 0.0
     memory: float = 0.0
     bytes_per_configuration: float | None = None
     rule_runs: int | None = None
@@ -119,7 +121,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     began = time.monotonic()
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("mission", type=Path, metavar="FILE")
-    parser.add_argument("--engine", choices=("fast", "reference"), default="fast")
+    parser.add_argument("--engine", choices=("fast", "reference", "symbolic"), default="fast")
     parser.add_argument("--reduce", action="store_true", help="by partial order")
     parser.add_argument("--cores", type=int, help="on how many cores at most")
     parser.add_argument("--minutes", type=float, help="how long at most")
@@ -177,7 +179,8 @@ def _explore(given: argparse.Namespace, began: float) -> Explored:
     started = time.monotonic()
     found = _search(mission, given)
     seconds = time.monotonic() - started
-    result = Explored(len(found.configurations), found.transitions, list(found.bounds), seconds)
+    result = Explored(found.size, found.transitions, list(found.bounds), seconds)
+    result.processor = time.process_time()
     result.importing = started - began
     result.memory = resident()
     result.rule_runs, result.allowed = found.rule_runs, found.allowed or None

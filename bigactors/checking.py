@@ -15,6 +15,7 @@ from bigactors.terminal import tell
 from checker import (
     CheckpointError,
     Engine,
+    EngineError,
     Keeping,
     Limits,
     Reduction,
@@ -116,6 +117,10 @@ def check_mission(
         return Checked(name, mission, digest_of(mission), report, watch.interrupted)
     except CheckpointError as refused:
         mistake = Mistake(str(refused), "leave --resume out to begin anew", name)
+        tell(str(mistake))
+        return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
+    except EngineError as refused:
+        mistake = Mistake(str(refused), "leave --engine out", name)
         tell(str(mistake))
         return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
     except RefusedError as refused:

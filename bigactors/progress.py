@@ -62,12 +62,51 @@ def describe(name: str, progress: Progress) -> str:
     """Say in one line how far an exploration has come.
 
     >>> describe("m", Progress(configurations=12000, transitions=30000, depth=7, frontier=450, rate=5300.2))
-    'm: 12,000 configurations, depth 7, frontier 450, 5,300/s'
+    'm: 12,000 configurations, depth 7, frontier 450, 5,300/s, no estimate while layers grow'
     """
+    known = f"{name}: {progress.configurations:,} configurations"
+    if progress.depth is None or progress.frontier is None:  # they are not expanded one by one
+        return known
     return (
-        f"{name}: {progress.configurations:,} configurations, depth {progress.depth}, "
-        f"frontier {progress.frontier:,}, {progress.rate:,.0f}/s"
+        f"{known}, depth {progress.depth}, frontier {progress.frontier:,}, {progress.rate:,.0f}/s, "
+        f"{describe_rest(progress)}"
     )
+
+
+def describe_rest(progress: Progress) -> str:
+    """Say how much more there may be, if that can be said: a range, since nobody knows.
+
+    >>> from checker.estimate import Estimate
+    >>> describe_rest(Progress(12_000, 30_000, 7, 450, 10.0, Estimate(12_000, 13_150)))
+    'up to 13,000 in all as layers fall now, 45 s to 3 min more'
+    """
+    if progress.estimate is None or progress.left is None:
+        return "no estimate while layers grow"
+    soonest, latest = map(rounded_time, progress.left)
+    time = soonest if soonest == latest else f"{soonest} to {latest}"
+    return f"up to {rounded(progress.estimate.most, progress.configurations):,} in all as layers fall now, {time} more"
+
+
+def rounded(number: int, least: int) -> int:
+    """Return a number to two digits, but no less than is known.
+
+    >>> rounded(1_234_567, 0), rounded(101_000, 100_900)
+    (1200000, 100900)
+    """
+    unit = int(10 ** max(len(str(number)) - 2, 0))
+    return max(round(number / unit) * unit, least)
+
+
+def rounded_time(seconds: float) -> str:
+    """Say roughly how long it is.
+
+    >>> [rounded_time(t) for t in (0.2, 45.0, 170.0, 20_000.0)]
+    ['1 s', '45 s', '3 min', '6 h']
+    """
+    for unit, length, until in (("s", 1, 100), ("min", 60, 100), ("h", 3600, 72)):
+        if seconds < until * length:
+            return f"{max(1, round(seconds / length))} {unit}"
+    return f"{round(seconds / 86_400):,} d"
 
 
 @contextmanager

@@ -4,7 +4,16 @@ It knows the calculus by `semantics.successors` alone: nothing of files, vehicle
 """
 
 from checker.check import check
-from checker.exploration import CheckpointError, Engine, Exploration, Keeping, Limits, Progress, explore
+from checker.exploration import (
+    CheckpointError,
+    Engine,
+    EngineError,
+    Exploration,
+    Keeping,
+    Limits,
+    Progress,
+    explore,
+)
 from checker.ownership import owned
 from checker.reduction import Reduction, RefusedError
 from checker.report import report_json, report_text
@@ -14,6 +23,7 @@ from checker.verdicts import Outcome, Report, Verdict, Violation
 __all__ = [
     "CheckpointError",
     "Engine",
+    "EngineError",
     "Exploration",
     "Keeping",
     "Limits",

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from checker.bounding import BoundMet, bounded
 from checker.coverage import coverage
 from checker.exploration import (
     INTERRUPTION,
@@ -85,20 +86,24 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     asked, limits = tuple(properties), limits or Limits()
     formulas = [each.formula for each in asked if each.kind in ("invariant", "reachable")]
     reducer = reducing(initial, reduce, formulas)
+    if reducer is not None and engine is Engine.SYMBOLIC:
+        raise RefusedError(reducer.names[0], "the symbolic engine does not reduce; leave --engine out")
     symmetric = reducer is not None and reducer.symmetry is not None
     if symmetric and engine is Engine.FAST:
         raise RefusedError(Reduction.SYMMETRY, "only the reference explorer knows it; leave --engine out")
 
-    def run(engine: Engine, limits: Limits) -> Report:
-        return _Check(initial, asked, limits, report, engine, violations, reducer, keeping).run(notes)
+    def run(engine: Engine, exploring: Limits) -> Report:
+        return _Check(initial, asked, exploring, report, engine, violations, reducer, keeping).run(
+            notes, limits
+        )
 
-    if keeping is not None and reducer is None:
+    if (keeping is not None and reducer is None) or (limits.spill is not None and not symmetric):
         engine = engine or Engine.FAST
     impatient = limits.seconds is None or limits.seconds > PATIENCE
     if engine is None and not symmetric and impatient:
         tried = run(Engine.REFERENCE, replace(limits, seconds=PATIENCE))
         late = any(bound.startswith(time_met(PATIENCE)) for bound in tried.bounds)
-        return run(Engine.FAST, limits) if late else tried
+        return run(Engine.FAST, replace(limits, spent=limits.spent + tried.seconds)) if late else tried
     return run(engine or Engine.REFERENCE, limits)
 
 
@@ -135,12 +140,13 @@ class _Check:
         }
         asked = any(each.kind == "race_freedom" for each in self.properties)
         self.owned = asked and owned(initial)
-        self.searching = asked and not self.owned
+        self.searching = asked and not self.owned and engine is not Engine.SYMBOLIC
         self.remembered: Exploration | None = None
         self.temporal = tuple(each for each in self.properties if each.kind in TEMPORAL)
         self.decider: Decider | None = None
 
-    def run(self, notes: tuple[str, ...]) -> Report:
+    def run(self, notes: tuple[str, ...], whole: Limits) -> Report:
+        """Explore, and decide within the limits of the whole check."""
         races = (self.races,) if self.searching else ()
         inspections: tuple[Inspect, ...] = (
             self.visited,
@@ -154,15 +160,18 @@ class _Check:
         if self.searching and not any(map(self.refused, self.properties)):
             self.remembered = self.search()
         later = self.remembered.bounds if self.remembered else []
+        seconds = self.found.seconds + (self.remembered.seconds if self.remembered else 0.0)
+        with bounded(replace(whole, spent=self.limits.spent + seconds)):
+            verdicts = tuple(map(self.decide, self.properties))
         return Report(
-            verdicts=tuple(map(self.decide, self.properties)),
-            configurations=len(self.found.configurations),
+            verdicts=verdicts,
+            configurations=self.found.size,
             transitions=self.found.transitions,
             depth=self.found.depth,
             bounds=tuple(dict.fromkeys([*self.found.bounds, *later])),
             rules=dict(sorted(self.found.rules.items())),
             notes=notes,
-            seconds=self.found.seconds + (self.remembered.seconds if self.remembered else 0.0),
+            seconds=seconds,
             coverage=coverage(self.initial, self.visited, complete=self.found.complete and not self.reducer),
             reduced=tuple(map(str, self.reducer.names)) if self.reducer else (),
             allowed=self.found.allowed,
@@ -200,12 +209,25 @@ class _Check:
 
     def decide(self, asked: Property) -> Verdict:
         """Return the verdict on one property: what a reduction may have lost is not said to hold."""
+        beyond = self.beyond(asked)
+        if beyond is not None:
+            return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {beyond}")
         reason = self.refused(asked)
         if reason is None:
             return self.decided(asked)
         found = self.decided(asked)
         note = f"not decided under this reduction: {reason}"
         return found if found.outcome is Outcome.VIOLATED else Verdict(asked, Outcome.INCOMPLETE, note=note)
+
+    def beyond(self, asked: Property) -> str | None:
+        """Return why the engine can't decide a property, None where it can."""
+        if self.engine is not Engine.SYMBOLIC:
+            return None
+        if asked.kind in TEMPORAL:
+            return "the symbolic engine knows nothing of runs; leave --engine out"
+        if asked.kind == "race_freedom" and not self.owned:
+            return "the symbolic engine looks for no races; leave --engine out"
+        return None
 
     def decided(self, asked: Property) -> Verdict:
         """Return what the exploration says of a property."""
@@ -231,9 +253,14 @@ class _Check:
     def decide_temporal(self, asked: Property) -> Verdict:
         from checker.temporal.decide import Decider  # noqa: PLC0415 - numpy and scipy take their time to load
 
-        if self.decider is None:
-            self.decider = Decider(self.found, self.temporal)
-        return self.decider.decide(asked)
+        try:
+            if self.decider is None:
+                self.decider = Decider(self.found, self.temporal)
+            return self.decider.decide(asked)
+        except BoundMet as bound:
+            return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {bound} was met")
+        except MemoryError:
+            return Verdict(asked, Outcome.INCOMPLETE, note="not decided: there is not enough memory")
 
     def verdict(self, asked: Property, collected: Collected, note: str = "") -> Verdict:
         """Return the verdict of a property that no finding may speak against."""

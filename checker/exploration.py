@@ -13,6 +13,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, Protocol
 
 from checker.edges import Edges
+from checker.estimate import Estimate, estimate
 from semantics.configuration import Configuration, Transition
 from semantics.successors import Expansion, expand
 
@@ -37,6 +38,7 @@ class Limits:
         pending: How many requests an agent may have pending, or messages in its mailbox.
         spent: How many of the seconds are gone already.
         memory: How many bytes the process may take; looked at now and then, so that it may be a little more.
+        spill: The folder in which the fast explorer has files for its rows when memory ends; None for nowhere.
     """
 
     configurations: int | None = 2_000_000
@@ -44,6 +46,11 @@ class Limits:
     pending: int = MOST_PENDING
     spent: float = 0.0
     memory: int | None = None
+    spill: str | None = None
+
+
+class EngineError(Exception):
+    """An engine that isn't installed, or that can't explore a mission."""
 
 
 class CheckpointError(Exception):
@@ -71,13 +78,31 @@ class Keeping:
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """How far an exploration has come; `rate` is in configurations a second."""
+    """How far an exploration has come.
+
+    Attributes:
+        configurations: How many were met.
+        transitions: How many were followed.
+        depth: The distance of those that are being expanded, where they are expanded one by one.
+        frontier: How many wait to be expanded, likewise.
+        rate: How many are expanded in a second.
+        estimate: How many there may be in all; None while nobody can say.
+    """
 
     configurations: int
     transitions: int
-    depth: int
-    frontier: int
+    depth: int | None
+    frontier: int | None
     rate: float
+    estimate: Estimate | None = None
+
+    @property
+    def left(self) -> tuple[float, float] | None:
+        """How many seconds it may go on, at least and at most, if layers and rate go on as they do."""
+        if self.estimate is None or self.frontier is None or self.rate <= 0:
+            return None
+        more = self.estimate.most - self.configurations
+        return self.frontier / self.rate, (self.frontier + more) / self.rate
 
 
 class Engine(Enum):
@@ -85,6 +110,7 @@ class Engine(Enum):
 
     REFERENCE = "reference"
     FAST = "fast"
+    SYMBOLIC = "symbolic"
 
 
 class Reducer(Protocol):
@@ -126,7 +152,7 @@ class Exploration:
     Attributes:
         configurations: In the order of discovery; the first is the initial one.
         origins: For each, the number of the one that it was first reached from (of the initial one, its own).
-        depth: How far the farthest is from the initial one.
+        depth: How far the farthest is from the initial one; None where nobody knows.
         expanded: How many of them were expanded: all, unless time ran out.
         transitions: How many transitions there are.
         rules: How many transitions each rule has.
@@ -138,11 +164,12 @@ class Exploration:
         allowed: How many transitions the visited configurations allow; more than `transitions` where it was reduced.
         reducer: What made it visit less, None where it visited everything.
         start: What it started from, where another configuration stands for it.
+        count: How many configurations were visited, where that is not how many there are in `configurations`.
     """
 
     configurations: Sequence[Configuration]
     origins: Sequence[int]
-    depth: int = 0
+    depth: int | None = 0
     expanded: int = 0
     transitions: int = 0
     rules: Counter[str] = field(default_factory=Counter)
@@ -154,6 +181,12 @@ class Exploration:
     allowed: int = 0
     reducer: Reducer | None = None
     start: Configuration | None = None
+    count: int | None = None
+
+    @property
+    def size(self) -> int:
+        """How many configurations were visited."""
+        return len(self.configurations) if self.count is None else self.count
 
     @property
     def complete(self) -> bool:
@@ -192,7 +225,8 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
         limits: Where to stop.
         report: Called about once in `every` seconds.
         every: Seconds.
-        engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
+        engine: Whether the rules are run everywhere, or once for each way in which they look at cells, and then for
+            configurations one by one or for sets of them.
         edges: Whether every transition is kept, as temporal properties need; the fast explorer finds them again.
         reduce: What lets it visit less; by symmetry only the reference explorer can.
         keeping: What the fast explorer keeps on the way, and what it doubts.
@@ -203,6 +237,10 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
         return explore_fast(
             initial, tuple(inspect), limits or Limits(), report, every, keeping or Keeping(), reduce
         )
+    if engine is Engine.SYMBOLIC:
+        from checker.symbolic.explorer import explore_symbolic  # noqa: PLC0415  # an extra, and numba
+
+        return explore_symbolic(initial, tuple(inspect), limits or Limits(), report, every)
     explorer = _Explorer(initial, tuple(inspect), limits or Limits(), report, every)
     explorer.found.edges = Edges() if edges else None
     if reduce is not None:
@@ -222,6 +260,7 @@ class _Explorer:
         self.configurations = [initial]
         self.origins = [0]
         self.depths = [0]
+        self.layers = [1]
         self.found = Exploration(self.configurations, self.origins)
         self.numbers = {initial: 0}
         self.inspect = inspect
@@ -303,8 +342,15 @@ class _Explorer:
             self.configurations.append(reached)
             self.origins.append(number)
             self.depths.append(self.depths[number] + 1)
+            self.count(self.depths[-1])
         if found.edges is not None:
             found.edges.add(label, target)
+
+    def count(self, depth: int) -> None:
+        """Count a configuration into its layer."""
+        if depth == len(self.layers):
+            self.layers.append(0)
+        self.layers[depth] += 1
 
     def missing(self, number: int) -> None:
         if self.found.edges is not None:
@@ -316,8 +362,9 @@ class _Explorer:
 
     def progress(self, number: int, seconds: float) -> Progress:
         found = self.found
-        total, rate = len(self.configurations), number / max(seconds, 1e-9)
-        return Progress(total, found.transitions, self.depths[number], total - number, rate)
+        total, depth, rate = len(self.configurations), self.depths[number], number / max(seconds, 1e-9)
+        guess = estimate(self.layers[: depth + 1])
+        return Progress(total, found.transitions, depth, total - number, rate, guess)
 
 
 def limit_met(most: int) -> str:
@@ -336,10 +383,14 @@ def is_full(limits: Limits) -> bool:
 
 
 def memory_taken() -> int:
-    """Return how many bytes of memory the process takes now; its peak where the system doesn't tell."""
+    """Return how many bytes of memory the process takes now; its peak where the system doesn't tell.
+
+    What is a file's is not counted: the system takes that back when it needs memory.
+    """
     try:
         with open("/proc/self/statm", encoding="ascii") as file:
-            return int(file.read().split()[1]) * resource.getpagesize()
+            resident, of_files = map(int, file.read().split()[1:3])
+            return (resident - of_files) * resource.getpagesize()
     except OSError:
         unit = 1 if sys.platform == "darwin" else 1024
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit

@@ -46,8 +46,7 @@ class Eta:
 
     def of(self, agent: Name) -> tuple[Pending, ...]:
         """Return an agent's requests, in line where there is one."""
-        found = (each for cell in self._cells(agent) for each in self._at(cell))
-        return tuple(each for each in found if each.request.agent == agent)
+        return tuple(each for cell in self._cells(agent) for each in self._at(cell, agent))
 
     def all(self) -> tuple[Pending, ...]:
         """Return every pending request: the agents' in order of their names, under `fcfs` as asked."""
@@ -92,7 +91,8 @@ class Eta:
             return (line_cell(agent),)
         return (line_cell(agent), sends_cell(agent))
 
-    def _at(self, cell: Cell) -> Iterator[Pending]:
+    def _at(self, cell: Cell, agent: Name | None = None) -> Iterator[Pending]:
+        """Yield what stands in a cell, everybody's or one agent's."""
         requests: tuple[Request, ...] = self.cells.read(cell)
         if not requests:
             return
@@ -100,7 +100,8 @@ class Eta:
         if self.setting.monitored:
             rests_on = self.cells.read((MONITOR, *cell))
         for position, (request, kept) in enumerate(zip(requests, rests_on, strict=True)):
-            yield Pending(request, cell, position, kept)
+            if agent is None or request.agent == agent:
+                yield Pending(request, cell, position, kept)
 
     def _write(self, cell: Cell, line: list[Pending]) -> Changes:
         if self.setting.scheduler is Scheduler.UNORDERED or cell[0] == "sends":

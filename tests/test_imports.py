@@ -29,6 +29,7 @@ LIBRARIES = {
     "numpy": ("checker/", "bigactors/big_temporal.py"),  # arrays for the checker
     "numba": ("checker/",),
     "scipy": ("checker/temporal/components.py",),
+    "oxidd": ("checker/symbolic/diagrams.py",),
     "pyais": ("physical/ais_decode.py",),
     "pymavlink": ("adapters/mavlink/codec.py",),
     "aiohttp": ("adapters/web.py",),
@@ -41,7 +42,17 @@ LIBRARIES = {
 }
 
 # Libraries that take long to load or are extras: imported in the functions that need them, never with the module.
-LAZY = {"aiohttp", "matplotlib", "pyais", "pymavlink", "serial_asyncio_fast", "zenoh", "mcap", "nicegui"}
+LAZY = {
+    "aiohttp",
+    "matplotlib",
+    "oxidd",
+    "pyais",
+    "pymavlink",
+    "serial_asyncio_fast",
+    "zenoh",
+    "mcap",
+    "nicegui",
+}
 
 
 class Import(NamedTuple):

@@ -34,13 +34,13 @@ def fill(parser: Parser) -> None:
         "--max-time",
         metavar="SECONDS",
         type=seconds,
-        help="explore no longer than SECONDS (default: no limit)",
+        help="explore and decide no longer than SECONDS; the fast explorer takes half of it (default: no limit)",
     )
     parser.add_argument(
         "--max-memory",
         metavar="SIZE",
         type=size,
-        help="stop exploring when the process takes more, such as 800M or 12G (default: no limit)",
+        help="stop when the process takes more memory, such as 800M or 12G (default: no limit)",
     )
     _long_runs(parser)
     parser.add_argument(
@@ -67,8 +67,9 @@ def fill(parser: Parser) -> None:
     parser.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
     parser.add_argument(
         "--engine",
-        choices=("reference", "fast"),
-        help="how it explores; verdicts are the same (default: whichever is quicker for the mission's size)",
+        choices=("reference", "fast", "symbolic"),
+        help="how it explores; verdicts are the same (default: reference or fast, whichever is quicker for the "
+        "mission's size); symbolic, for very large missions, decides nothing of runs and races (docs/symbolic.md)",
     )
     parser.add_argument(
         "--reduce",
@@ -111,6 +112,13 @@ def _long_runs(parser: Parser) -> None:
     )
     group.add_argument(
         "--resume", action="store_true", help="go on from the checkpoint in DIR, if there is one"
+    )
+    group.add_argument(
+        "--spill",
+        metavar="DIR",
+        type=named,
+        help="when --max-memory is reached, go on with configurations in files in DIR, which should be on a disk; they "
+        "have no names and are gone at the end",
     )
     group.add_argument(
         "--paranoid",

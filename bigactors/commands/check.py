@@ -34,7 +34,7 @@ WORDS = {
 
 def run(options: Namespace) -> Exit:
     """Check missions; print the reports and write what was asked for."""
-    limits = Limits(most_of(options), options.max_time, memory=options.max_memory)
+    limits = limits_of(options)
     if options.trace:
         make_folder(options.trace)
     if options.verdict:
@@ -66,8 +66,21 @@ MOST, MOST_OF_REFERENCE = 100_000_000, 2_000_000
 """How many configurations are visited at most: those of the reference explorer take a thousand bytes each."""
 
 
-def most_of(options: Namespace) -> int:
-    """Return how many configurations are visited at most."""
+def limits_of(options: Namespace) -> Limits:
+    """Return the limits of the exploration."""
+    if options.spill is not None:
+        if options.max_memory is None:
+            raise Mistake("--spill is for when memory ends", "say when that is: --max-memory SIZE")
+        if options.engine in ("reference", "symbolic") or Reduction.SYMMETRY.value in options.reduce:
+            raise Mistake("--spill is of the fast explorer", "leave --engine and --reduce symmetry out")
+        make_folder(options.spill)
+    return Limits(most_of(options), options.max_time, memory=options.max_memory, spill=options.spill)
+
+
+def most_of(options: Namespace) -> int | None:
+    """Return how many configurations are visited at most; sets of them have no usual limit."""
+    if options.engine == "symbolic":
+        return int(options.max_configurations) if options.max_configurations else None
     symmetric = Reduction.SYMMETRY.value in options.reduce
     usual = MOST_OF_REFERENCE if options.engine == "reference" or symmetric else MOST
     return options.max_configurations or usual
@@ -79,7 +92,7 @@ def keeping_of(options: Namespace) -> Keeping | None:
         raise Mistake("--resume goes on from a checkpoint", "say where it is: --checkpoint DIR")
     if options.checkpoint is None and options.paranoid is None:
         return None
-    if options.engine == "reference" or options.reduce:
+    if options.engine in ("reference", "symbolic") or options.reduce:
         raise Mistake(
             "--checkpoint and --paranoid are of the fast explorer", "leave --engine and --reduce out"
         )

@@ -31,11 +31,19 @@ MOST_BYTES = 1 << 40
 
 @dataclass(frozen=True, slots=True)
 class Journey:
-    """How far the exploration had come: its depth, where its layer ends, and the seconds that it took."""
+    """How far the exploration had come.
+
+    Attributes:
+        depth: The distance of what is being expanded.
+        layer_end: Where that layer ends.
+        seconds: How long it took.
+        layers: How large each layer is, up to that one.
+    """
 
     depth: int
     layer_end: int
     seconds: float
+    layers: tuple[int, ...] = (1,)
 
 
 def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
@@ -49,6 +57,7 @@ def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
         "depth": journey.depth,
         "layer_end": journey.layer_end,
         "seconds": journey.seconds,
+        "layers": journey.layers,
         "columns": _digest_of_columns(space),
     }
     partial = path.with_suffix(".partial")
@@ -90,7 +99,8 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
         space.counts.extend(len(space.learner.leaves.rule))
         space.counts.used[: len(arrays["counts"])] = arrays["counts"]
         space.state[list(KEPT)] = arrays["state"]
-        journey = Journey(int(head["depth"]), int(head["layer_end"]), float(head["seconds"]))
+        layers = tuple(int(size) for size in head["layers"])
+        journey = Journey(int(head["depth"]), int(head["layer_end"]), float(head["seconds"]), layers)
     except (ValueError, IndexError, KeyError, TypeError) as error:
         raise CheckpointError(f"{path}: this checkpoint is damaged: {error}") from error
     if _digest_of_columns(space) != head["columns"]:

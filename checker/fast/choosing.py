@@ -42,6 +42,12 @@ DONE, MISSED, FULL = 0, 1, 2
 MOST_HERE = 64
 """A configuration with more actors than these is expanded in full."""
 
+EVERYBODY = ~np.uint64(0)
+"""The set of all actors."""
+
+TRIED = -1
+"""The size of a set that was found not to be ample."""
+
 FAIR, AGENTS_OWN = 1, 2
 """Flags of a transition: an agent's, and one that must be taken some time; an agent's."""
 
@@ -49,9 +55,8 @@ MEMBER, NOW, EVER, ASIDE, FOLLOWER = range(5)
 RECORD = 5
 """Numbers of an actor in a configuration: which it is, its footprints, and which comes behind it (-1: none)."""
 
-READS, WRITES, MERGES = range(3)
 PARTS = 3
-"""What a footprint has, each as words of bits."""
+"""A footprint has reads, writes and merges, each as words of bits."""
 
 
 class Members(NamedTuple):
@@ -177,65 +182,92 @@ def is_seen(m: Model, r: Members, words: Words, at: int, target: Words, to: int,
     return False
 
 
-@njit(cache=True)
-def choose(  # one step of the search, with what it looks at
-    m: Model, r: Members, words: Words, table: Any, batch: Batch, row: int, count: int, state: State
-) -> tuple[bool, np.uint64]:
-    """Return whether all is known, and the actors whose steps are to be followed: all bits where it is everybody's.
+@njit(cache=True, inline="always")
+def has(actors: np.uint64, actor: int) -> bool:
+    """Tell whether a set of the actors of a row has one."""
+    return bool((actors >> np.uint64(actor)) & np.uint64(1))
 
-    Whose each successor is is left in `whose`, as a number among the actors of the row.
-    """
-    everybody = ~np.uint64(0)
-    width, at = state[WORDS], row * state[WORDS]
-    if count < 2:
-        return True, everybody
-    here, whose, sets, sizes = r.here, r.whose, r.sets, r.sizes
-    actors = meet(m, r, words, at, here, state)
-    if actors < 0:
-        return False, everybody
-    if actors > MOST_HERE:
-        return True, everybody
-    bits = np.uint32(bits_for(len(table)))
-    found = np.int64(0)
+
+@njit(cache=True)
+def attribute(r: Members, batch: Batch, count: int) -> None:
+    """Note whose each successor of a row is, as a number among its actors."""
     for k in range(count):
-        whose[k] = 0
-        while r.actors[RECORD * here[whose[k]] + MEMBER] != r.step_actor[batch.steps[k]]:
-            whose[k] += 1
+        r.whose[k] = 0
+        while r.actors[RECORD * r.here[r.whose[k]] + MEMBER] != r.step_actor[batch.steps[k]]:
+            r.whose[k] += 1
+
+
+@njit(cache=True)
+def gather_sets(r: Members, batch: Batch, count: int, actors: int) -> int:
+    """Note the persistent sets around those who can move, and how many successors each has; return how many sets."""
+    found = np.int64(0)
     for k in range(count):
         if not r.step_flags[batch.steps[k]] & AGENTS_OWN:
             continue
-        inside = persistent(r, here, actors, whose[k])
+        inside = persistent(r, r.here, actors, r.whose[k])
         known = False
         for j in range(found):
-            known = known or sets[j] == inside
+            known = known or r.sets[j] == inside
         if not known:
-            size = np.int64(0)
+            r.sets[found], r.sizes[found] = inside, 0
             for j in range(count):
-                size += np.int64((inside >> np.uint64(whose[j])) & np.uint64(1))
-            sets[found], sizes[found] = inside, size
+                r.sizes[found] += has(inside, r.whose[j])
             found += 1
+    return found
+
+
+@njit(cache=True)
+def is_ample(
+    m: Model,
+    r: Members,
+    words: Words,
+    table: Any,
+    batch: Batch,
+    row: int,
+    count: int,
+    inside: np.uint64,
+    width: int,
+) -> bool:
+    """Tell whether no property sees a step, one must be taken some time, and one leads to what is expanded later."""
+    bits = np.uint32(bits_for(len(table)))
+    fair, later = False, False
+    for k in range(count):
+        if has(inside, r.whose[k]):
+            if is_seen(m, r, words, row * width, batch.words, k * width, width):
+                return False
+            fair = fair or bool(r.step_flags[batch.steps[k]] & FAIR)
+            if not later:
+                number = find(words, table, batch.words, k, batch.hashes[k], width, bits)
+                later = number < 0 or number > row
+    return fair and later
+
+
+@njit(cache=True)
+def choose(
+    m: Model, r: Members, words: Words, table: Any, batch: Batch, row: int, count: int, state: State
+) -> tuple[bool, np.uint64]:
+    """Return whether all is known, and whose steps are to be followed: everybody's where no set is ample."""
+    if count < 2:
+        return True, EVERYBODY
+    width = state[WORDS]
+    actors = meet(m, r, words, row * width, r.here, state)
+    if actors < 0:
+        return False, EVERYBODY
+    if actors > MOST_HERE:
+        return True, EVERYBODY
+    attribute(r, batch, count)
+    found = gather_sets(r, batch, count, actors)
     for _ in range(found):
         least = np.int64(-1)
         for j in range(found):
-            if 0 <= sizes[j] < count and (least < 0 or sizes[j] < sizes[least]):
+            if 0 <= r.sizes[j] < count and (least < 0 or r.sizes[j] < r.sizes[least]):
                 least = j
         if least < 0:
             break
-        inside, sizes[least] = sets[least], -1
-        seen, fair, later = False, False, False
-        for k in range(count):
-            if (inside >> np.uint64(whose[k])) & np.uint64(1):
-                seen = seen or is_seen(m, r, words, at, batch.words, k * width, width)
-                fair = fair or bool(r.step_flags[batch.steps[k]] & FAIR)
-        if seen or not fair:
-            continue
-        for k in range(count):
-            if (inside >> np.uint64(whose[k])) & np.uint64(1):
-                number = find(words, table, batch.words, k, batch.hashes[k], width, bits)
-                later = later or number < 0 or number > row
-        if later:
-            return True, inside
-    return True, everybody
+        r.sizes[least] = TRIED
+        if is_ample(m, r, words, table, batch, row, count, r.sets[least], width):
+            return True, r.sets[least]
+    return True, EVERYBODY
 
 
 @njit(cache=True)
@@ -265,7 +297,7 @@ def advance_reduced(
         state[GATHERED] = 0
         known = gather(m, words, batch, state, row + 1)
         count = state[GATHERED]
-        inside = ~np.uint64(0)
+        inside = EVERYBODY
         if known:
             state[TOUCHED] = touch(words, table, batch.hashes, 0, count, width)
             known, inside = choose(m, r, words, table, batch, row, count, state)
@@ -273,11 +305,10 @@ def advance_reduced(
         if not known:
             state[AT] = row
             return MISSED
-        everybody = inside == ~np.uint64(0)
         size = state[SIZE]
         for k in range(count):
             met[batch.steps[k]] += 1
-            if not everybody and not (inside >> np.uint64(r.whose[k])) & np.uint64(1):
+            if inside != EVERYBODY and not has(inside, r.whose[k]):
                 continue
             counts[batch.steps[k]] += 1
             found = find(words, table, batch.words, k, batch.hashes[k], width, bits)

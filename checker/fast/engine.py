@@ -8,11 +8,13 @@ from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import accumulate
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from checker.bounding import look
 from checker.fast import kernel
 from checker.fast.arrays import Growing
 from checker.fast.columns import Packing, packing
@@ -113,6 +115,11 @@ class Space:
         return bool(self.state[CROWDS])
 
     @property
+    def spilled(self) -> bool:
+        """Whether rows and origins are in files."""
+        return self.origins.spilled
+
+    @property
     def bytes_used(self) -> int:
         """How many bytes rows, origins and the visited set take, room included."""
         return sum(each.room.nbytes for each in (self.words, self.origins, self.table))
@@ -206,6 +213,7 @@ class Space:
         found = np.zeros(len(rows), np.int32)
         done = 0
         while done < len(rows):
+            look()
             done += kernel.classify(self.model, self.words.room, rows[done:], tree, found[done:], self.state)
             if done < len(rows):
                 self._learn(int(rows[done]))
@@ -215,6 +223,7 @@ class Space:
         """Yield the transitions of rows that were expanded, some at a time: origins, steps, and targets (< 0: none)."""
         self.state[AT] = rows.start
         while self.state[AT] < rows.stop:
+            look()
             known = kernel.gather(self.model, self.words.room, self.batch, self.state, rows.stop)
             count, self.state[GATHERED] = int(self.state[GATHERED]), 0
             targets = np.zeros(count, np.int64)
@@ -224,6 +233,7 @@ class Space:
                 self._miss()
 
     def _miss(self) -> None:
+        look()  # everything that was gathered is stored
         if self.state[NODE] == kernel.WIDE:
             self._make_batches(2 * len(self.batch.hashes))
             self._see()
@@ -385,6 +395,15 @@ class Space:
             self._reserve_rows(max(wanted, more(len(self.origins.room))))
         if len(self.table.room) * 3 // 4 < wanted:
             self._rebuild(max(2 * wanted, 2 * len(self.table.room)))
+
+    def spill(self, folder: Path) -> None:
+        """Let rows and origins go over to files in a folder; the table, which is looked up at random, stays in memory.
+
+        Raises:
+            OSError: There is no such folder, or no room in it.
+        """
+        self.words.spill(folder, self.size * self.packing.words)
+        self.origins.spill(folder, self.size)
 
     def _reserve_rows(self, rows: int) -> None:
         self.words.grow(rows * self.packing.words)

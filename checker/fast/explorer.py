@@ -6,6 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, overload
 
+from checker.bounding import BoundMet, bounded
+from checker.estimate import estimate
 from checker.exploration import (
     INTERRUPTION,
     Exploration,
@@ -34,6 +36,9 @@ if TYPE_CHECKING:
 
 CHUNK = 1 << 15
 """Configurations that are expanded between two looks at the clock."""
+
+EXPLORING = 0.5
+"""What part of the time is for exploring: to look at what was explored takes as long again."""
 
 
 class Origins(Sequence[int]):
@@ -113,6 +118,7 @@ class _Explorer:
         self.reduce = reduce
         self.space = Space(self.learner, limits.configurations, self.choosing())
         self.journey = Journey(0, 1, 0.0)
+        self.layers = [1]
         self.bounds: list[str] = []
 
     def choosing(self) -> "Choosing | None":
@@ -135,15 +141,15 @@ class _Explorer:
         path = self.checkpoint
         if path is not None and self.keeping.resumed and path.exists():
             self.journey = resume(self.space, self.keeping.digest, path)
-        try:
-            self.visit_all(began - self.journey.seconds)
-        except KeyboardInterrupt:
-            self.bounds.append(INTERRUPTION)
-        self.keep(time.monotonic() - began + self.journey.seconds)
+            self.layers = list(self.journey.layers)
+        began -= self.journey.seconds
+        with bounded(self.limits if self.limits.spill is None else replace(self.limits, memory=None), began):
+            self.visit(began)
+        self.keep(time.monotonic() - began)
         space, configurations = self.space, Configurations(self.space)
-        doubt(space, self.keeping.doubted)
         survey = Survey(space)
-        inspect_fast(survey, inspect)
+        with bounded(self.limits_of_looking(), began):
+            self.look_at(survey, inspect)
         rules = space.rules()
         return Exploration(
             configurations,
@@ -153,18 +159,43 @@ class _Explorer:
             sum(rules.values()),
             rules,
             sorted(self.bounds + self.met()),
-            time.monotonic() - began + self.journey.seconds,
+            time.monotonic() - began,
             self.learner.runs,
             survey=survey,
             allowed=int(space.met.used.sum()),
             reducer=self.reduce,
         )
 
+    def visit(self, began: float) -> None:
+        """Explore until the end, or until a bound is met."""
+        try:
+            self.visit_all(began)
+        except BoundMet as bound:
+            self.bounds.append(str(bound))
+        except OSError as error:
+            self.bounds.append(f"the end of the room in {self.limits.spill}: {error.strerror}")
+        except KeyboardInterrupt:
+            self.bounds.append(INTERRUPTION)
+
+    def look_at(self, survey: Survey, inspect: tuple[Inspect, ...]) -> None:
+        """Look at what was explored, as long as there is time: what was not looked at to the end has found nothing."""
+        try:
+            doubt(self.space, self.keeping.doubted)
+            inspect_fast(survey, inspect)
+        except BoundMet as bound:
+            self.bounds.append(f"{bound}, in looking at what was explored")
+
+    def limits_of_looking(self) -> Limits:
+        """Return the limits; memory that came to its end, with files or without, is enough to look at what is there."""
+        full = memory_met(self.limits) in self.bounds or self.space.spilled
+        return replace(self.limits, memory=None) if full else self.limits
+
     def keep(self, seconds: float) -> None:
         """Write a checkpoint, if one is wanted."""
         path = self.checkpoint
         if path is not None:
-            save(self.space, replace(self.journey, seconds=seconds), self.keeping.digest, path)
+            journey = replace(self.journey, seconds=seconds, layers=tuple(self.layers))
+            save(self.space, journey, self.keeping.digest, path)
 
     def met(self) -> list[str]:
         most = self.limits.configurations
@@ -190,19 +221,28 @@ class _Explorer:
         space, end = self.space, self.journey.layer_end
         space.advance(min(space.expanded + CHUNK, end))
         if space.expanded == end and space.size > end:
+            self.layers.append(space.size - end)
             self.journey = Journey(self.journey.depth + 1, space.size, self.journey.seconds)
 
     def is_over(self, seconds: float) -> bool:
         """Tell whether time or memory has come to its end, and note it."""
         most = self.limits.seconds
-        if most is not None and seconds + self.limits.spent > most:
+        if most is not None and seconds + self.limits.spent > EXPLORING * most:
             self.bounds.append(time_met(most))
-        elif is_full(self.limits):
+        elif is_full(self.limits) and not self.makes_room():
             self.bounds.append(memory_met(self.limits))
         return bool(self.bounds)
+
+    def makes_room(self) -> bool:
+        """Let rows go over to files, if that is wanted and not done yet; tell whether it made room."""
+        if self.limits.spill is None or self.space.spilled:
+            return False
+        self.space.spill(Path(self.limits.spill))
+        return not is_full(self.limits)
 
     def progress(self, seconds: float) -> Progress:
         space = self.space
         rate = space.expanded / max(seconds, 1e-9)
         transitions = int(space.counts.used.sum())
-        return Progress(space.size, transitions, self.journey.depth, space.size - space.expanded, rate)
+        frontier, guess = space.size - space.expanded, estimate(self.layers)
+        return Progress(space.size, transitions, self.journey.depth, frontier, rate, guess)

@@ -4,7 +4,7 @@ A survey says of each finding how often it occurs, and where first; there the in
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from functools import partial, reduce
+from functools import cache, partial, reduce
 from itertools import combinations_with_replacement
 from operator import and_, or_
 from typing import Any
@@ -12,11 +12,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.coverage import passed_over
+from checker.bounding import look
 from checker.exploration import Inspect
 from checker.fast.learner import Actor
 from checker.fast.leaves import COPIES, COPIES_END, PAIR, PARTS, PARTS_END, STEP, WRITES, WRITES_END
-from checker.fast.survey import Survey
+from checker.fast.questions import (
+    Key,
+    computations,
+    controls_in_line,
+    races_between,
+    stale_controls,
+    what_is_served,
+    what_moves,
+    where_it_stands,
+)
+from checker.fast.survey import Survey, distinct
 from checker.findings import Collected
 from checker.inspections import (
     Computation,
@@ -24,25 +34,16 @@ from checker.inspections import (
     Invariant,
     LocalConsistency,
     Reachability,
-    is_at_rest,
-    is_unfair,
-    is_waiting,
 )
-from checker.races import ControlRaces, StaleObservationRaces, compared, enabled_controls, is_stale
+from checker.races import ControlRaces, StaleObservationRaces
 from checker.vacuity import atoms_of, truth
 from checker.visited import Visited
-from semantics.agents import code_cell
-from semantics.configuration import Configuration, Transition
-from semantics.control import obstacle
 from semantics.monitor import CONTROLS
 from semantics.propositions import Always, And, Not, Or, Proposition, holds
-from semantics.requests import CTR, FLY
 from semantics.setting import Scheduler
-from semantics.signature import Name
-from semantics.successors import expand, moves, served
+from semantics.successors import expand, served
 
 Bools = NDArray[np.bool_]
-Key = tuple[str, str]
 Tally = tuple[Key | None, int, int]
 """What was found (None: nothing wrong), how often, and in which configuration first."""
 
@@ -63,6 +64,7 @@ def inspect_fast(survey: Survey, inspections: Iterable[Inspect]) -> None:
 def look_at_each(survey: Survey, inspection: Inspect) -> None:
     """Let an inspection look at every configuration."""
     for number in range(survey.size):
+        look()
         c = survey.space.configuration(number)
         inspection(number, c, expand(c))
 
@@ -104,18 +106,6 @@ def _again(survey: Survey, make: Callable[[], Any], number: int) -> Any:
 # --- what is asked of one agent -------------------------------------------------------------------------------
 
 
-def controls_in_line(a: Name, c: Configuration) -> tuple[Key | None, ...]:
-    """Return what hinders each control that is next in an agent's line."""
-    found: list[Key | None] = []
-    if a in c.alpha:
-        done = {step.served.request for step in served(c, a) if step.served is not None}
-        for pending in c.eta.in_line(a):
-            if isinstance(pending.request, CTR | FLY):
-                hindered = None if pending.request in done else obstacle(c, pending.request)
-                found.append(hindered and (hindered.value, str(pending.request)))
-    return tuple(found)
-
-
 def look_at_consistency(survey: Survey, inspection: LocalConsistency) -> None:
     """Collect what local consistency finds."""
     tallies = [
@@ -130,14 +120,6 @@ def look_at_consistency(survey: Survey, inspection: LocalConsistency) -> None:
         return found
 
     _collect(inspection.collected, tallies, again)
-
-
-def computations(a: Name, c: Configuration) -> tuple[bool, tuple[Key, ...]]:
-    """Return whether an agent computes, and how that fails."""
-    steps = list(moves(c, a)) if a in c.alpha else []
-    faults = [step for step in steps if not isinstance(step, Transition)]
-    keys = tuple(("diverges" if f.diverges else "fails", f"{f.agent}: {f}") for f in faults)
-    return any(isinstance(step, Transition) and step.label.rule == "fun" for step in steps), keys
 
 
 def look_at_computation(survey: Survey, inspection: Computation) -> None:
@@ -156,25 +138,6 @@ def look_at_computation(survey: Survey, inspection: Computation) -> None:
 
 
 # --- deadlock -------------------------------------------------------------------------------------------------
-
-
-def what_is_served(a: Name, c: Configuration) -> tuple[bool, bool, tuple[str, ...]]:
-    """Return whether something of an agent must be served, whether a flight may end, and what is pending or may end."""
-    if a not in c.alpha:
-        return False, False, ()
-    steps = list(served(c, a))
-    fair = any(not is_unfair(c, step) for step in steps)
-    words = (*(str(step.label) for step in steps), *(str(each.request) for each in c.eta.of(a)))
-    return fair, any(step.label.rule == "commit" for step in steps), () if fair else words
-
-
-def what_moves(a: Name, c: Configuration) -> tuple[bool, bool, bool]:
-    """Return whether an agent can go on, whether it failed, and whether it waits."""
-    if a not in c.alpha:
-        return False, False, False
-    steps = list(moves(c, a))
-    can = any(isinstance(step, Transition) for step in steps)
-    return can, bool(steps) and not can, not can and is_waiting(c, a) and not is_at_rest(c, a)
 
 
 def look_at_deadlocks(survey: Survey, inspection: DeadlockFreedom) -> None:
@@ -223,20 +186,6 @@ def _first_two(answers: Any, leaves: NDArray[np.int32], agents: int) -> tuple[Bo
 # --- races ----------------------------------------------------------------------------------------------------
 
 
-def races_between(a: Name, b: Name, c: Configuration) -> tuple[Key | None, ...]:
-    """Return what is wrong with each pair of enabled controls of two agents, or of one."""
-    if a not in c.alpha or b not in c.alpha:
-        return ()
-    steps = [step for each in dict.fromkeys((a, b)) for step in dict.fromkeys(served(c, each))]
-    pairs = compared(c, enabled_controls(steps))
-    about = [(one, other, problem) for one, other, problem in pairs if _are(one, other, a, b)]
-    return tuple(problem and ("control race", problem[1]) for _, _, problem in about)
-
-
-def _are(one: list[Transition], other: list[Transition], a: Name, b: Name) -> bool:
-    return {one[0].label.agent, other[0].label.agent} == {a, b}
-
-
 def look_at_races(survey: Survey, inspection: ControlRaces) -> None:
     """Collect control races: of pairs that touch nothing of each other's nothing need be asked."""
     space = survey.space
@@ -251,19 +200,22 @@ def look_at_races(survey: Survey, inspection: ControlRaces) -> None:
     unordered = space.learner.setting.scheduler is Scheduler.UNORDERED
     pairs = [(a, b) for a, b in combinations_with_replacement(agents, 2) if a != b or unordered]
     asked = {pair: space.learner.question(partial(races_between, *pair)) for pair in pairs}
+    controlling = cache(partial(has_control, survey))
+    independent = cache(partial(are_independent, survey))
     for rows in survey.blocks():
         leaves = {a: space.classify(trees[a], rows) for a in agents}
         for a, b in pairs:
             both = leaves[a].astype(np.int64) << 32 | leaves[b]
-            kinds, which = np.unique(both, return_inverse=True)
+            kinds, firsts, which, counts = np.unique(
+                both, return_index=True, return_inverse=True, return_counts=True
+            )
             together = np.zeros(len(kinds), np.bool_)
             for kind, pair in enumerate(kinds):
                 one, other = int(pair) >> 32, int(pair) & 0xFFFFFFFF
-                if not (has_control(survey, one) and has_control(survey, other)):
+                if not (controlling(one) and controlling(other)):
                     continue
-                if not unordered and are_independent(survey, one, other):
-                    members = np.flatnonzero(which == kind)
-                    tallies.append((None, len(members), int(rows[members[0]])))
+                if not unordered and independent(one, other):
+                    tallies.append((None, int(counts[kind]), int(rows[firsts[kind]])))
                 else:
                     together[kind] = True
             tallies += _of_rows(survey, asked[a, b], rows[together[which]])
@@ -273,10 +225,9 @@ def look_at_races(survey: Survey, inspection: ControlRaces) -> None:
 def _of_rows(survey: Survey, tree: int, rows: NDArray[np.int64]) -> Iterator[Tally]:
     if len(rows):
         leaves = survey.space.classify(tree, rows)
-        for leaf in np.unique(leaves):
-            members = np.flatnonzero(leaves == leaf)
-            for key in survey.space.learner.answers[int(leaf)]:  # type: ignore[attr-defined]  # a tuple of keys
-                yield key, len(members), int(rows[members[0]])
+        for leaf, first, count in distinct(leaves):
+            for key in survey.space.learner.answers[leaf]:  # type: ignore[attr-defined]  # a tuple of keys
+                yield key, count, int(rows[first])
 
 
 def has_control(survey: Survey, leaf: int) -> bool:
@@ -315,16 +266,6 @@ def written(survey: Survey, leaf: int) -> dict[int, list[int]] | None:
             column, code = leaves.writes.room[PAIR * write : PAIR * (write + 1)]
             found.setdefault(int(column), []).append(int(code))
     return found
-
-
-def stale_controls(a: Name, c: Configuration) -> tuple[Key | None, ...]:
-    """Return which controls of an agent rest on what others have changed."""
-    steps = dict.fromkeys(served(c, a) if a in c.alpha else ())
-    found = ((step, step.served) for step in steps if step.label.rule in CONTROLS and step.served is not None)
-    return tuple(
-        ("stale-observation race", str(pending.request)) if is_stale(c, pending) else None
-        for _, pending in found
-    )
 
 
 def look_at_staleness(survey: Survey, inspection: StaleObservationRaces) -> None:
@@ -402,13 +343,6 @@ def look_at_reachability(survey: Survey, inspection: Reachability) -> None:
 
 
 # --- what was visited -----------------------------------------------------------------------------------------
-
-
-def where_it_stands(a: Name, c: Configuration) -> Any:
-    """Return what is left of an agent to run, and what its computation passes over."""
-    if a not in c.alpha:
-        return None
-    return c.read(code_cell(a)), passed_over(c, a)
 
 
 def look_at_visited(survey: Survey, inspection: Visited) -> None:

@@ -1,34 +1,62 @@
-"""Large arrays in pages of their own: huge ones where the system has them, grown without being copied."""
+"""Large arrays in pages of their own: huge ones where the system has them, grown without being copied.
+
+They can go over to a file. Then the system writes them out and reads them again as it needs memory; the file has no
+name, so that nothing is left of it however the process ends.
+"""
 
 import mmap
+import os
+import weakref
+from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+PIECE = 1 << 20
+"""Numbers that are copied at once."""
 
 
 class Pages:
     """A one-dimensional array that grows in place; what was never written takes no memory.
 
     Attributes:
-        room: The whole array, zeros where nothing was written. `grow` makes another: don't keep it.
+        room: The whole array, zeros where nothing was written. `grow` and `spill` make another: don't keep it.
     """
 
-    __slots__ = ("_kind", "_pages", "room")
+    __slots__ = ("__weakref__", "_file", "_kind", "_pages", "room")
 
     def __init__(self, kind: type[np.generic], count: int) -> None:
         self._kind = np.dtype(kind)
+        self._file: int | None = None
         self._map(count)
         self.room: NDArray[Any] = np.frombuffer(self._pages, self._kind)
 
+    @property
+    def spilled(self) -> bool:
+        """Whether the array is in a file."""
+        return self._file is not None
+
     def grow(self, count: int) -> None:
-        """Make room for so many in all."""
+        """Make room for so many in all.
+
+        Raises:
+            OSError: There is no room for them in the file.
+        """
         if count > len(self.room):
+            if self._file is not None:
+                reserve(self._file, self._bytes(count))
             self.room = np.zeros(0, self._kind)  # the pages can't move while an array stands on them
             self._resize(count)
             self.room = np.frombuffer(self._pages, self._kind)
 
     def _resize(self, count: int) -> None:
+        if self._file is not None:
+            self._pages = mmap.mmap(
+                self._file, self._bytes(count)
+            )  # whoever has the old pages has the same file
+            return
         try:
             self._pages.resize(self._bytes(count))
             self._advise()
@@ -41,9 +69,34 @@ class Pages:
         self._pages = mmap.mmap(-1, self._bytes(count), flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
         self._advise()
 
+    def spill(self, folder: Path, used: int) -> None:
+        """Go over to a file without a name in a folder, with the first so many numbers.
+
+        Raises:
+            OSError: There is no such folder, or no room in it.
+        """
+        with TemporaryFile(dir=folder) as opened:
+            file = os.dup(opened.fileno())
+        weakref.finalize(self, os.close, file)
+        reserve(file, self.room.nbytes)
+        pages = mmap.mmap(file, self.room.nbytes)
+        room: NDArray[Any] = np.frombuffer(pages, self._kind)
+        for begin in range(0, used, PIECE):
+            end = min(begin + PIECE, used)
+            room[begin:end] = self.room[begin:end]
+        self._file, self._pages, self.room = file, pages, room
+
     def _bytes(self, count: int) -> int:
         return -(-count * self._kind.itemsize // mmap.PAGESIZE) * mmap.PAGESIZE
 
     def _advise(self) -> None:
         if hasattr(mmap, "MADV_HUGEPAGE"):
             self._pages.madvise(mmap.MADV_HUGEPAGE)
+
+
+def reserve(file: int, size: int) -> None:
+    """Take all the room that a file is to have: writing to a hole that can't be filled would end the process."""
+    if hasattr(os, "posix_fallocate"):
+        os.posix_fallocate(file, 0, size)
+    else:
+        os.ftruncate(file, size)

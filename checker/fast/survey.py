@@ -13,8 +13,8 @@ from semantics.cells import AGENTS
 from semantics.configuration import Configuration
 from semantics.signature import Name
 
-BLOCK = 1 << 20
-"""Rows that are classified at once."""
+BLOCK = 1 << 18
+"""Rows that are classified at once: what is worked out of them takes some fifty bytes each."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ class Survey:
         found: dict[Hashable, Answer] = {}
         tree = self.space.learner.question(question)
         for rows, leaves in self.leaves(tree):
-            for leaf, first, count in _distinct(leaves):
+            for leaf, first, count in distinct(leaves):
                 value = self.space.learner.answers[leaf]
                 before = found.get(value)
                 start = int(rows[first]) if before is None else min(before.first, int(rows[first]))
@@ -95,7 +95,7 @@ class Survey:
         return self.space.learner.tree(actor)
 
 
-def _distinct(leaves: NDArray[np.int32]) -> Iterator[tuple[int, int, int]]:
+def distinct(leaves: NDArray[np.int32]) -> Iterator[tuple[int, int, int]]:
     """Yield each leaf with where it stands first and how often."""
     values, firsts, counts = np.unique(leaves, return_index=True, return_counts=True)
     for value, first, count in zip(values, firsts, counts, strict=True):

@@ -106,10 +106,11 @@ class Trees:
         return self._follow_code(node, answer)
 
     def _follow_code(self, node: int, answer: int) -> int:
-        low, width, base = self._window(node)
+        low, width, base = self.window(node)
         return int(self.next.room[base + answer - low]) if low <= answer < low + width else UNKNOWN
 
-    def _window(self, node: int) -> tuple[int, int, int]:
+    def window(self, node: int) -> tuple[int, int, int]:
+        """Return the first code of a node's window, how many it has, and where it begins in `next`."""
         low, width, base = self.nodes.room[RECORD * node + LOW : RECORD * node + WORD]
         return int(low), int(width), int(base)
 
@@ -120,7 +121,7 @@ class Trees:
         node, answer, column = previous
         if self.asks[node].question is None:
             self._widen(node, answer)
-            low, _, base = self._window(node)
+            low, _, base = self.window(node)
             self.next.room[base + answer - low] = reference
             return
         self.answers[node][answer] = reference
@@ -130,7 +131,7 @@ class Trees:
 
     def _widen(self, node: int, code: int) -> None:
         """Let a node's window take in a code, and half of it more, so that growing again and again stays cheap."""
-        low, width, old = self._window(node)
+        low, width, old = self.window(node)
         if low <= code < low + width:
             return
         first = min(low, code) if width else code
@@ -145,7 +146,7 @@ class Trees:
     def _fill(self, node: int, column: Column) -> None:
         """Answer a node's yes or no for every code that its window holds and its column has."""
         ask, answers = self.asks[node], self.answers[node]
-        _, width, base = self._window(node)
+        _, width, base = self.window(node)
         assert ask.question is not None
         for code in range(min(width, len(column.values))):
             if self.next.room[base + code] == UNKNOWN:

@@ -7,6 +7,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from checker.bounding import look
 from checker.graph import Bools, Numbers
 
 Indices = NDArray[np.int64]
@@ -67,6 +68,7 @@ def reaching(backwards: Rows, goal: Bools, through: Bools) -> Bools:
     found = goal.copy()
     frontier: Numbers = np.flatnonzero(found)
     while len(frontier):
+        look()
         before = backwards.targets[leaving(backwards, frontier)]
         new = before[through[before] & ~found[before]]
         found[new] = True
@@ -91,6 +93,7 @@ def shortest(
     seen[start] = True
     frontier: Numbers = np.array([start])
     while len(frontier):
+        look()
         edges = leaving(arrows, frontier)
         if by is not None:
             edges = edges[by[edges]]

@@ -12,6 +12,7 @@ from itertools import product
 
 import networkx as nx
 
+from checker.bounding import look
 from checker.temporal.normal import FALSE, TRUE, Formulas, Literal, Number
 from semantics.temporal import Temporal
 
@@ -114,6 +115,7 @@ class _Tableau:
         found: dict[State, tuple[_Term, ...]] = {}
         waiting = [first]
         while waiting:
+            look()
             state = waiting.pop(0)
             if state in found:
                 continue

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
+from checker.bounding import look
 from checker.graph import Bools, Numbers
 from checker.temporal.arrows import Arrows, Indices, rows_of
 
@@ -67,6 +68,7 @@ def fair_components(
     edges: Numbers = np.arange(len(arrows.targets)) if by is None else np.flatnonzero(by)
     fair_so_far = 0
     while len(nodes):
+        look()
         part = _components(arrows, nodes, edges)
         judged = _judge(part, conditions)
         numbers = np.cumsum(judged.fair) - 1 + fair_so_far

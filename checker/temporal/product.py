@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from checker.bounding import look
 from checker.graph import Bools, Graph, Numbers
 from checker.temporal.arrows import leaving
 from checker.temporal.automaton import Automaton, Move
@@ -101,6 +102,7 @@ class _Search:
         if self.automaton.whatever == 0:
             self.prefix = ()
         while self.prefix is None and len(self.codes[-1]):
+            look()
             frontier = self.codes[-1]
             self.accept(frontier)
             if self.prefix is None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from checker.bounding import look
 from checker.graph import Bools, Graph, Numbers
 from checker.temporal.arrows import shortest
 from checker.temporal.components import Conditions, fair_components
@@ -16,6 +17,9 @@ from semantics.signature import Name
 from semantics.temporal import SERVES
 
 Pending = Mapping[Request, Sequence[int] | Numbers]
+
+OFTEN = 1024
+"""Configurations between two looks at the clock."""
 """For each request, the configurations in which it is pending."""
 
 
@@ -23,6 +27,8 @@ def pending_requests(configurations: Iterable[Configuration]) -> Pending:
     """Return where each request is pending."""
     found: dict[Request, list[int]] = {}
     for number, c in enumerate(configurations):
+        if number % OFTEN == 0:
+            look()
         for request in dict.fromkeys(each.request for each in c.eta.all()):
             found.setdefault(request, []).append(number)
     return found

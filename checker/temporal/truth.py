@@ -5,21 +5,31 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from checker.bounding import look
 from checker.graph import Bools, Graph
 from semantics.configuration import Configuration
 from semantics.propositions import Always, Proposition, holds
 from semantics.temporal import Both, Denied, Either, Enabled, Now, Steps, Taken, Temporal, atoms
 
 Valuation = Mapping[Proposition, Bools]
+
+OFTEN = 1024
+"""Configurations between two looks at the clock."""
 """For each proposition, for each configuration, whether it is true there."""
 
 
 def valuation(configurations: Iterable[Configuration], asked: Iterable[Proposition]) -> Valuation:
     """Evaluate propositions on all configurations."""
     wanted = tuple(dict.fromkeys(asked))
-    rows = [[holds(each, c) for each in wanted] for c in configurations]
+    rows = [_row(number, c, wanted) for number, c in enumerate(configurations)]
     table = np.array(rows, dtype=np.bool_).reshape(len(rows), len(wanted))
     return {each: np.ascontiguousarray(table[:, column]) for column, each in enumerate(wanted)}
+
+
+def _row(number: int, c: Configuration, wanted: Iterable[Proposition]) -> list[bool]:
+    if number % OFTEN == 0:
+        look()
+    return [holds(each, c) for each in wanted]
 
 
 @dataclass(eq=False)

@@ -20,6 +20,7 @@ class Terminal(io.StringIO):
 
 
 def test_a_line_is_rewritten_on_a_terminal(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
     monkeypatch.setenv("NO_COLOR", "1")
     stream = Terminal()
     watch = Watch("long", stream)

@@ -75,7 +75,10 @@ def test_generated_missions_are_explored_alike_by_both_engines(initial):
 @pytest.mark.parametrize("variation", VARIATIONS.values(), ids=VARIATIONS)
 def test_both_engines_come_to_the_same_report(name, variation):
     mission = load_mission(MISSIONS / f"{name}.mission", variation)
-    reports = [check(mission.initial, mission.properties, FEW, engine=engine) for engine in Engine]
+    reports = [
+        check(mission.initial, mission.properties, FEW, engine=engine)
+        for engine in (Engine.REFERENCE, Engine.FAST)
+    ]
     assert told(reports[0]) == told(reports[1])
 
 
@@ -85,7 +88,9 @@ def test_generated_missions_are_judged_alike_by_both_engines(initial):
     kinds = ("local_consistency", "race_freedom", "deadlock_freedom", "arrival", "computation")
     properties = [Property(kind, kind) for kind in kinds]
     limits = Limits(configurations=60)
-    reports = [check(initial, properties, limits, engine=engine) for engine in Engine]
+    reports = [
+        check(initial, properties, limits, engine=engine) for engine in (Engine.REFERENCE, Engine.FAST)
+    ]
     assert told(reports[0]) == told(reports[1])
 
 
@@ -99,7 +104,10 @@ def test_the_rules_are_run_far_less_often_than_there_are_transitions():
 @pytest.mark.parametrize("name", NAMES)
 def test_both_engines_keep_the_same_graph(name):
     initial = load_mission(MISSIONS / f"{name}.mission").initial
-    graphs = [kept_graph(explore(initial, limits=FEW, engine=engine, edges=True)) for engine in Engine]
+    graphs = [
+        kept_graph(explore(initial, limits=FEW, engine=engine, edges=True))
+        for engine in (Engine.REFERENCE, Engine.FAST)
+    ]
     one, other = ((g.starts.tolist(), g.targets.tolist(), actions(g), g.open.tolist()) for g in graphs)
     assert one == other
 

@@ -125,7 +125,10 @@ def test_the_fast_explorer_leaves_something_out():
 @pytest.mark.parametrize("name", ["takeover", "rendezvous", "oil_spill"])
 def test_both_explorers_report_the_same(name):
     mission = load_mission(MISSIONS / f"{name}.mission")
-    reports = [check(mission.initial, mission.properties, reduce=POR, engine=engine) for engine in Engine]
+    reports = [
+        check(mission.initial, mission.properties, reduce=POR, engine=engine)
+        for engine in (Engine.REFERENCE, Engine.FAST)
+    ]
     assert reports[0].reduced == ("por",)
     told = [
         [

@@ -195,6 +195,9 @@ def test_a_loop_that_is_no_number_of_a_configuration_is_refused(loop_data, loop)
 
 def test_the_verdict_of_each_engine_is_the_same():
     mission = load(f'{THERE_AND_BACK} check {{ progress ltl "q": <> ended g ctl "r": AG EF ended g }}')
-    reports = [check(mission.initial, mission.properties, engine=engine) for engine in Engine]
+    reports = [
+        check(mission.initial, mission.properties, engine=engine)
+        for engine in (Engine.REFERENCE, Engine.FAST)
+    ]
     assert reports[0].verdicts == reports[1].verdicts
     assert verdict_of(reports[0], "q").outcome is Outcome.VIOLATED

@@ -1,0 +1,54 @@
+"""Bounds on whatever is done within them: work that may take long looks at the clock and at memory now and then.
+
+An exploration that meets a bound keeps what it has. What comes after (surveys of all that was explored, temporal logic)
+has no half result: it is given up, and what it would have decided stays undecided.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from time import monotonic
+
+from checker.exploration import Limits, is_full, memory_met, time_met
+
+
+class BoundMet(Exception):  # what it is
+    """Time or memory has come to its end; the text says which."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Bounds:
+    limits: Limits
+    started: float
+
+    def met(self) -> str | None:
+        most = self.limits.seconds
+        if most is not None and monotonic() - self.started + self.limits.spent > most:
+            return time_met(most)
+        return memory_met(self.limits) if is_full(self.limits) else None
+
+
+_BOUNDS: ContextVar[_Bounds | None] = ContextVar("bounds", default=None)
+
+
+@contextmanager
+def bounded(limits: Limits, started: float | None = None) -> Iterator[None]:
+    """Hold what is done within to limits of time and memory; the time begins now unless it is said when it began."""
+    token = _BOUNDS.set(_Bounds(limits, monotonic() if started is None else started))
+    try:
+        yield
+    finally:
+        _BOUNDS.reset(token)
+
+
+def look() -> None:
+    """Look whether a bound is met; where nobody has set any, none is.
+
+    Raises:
+        BoundMet: It is.
+    """
+    bounds = _BOUNDS.get()
+    met = None if bounds is None else bounds.met()
+    if met is not None:
+        raise BoundMet(met)

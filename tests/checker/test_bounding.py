@@ -1,0 +1,118 @@
+"""Bounds hold for what comes after exploring, too: nothing is said to hold that was not looked at to the end."""
+
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+import checker.bounding
+import checker.fast.explorer
+from checker import Engine, Limits, Outcome, check
+from checker.bounding import BoundMet, bounded, look
+from specs.elaboration import load_mission
+
+CHECK = import_module("checker.check")  # its name is taken by the function
+MISSIONS = Path(__file__).parents[2] / "specs" / "missions"
+DAY = Limits(seconds=86_400.0)
+
+
+class Clock:
+    """A clock that stands until it is told to go."""
+
+    def __init__(self, monkeypatch):
+        self.now = 0.0
+        monkeypatch.setattr(checker.bounding, "monotonic", lambda: self.now)
+
+    def jumps_before(self, monkeypatch, place, name):
+        within = getattr(place, name)
+
+        def late(*words, **named):
+            self.now += 2 * 86_400.0
+            return within(*words, **named)
+
+        monkeypatch.setattr(place, name, late)
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    return Clock(monkeypatch)
+
+
+def test_where_no_bounds_were_set_none_is_met():
+    look()
+
+
+def test_time_counts_from_when_it_began_with_what_was_spent_before(clock):
+    with bounded(Limits(seconds=10.0, spent=4.0)):
+        clock.now = 6.0
+        look()
+        clock.now = 6.5
+        with pytest.raises(BoundMet, match="the time limit of 10 s"):
+            look()
+    look()
+
+
+def test_memory_is_looked_at():
+    with bounded(Limits(memory=1)), pytest.raises(BoundMet, match="the memory limit of 0 MB"):
+        look()
+
+
+def test_inner_bounds_end_with_their_block(clock):
+    with bounded(Limits(seconds=10.0)):
+        with bounded(Limits(seconds=1.0)):
+            clock.now = 2.0
+            with pytest.raises(BoundMet):
+                look()
+        look()
+
+
+def test_what_was_explored_and_not_looked_at_does_not_hold(clock, monkeypatch):
+    mission = load_mission(MISSIONS / "oil_spill.mission")
+    whole = check(mission.initial, mission.properties, DAY, engine=Engine.FAST)
+    clock.jumps_before(monkeypatch, checker.fast.explorer, "inspect_fast")
+    clock.now = checker.fast.explorer.time.monotonic()
+    report = check(mission.initial, mission.properties, DAY, engine=Engine.FAST)
+    assert "the time limit of 86400 s, in looking at what was explored" in report.bounds
+    assert (report.configurations, report.transitions) == (whole.configurations, whole.transitions)
+    decided_by_text = {each.property for each in report.verdicts if "by ownership" in each.note}
+    outcomes = {each.outcome for each in report.verdicts if each.property not in decided_by_text}
+    assert outcomes == {Outcome.INCOMPLETE}
+    assert report.exit_code == 3
+    assert not report.coverage.complete
+
+
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_temporal_properties_are_not_decided_when_the_time_is_over(clock, monkeypatch, engine):
+    mission = load_mission(MISSIONS / "surveillance.mission")
+    asked = [each for each in mission.properties if each.kind in ("ltl", "ctl", "progress")]
+    assert asked
+    clock.jumps_before(monkeypatch, CHECK._Check, "decide_temporal")
+    report = check(mission.initial, asked, DAY, engine=engine)
+    assert {each.outcome for each in report.verdicts} == {Outcome.INCOMPLETE}
+    assert {each.note for each in report.verdicts} == {"not decided: the time limit of 86400 s was met"}
+    assert report.exit_code == 3
+
+
+def test_the_time_that_the_first_explorer_took_is_not_given_twice(monkeypatch):
+    mission = load_mission(MISSIONS / "takeover.mission")
+    monkeypatch.setattr(CHECK, "PATIENCE", 0.0)
+    given = []
+    explore = CHECK.explore
+
+    def noted(initial, inspections, limits, *words, **named):
+        given.append((named["engine"], limits.spent))
+        return explore(initial, inspections, limits, *words, **named)
+
+    monkeypatch.setattr(CHECK, "explore", noted)
+    check(mission.initial, (), Limits(seconds=60.0))
+    assert [engine for engine, _ in given] == [Engine.REFERENCE, Engine.FAST]
+    assert given[0][1] == 0.0 < given[1][1]
+
+
+def test_deciding_may_take_longer_than_the_patience_with_the_first_explorer(clock, monkeypatch):
+    mission = load_mission(MISSIONS / "surveillance.mission")
+    monkeypatch.setattr(CHECK, "PATIENCE", 3_600.0)
+    clock.jumps_before(monkeypatch, CHECK._Check, "decide_temporal")
+    report = check(mission.initial, mission.properties)
+    assert "not decided" not in " ".join(each.note for each in report.verdicts)
+    assert Outcome.INCOMPLETE not in {each.outcome for each in report.verdicts}
