@@ -10,10 +10,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from semantics.agents import code_cell
+from semantics.canonical import written
+from semantics.environment import Says
+from semantics.extension import say
+from semantics.observed import WRITABLE
 from semantics.parting import (
+    Belief,
     Parcel,
     Parting,
     Running,
+    believe,
     enter,
     is_here,
     leave,
@@ -30,7 +36,7 @@ from semantics.requests import CTR, MGR, OBS
 from semantics.setting import Control, Scheduler
 from semantics.successors import expand, moves, served
 from specs.diagnostics import Source
-from specs.elaboration import Variation, elaborate
+from specs.elaboration import Variation, elaborate, load_mission
 from specs.parser import parse
 
 TEXT = """
@@ -88,10 +94,11 @@ def parting(here):
 class Together:
     """The whole, and its parts with what is on its way between them."""
 
-    def __init__(self):
-        self.whole = FIRST
-        self.parts = {name: parted(FIRST, parting(name)) for name in STATIONS}
+    def __init__(self, first=FIRST):
+        self.whole = first
+        self.parts = {name: parted(first, parting(name)) for name in STATIONS}
         self.under_way = {(a, b): [] for a in STATIONS for b in STATIONS if a != b}
+        self.beliefs, self.latest, self.stamp = [], {}, 0
 
     def ways(self):
         """Return what may happen next: a step of an agent where it runs, or a parcel that arrives."""
@@ -100,20 +107,58 @@ class Together:
             for a in part.alpha.names():
                 if is_here(part, a):
                     found += [(name, step) for step in (*served(part, a), *moves(part, a))]
+            found += [(name, step) for each in part.setting.environment for step in self._said(part, each)]
+        found += [(index, "believe") for index in range(len(self.beliefs))]
         return found + [pair for pair, parcels in self.under_way.items() if parcels]
 
+    def _said(self, part, clause):
+        return say(part, clause) if isinstance(clause, Says) and is_here(part, clause.agent) else ()
+
     def go(self, way):
+        if way[1] == "believe":
+            self._believe(way[0])
+            return
         if isinstance(way[1], str):
             self._arrive(*way)
             return
         name, step = way
-        alike = [t for t in expand(self.whole).enabled if str(t.label) == str(step.label)]
+        expansion = expand(self.whole)
+        found = (*expansion.enabled, *expansion.by_environment)
+        alike = [t.target for t in found if str(t.label) == str(step.label)]
         agent = step.label.agent
         self.whole = next(
-            t.target for t in alike if t.target.alpha.code(agent) == step.target.alpha.code(agent)
+            target
+            for target in alike
+            if agent is None or target.alpha.code(agent) == step.target.alpha.code(agent)
         )
+        cells = written(self.parts[name], step.target)
         self.parts[name] = step.target
+        self._show({cell: value for cell, value in cells.items() if cell[0] in WRITABLE})
+        self._tell(name, [cell for cell in cells if cell[0] in ("parent", "links")])
         self._forward(name)
+
+    def _show(self, changes):
+        """Let all stations see at once what has changed in the world: it is the same as in the whole."""
+        self.parts = {name: part.with_(changes) for name, part in self.parts.items()}
+        assert all(self.whole.read(cell) == value for cell, value in changes.items())
+
+    def _tell(self, name, slots):
+        """Tell the others what was written into L; the latest counts."""
+        for slot, node in slots:
+            self.stamp += 1
+            value = self.parts[name].read((slot, node))
+            names = value if slot == "links" else (() if value is None else (value,))
+            self.latest[name, slot, node] = self.stamp
+            for other in STATIONS:
+                if other != name:
+                    self.beliefs.append((other, self.stamp, Belief(node, slot, names)))
+
+    def _believe(self, index):
+        to, stamp, belief = self.beliefs.pop(index)
+        if stamp > self.latest.get((to, belief.slot, belief.node), 0):
+            self.latest[to, belief.slot, belief.node] = stamp
+            for believed in believe(self.parts[to], belief):
+                self.parts[to] = believed.target
 
     def _forward(self, name):
         for a in self.parts[name].alpha.names():
@@ -124,6 +169,8 @@ class Together:
                 self.under_way[name, to].append((left.target.read(sent_cell(to)), plain))
 
     def _arrive(self, sender, to):
+        while waiting := [index for index, (other, _, _) in enumerate(self.beliefs) if other == to]:
+            self._believe(waiting[0])  # what its sender knew comes first
         number, plain = self.under_way[sender, to].pop(0)
         entered = list(enter(self.parts[to], sender, number, parcel_in(plain)))
         assert entered, objection(self.parts[to], parcel_in(plain))
@@ -151,6 +198,24 @@ def test_the_stations_together_take_the_steps_of_the_whole(data):
             whole = parcel_of(together.whole, a)
             assert mail == Counter(map(repr, whole.mail if whole else ()))
             assert running == ([whole.running] if whole and whole.running else [])
+
+
+HANDOVER = load_mission(
+    Path(__file__).parents[2] / "specs" / "missions" / "distributed_handover.mission",
+    Variation(Scheduler.FCFS, Control.ATOMIC),
+).initial
+
+
+@given(st.data())
+def test_a_vehicle_goes_round_the_stations_as_in_the_whole(data):
+    """Example 2: what one station writes into L the next one has when it is told to go on."""
+    together = Together(HANDOVER)
+    while ways := together.ways():
+        together.go(data.draw(st.sampled_from(ways)))
+    assert together.whole.structure.physical.channels("uav0") == ("control:gcs0",)
+    assert together.whole.eta.all() == ()
+    for part in together.parts.values():
+        assert part.structure.logical.links("uav0") == together.whole.structure.logical.links("uav0")
 
 
 def test_a_part_has_of_agents_elsewhere_their_hosts_alone():
