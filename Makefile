@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 
-.PHONY: demo live-demo test lint types fuzz bench bench-bigraphs docs clean
+.PHONY: demo live-demo test lint types fuzz bench bench-bigraphs bench-cluster docs clean
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -38,6 +38,9 @@ bench: $(STAMP)  ## the explorer beside SPIN, its growth, the largest missions; 
 
 bench-bigraphs: $(STAMP)  ## the bigraph engine beside BigraphER, up to 100,000 states
 	$(BIN)/python benchmarks/bigraph_systems.py --growth
+
+bench-cluster: $(STAMP)  ## the patrol with Ray workers beside one process (some 5 minutes)
+	$(BIN)/python benchmarks/cluster.py 2x6 2x6+handover
 
 docs: $(STAMP)  ## write the generated pages of docs/
 	$(BIN)/python -m bigactors.docs

@@ -14,6 +14,8 @@ from bigactors.progress import watching
 from bigactors.terminal import tell
 from checker import (
     CheckpointError,
+    Cluster,
+    ClusterError,
     Engine,
     EngineError,
     Keeping,
@@ -90,6 +92,7 @@ class How:
     violations: int = MOST_VIOLATIONS
     reduce: tuple[Reduction, ...] = ()
     keeping: Keeping | None = None
+    cluster: Cluster | None = None
 
 
 def check_mission(
@@ -113,6 +116,7 @@ def check_mission(
                 violations=how.violations,
                 reduce=how.reduce,
                 keeping=how.keeping and _of_this(how.keeping, mission, limits),
+                cluster=how.cluster,
             )
         return Checked(name, mission, digest_of(mission), report, watch.interrupted)
     except CheckpointError as refused:
@@ -121,6 +125,10 @@ def check_mission(
         return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
     except EngineError as refused:
         mistake = Mistake(str(refused), "leave --engine out", name)
+        tell(str(mistake))
+        return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
+    except ClusterError as refused:
+        mistake = Mistake(str(refused), "leave --engine ray out to check it in one process", name)
         tell(str(mistake))
         return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
     except RefusedError as refused:

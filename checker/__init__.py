@@ -4,8 +4,10 @@ It knows the calculus by `semantics.successors` alone: nothing of files, vehicle
 """
 
 from checker.check import check
+from checker.cluster.crew import ClusterError
 from checker.exploration import (
     CheckpointError,
+    Cluster,
     Engine,
     EngineError,
     Exploration,
@@ -22,6 +24,8 @@ from checker.verdicts import Outcome, Report, Verdict, Violation
 
 __all__ = [
     "CheckpointError",
+    "Cluster",
+    "ClusterError",
     "Engine",
     "EngineError",
     "Exploration",

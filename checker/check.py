@@ -8,6 +8,7 @@ from checker.bounding import BoundMet, bounded
 from checker.coverage import coverage
 from checker.exploration import (
     INTERRUPTION,
+    Cluster,
     Engine,
     Exploration,
     Inspect,
@@ -62,6 +63,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     violations: int = MOST_VIOLATIONS,
     reduce: Iterable[Reduction] = (),
     keeping: Keeping | None = None,
+    cluster: Cluster | None = None,
 ) -> Report:
     """Explore everything that is reachable and decide the properties.
 
@@ -78,6 +80,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
         violations: Of each property so many different ones are shown at the most, each with a shortest trace.
         reduce: What may let it visit less; by symmetry only the reference explorer can.
         keeping: What the fast explorer keeps on the way, and what it doubts; where it is said, that one explores.
+        cluster: With whom, where Ray is the engine.
 
     Raises:
         RefusedError: A reduction is unsound for the mission, or nothing in it allows one. Properties that it is
@@ -86,14 +89,14 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     asked, limits = tuple(properties), limits or Limits()
     formulas = [each.formula for each in asked if each.kind in ("invariant", "reachable")]
     reducer = reducing(initial, reduce, formulas)
-    if reducer is not None and engine is Engine.SYMBOLIC:
-        raise RefusedError(reducer.names[0], "the symbolic engine does not reduce; leave --engine out")
+    if reducer is not None and engine in (Engine.SYMBOLIC, Engine.RAY):
+        raise RefusedError(reducer.names[0], f"the {engine.value} explorer does not reduce; leave --engine out")
     symmetric = reducer is not None and reducer.symmetry is not None
     if symmetric and engine is Engine.FAST:
         raise RefusedError(Reduction.SYMMETRY, "only the reference explorer knows it; leave --engine out")
 
     def run(engine: Engine, exploring: Limits) -> Report:
-        return _Check(initial, asked, exploring, report, engine, violations, reducer, keeping).run(
+        return _Check(initial, asked, exploring, report, engine, violations, reducer, keeping, cluster).run(
             notes, limits
         )
 
@@ -118,6 +121,7 @@ class _Check:
         most: int,
         reducer: Reduced | None,
         keeping: Keeping | None,
+        cluster: Cluster | None,
     ) -> None:
         self.initial = initial
         self.properties = properties
@@ -127,6 +131,7 @@ class _Check:
         self.most = most
         self.reducer = reducer
         self.keeping = keeping
+        self.cluster = cluster
         self.visited = Visited()
         self.deadlock = DeadlockFreedom(most)
         self.consistency = LocalConsistency(most)
@@ -190,6 +195,7 @@ class _Check:
             edges=edges,
             reduce=reducer,
             keeping=self.keeping,
+            cluster=self.cluster,
         )
 
     def search(self) -> Exploration | None:

@@ -7,7 +7,7 @@ import resource
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING, Protocol
@@ -15,10 +15,12 @@ from typing import TYPE_CHECKING, Protocol
 from checker.edges import Edges
 from checker.estimate import Estimate, estimate
 from semantics.configuration import Configuration, Transition
+from semantics.propositions import Proposition
+from semantics.requests import Request
 from semantics.successors import Expansion, expand
 
 if TYPE_CHECKING:
-    from checker.fast.survey import Survey
+    from checker.graph import Bools, Graph, Numbers
     from checker.reduction.ample import Ample
 
 MOST_PENDING = 64
@@ -111,6 +113,20 @@ class Engine(Enum):
     REFERENCE = "reference"
     FAST = "fast"
     SYMBOLIC = "symbolic"
+    RAY = "ray"
+
+
+@dataclass(frozen=True, slots=True)
+class Cluster:
+    """With whom `Engine.RAY` explores.
+
+    Attributes:
+        workers: How many processes, from 2 on.
+        address: The Ray cluster that is joined (`auto` for the one of this machine); None for one of its own, here.
+    """
+
+    workers: int = 2
+    address: str | None = None
 
 
 class Reducer(Protocol):
@@ -141,6 +157,19 @@ class Reducer(Protocol):
         """Return what is said of a visited configuration as it is said of the one that the run leads to."""
 
 
+class Surveyed(Protocol):
+    """What temporal properties ask of an exploration whose configurations are not at hand one by one."""
+
+    def graph(self) -> "Graph":
+        """Return every transition of the configurations that were expanded."""
+
+    def valuation(self, asked: Iterable[Proposition]) -> "Mapping[Proposition, Bools]":
+        """Return where each proposition is true."""
+
+    def pending(self) -> "Mapping[Request, Numbers]":
+        """Return for each request the configurations in which it is pending, in their order."""
+
+
 Inspect = Callable[[int, Configuration, Expansion], None]
 """What looks at each configuration as it is expanded, given its number."""
 
@@ -160,7 +189,7 @@ class Exploration:
         seconds: How long it took.
         rule_runs: How often an actor's rules were run in Python, where they were learned.
         edges: Every transition, where they were asked for and the reference explorer kept them.
-        survey: What the fast explorer can be asked; None of the reference explorer.
+        survey: What explorers with rows can be asked; None of the reference explorer.
         allowed: How many transitions the visited configurations allow; more than `transitions` where it was reduced.
         reducer: What made it visit less, None where it visited everything.
         start: What it started from, where another configuration stands for it.
@@ -177,7 +206,7 @@ class Exploration:
     seconds: float = 0.0
     rule_runs: int | None = None
     edges: Edges | None = None
-    survey: "Survey | None" = None
+    survey: Surveyed | None = None
     allowed: int = 0
     reducer: Reducer | None = None
     start: Configuration | None = None
@@ -216,6 +245,7 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
     edges: bool = False,
     reduce: Reducer | None = None,
     keeping: Keeping | None = None,
+    cluster: Cluster | None = None,
 ) -> Exploration:
     """Visit everything that is reachable, breadth-first.
 
@@ -230,7 +260,13 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
         edges: Whether every transition is kept, as temporal properties need; the fast explorer finds them again.
         reduce: What lets it visit less; by symmetry only the reference explorer can.
         keeping: What the fast explorer keeps on the way, and what it doubts.
+        cluster: With whom, on several processes or machines.
     """
+    if engine is Engine.RAY:
+        from checker.cluster.ray_crew import explore_with_ray  # noqa: PLC0415  # Ray is an extra
+
+        together = cluster or Cluster()
+        return explore_with_ray(initial, tuple(inspect), limits or Limits(), report, every, keeping, together)
     if engine is Engine.FAST:
         from checker.fast.explorer import explore_fast  # noqa: PLC0415  # numba takes its time to load
 

@@ -1,9 +1,9 @@
 """A program: the numbered statements of a mission, and the variables that each may still read."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from semantics.expressions import Expression, QueryOf, free
 from semantics.patterns import variables
@@ -66,6 +66,10 @@ class Program:
     lines: tuple[int, ...] = ()
     branch_lines: Mapping[tuple[int, int], int] = field(default_factory=dict)
     declared: Mapping[tuple[str, str], int] = field(default_factory=dict)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the attributes alone: functions that remember can't be sent to another process."""
+        return {each.name: getattr(self, each.name) for each in fields(self)}
 
     def line(self, number: int) -> int:
         """Return the line of a statement, 0 where there is none."""

@@ -28,6 +28,7 @@ LIBRARIES = {
     "networkx": ("bigraphs/", "checker/", "specs/elaboration/bodies.py"),  # where a graph is a graph
     "numpy": ("checker/", "bigactors/big_temporal.py"),  # arrays for the checker
     "numba": ("checker/",),
+    "ray": ("checker/cluster/ray_crew.py",),
     "scipy": ("checker/temporal/components.py",),
     "oxidd": ("checker/symbolic/diagrams.py",),
     "pyais": ("physical/ais_decode.py",),
@@ -52,6 +53,7 @@ LAZY = {
     "zenoh",
     "mcap",
     "nicegui",
+    "ray",
 }
 
 

@@ -27,8 +27,8 @@ def fill(parser: Parser) -> None:
         "--max-configurations",
         metavar="N",
         type=at_least_one,
-        help="visit no more than N configurations (default 100,000,000, of which each takes some 30 bytes; 2,000,000 "
-        "with --engine reference or --reduce symmetry)",
+        help="visit no more than N configurations (default 100,000,000, of which each takes some 30 bytes, for each "
+        "worker of --engine ray; 2,000,000 with --engine reference or --reduce symmetry)",
     )
     parser.add_argument(
         "--max-time",
@@ -40,9 +40,10 @@ def fill(parser: Parser) -> None:
         "--max-memory",
         metavar="SIZE",
         type=size,
-        help="stop when the process takes more memory, such as 800M or 12G (default: no limit)",
+        help="stop when the process, or one of its workers, takes more memory, such as 800M or 12G (default: no limit)",
     )
     _long_runs(parser)
+    _several_processes(parser)
     parser.add_argument(
         "--trace",
         metavar="DIR",
@@ -67,7 +68,7 @@ def fill(parser: Parser) -> None:
     parser.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
     parser.add_argument(
         "--engine",
-        choices=("reference", "fast", "symbolic"),
+        choices=("reference", "fast", "symbolic", "ray"),
         help="how it explores; verdicts are the same (default: reference or fast, whichever is quicker for the "
         "mission's size); symbolic, for very large missions, decides nothing of runs and races (docs/symbolic.md)",
     )
@@ -99,8 +100,22 @@ COMMAND = Command(
 )
 
 
+def _several_processes(parser: Parser) -> None:
+    group = parser.add_argument_group("several processes or machines, by --engine ray (docs/cluster.md)")
+    group.add_argument(
+        "--workers", metavar="N", type=at_least_one, help="how many processes share the rows (default 2)"
+    )
+    group.add_argument(
+        "--address",
+        metavar="ADDRESS",
+        type=named,
+        help="the Ray cluster to join, such as 10.0.0.1:6379, or auto for the one of this machine (default: one of its "
+        "own on this machine alone)",
+    )
+
+
 def _long_runs(parser: Parser) -> None:
-    group = parser.add_argument_group("long runs, by the fast explorer")
+    group = parser.add_argument_group("long runs, by --engine fast or ray")
     group.add_argument(
         "--checkpoint",
         metavar="DIR",
@@ -124,5 +139,6 @@ def _long_runs(parser: Parser) -> None:
         "--paranoid",
         metavar="N",
         type=at_least_one,
-        help="let the interpreter work out once more what follows from N configurations, and stop at a difference",
+        help="let the interpreter work out once more what follows from N configurations, and stop at a difference (not "
+        "with --engine ray)",
     )

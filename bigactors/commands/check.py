@@ -14,7 +14,7 @@ from bigactors.mistakes import Mistake
 from bigactors.outputs import outputs_of, write_outputs
 from bigactors.terminal import paint, say, tell
 from bigactors.verdict_files import verdict_json
-from checker import Engine, Keeping, Limits, Reduction, report_text
+from checker import Cluster, Engine, Keeping, Limits, Reduction, report_text
 from checker.coverage_report import coverage_text
 from checker.report import MARKS
 from checker.verdicts import Outcome
@@ -44,7 +44,8 @@ def run(options: Namespace) -> Exit:
     results: list[Checked | Failed] = []
     folders: set[str] = set()
     engine = options.engine and Engine(options.engine)
-    how = How(engine, options.violations, tuple(map(Reduction, options.reduce)), keeping_of(options))
+    reductions = tuple(map(Reduction, options.reduce))
+    how = How(engine, options.violations, reductions, keeping_of(options), cluster_of(options))
     for result in check_missions(options.files, limits, variation_of(options), how):
         results.append(result)
         if not alone:
@@ -71,7 +72,7 @@ def limits_of(options: Namespace) -> Limits:
     if options.spill is not None:
         if options.max_memory is None:
             raise Mistake("--spill is for when memory ends", "say when that is: --max-memory SIZE")
-        if options.engine in ("reference", "symbolic") or Reduction.SYMMETRY.value in options.reduce:
+        if options.engine in ("reference", "symbolic", "ray") or Reduction.SYMMETRY.value in options.reduce:
             raise Mistake("--spill is of the fast explorer", "leave --engine and --reduce symmetry out")
         make_folder(options.spill)
     return Limits(most_of(options), options.max_time, memory=options.max_memory, spill=options.spill)
@@ -83,7 +84,18 @@ def most_of(options: Namespace) -> int | None:
         return int(options.max_configurations) if options.max_configurations else None
     symmetric = Reduction.SYMMETRY.value in options.reduce
     usual = MOST_OF_REFERENCE if options.engine == "reference" or symmetric else MOST
-    return options.max_configurations or usual
+    return options.max_configurations or usual * (options.workers or 1)
+
+
+def cluster_of(options: Namespace) -> Cluster | None:
+    """Return with whom it explores, None where Ray is not the engine."""
+    if options.engine != "ray":
+        if options.workers is not None or options.address is not None:
+            raise Mistake(
+                "--workers and --address are of the Ray explorer", "add --engine ray, or leave them out"
+            )
+        return None
+    return Cluster(options.workers or Cluster().workers, options.address)
 
 
 def keeping_of(options: Namespace) -> Keeping | None:
@@ -96,6 +108,8 @@ def keeping_of(options: Namespace) -> Keeping | None:
         raise Mistake(
             "--checkpoint and --paranoid are of the fast explorer", "leave --engine and --reduce out"
         )
+    if options.engine == "ray" and options.paranoid is not None:
+        raise Mistake("--paranoid is of the fast explorer", "leave --engine out")
     return Keeping(options.checkpoint, options.resume, every=options.every, doubted=options.paranoid or 0)
 
 

@@ -15,6 +15,7 @@ from typing import Any
 from zipfile import BadZipFile
 
 import numpy as np
+from numpy.typing import NDArray
 
 from checker.exploration import CheckpointError
 from checker.fast.columns import Packing
@@ -60,19 +61,25 @@ def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
         "layers": journey.layers,
         "columns": _digest_of_columns(space),
     }
+    write_archive(
+        path,
+        head,
+        rows=space.words.room[: space.size * space.packing.words],
+        origins=space.origins.room[: space.size],
+        counts=space.counts.used,
+        packing=space.packing.columns[: 3 * len(columns)],
+        learned=np.array(space.learned, np.int64).reshape(-1, 4),
+        state=space.state[list(KEPT)],
+    )
+
+
+def write_archive(path: Path, head: dict[str, Any], **arrays: NDArray[Any]) -> None:
+    """Write arrays and plain data in the place of those before: what is there is always whole."""
     partial = path.with_suffix(".partial")
     path.parent.mkdir(parents=True, exist_ok=True)
     with partial.open("wb") as file:
-        np.savez(
-            file,
-            head=np.frombuffer(json.dumps(head).encode(), np.uint8),
-            rows=space.words.room[: space.size * space.packing.words],
-            origins=space.origins.room[: space.size],
-            counts=space.counts.used,
-            packing=space.packing.columns[: 3 * len(columns)],
-            learned=np.array(space.learned, np.int64).reshape(-1, 4),
-            state=space.state[list(KEPT)],
-        )
+        kept = {"head": np.frombuffer(json.dumps(head).encode(), np.uint8), **arrays}
+        np.savez(file, allow_pickle=False, **kept)
         file.flush()
         os.fsync(file.fileno())
     partial.replace(path)
@@ -84,8 +91,7 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
     Raises:
         CheckpointError: It is damaged, or of another mission, variation, limit or version.
     """
-    arrays = _read(path)
-    head = _head(arrays, path)
+    head, arrays = read_archive(path, SCHEMA)
     if head.get("digest") != digest or head.get("limit") != int(space.state[LIMIT]):
         raise CheckpointError(f"{path}: this checkpoint is of another mission, variation, limit or version")
     try:
@@ -108,6 +114,16 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
     return journey
 
 
+def read_archive(path: Path, schema: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the plain data and the arrays of a file that `write_archive` wrote.
+
+    Raises:
+        CheckpointError: It is none, or of another schema.
+    """
+    arrays = _read(path)
+    return _head(arrays, path, schema), arrays
+
+
 def _read(path: Path) -> dict[str, Any]:
     try:
         if path.stat().st_size > MOST_BYTES:
@@ -118,13 +134,13 @@ def _read(path: Path) -> dict[str, Any]:
         raise CheckpointError(f"{path}: this is no checkpoint: {error}") from error
 
 
-def _head(arrays: dict[str, Any], path: Path) -> dict[str, Any]:
+def _head(arrays: dict[str, Any], path: Path, schema: str) -> dict[str, Any]:
     try:
         head = json.loads(arrays["head"].tobytes())
     except (KeyError, ValueError) as error:
         raise CheckpointError(f"{path}: this is no checkpoint: {error}") from error
-    if not isinstance(head, dict) or head.get("schema") != SCHEMA:
-        raise CheckpointError(f"{path}: this is no checkpoint of the schema {SCHEMA}")
+    if not isinstance(head, dict) or head.get("schema") != schema:
+        raise CheckpointError(f"{path}: this is no checkpoint of the schema {schema}")
     return head
 
 

@@ -21,6 +21,9 @@ WORD = 64
 
 
 class _Absent:
+    def __reduce__(self) -> str:
+        return "ABSENT"  # there is one in each process
+
     def __repr__(self) -> str:
         return "absent"
 

@@ -26,9 +26,9 @@ from checker.exploration import (
 from checker.fast.checkpoint import Journey, resume, save
 from checker.fast.doubt import doubt
 from checker.fast.engine import Space
+from checker.fast.graph import GraphSurvey
 from checker.fast.inspecting import inspect_fast
 from checker.fast.learner import Learner
-from checker.fast.survey import Survey
 from semantics.configuration import Configuration
 
 if TYPE_CHECKING:
@@ -147,7 +147,7 @@ class _Explorer:
             self.visit(began)
         self.keep(time.monotonic() - began)
         space, configurations = self.space, Configurations(self.space)
-        survey = Survey(space)
+        survey = GraphSurvey(space)
         with bounded(self.limits_of_looking(), began):
             self.look_at(survey, inspect)
         rules = space.rules()
@@ -177,7 +177,7 @@ class _Explorer:
         except KeyboardInterrupt:
             self.bounds.append(INTERRUPTION)
 
-    def look_at(self, survey: Survey, inspect: tuple[Inspect, ...]) -> None:
+    def look_at(self, survey: GraphSurvey, inspect: tuple[Inspect, ...]) -> None:
         """Look at what was explored, as long as there is time: what was not looked at to the end has found nothing."""
         try:
             doubt(self.space, self.keeping.doubted)

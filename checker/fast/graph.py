@@ -15,6 +15,22 @@ from semantics.requests import Received, Request
 from semantics.signature import Name
 
 
+class GraphSurvey(Survey):
+    """A survey that can be asked for the graph."""
+
+    def graph(self) -> Graph:
+        """Return every transition of the configurations that were expanded."""
+        return graph_of_space(self)
+
+    def valuation(self, asked: Iterable[Proposition]) -> dict[Proposition, np.ndarray]:
+        """Return where each proposition is true."""
+        return {each: truths(self, each, self.space.size) for each in dict.fromkeys(asked)}
+
+    def pending(self) -> dict[Request, np.ndarray]:
+        """Return for each request the configurations in which it is pending, in their order."""
+        return pending_in_space(self)
+
+
 def graph_of_space(survey: Survey) -> Graph:
     """Return every transition of the configurations that were expanded, in the order of the rules.
 
@@ -27,7 +43,7 @@ def graph_of_space(survey: Survey) -> Graph:
     numbers: dict[Label, int] = {}
     action_of = np.zeros(len(space.learner.leaves.rule), np.int32)
     for step, label in space.learner.steps.items():
-        action_of[step] = numbers.setdefault(_general(label), len(numbers))
+        action_of[step] = numbers.setdefault(general(label), len(numbers))
     there = targets >= 0
     partial_rows = np.arange(size) >= survey.size
     partial_rows[origins[~there]] = True
@@ -48,14 +64,10 @@ def _without_steps(origins: np.ndarray, size: int) -> np.ndarray:
     return np.asarray(np.bincount(origins, minlength=size) == 0)
 
 
-def _general(label: Label) -> Label:
+def general(label: Label) -> Label:
+    """Return a label without what is received."""
     about = Received(Observation.of()) if isinstance(label.about, Received) else label.about
     return Label(label.rule, label.agent, about)
-
-
-def valuation_of_space(survey: Survey, asked: Iterable[Proposition]) -> dict[Proposition, np.ndarray]:
-    """Return where each proposition is true."""
-    return {each: truths(survey, each, survey.space.size) for each in dict.fromkeys(asked)}
 
 
 def pending_in_space(survey: Survey) -> dict[Request, np.ndarray]:

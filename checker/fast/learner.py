@@ -170,9 +170,13 @@ class Learner:
             else:
                 self._learn_answer(tree, owner, recorder, source)
         except Relearn as news:
-            for known, taken in enumerate(self.taken):
-                if news.cell is None or news.cell in taken:
-                    self.trees.forget(known)
+            self.forget(news.cell)
+
+    def forget(self, cell: Cell | None = None) -> None:
+        """Forget what was learned by taking a cell to be never written; everything where none is named."""
+        for tree, taken in enumerate(self.taken):
+            if cell is None or cell in taken:
+                self.trees.forget(tree)
 
     def _learn_root(self, tree: int, actor: Actor, recorder: Recorder, source: CodedSource) -> None:
         c = Configuration(self.setting, recorder)

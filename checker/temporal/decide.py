@@ -22,9 +22,7 @@ from semantics.temporal import Denied, Either, Fairness, Globally, Now, Temporal
 def kept_graph(found: Exploration) -> Graph:
     """Return the graph of an exploration."""
     if found.survey is not None:
-        from checker.fast.graph import graph_of_space  # noqa: PLC0415  # numba is loaded already
-
-        return graph_of_space(found.survey)
+        return found.survey.graph()
     assert found.edges is not None
     return graph_of(found.edges, len(found.configurations))
 
@@ -32,18 +30,14 @@ def kept_graph(found: Exploration) -> Graph:
 def where_true(found: Exploration, propositions: list[Proposition]) -> Valuation:
     """Return where propositions are true."""
     if found.survey is not None:
-        from checker.fast.graph import valuation_of_space  # noqa: PLC0415  # numba is loaded already
-
-        return valuation_of_space(found.survey, propositions)
+        return found.survey.valuation(propositions)
     return valuation(found.configurations, propositions)
 
 
 def where_pending(found: Exploration) -> Pending:
     """Return where each request is pending."""
     if found.survey is not None:
-        from checker.fast.graph import pending_in_space  # noqa: PLC0415  # numba is loaded already
-
-        return pending_in_space(found.survey)
+        return found.survey.pending()
     return pending_requests(found.configurations)
 
 

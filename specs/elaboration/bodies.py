@@ -12,7 +12,7 @@ from semantics.reactions import COMMANDS
 from semantics.statements import Loop
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.commands import checked
+from specs.elaboration.commands import Checked
 from specs.elaboration.names import Names
 from specs.elaboration.schemas import Maker, Schema
 from specs.elaboration.statements import Body, Numbering, SpawnSite
@@ -129,7 +129,9 @@ def elaborate_bodies(
     behaviours = {
         name: Behaviour(name, bodies.parameters[name], body.block) for name, body in bodies.behaviours.items()
     }
-    reactions = {name: checked(name, command, names.kinds) for name, command in COMMANDS.items()}
+    reactions: dict[str, Checked | Maker] = {
+        name: Checked(name, command, names.kinds) for name, command in COMMANDS.items()
+    }
     reactions |= {name: Maker(schema, names.kinds) for name, schema in bodies.schemas.items()}
     statements, lines = tuple(program.statements), tuple(program.lines)
     declared = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 from semantics.expressions import Fault
 from semantics.reactions import Reaction
@@ -10,15 +11,23 @@ from semantics.signature import Name
 from semantics.values import Value, show
 
 
-def checked(
-    name: str, command: Callable[..., Reaction], kinds: Mapping[Name, str]
-) -> Callable[..., Reaction]:
-    """Return a command that fails, as a computation does, for a value that is no node."""
+@dataclass(frozen=True, slots=True, eq=False)
+class Checked:
+    """A command that fails, as a computation does, for a value that is no node.
 
-    def make(host: Name, *arguments: Value) -> Reaction:
+    Attributes:
+        name: What it is called in the language.
+        command: The command.
+        kinds: The nodes that there are.
+    """
+
+    name: str
+    command: Callable[..., Reaction]
+    kinds: Mapping[Name, str]
+
+    def __call__(self, host: Name, *arguments: Value) -> Reaction:
+        """Return the command's reaction."""
         for value in arguments:
-            if not isinstance(value, str) or value not in kinds:
-                raise Fault(f"{name} needs a node, not {show(value, frozenset(kinds))}")
-        return command(host, *arguments)
-
-    return make
+            if not isinstance(value, str) or value not in self.kinds:
+                raise Fault(f"{self.name} needs a node, not {show(value, frozenset(self.kinds))}")
+        return self.command(host, *arguments)

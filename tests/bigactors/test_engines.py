@@ -26,7 +26,7 @@ def test_what_the_symbolic_engine_does_not_decide_is_incomplete(bigactors):
     ("words", "wrong"),
     [
         (["--engine", "symbolic", "--scheduler", "fcfs"], "the symbolic engine does not do scheduler fcfs"),
-        (["--engine", "symbolic", "--reduce", "por"], "the symbolic engine does not reduce"),
+        (["--engine", "symbolic", "--reduce", "por"], "the symbolic explorer does not reduce"),
         (["--engine", "symbolic", "--paranoid", "1"], "--checkpoint and --paranoid are of the fast explorer"),
         (["--spill", "there"], "--spill is for when memory ends"),
         (

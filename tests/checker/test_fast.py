@@ -23,6 +23,9 @@ VARIATIONS = {
     "fcfs timed": Variation(scheduler=Scheduler.FCFS, control=Control.TIMED),
 }
 
+ENGINES = (Engine.REFERENCE, Engine.FAST)
+"""Those that give the same numbers to configurations; Ray's are in `tests/checker/cluster`."""
+
 
 def told(report):
     """Return what a report says, in a form in which a difference can be read."""
@@ -75,10 +78,7 @@ def test_generated_missions_are_explored_alike_by_both_engines(initial):
 @pytest.mark.parametrize("variation", VARIATIONS.values(), ids=VARIATIONS)
 def test_both_engines_come_to_the_same_report(name, variation):
     mission = load_mission(MISSIONS / f"{name}.mission", variation)
-    reports = [
-        check(mission.initial, mission.properties, FEW, engine=engine)
-        for engine in (Engine.REFERENCE, Engine.FAST)
-    ]
+    reports = [check(mission.initial, mission.properties, FEW, engine=engine) for engine in ENGINES]
     assert told(reports[0]) == told(reports[1])
 
 
@@ -88,9 +88,7 @@ def test_generated_missions_are_judged_alike_by_both_engines(initial):
     kinds = ("local_consistency", "race_freedom", "deadlock_freedom", "arrival", "computation")
     properties = [Property(kind, kind) for kind in kinds]
     limits = Limits(configurations=60)
-    reports = [
-        check(initial, properties, limits, engine=engine) for engine in (Engine.REFERENCE, Engine.FAST)
-    ]
+    reports = [check(initial, properties, limits, engine=engine) for engine in ENGINES]
     assert told(reports[0]) == told(reports[1])
 
 
@@ -104,10 +102,7 @@ def test_the_rules_are_run_far_less_often_than_there_are_transitions():
 @pytest.mark.parametrize("name", NAMES)
 def test_both_engines_keep_the_same_graph(name):
     initial = load_mission(MISSIONS / f"{name}.mission").initial
-    graphs = [
-        kept_graph(explore(initial, limits=FEW, engine=engine, edges=True))
-        for engine in (Engine.REFERENCE, Engine.FAST)
-    ]
+    graphs = [kept_graph(explore(initial, limits=FEW, engine=engine, edges=True)) for engine in ENGINES]
     one, other = ((g.starts.tolist(), g.targets.tolist(), actions(g), g.open.tolist()) for g in graphs)
     assert one == other
 

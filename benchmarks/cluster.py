@@ -1,0 +1,127 @@
+"""Measure the patrol with Ray workers beside one process: counts are asserted, then rates, bytes sent and kept.
+
+Usage: `python benchmarks/cluster.py [--workers N,N] [--output FILE] AGENTSxSIDE[+handover] ...`. All workers run on
+this machine: with more workers than cores the figures say what work costs, not how much faster it is done.
+"""
+
+import argparse
+import importlib.metadata
+import json
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from machine import describe
+from patrol import COUNTS
+from run import Size, patrol
+
+from checker import Cluster, Engine, Exploration, Keeping, Limits, Progress, explore
+from semantics.configuration import Configuration
+from specs import parse_bytes
+from specs.elaboration import elaborate, load_mission
+
+ROOT = Path(__file__).parents[1]
+RESULTS = Path(__file__).parent / "results" / "cluster.json"
+CHAIN = "look_before_entry"
+"""A mission of which most layers have one configuration: what it takes is the rounds."""
+
+CREWS = (2, 4, 8, 16)
+"""How many workers there are where rounds are timed."""
+
+
+def initial(size: Size) -> Configuration:
+    """Return where a patrol starts."""
+    source, mission = parse_bytes("patrol.mission", size.text.encode())
+    return elaborate(mission, source, Path()).initial
+
+
+def measured(size: Size, workers: int) -> dict[str, Any]:
+    """Explore a patrol and return what it took; the rate is that of the second half, when nearly all is learned."""
+    marks: list[tuple[float, int]] = []
+    began = time.monotonic()
+
+    def look(progress: Progress) -> None:
+        marks.append((time.monotonic() - began, progress.configurations))
+
+    engine = Engine.FAST if workers == 1 else Engine.RAY
+    with tempfile.TemporaryDirectory() as folder:
+        keeping = None if workers == 1 else Keeping(folder)
+        found = explore(
+            initial(size),
+            limits=Limits(configurations=None),
+            report=look,
+            every=0.0,
+            engine=engine,
+            keeping=keeping,
+            cluster=Cluster(workers),
+        )
+        kept = sum(path.stat().st_size for path in Path(folder).rglob("*.npz"))
+    count = len(found.configurations)
+    assert (count, found.transitions) == COUNTS[size.agents, size.side, size.handover]
+    half = next(mark for mark in marks if mark[1] >= count / 2)
+    last = marks[-1]
+    rate = (last[1] - half[1]) / max(last[0] - half[0], 1e-9)
+    about = {
+        "workers": workers,
+        "seconds": found.seconds,
+        "second_half_per_second": rate,
+        "layers": found.depth,
+    }
+    return about | {"configurations": count, "transitions": found.transitions} | _bytes(found, kept)
+
+
+def _bytes(found: Exploration, kept: int) -> dict[str, float]:
+    """Return bytes for each configuration: in memory, sent between workers, and in checkpoints."""
+    count, survey = len(found.configurations), found.survey
+    if hasattr(survey, "space"):
+        return {"bytes_used": survey.space.bytes_used / count}
+    standings = survey.found.every("halt", found.depth)
+    used, sent = (sum(getattr(each, name) for each in standings) / count for name in ("used", "sent"))
+    return {"bytes_used": used, "bytes_sent": sent, "bytes_kept": kept / count}
+
+
+def milliseconds_a_round(workers: int) -> float:
+    """Return what a round takes that has next to nothing to do."""
+    start = load_mission(ROOT / "specs" / "missions" / f"{CHAIN}.mission").initial
+    found = [explore(start, engine=Engine.RAY, cluster=Cluster(workers)) for _ in range(3)]
+    return min(1000 * each.seconds / each.depth for each in found)
+
+
+def lines(results: list[dict[str, Any]]) -> Iterator[str]:
+    """Yield a table."""
+    yield "| UAVs, grid | workers | configurations | seconds | second half, a second | bytes each | bytes sent each |"
+    yield "| --- | ---: | ---: | ---: | ---: | ---: | ---: |"
+    for each in results:
+        sent = f"{each['bytes_sent']:.1f}" if "bytes_sent" in each else ""
+        yield (
+            f"| {each['size']} | {each['workers']} | {each['configurations']:,} | {each['seconds']:.1f} "
+            f"| {each['second_half_per_second']:,.0f} | {each['bytes_used']:.1f} | {sent} |"
+        )
+
+
+def main() -> None:
+    """Measure, print and keep."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("sizes", nargs="*", type=patrol, default=[Size(2, 6)])
+    parser.add_argument(
+        "--workers", default="1,2,4", help="how many, divided by commas; 1 is the fast explorer"
+    )
+    parser.add_argument("--output", type=Path, default=RESULTS)
+    given = parser.parse_args()
+    numbers = [int(each) for each in given.workers.split(",")]
+    machine = describe() | {"ray": importlib.metadata.version("ray")}
+    results = [{"size": str(size)} | measured(size, each) for size in given.sizes for each in numbers]
+    rounds = {str(each): milliseconds_a_round(each) for each in CREWS}
+    sys.stdout.write("\n".join(lines(results)) + "\n")
+    words = ", ".join(f"{value:.1f} ms with {each}" for each, value in rounds.items())
+    sys.stdout.write(f"a round takes {words} workers\n")
+    kept = {"machine": machine, "runs": results, "milliseconds_a_round": rounds}
+    given.output.parent.mkdir(parents=True, exist_ok=True)
+    given.output.write_text(json.dumps(kept, indent=2) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,38 @@
+"""A crew: the workers of one exploration, as whoever leads it sees them."""
+
+from typing import Any, Protocol
+
+
+class LostError(Exception):
+    """A worker died; it can be started anew, but has forgotten all."""
+
+
+class ClusterError(Exception):
+    """Workers can't be had, or are lost again and again."""
+
+
+class Crew(Protocol):
+    """Workers that are asked together; each question waits for all before it (see `worker.Worker`).
+
+    Each method raises `LostError` where a worker has died.
+    """
+
+    @property
+    def size(self) -> int:
+        """How many there are."""
+
+    def one(self, worker: int, method: str, *arguments: Any) -> Any:
+        """Return what one of them answers."""
+
+    def every(self, method: str, *arguments: Any) -> list[Any]:
+        """Return what each of them answers."""
+
+    def exchange(self, giving: str, taking: str, *arguments: Any) -> list[Any]:
+        """Let each of them give something for every one, then take what it was given; return the answers to that."""
+
+    def revive(self) -> None:
+        """Start anew those who died.
+
+        Raises:
+            ClusterError: It can't be done, or was done too often.
+        """

@@ -1,0 +1,241 @@
+"""Checkpoints of a worker, and the way back to one.
+
+Rows are kept as they are, beside a digest of each value of each column; values themselves are not, so nothing in a
+checkpoint is ever evaluated. A worker that has been started anew learns them again from the rows at which it learned
+them. What it had been told by others is told once more: worker by worker, until all know all values of their rows.
+"""
+
+import json
+from collections import Counter
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from checker.cluster import kernel
+from checker.cluster.keys import DIGEST
+from checker.cluster.share import Share
+from checker.exploration import CheckpointError
+from checker.fast.checkpoint import read_archive, write_archive
+from checker.fast.columns import Packing
+from checker.fast.kernel import CROWDS, CUT, EXPANDED, LIMIT, SIZE
+
+SCHEMA = "bigactors.share/1"
+UNKNOWN = -1
+KEPT = (EXPANDED, SIZE, CUT, CROWDS, LIMIT)
+"""What of the loops' state goes on."""
+
+BLOCK = 1 << 18
+LATEST = "latest.json"
+MOST_BYTES = 1 << 16
+ANOTHER = "this checkpoint is of another mission, variation, limit, version or number of workers"
+
+
+def path_of(folder: Path, number: int, worker: int) -> Path:
+    """Return where a worker's checkpoint of that number is."""
+    return folder / f"share-{number}-{worker}.npz"
+
+
+@dataclass(frozen=True, slots=True)
+class Latest:
+    """The last checkpoint that all workers have written.
+
+    Attributes:
+        number: Its number.
+        layer: The layer that was expanded.
+        seconds: How long the exploration had taken.
+    """
+
+    number: int
+    layer: int
+    seconds: float
+
+
+def write_latest(folder: Path, latest: Latest, digest: str, workers: int) -> None:
+    """Note which checkpoint is to be gone back to."""
+    about = {"schema": SCHEMA, "digest": digest, "workers": workers}
+    partial = folder / "latest.partial"
+    partial.write_text(json.dumps(about | asdict(latest)), "utf-8")
+    partial.replace(folder / LATEST)
+
+
+def read_latest(folder: Path, digest: str, workers: int) -> Latest | None:
+    """Return which checkpoint is to be gone back to, None where there is none.
+
+    Raises:
+        CheckpointError: It is damaged, or of something else.
+    """
+    path = folder / LATEST
+    try:
+        with path.open("rb") as file:
+            found = json.loads(file.read(MOST_BYTES))
+        latest = Latest(int(found["number"]), int(found["layer"]), float(found["seconds"]))
+        about = (found["schema"], found["digest"], found["workers"])
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise CheckpointError(f"{path}: this is no checkpoint: {error}") from error
+    if about != (SCHEMA, digest, workers):
+        raise CheckpointError(f"{path}: {ANOTHER}")
+    return latest
+
+
+def save(share: Share, folder: Path, number: int, digest: str) -> None:
+    """Write a checkpoint."""
+    head = {
+        "schema": SCHEMA,
+        "digest": digest,
+        "worker": [share.me, share.workers],
+        "words": share.packing.words,
+        "layers": [*share.begins, share.end],
+        "rules": dict(share.rules()),
+        "happened": sorted(share.happened_before | happened(share)),
+    }
+    write_archive(
+        path_of(folder, number, share.me),
+        head,
+        rows=share.words.room[: share.size * share.packing.words],
+        origins=share.origins.room[: share.size],
+        packing=share.packing.columns,
+        places=np.frombuffer(b"".join(share.keys.places), np.uint8),
+        sizes=np.diff(share.keys.begins),
+        digests=share.keys.digests(),
+        learned=np.array(sorted({row for row, *_ in share.learned}), np.int64),
+        state=share.state[list(KEPT)],
+    )
+
+
+def happened(share: Share) -> set[str]:
+    """Return the words of what the environment did."""
+    steps = (share.learner.steps.get(int(step)) for step in np.flatnonzero(share.counts.used))
+    return {str(label.about) for label in steps if label is not None and label.agent is None}
+
+
+class Loading:
+    """A worker on its way back to a checkpoint.
+
+    Attributes:
+        share: The worker's rows: none until it has finished.
+        head: Plain data of the checkpoint.
+        rows: Its rows, in the codes that they had.
+        packing: Where their columns stand.
+        learned: The rows at which something was learned that is to be learned again.
+        numbers: For each column of the checkpoint the number of that column now, if it is known.
+        codes: For each value of it the code that it has now, if it is known.
+    """
+
+    def __init__(self, share: Share, folder: Path, number: int, digest: str) -> None:
+        path = path_of(folder, number, share.me)
+        self.share = share
+        self.head, self.arrays = read_archive(path, SCHEMA)
+        if self.head.get("digest") != digest or self.head.get("worker") != [share.me, share.workers]:
+            raise CheckpointError(f"{path}: {ANOTHER}")
+        try:
+            self._begin()
+        except (ValueError, IndexError, KeyError, TypeError) as error:
+            raise CheckpointError(f"{path}: this checkpoint is damaged: {error}") from error
+
+    def _begin(self) -> None:
+        arrays = self.arrays
+        self.packing = Packing(int(self.head["words"]), arrays["packing"].astype(np.uint64))
+        self.rows = arrays["rows"].astype(np.uint64)
+        self.learned = arrays["learned"].tolist()
+        self.places = [each.tobytes() for each in arrays["places"].reshape(-1, DIGEST)]
+        self.digests = [each.tobytes() for each in arrays["digests"].reshape(-1, DIGEST)]
+        self.begins = np.concatenate(([0], np.cumsum(arrays["sizes"]))).astype(np.int64)
+        self.numbers = np.full(len(self.places), UNKNOWN, np.int64)
+        self.codes = np.full(len(self.digests), UNKNOWN, np.int64)
+        self.codes[self.begins[:-1]] = 0  # with which every worker begins a column
+        self.used = np.zeros(len(self.digests), np.bool_)
+        if not self._is_sound():
+            raise ValueError("its parts don't fit together")
+        self.share.clear()
+        self._resolve()
+
+    def _is_sound(self) -> bool:
+        """Tell whether rows, columns and values belong together, and mark the values that rows have."""
+        where, sizes, count = self.packing, self.arrays["sizes"], len(self.arrays["origins"])
+        fits = where.words > 0 and len(where.mask) == len(sizes) == len(self.places)
+        fits = fits and bool(np.all(sizes > 0)) and int(self.begins[-1]) == len(self.digests)
+        fits = fits and len(self.rows) == count * where.words
+        fits = fits and all(0 <= row < count for row in self.learned)
+        if (
+            not fits
+            or np.any(where.word < 0)
+            or np.any(where.word >= where.words)
+            or np.any(where.shift > 63)
+        ):
+            return False
+        return kernel.mark_used(self.rows, where.words, where.columns, self.begins, self.used)
+
+    def missing(self) -> int:
+        """Return how many values of the rows are not known yet."""
+        self._resolve()
+        return int(np.count_nonzero(self.used & (self.codes == UNKNOWN)))
+
+    def _resolve(self) -> None:
+        """Find the codes of what has become known."""
+        keys = self.share.keys
+        numbers = {place: number for number, place in enumerate(keys.places)}
+        for column, place in enumerate(self.places):
+            begin, end = self.begins[column : column + 2]
+            number = numbers.get(place)
+            if number is None:
+                continue
+            self.numbers[column] = number
+            if (self.codes[begin:end] == UNKNOWN).any():
+                known = keys.codes(number)
+                self.codes[begin:end] = [known.get(each, UNKNOWN) for each in self.digests[begin:end]]
+
+    def recall(self) -> None:
+        """Learn again what can be learned by now, for others too; nothing where all values are known."""
+        count = len(self.learned) + 1
+        while len(self.learned) < count and (self.codes == UNKNOWN).any():
+            count = len(self.learned)
+            self.learned = [row for row in self.learned if not self._relearn(row)]
+            self._resolve()
+
+    def _relearn(self, row: int) -> bool:
+        """Let the rules run on a row once more, if its values are known."""
+        share, where = self.share, self.packing
+        words = self.rows[row * where.words : (row + 1) * where.words]
+        old = ((words[where.word] >> where.shift) & where.mask).astype(np.int64)
+        codes = self.codes[self.begins[:-1] + old]
+        if np.any(codes == UNKNOWN):
+            return False
+        own = np.zeros(len(share.learner.columns), np.int64)
+        known = self.numbers != UNKNOWN
+        own[self.numbers[known]] = codes[known]
+        share.learn_at(own.tolist())
+        return True
+
+    def finish(self) -> None:
+        """Take in the rows, now that all their values are known."""
+        share, size = self.share, len(self.arrays["origins"])
+        codes = np.where(self.codes == UNKNOWN, 0, self.codes)
+        share.reserve(size)
+        width, hashes = share.packing.words, np.zeros(BLOCK, np.uint64)
+        for first in range(0, size, BLOCK):
+            count = min(BLOCK, size - first)
+            kernel.translate(
+                self.rows,
+                first,
+                count,
+                self.packing.words,
+                self.packing.columns,
+                codes,
+                self.begins,
+                self.numbers,
+                share.packing.columns,
+                width,
+                share.words.room[first * width : (first + count) * width],
+                hashes,
+            )
+        share.origins.room[:size] = self.arrays["origins"]
+        share.state[list(KEPT)] = self.arrays["state"]
+        *share.begins, share.end = self.head["layers"]
+        share.rules_before = Counter(self.head["rules"])
+        share.happened_before = frozenset(self.head["happened"])
+        share.learned = [(int(row), 0, UNKNOWN, 0) for row in self.arrays["learned"]]
+        share.counts.used[:] = 0
+        share.look_around()
