@@ -10,7 +10,7 @@ another clock (`adapters.simulated.clock`) runs every plugin faster.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 from physical import Band, Geometry, PhysicalProperty
 
@@ -195,7 +195,64 @@ class Trouble:
     count: int = 1
 
 
-Report = Accepted | Arrived | Rejected | LinkLost | LinkRestored | Trouble
+@dataclass(frozen=True, slots=True)
+class Delivered:
+    """A parcel has come from another station: messages for an agent, or an agent (see `semantics.parting`).
+
+    Attributes:
+        station: Whose it is.
+        time: When it came.
+        number: The how-many-th parcel of that station it is; it may come again.
+        parcel: What is in it, as plain data.
+    """
+
+    station: str
+    time: float
+    number: int
+    parcel: Any
+
+
+@dataclass(frozen=True, slots=True)
+class Underway:
+    """Another station has sent a vehicle to a node; with no name: it is not under way any more."""
+
+    entity: str
+    time: float
+    to: str
+
+
+@dataclass(frozen=True, slots=True)
+class Hosts:
+    """A bigActor that runs at another station is hosted there at `host`."""
+
+    agent: str
+    time: float
+    host: str
+
+
+@dataclass(frozen=True, slots=True)
+class Believes:
+    """Another station has written into a slot of L: `parent` (of what L has not, no name) or `links` of a node."""
+
+    node: str
+    time: float
+    slot: str
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Broken:
+    """Another station says which assumption of the mission broke."""
+
+    station: str
+    time: float
+    assumption: str
+
+
+Elsewhere = Delivered | Underway | Hosts | Believes | Broken
+"""What is reported of other stations."""
+
+Report = Accepted | Arrived | Rejected | LinkLost | LinkRestored | Trouble | Elsewhere
 
 # --- who talks to whom ------------------------------------------------------------------------------
 
@@ -249,12 +306,17 @@ __all__ = [
     "Accepted",
     "Aged",
     "Arrived",
+    "Believes",
+    "Broken",
     "Command",
+    "Delivered",
+    "Elsewhere",
     "Follow",
     "GoTo",
     "Gone",
     "HandOver",
     "Hold",
+    "Hosts",
     "LinkLost",
     "LinkRestored",
     "Plugin",
@@ -264,5 +326,6 @@ __all__ = [
     "Report",
     "Return",
     "Trouble",
+    "Underway",
     "World",
 ]

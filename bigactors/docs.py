@@ -16,6 +16,7 @@ from bigactors.files import make_folder, write_text
 from bigactors.terminal import safe_output, say
 from semantics.extension import EXTENSION
 from semantics.extension import say as say_rule
+from semantics.parting import PASSING
 from semantics.rules import RULES, TIMED_RULES, env
 from specs import code_table
 from specs.reference import language_reference
@@ -31,7 +32,8 @@ RULES_HEAD = """\
 
 Above the bar of each rule stand its premises, below it the conclusion. A configuration is ⟨α | S | η⟩: the bigActors,
 the structure S = (L, P, β, γ) of the logical and the physical model, and the pending requests. The rules are the
-functions of `semantics/rules.py` and `semantics/extension.py`; this page is made of their docstrings.
+functions of `semantics/rules.py` and `semantics/extension.py`, between stations those of `semantics/parting.py`; this
+page is made of their docstrings.
 """
 
 CODES_HEAD = """\
@@ -64,10 +66,13 @@ where a killed run was; `show --trace FILE.mcap --step K` draws any of its confi
 A step is the step of a trace ([trace.schema.json](trace.schema.json)). What the world decided is in `observed`: the
 cells of P that were written, each as `[cell, value]`. A cell is a list of words such as `["placement", "uav0"]`,
 `["channels", "uav0"]`, `["down", "wifi"]`, `["left", "uav0", "wifi"]`. A placement is `null` (absent),
-`{"at": {"ring": ...}, "altitude": [...]}` or `{"by": ..., "shape": ...}` (carried); a ring gives latitude and longitude
+`{"at": {"ring": ...}, "altitude": [...]}`, `{"by": ..., "shape": ...}` (carried) or `{"from": ..., "to": ...}` (sent by
+another station); a ring gives latitude and longitude
 in 1e-7 degree, with `of` and `anchor` where a polygon is another one, moved. Replayed, an `env` with an observation may
 write nothing but P, and nothing that is in transit; a `commit` places the vehicle where it was observed, and is a step
-only where the rule's premises hold there.
+only where the rule's premises hold there. Of several stations each has a recording of its part
+([stations.md](stations.md)): `observed` then has the agent with the station, the number and the parcel that has
+entered, with the station and the number of what left, or with the host that was learned.
 
 The topics, and what their messages hold:
 """
@@ -91,6 +96,7 @@ def rules_page() -> Iterator[str]:
         ("The seven rules", (*RULES, env)),
         ("Control that takes time", TIMED_RULES),
         ("The bigActor extension", (*EXTENSION, say_rule)),
+        ("Between stations", PASSING),
     )
     for heading, rules in groups:
         yield f"\n## {heading}\n"

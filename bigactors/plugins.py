@@ -15,6 +15,7 @@ from bigactors.arguments.links import LIVING
 from bigactors.feeds import feeds_of
 from bigactors.fences import fence_of
 from bigactors.mistakes import Mistake, suggestion
+from bigactors.stations import driven, own_station
 from physical import PhysicalError
 from semantics.physical_model import Placed
 from semantics.reactions import CONTROL_AUTHORITY
@@ -133,14 +134,12 @@ def _has_border(name: str, mission: ElaboratedMission) -> bool:
 
 
 def _check_all_driven(options: Namespace, mission: ElaboratedMission) -> None:
-    """Refuse to fly a mission while a vehicle of it is nowhere: what is sent there would never be seen to arrive."""
-    given = {name for name, _, _ in options.vehicle}
-    setting, physical = mission.setting, mission.initial.structure.physical
-    driven = {
-        name for name, kind in setting.kinds.items() if setting.signature[kind].driven and name in physical
-    }
-    missing = sorted(driven - given)
-    if missing:
+    """Refuse to fly a mission while a vehicle of it is nowhere: what is sent there would never be seen to arrive.
+
+    Of several stations each has its own vehicles.
+    """
+    missing = sorted(driven(mission) - {name for name, _, _ in options.vehicle})
+    if missing and own_station(options) is None:
         hint = f"say where it is: --vehicle {missing[0]}=udp:127.0.0.1:14550"
         raise Mistake(f"the mission has vehicles that are not given: {', '.join(missing)}", hint)
 
@@ -152,7 +151,7 @@ def _stations(options: Namespace, mission: ElaboratedMission) -> Stations:
         each for name in mission.setting.kinds for each in physical.channels(name) if _is_authority(each)
     }
     names = sorted(channel.partition(":")[2] for channel in channels)
-    given = dict(options.station)
+    given = {name: number for name, number in options.station if number is not None}
     free = (number for number in range(255, 0, -1) if number not in given.values())
     ids = {name: given[name] if name in given else next(free) for name in names[:MOST_STATIONS]}
     unknown = sorted(set(given) - set(ids))
@@ -161,7 +160,8 @@ def _stations(options: Namespace, mission: ElaboratedMission) -> Stations:
             f"no channel 'control:{unknown[0]:.40}' is in the mission",
             suggestion(unknown[0], ids) or "see its channels",
         )
-    return Stations(ids, tuple(ids)) if ids else Stations()
+    own = own_station(options)
+    return Stations(ids, (own,) if own in ids else tuple(ids)) if ids else Stations()
 
 
 def _is_authority(channel: str) -> bool:

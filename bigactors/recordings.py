@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from adapters.live.state import Outgoing
 from adapters.recording.mcap_files import Message, RecordingError
 from adapters.recording.reading import Recording, read_recording
 from bigactors.missions import as_mistake, digest_of
@@ -12,6 +14,7 @@ from bigactors.mistakes import Mistake, unreadable
 from checker import ReplayError, Trace, replay
 from checker.traces import SCHEMA
 from semantics.configuration import Configuration
+from semantics.parting import Parting, Passage, parcel_of, parted
 from semantics.setting import Control, Scheduler
 from specs import MissionError, Source
 from specs.elaboration import ElaboratedMission, Variation, elaborate
@@ -43,10 +46,25 @@ def mission_of(recording: Recording) -> ElaboratedMission:
 
 def trace_of(recording: Recording, mission: ElaboratedMission) -> Trace:
     """Return the steps of a recording, run again through the rules; raises ReplayError, Mistake."""
+    parting = parting_of(recording)
+    first = mission.initial if parting is None else parted(mission.initial, parting)
     try:
-        return replay(mission.initial, recording.trace(SCHEMA))
+        return replay(first, recording.trace(SCHEMA))
     except ValueError as error:
         raise Mistake(str(error)) from error
+
+
+def parting_of(recording: Recording) -> Parting | None:
+    """Return which part of its mission a recording is of, None where it is of the whole; raises Mistake."""
+    match recording.run.get("station"):
+        case None:
+            return None
+        case {"here": str(here), "hosts": dict(hosts), "sent": dict(sent), "took": dict(took)}:
+            words = [here, *hosts, *hosts.values(), *sent, *took]
+            counts = [*sent.values(), *took.values()]
+            if all(isinstance(word, str) for word in words) and all(type(count) is int for count in counts):
+                return Parting(here, hosts, sent, took)
+    raise Mistake("its run does not say which station's it is")
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,12 +76,16 @@ class Resumed:
         steps: How many steps it took.
         orders: How many orders it gave.
         messages: Its steps, to be recorded again.
+        station: Which part of the mission it flew, None for the whole.
+        left: What left for other stations, in its order.
     """
 
     configuration: Configuration
     steps: int
     orders: int
     messages: tuple[Message, ...]
+    station: Parting | None = None
+    left: tuple[Outgoing, ...] = ()
 
 
 def resume(path: str, mission: ElaboratedMission) -> Resumed:
@@ -77,5 +99,15 @@ def resume(path: str, mission: ElaboratedMission) -> Resumed:
         trace = trace_of(recording, mission)
     except ReplayError as error:
         raise Mistake(f"it cannot be resumed: {error}", place=path) from error
-    orders = recording.of("commands")
-    return Resumed(trace.configurations[-1], len(trace), len(orders), recording.of("steps"))
+    steps, orders = recording.of("steps"), len(recording.of("commands"))
+    left = tuple(_left(trace))
+    return Resumed(trace.configurations[-1], len(trace), orders, steps, parting_of(recording), left)
+
+
+def _left(trace: Trace) -> Iterator[Outgoing]:
+    """Yield what left for other stations: it is what the configuration before had of the agent."""
+    for step, before in zip(trace.steps, trace.configurations, strict=False):
+        if isinstance(step.sight, Passage) and step.sight.parcel is None:
+            parcel = parcel_of(before, step.sight.agent)
+            assert parcel is not None
+            yield Outgoing(step.sight.station, step.sight.number, parcel)

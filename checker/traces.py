@@ -11,6 +11,7 @@ from semantics.canonical import digest_of_step
 from semantics.configuration import Configuration, Label, Transition
 from semantics.monitor import monitored
 from semantics.observed import Sight, steps_seen
+from semantics.parting import Elsewhere
 from semantics.plain import sight_json, sight_of
 from semantics.printing import print_changes
 from semantics.requests import Received
@@ -37,7 +38,7 @@ class Step:
     label: Label
     choice: int
     target: Configuration
-    sight: Sight | None = None
+    sight: Sight | Elsewhere | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,7 +244,7 @@ def _cause(alike: int) -> str:
     return "the mission, its scheduler or its environment may have changed since the trace was written"
 
 
-def _steps(data: Any) -> list[tuple[str, int, Sight | None, str | None]]:
+def _steps(data: Any) -> list[tuple[str, int, Sight | Elsewhere | None, str | None]]:
     if not isinstance(data, dict) or data.get("schema") != SCHEMA:
         raise ValueError(f"this is no trace: it should be an object with 'schema': '{SCHEMA}'")
     steps = data.get("steps")
@@ -260,7 +261,7 @@ def _loop(data: Any) -> int | None:
     return loop
 
 
-def _step(number: int, step: Any) -> tuple[str, int, Sight | None, str | None]:
+def _step(number: int, step: Any) -> tuple[str, int, Sight | Elsewhere | None, str | None]:
     label, choice = (step.get("label"), step.get("choice", 0)) if isinstance(step, dict) else (None, None)
     if not isinstance(label, str) or isinstance(choice, bool) or not isinstance(choice, int) or choice < 0:
         raise ValueError(f"step {number} should have a 'label' (a text) and a 'choice' (a number from 0)")

@@ -13,7 +13,17 @@ from semantics.configuration import Configuration, Transition
 from semantics.drive import Reach
 from semantics.environment import Observed
 from semantics.logical_model import links_cell, parent_cell
-from semantics.physical_model import Carried, PhysicalModel, Placement, channels_cell, placement_cell
+from semantics.parting import Elsewhere, passing
+from semantics.physical_model import (
+    Carried,
+    InTransit,
+    PhysicalModel,
+    Placement,
+    channels_cell,
+    placement_cell,
+)
+from semantics.reactions import moved
+from semantics.requests import FLY, Request
 from semantics.rules import commit, env
 from semantics.signature import Name
 
@@ -39,7 +49,7 @@ class Sight:
 def happening(c: Configuration, sight: Sight) -> Iterator[Transition]:
     """Yield the `env` of an observation; what is under command is nobody's but `commit`'s to place."""
     there = admitting(c, sight.admits)
-    if all(_is_free(there, cell) for cell in sight.writes):
+    if all(_is_free(there, cell, value) for cell, value in sight.writes.items()):
         yield from env(there, Observed(sight.words, tuple(sorted(sight.writes.items(), key=_by_cell))))
 
 
@@ -48,8 +58,11 @@ def arriving(c: Configuration, a: Name, sight: Sight) -> Iterator[Transition]:
     yield from commit(c, a, reaching(sight.writes))
 
 
-def steps_seen(c: Configuration, sight: Sight) -> Iterator[Transition]:
-    """Yield all that an observation may mean: what happens by itself, and the ends of flights."""
+def steps_seen(c: Configuration, sight: Sight | Elsewhere) -> Iterator[Transition]:
+    """Yield all that an observation may mean: what happens, the ends of flights, what passes between stations."""
+    if not isinstance(sight, Sight):
+        yield from passing(c, sight)
+        return
     yield from happening(c, sight)
     if not sight.admits:
         for agent in c.alpha.names():
@@ -82,9 +95,22 @@ def admitting(c: Configuration, kinds: Mapping[Name, str]) -> Configuration:
     return Configuration(c.setting.with_(kinds={**c.setting.kinds, **new}), c.state.with_(cells))
 
 
-def _is_free(c: Configuration, cell: Cell) -> bool:
+def _is_free(c: Configuration, cell: Cell, value: Any) -> bool:
     known = cell[0] in WRITABLE and (cell[0] == "down" or cell[1] in c.setting.kinds)
-    return known and not (cell[0] == "placement" and c.structure.physical.transit(cell[1]) is not None)
+    if not known or cell[0] != "placement":
+        return known
+    if isinstance(value, InTransit) and value.to not in c.setting.kinds:
+        return False
+    physical = c.structure.physical
+    if not isinstance(physical.placement(cell[1]), InTransit):
+        return physical.transit(cell[1]) is None
+    return not any(_flies(pending.request, cell[1]) for pending in c.eta.all())  # another station sent it
+
+
+def _flies(request: Request, name: Name) -> bool:
+    return isinstance(request, FLY) and any(
+        node == name for node, _ in moved(request.reaction, request.match)
+    )
 
 
 def _by_cell(item: tuple[Cell, Any]) -> Cell:

@@ -145,6 +145,11 @@ class PhysicalModel:
             placement = self.placement(placement.by)
         return placement.origin if isinstance(placement, InTransit) else placement
 
+    def going_to(self, entity: Name) -> Name:
+        """Return where an entity itself was sent; nothing for what is not under way."""
+        placement = self.placement(entity)
+        return placement.to if isinstance(placement, InTransit) else ""
+
     def transit(self, entity: Name) -> InTransit | None:
         """Return the flight of an entity, or of what carries it."""
         placement = self.placement(entity)

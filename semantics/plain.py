@@ -7,14 +7,18 @@ from physical.frame import E7
 from physical.shape import MAX_VERTICES, canonical
 from semantics.cells import Cell
 from semantics.observed import WRITABLE, Sight
-from semantics.physical_model import Carried, Placed
+from semantics.parting import Elsewhere
+from semantics.physical_model import Carried, InTransit, Placed, Placement
+from semantics.plain_parcels import elsewhere_json, elsewhere_of
 
 MOST_WRITES = 10_000
 """The most cells that one observation may write."""
 
 
-def sight_json(sight: Sight) -> dict[str, Any]:
-    """Return an observation as plain data."""
+def sight_json(sight: Sight | Elsewhere) -> dict[str, Any]:
+    """Return an observation, or what passes between stations, as plain data."""
+    if not isinstance(sight, Sight):
+        return elsewhere_json(sight)
     data: dict[str, Any] = {"words": sight.words}
     data["writes"] = [[list(cell), value_json(value)] for cell, value in sorted(sight.writes.items())]
     return {**data, "admits": dict(sorted(sight.admits.items()))} if sight.admits else data
@@ -29,6 +33,8 @@ def value_json(value: Any) -> Any:
             )
         case Carried(by, shape):
             return {"by": by, "shape": value_json(shape)}
+        case InTransit(origin, to):
+            return {"from": value_json(origin), "to": to}
         case tuple():
             return list(value)
         case _:
@@ -43,14 +49,16 @@ def geometry_json(geometry: Geometry) -> dict[str, Any]:
     return data
 
 
-def sight_of(data: Any) -> Sight:
-    """Read an observation.
+def sight_of(data: Any) -> Sight | Elsewhere:
+    """Read an observation, or what passes between stations.
 
     Raises:
         ValueError: The data are none; GeometryError, which is one, for what is no geometry.
     """
     if not isinstance(data, dict) or not isinstance(data.get("words"), str):
         raise ValueError("an observation should have 'words' and 'writes'")
+    if "agent" in data or "node" in data:
+        return elsewhere_of(data)
     writes, admits = data.get("writes", []), data.get("admits", {})
     if not isinstance(writes, list) or len(writes) > MOST_WRITES or not isinstance(admits, dict):
         raise ValueError(f"an observation has at most {MOST_WRITES:,} writes")
@@ -78,19 +86,24 @@ def _value(what: str, value: Any) -> Any:
     raise ValueError(f"{value!r:.80} is no value of '{what}'")
 
 
-def placement_of(data: Any) -> Placed | Carried:
+def placement_of(data: Any) -> Placement:
     """Read a placement."""
     match data:
+        case {"from": origin, "to": str(to)}:
+            start = placement_of(origin)
+            if isinstance(start, Placed):
+                return InTransit(start, to)
         case {"by": str(by), "shape": shape}:
             inner = placement_of(shape)
             if isinstance(inner, Placed):
                 return Carried(by, inner)
         case {"at": geometry, **rest}:
-            return Placed(geometry_of(geometry), _band(rest.get("altitude")))
+            return Placed(geometry_of(geometry), band_of(rest.get("altitude")))
     raise ValueError(f"{data!r:.80} is no placement")
 
 
-def _band(data: Any) -> Band | None:
+def band_of(data: Any) -> Band | None:
+    """Read a band of altitudes."""
     match data:
         case None:
             return None

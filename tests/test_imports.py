@@ -35,7 +35,7 @@ LIBRARIES = {
     "pymavlink": ("adapters/mavlink/codec.py",),
     "aiohttp": ("adapters/web.py",),
     "serial_asyncio_fast": ("adapters/transport.py",),
-    "zenoh": ("adapters/",),
+    "zenoh": ("adapters/stations/bus.py",),
     "mcap": ("adapters/recording/mcap_files.py",),
     "nicegui": ("adapters/",),
     "hypothesis": ("semantics/strategies.py",),

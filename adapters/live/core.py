@@ -13,6 +13,7 @@ from adapters.live.state import Batch, LiveState, Plan, Turn
 from adapters.live.turning import Turning
 from adapters.live.watching import hear, note, say_to
 from semantics.configuration import Configuration
+from semantics.parting import is_parted
 from semantics.requests import READY
 
 MOST_STEPS = 400
@@ -42,8 +43,13 @@ def watch(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turn:
 
 
 def is_over(state: LiveState) -> bool:
-    """Tell whether nothing will happen any more: all agents have ended, and nothing they asked for is pending."""
+    """Tell whether nothing will happen any more: all agents have ended, and nothing they asked for is pending.
+
+    Of one station among several nobody can tell: what comes from the others is not known.
+    """
     c = state.configuration
+    if is_parted(c):
+        return False
     pending = (each.request for each in c.eta.all())
     return not any(map(c.alpha.code, c.alpha.names())) and all(isinstance(each, READY) for each in pending)
 

@@ -93,6 +93,9 @@ class Inbox:
         heard, now = Heard(plugin, published), self.now()
         for watcher in self.watchers:
             watcher.arrived(heard, now)
+        self.heard.pop(
+            (plugin, _entity(published)), None
+        )  # in the order said: of two of one time the later counts
         self.heard[plugin, _entity(published)] = heard
         self.awake.set()
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
-from adapters.live.state import Heard, Sighting
+from adapters.live.state import Heard, Plan, Sighting
 from adapters.plugin import Aged, Gone
-from physical import Geometry, PhysicalError, translate_to
+from physical import Geometry, PhysicalError, PhysicalProperty, translate_to
 from semantics.configuration import Configuration
 from semantics.physical_model import Carried, PhysicalModel, Placed, Placement, encloses
 from semantics.setting import Setting
@@ -27,14 +26,12 @@ class Refusal:
     reason: str
 
 
-def sighting_of(
-    heard: Heard, known: Sighting | None, vehicles: Mapping[Name, str], now: float
-) -> Sighting | Refusal | None:
+def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) -> Sighting | Refusal | None:
     """Return what a message makes known of its entity, None where something newer is known."""
     published = heard.published
     said = published.property if isinstance(published, Aged) else published
-    owner = vehicles.get(said.entity)
-    if owner is not None and owner != heard.plugin:
+    owner = plan.vehicles.get(said.entity)
+    if owner is not None and heard.plugin not in (owner, plan.peers):
         return Refusal(
             said.entity, f"'{heard.plugin}' speaks of {said.entity}, which is the vehicle of '{owner}'"
         )
@@ -46,9 +43,20 @@ def sighting_of(
     if known is not None and time < known.time:
         return None
     if isinstance(said, Gone):
-        return None if known is None else Sighting(known.property, time, -math.inf)
+        before = _declared(plan, said.entity) if known is None else known.property
+        return None if before is None else Sighting(before, time, -math.inf)
     until = time + published.time_to_live if isinstance(published, Aged) else math.inf
     return Sighting(said, time, until) if until > now else None
+
+
+def _declared(plan: Plan, entity: Name) -> PhysicalProperty | None:
+    """Return what a mission says of an entity that nobody has spoken of yet."""
+    position = plan.first.structure.physical.position(entity)
+    return (
+        None
+        if position is None
+        else PhysicalProperty(entity, plan.first.setting.kind(entity), position.geometry)
+    )
 
 
 def placement_seen(c: Configuration, shape: Placed | None, sighting: Sighting) -> Placement | None:

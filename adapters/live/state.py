@@ -10,6 +10,7 @@ from adapters.plugin import Command, GoTo, HandOver, Published, Report
 from physical import PhysicalProperty
 from semantics.configuration import Configuration, Transition
 from semantics.observed import Sight
+from semantics.parting import Elsewhere, Parcel
 from semantics.precautions import Precautions
 from semantics.requests import Request
 from semantics.signature import Name
@@ -24,12 +25,14 @@ class Plan:
         vehicles: For each entity that takes commands, the plugin that owns it.
         precautions: What the mission says of broken assumptions and time limits.
         strict: Whether turns are kept while a vehicle confirms a hand-over: the verdict is one under `fcfs` only.
+        peers: The plugin by which other stations speak, of vehicles too; empty where there are none.
     """
 
     first: Configuration
     vehicles: Mapping[Name, str] = field(default_factory=dict)
     precautions: Precautions = field(default_factory=Precautions)
     strict: bool = False
+    peers: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +164,7 @@ class LiveStep:
         source: The configuration before it.
         transition: The transition.
         choice: Which of the transitions of that label it is, from 0.
-        sight: What was observed, where the world decided.
+        sight: What was observed, where the world decided; what passes between stations.
         time: When.
     """
 
@@ -169,7 +172,7 @@ class LiveStep:
     source: Configuration
     transition: Transition
     choice: int
-    sight: Sight | None
+    sight: Sight | Elsewhere | None
     time: float
 
 
@@ -183,6 +186,7 @@ class Finding:
         message: One line.
         time: When.
         fallback: What is done about it: `hold`, `return`, or nothing.
+        elsewhere: Whether it was another station that found it.
     """
 
     kind: str
@@ -190,6 +194,7 @@ class Finding:
     message: str
     time: float
     fallback: str = ""
+    elsewhere: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,6 +203,15 @@ class Answer:
 
     saying: Saying
     refusal: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Outgoing:
+    """The `number`-th parcel for another station."""
+
+    station: str
+    number: int
+    parcel: Parcel
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,6 +224,7 @@ class Turn:
         commands: What vehicles are to be told now.
         findings: What the operator has to know.
         answers: What came of what was said.
+        parcels: What leaves for other stations.
         again: When to turn again though nothing comes in; None if nothing waits for time to pass.
     """
 
@@ -218,4 +233,5 @@ class Turn:
     commands: tuple[Command, ...] = ()
     findings: tuple[Finding, ...] = ()
     answers: tuple[Answer, ...] = ()
+    parcels: tuple[Outgoing, ...] = ()
     again: float | None = None

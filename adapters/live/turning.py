@@ -7,16 +7,27 @@ from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import replace
 
-from adapters.live.orders import destination, hand_overs, is_done, unshown
+from adapters.live.orders import destination, hand_overs, is_authority, is_done, unshown
 from adapters.live.serving import PATIENCE, STEPS_PER_SECOND, in_turn, own_steps, refilled, served
 from adapters.live.sightings import Fences, placement_seen
-from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Pace, Plan, Turn
+from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Outgoing, Pace, Plan, Turn
 from adapters.plugin import Command, HandOver, Hold, Return
 from semantics.configuration import Transition
 from semantics.control import Realisation, obstacle, realisations
 from semantics.eta import Pending
 from semantics.expressions import Fault
 from semantics.observed import Sight
+from semantics.parting import (
+    HERE,
+    Elsewhere,
+    Passage,
+    is_here,
+    is_parted,
+    leave,
+    parcel_of,
+    sent_cell,
+    station_of,
+)
 from semantics.physical_model import Carried, Placed, Placement
 from semantics.precautions import Fallback
 from semantics.requests import CTR, FLY, SND
@@ -51,6 +62,7 @@ class Turning:
         self.commands: list[Command] = []
         self.findings: list[Finding] = []
         self.answers: list[Answer] = []
+        self.parcels: list[Outgoing] = []
         self.again = math.inf
 
     # --- what comes of it
@@ -77,7 +89,8 @@ class Turning:
             self.told,
         )
         gathered = (tuple(self.steps), tuple(self.commands), tuple(self.findings), tuple(self.answers))
-        return Turn(state, *gathered, again=None if self.again == math.inf else self.again)
+        again = None if self.again == math.inf else self.again
+        return Turn(state, *gathered, tuple(self.parcels), again)
 
     def find(self, kind: str, about: Name, message: str, fallback: str = "", *, once: bool = False) -> bool:
         """Report something; what is to be reported once is not again."""
@@ -94,8 +107,16 @@ class Turning:
 
     # --- steps
 
-    def take(self, transition: Transition, alike: tuple[Transition, ...], sight: Sight | None = None) -> None:
-        """Take a step; `alike` are all that could be taken by that rule here."""
+    def take(
+        self,
+        transition: Transition,
+        alike: tuple[Transition, ...],
+        sight: Sight | Elsewhere | None = None,
+    ) -> None:
+        """Take a step; `alike` are all that could be taken by that rule here.
+
+        What it puts into an agent that runs at another station leaves at once.
+        """
         word = str(transition.label)
         choice = [each for each in alike if str(each.label) == word].index(transition)
         number = self.before.number + len(self.steps) + 1
@@ -110,6 +131,27 @@ class Turning:
         if transition.label.rule == "spawn":
             self.idle.discard(str(request))
         self.c = transition.target
+        if is_parted(self.c):
+            self._forward(request.to if isinstance(request, SND) else agent)
+            if transition.label.rule == "spawn":
+                self._forward(str(request))
+
+    def _forward(self, a: Name | None) -> None:
+        """Let leave what is here of an agent that runs at another station."""
+        if a is None or a not in self.c.alpha:
+            return
+        if station_of(self.c, a) is None:
+            host = self.c.alpha.host(a)
+            message = f"no station runs what is hosted at {host}, and so {a} does not go on"
+            self.find(
+                "blocked", a, f"{message}: add {host} to the hosts of a station in the peers file", once=True
+            )
+        for left in leave(self.c, a):
+            station, parcel = str(left.label.about), parcel_of(self.c, a)
+            assert parcel is not None
+            number: int = left.target.read(sent_cell(station))
+            self.parcels.append(Outgoing(station, number, parcel))
+            self.take(left, (left,), Passage(a, station, number))
 
     def observe(self, sight: Sight, found: Iterator[Transition]) -> bool:
         """Take the step that an observation makes, if it makes one."""
@@ -133,7 +175,8 @@ class Turning:
 
     def _own_steps(self, most: int) -> int:
         """Let agents take one step each, those first who come after the last that took one."""
-        going = [a for a in self.c.alpha.names() if a not in self.idle and a not in self.failed]
+        able = (a for a in self.c.alpha.names() if a not in self.idle and a not in self.failed)
+        going = [a for a in able if is_here(self.c, a)]
         first = bisect_right(going, self.last)
         taken = 0
         for a in going[first:] + going[:first]:
@@ -227,10 +270,11 @@ class Turning:
         return found, False
 
     def _hears(self, node: Name) -> bool:
-        if node not in self.plan.vehicles:
-            self.find(
-                "blocked", node, f"no vehicle takes commands as {node}: say --vehicle {node}=...", once=True
-            )
+        owner = self.plan.vehicles.get(node)
+        if owner is None or owner == self.plan.peers:
+            here = "" if owner is None else " at this station"
+            message = f"no vehicle takes commands as {node}{here}: say --vehicle {node}=..."
+            self.find("blocked", node, message, once=True)
             return False
         return node in self.seen and node not in self.lost
 
@@ -276,17 +320,27 @@ class Turning:
         """Tell vehicles what the mission says that they do when something went otherwise."""
         if fallback is Fallback.CONTINUE:
             return
-        for entity in entities:
+        for entity in filter(self.answers_for, entities):
             request = self.request_of("fallback")
             told = Hold(request, entity) if fallback is Fallback.HOLD else Return(request, entity)
             self.commands.append(told)
 
+    def answers_for(self, entity: Name) -> bool:
+        """Tell whether it is ours to command a vehicle, and to say what it does unasked: no other station's."""
+        if not is_parted(self.c) or entity not in self.plan.vehicles:
+            return True
+        if self.plan.vehicles[entity] == self.plan.peers:
+            return False
+        physical = self.before.configuration.structure.physical
+        authority = set(filter(is_authority, physical.channels(entity)))
+        return not authority or not authority.isdisjoint(physical.channels(self.c.read(HERE)))
+
     def breaks(self, assumption: str, about: Name) -> None:
         """Say that an assumption broke, and do what the mission says is done then."""
+        if not self.answers_for(about):
+            return
         fallback = self.plan.precautions.on_broken
-        if (
-            self.find("broken assumption", about, assumption, fallback.value, once=True)
-            and not self.suspended
-        ):
+        found = self.find("broken assumption", about, assumption, fallback.value, once=True)
+        if found and not self.suspended:
             self.suspended = fallback is not Fallback.CONTINUE
             self.fall_back(fallback, tuple(sorted(self.plan.vehicles)))

@@ -6,16 +6,32 @@ import math
 from collections.abc import Iterable
 
 from adapters.live.assumptions import broken_by_place, clause_of_leaving
+from adapters.live.elsewhere import hear_of
 from adapters.live.flying import arrive, renew
 from adapters.live.orders import is_authority
 from adapters.live.sightings import Fences, Refusal, placement_seen, sighting_of
 from adapters.live.state import Answer, Heard, Saying, Sighting
 from adapters.live.turning import Turning
-from adapters.plugin import Accepted, Aged, Arrived, LinkLost, LinkRestored, Rejected, Report, Trouble
+from adapters.plugin import (
+    Accepted,
+    Aged,
+    Arrived,
+    Believes,
+    Broken,
+    Delivered,
+    Hosts,
+    LinkLost,
+    LinkRestored,
+    Rejected,
+    Report,
+    Trouble,
+    Underway,
+)
 from semantics.cells import Cell
 from semantics.environment import Appears, Leaves, Says
 from semantics.extension import say
 from semantics.observed import Sight, admitting, happening
+from semantics.parting import is_here, station_of
 from semantics.physical_model import Carried, Placed, Placement, channels_cell, placement_cell
 from semantics.rules import env
 from semantics.signature import REGION, Name
@@ -41,7 +57,7 @@ def hear(turning: Turning, heard: Iterable[Heard]) -> None:
 def _merge(turning: Turning, heard: Heard) -> Name | None:
     published = heard.published
     entity = published.property.entity if isinstance(published, Aged) else published.entity
-    found = sighting_of(heard, turning.seen.get(entity), turning.plan.vehicles, turning.now)
+    found = sighting_of(heard, turning.seen.get(entity), turning.plan, turning.now)
     if isinstance(found, Refusal):
         turning.find("trouble", found.entity, found.reason, once=True)
         return None
@@ -211,6 +227,8 @@ def note(turning: Turning, report: Report) -> None:
     match report:
         case Accepted() | Arrived():
             pass  # recorded; positions decide
+        case Delivered() | Underway() | Hosts() | Believes() | Broken():
+            hear_of(turning, report)
         case Rejected(request, entity, _, reason):
             turning.find(
                 "refused", entity, f"{entity} refuses {request}: {reason}; the request stays pending"
@@ -220,9 +238,8 @@ def note(turning: Turning, report: Report) -> None:
         case LinkRestored(entity, _, rebooted):
             _restore(turning, entity, rebooted=rebooted)
         case Trouble(source, _, what, detail, count):
-            turning.find(
-                "trouble", source, f"{source}: {what} ({count:,} times){': ' if detail else ''}{detail}"
-            )
+            often = f" ({count:,} times)" if count > 1 else ""
+            turning.find("trouble", source, f"{source}: {what}{often}{': ' if detail else ''}{detail}")
 
 
 def _lose(turning: Turning, entity: Name, since: float) -> None:
@@ -230,6 +247,8 @@ def _lose(turning: Turning, entity: Name, since: float) -> None:
         return
     turning.lost.add(entity)
     turning.find("lost link", entity, f"nothing was heard of {entity} for {turning.now - since:.0f} s")
+    if not turning.answers_for(entity):
+        return  # over which link another station commands it is for that to say
     for channel in filter(is_authority, turning.c.structure.physical.links(entity)):
         off_channel(turning, entity, channel, f"the link to {entity} over {channel} is lost")
 
@@ -246,6 +265,12 @@ def _restore(turning: Turning, entity: Name, *, rebooted: bool) -> None:
 def say_to(turning: Turning, saying: Saying) -> None:
     """Put a message into a mailbox, if the mission says that somebody may say it, and not too often."""
     agents = turning.c.alpha
+    if saying.agent in agents and not is_here(turning.c, saying.agent):
+        there = station_of(turning.c, saying.agent)
+        turning.answers.append(
+            Answer(saying, f"{saying.agent} runs at {there or 'no station'}: say it there")
+        )
+        return
     clauses = [each for each in turning.c.setting.environment if isinstance(each, Says)]
     for clause in clauses:
         if clause.agent == saying.agent and saying.message in (clause.message, show(clause.message)):

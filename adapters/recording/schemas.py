@@ -25,6 +25,14 @@ _OBSERVED: Final = {
             "type": "object",
             "description": "Entities that the mission does not name, with their kinds.",
         },
+        "agent": {**_TEXT, "description": "Who left for another station, has entered, or was learned of."},
+        "station": {**_TEXT, "description": "Where to, or where from."},
+        "number": {"type": "integer", "minimum": 1},
+        "parcel": {"type": "object", "description": "What has entered (docs/stations.md)."},
+        "host": {**_TEXT, "description": "Where the agent is hosted."},
+        "node": {**_TEXT, "description": "Of what another station has written into L,"},
+        "slot": {"enum": ["parent", "links"], "description": "in which slot,"},
+        "names": {**_TEXTS, "description": "and what is there now."},
     },
 }
 
@@ -54,6 +62,10 @@ RUN: Final = _object(
     strict={"type": "boolean", "description": "Whether turns were kept while vehicles confirmed hand-overs."},
     vehicles={"type": "object", "description": "For each vehicle the plugin that it was."},
     resumes={"type": ["string", "null"], "description": "The recording that it goes on from."},
+    station={
+        "type": ["object", "null"],
+        "description": "Which part of the mission it is, of several stations.",
+    },
 )
 
 ARRIVAL: Final = _object(
@@ -100,16 +112,32 @@ COMMAND: Final = _object(
     join=_TEXT,
 )
 
+REPORTS: Final = (
+    *("Accepted", "Arrived", "Rejected", "LinkLost", "LinkRestored", "Trouble"),
+    *("Delivered", "Underway", "Hosts", "Believes", "Broken"),
+)
+"""Those of a vehicle or a feed, then those of other stations."""
+
 REPORT: Final = _object(
     "What a plugin reported of a request, a link or its input.",
     ("report",),
-    report={"enum": ["Accepted", "Arrived", "Rejected", "LinkLost", "LinkRestored", "Trouble"]},
+    report={"enum": [*REPORTS]},
     request=_TEXT,
     entity=_TEXT,
     reason=_TEXT,
     what=_TEXT,
     detail=_TEXT,
     source=_TEXT,
+    station=_TEXT,
+    number={"type": "integer", "minimum": 1},
+    to={**_TEXT, "description": "Where another station has sent a vehicle; empty when it has come there."},
+    agent=_TEXT,
+    host=_TEXT,
+    assumption=_TEXT,
+    node=_TEXT,
+    slot=_TEXT,
+    names=_TEXTS,
+    parcel={"type": "object", "description": "What has come from another station (docs/stations.md)."},
 )
 
 SAYING: Final = _object(

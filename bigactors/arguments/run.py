@@ -45,11 +45,24 @@ def fill(parser: Parser) -> None:
     )
     parser.add_argument(
         "--station",
-        metavar="NAME=ID",
+        metavar="NAME[=ID]",
         action="append",
         default=[],
         type=station,
-        help="the MAVLink system id of a ground station (default: 255, 254, ... in the order of their names)",
+        help="NAME alone: this run is that station, and runs the bigActors that it hosts; with ID, the MAVLink system "
+        "id of a ground station (default: 255, 254, ... in the order of their names); may be repeated",
+    )
+    parser.add_argument(
+        "--peers",
+        metavar="FILE",
+        type=named,
+        help="the stations (TOML): where each is reached, what it hosts; what one sees all know (docs/stations.md)",
+    )
+    parser.add_argument(
+        "--station-log",
+        metavar="FILE",
+        type=named,
+        help="what this station has said, to be asked for again (default: MISSION.STATION.log, here)",
     )
     parser.add_argument(
         "--name",
@@ -120,18 +133,18 @@ def feed(word: str) -> tuple[str, str]:
     return kind, address
 
 
-def station(word: str) -> tuple[str, int]:
-    """Read NAME=ID.
+def station(word: str) -> tuple[str, int | None]:
+    """Read NAME[=ID].
 
-    >>> station("gcs0=255")
-    ('gcs0', 255)
+    >>> station("gcs0=255"), station("gcs0")
+    (('gcs0', 255), ('gcs0', None))
     """
-    found = re.fullmatch(r"(\w+)=([0-9]{1,3})", word)
-    if not found or not 0 < int(found[2]) < 256:
+    found = re.fullmatch(r"(\w+)(?:=([0-9]{1,3}))?", word)
+    if not found or (found[2] and not 0 < int(found[2]) < 256):
         raise argparse.ArgumentTypeError(
-            f"'{word:.60}' is not NAME=ID, such as gcs0=255; ids are from 1 to 255"
+            f"'{word:.60}' is not NAME or NAME=ID, such as gcs0=255; ids are from 1 to 255"
         )
-    return found[1], int(found[2])
+    return found[1], None if found[2] is None else int(found[2])
 
 
 COMMAND = Command(
@@ -140,6 +153,7 @@ COMMAND = Command(
     DESCRIPTION,
     (
         f"bigactors run oil_spill.mission --vehicle uav0={ADDRESS} --feed ais=udp:10110 --record run.mcap",
+        f"bigactors run handover.mission --station gcs0 --peers peers.toml --vehicle uav0={ADDRESS}",
         f"bigactors run oil_spill.mission --vehicle uav0={ADDRESS} --resume run.mcap --record more.mcap",
     ),
     fill,

@@ -27,6 +27,7 @@ from bigactors.plugins import plugins_of
 from bigactors.preflight import check_flyable, check_places
 from bigactors.recordings import Resumed, resume
 from bigactors.sockets import socket_of
+from bigactors.stations import Company, company_of, parting_json
 from bigactors.terminal import paint, say, tell
 from bigactors.verdict_files import Licence, find_verdict, licence_for
 from bigactors.watchers import Log, Tape, Terminal
@@ -47,6 +48,7 @@ class Flight:
         plugins: Its vehicles and feeds.
         resumed: The run that it goes on from.
         log: What takes every frame.
+        company: The station that it is among others, None where it is the only one.
     """
 
     options: Namespace
@@ -57,6 +59,7 @@ class Flight:
     plugins: tuple[Plugin, ...]
     resumed: Resumed | None
     log: Log | None = None
+    company: Company | None = None
 
     def resting(self, finding: Finding) -> tuple[str, ...]:
         """Return the properties whose verdicts rest on a broken assumption: all that were decided by exploring."""
@@ -70,7 +73,8 @@ def run(options: Namespace) -> Exit:
     terminal = Terminal(flight.resting)
     try:
         with record(flight) as tape:
-            ending = asyncio.run(fly(flight, (terminal, *([tape] if tape else []))))
+            lookers = (terminal, tape, flight.company and flight.company.sharing)  # recorded first, then said
+            ending = asyncio.run(fly(flight, tuple(looker for looker in lookers if looker)))
     except (NotAsAssumed, NotHeard, PluginFailed) as error:
         return _not_begun(error)
     except KeyboardInterrupt:
@@ -94,10 +98,13 @@ def prepare(options: Namespace) -> Flight:
     strict = licence is not None and licence.scheduler is Scheduler.FCFS
     plan = Plan(mission.initial, owners, mission.precautions, strict)
     before = None if options.resume is None else resume(options.resume, mission)
+    company = company_of(options, mission, before)
+    if company is not None:
+        plan, plugins = company.plan(plan, mission), company.plugins(plugins)
     state = started(plan)
     if before is not None:
         state = resumed(plan, before.configuration, before.steps, before.orders, time.time())
-    return Flight(options, mission, licence, plan, state, plugins, before, log)
+    return Flight(options, mission, licence, plan, state, plugins, before, log, company)
 
 
 def _licence(options: Namespace, live: Variation) -> Licence | None:
@@ -160,6 +167,7 @@ def run_json(flight: Flight) -> dict[str, Any]:
         "strict": flight.plan.strict,
         "vehicles": dict(flight.plan.vehicles),
         "resumes": options.resume,
+        "station": None if flight.company is None else parting_json(flight.company.parting),
     }
 
 

@@ -1,0 +1,78 @@
+"""Whom a vehicle obeys, as several links know it: each reads it now and then, and another has handed it on meanwhile.
+
+No message of a vehicle says when it began to obey whom, a vehicle may answer nobody else, and the network between
+stations may be faster than a link. So a change counts at once where it was commanded, and where our own link is lost.
+What else a link tells *anew* counts once it has lasted so long that it was read again, if nothing was commanded since.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Final
+
+from adapters.live.orders import is_authority, is_done
+from adapters.plugin import HandOver, Published
+from adapters.stations.entries import Said
+from adapters.stations.merge import channels_of
+from semantics.reactions import CONTROL_AUTHORITY
+
+LASTING: Final = 12.0
+"""Seconds after which a link has read anew whom its vehicle obeys, though one answer may be lost."""
+
+A_MOMENT: Final = 1e-6
+
+Channels = tuple[tuple[str, ...], float]
+"""The channels that a vehicle is on, and since when."""
+
+
+@dataclass(slots=True)
+class Authority:
+    """What one station's links are believed of the channels of their vehicles.
+
+    Attributes:
+        station: The station.
+        handing: The hand-over that each vehicle was told, and has not shown yet.
+        shown: What each link has shown last.
+        doubts: What each link has shown anew and otherwise than was known, when, and since when that had been so.
+    """
+
+    station: str
+    handing: dict[str, HandOver] = field(default_factory=dict)
+    shown: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    doubts: dict[str, tuple[float, float]] = field(default_factory=dict)
+
+    def channels(self, entity: str, published: Published, known: Said | None, now: float) -> Channels:
+        """Return what counts of a vehicle's channels where its link shows some, and others are known."""
+        shown = channels_of(published)
+        news = shown != self.shown.get(entity)
+        self.shown[entity] = shown
+        if known is None:
+            return shown, now
+        believed = (channels_of(known.published), known.since)
+        if news or shown == believed[0]:
+            self.doubts.pop(entity, None)
+        if shown == believed[0]:
+            return believed
+        if news:
+            self.doubts[entity] = (now, known.since)
+        if self._counts(entity, shown, believed, now):
+            return shown, max(now, known.since + A_MOMENT)
+        return believed
+
+    def lags(self, entity: str, known: Said | None) -> bool:
+        """Tell whether a vehicle obeys us, and our link does not know it yet: it would refuse what it is told."""
+        ours = f"{CONTROL_AUTHORITY}:{self.station}"
+        shown = [channel for channel in self.shown.get(entity, ()) if is_authority(channel)]
+        return (
+            known is not None and ours in channels_of(known.published) and bool(shown) and ours not in shown
+        )
+
+    def _counts(self, entity: str, shown: tuple[str, ...], believed: Channels, now: float) -> bool:
+        told = self.handing.get(entity)
+        if told is not None and is_done(told, shown):
+            del self.handing[entity]
+            return True
+        if not any(map(is_authority, shown)):  # it is lost, or does not tell
+            return f"{CONTROL_AUTHORITY}:{self.station}" in believed[0]
+        since, known = self.doubts.get(entity, (now, believed[1]))
+        return known == believed[1] and now - since >= LASTING

@@ -1,0 +1,220 @@
+"""Between stations: what is put to all, and what is asked of one. By Zenoh; the only file that imports it.
+
+Endpoints are explicit: nothing is scouted, no multicast, no gossip. Each station writes under keys of its own, and with
+mutual TLS it is held to them by the common name of its certificate.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any, Final
+
+from adapters.stations.peers import Peers
+from physical import PhysicalError
+
+MOST_BYTES: Final = 2 * 2**20
+"""The longest message that is taken."""
+
+MOST_WAITING: Final = 1_000
+"""How many messages may wait to be looked at; what is beyond is lost, and asked for again."""
+
+Hear = Callable[[str, bytes], None]
+"""Takes the station that says something, and what it says."""
+
+Answer = Callable[[str, bytes], bytes]
+"""Takes who asks, as it says, and what, and returns the answer."""
+
+
+class Bus:
+    """The session of one station; everything is told in the event loop's thread."""
+
+    def __init__(self, peers: Peers, topic: str, hear: Hear, answer: Answer) -> None:
+        """Open it; raises PhysicalError where it can't listen, or Zenoh is not installed."""
+        self._peers = peers
+        self._topic = topic
+        self._loop = asyncio.get_running_loop()
+        self._hear, self._answer = hear, answer
+        self._waiting = 0
+        self._zenoh = _library()
+        try:
+            self._session = self._zenoh.open(
+                self._zenoh.Config.from_json5(json.dumps(settings(peers, topic)))
+            )
+        except self._zenoh.ZError as error:
+            where = ", ".join(peers.own.listen)
+            raise PhysicalError(
+                "stations", f"{peers.own.name} cannot listen at {where}: {error!s:.300}", "is it in use?"
+            ) from error
+        self._kept: list[Any] = []
+        self._publisher = self._session.declare_publisher(self._key(peers.own.name, "said"))
+        for name in peers.others:
+            self._subscribe(name)
+        self._serve()
+
+    def put(self, said: bytes) -> None:
+        """Say something to all who are there."""
+        self._publisher.put(said)
+
+    async def ask(self, station: str, question: bytes, patience: float) -> bytes:
+        """Ask one station something.
+
+        Raises:
+            OSError: It is not there, or does not answer in time.
+        """
+        answered: asyncio.Future[bytes] = self._loop.create_future()
+
+        def reply(found: Any) -> None:
+            if found.ok is not None and len(found.ok.payload) <= MOST_BYTES:
+                self._call(_set, answered, found.ok.payload.to_bytes())
+
+        def done() -> None:
+            self._call(_set, answered, None)
+
+        handler = self._zenoh.handlers.Callback(reply, done)
+        key = self._key(station, "log")
+        self._session.get(key, handler, payload=question, timeout=patience)
+        answer = await asyncio.wait_for(answered, patience + 1.0)
+        if answer is None:
+            raise OSError(f"{station} does not answer")
+        return answer
+
+    def close(self) -> None:
+        """Leave."""
+        for each in self._kept:
+            each.undeclare()
+        self._session.close()
+
+    def _key(self, station: str, what: str) -> str:
+        return key_of(self._topic, station, what)
+
+    def _subscribe(self, name: str) -> None:
+        def heard(sample: Any) -> None:
+            if len(sample.payload) <= MOST_BYTES and self._waiting < MOST_WAITING:
+                self._waiting += 1
+                self._call(self._take, name, sample.payload.to_bytes())
+
+        self._kept.append(self._session.declare_subscriber(self._key(name, "said"), heard))
+
+    def _take(self, name: str, said: bytes) -> None:
+        self._waiting -= 1
+        self._hear(name, said)
+
+    def _serve(self) -> None:
+        key = self._key(self._peers.own.name, "log")
+
+        def asked(query: Any) -> None:
+            small = query.payload is None or len(query.payload) <= MOST_BYTES
+            if small and self._waiting < MOST_WAITING:
+                self._waiting += 1
+                self._call(self._reply, key, query)
+            else:
+                query.drop()
+
+        self._kept.append(self._session.declare_queryable(key, asked, complete=True))
+
+    def _reply(self, key: str, query: Any) -> None:
+        self._waiting -= 1
+        with query:
+            question = b"" if query.payload is None else query.payload.to_bytes()
+            query.reply(key, self._answer(key, question))
+
+    def _call(self, function: Callable[..., None], *arguments: Any) -> None:
+        with suppress(RuntimeError):  # the loop has ended
+            self._loop.call_soon_threadsafe(function, *arguments)
+
+
+def _set(future: asyncio.Future[Any], value: bytes | None) -> None:
+    if not future.done():
+        future.set_result(value)
+
+
+def key_of(topic: str, station: str, what: str) -> str:
+    """Return the key under which a station says or answers something."""
+    return f"bigactors/{topic}/{station}/{what}"
+
+
+# --- settings -------------------------------------------------------------------------------------------
+
+
+def settings(peers: Peers, topic: str) -> dict[str, Any]:
+    """Return how Zenoh is set up for a station."""
+    connect = sorted(endpoint for peer in peers.others.values() for endpoint in peer.connect)
+    found: dict[str, Any] = {
+        "mode": "peer",
+        "listen": {"endpoints": list(peers.own.listen), "exit_on_failure": True},
+        "connect": {
+            "endpoints": connect,
+            "timeout_ms": -1,
+            "exit_on_failure": False,
+            "retry": {"period_init_ms": 250, "period_max_ms": 2_000, "period_increase_factor": 2},
+        },
+        "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
+        "timestamping": {"enabled": False},
+        "adminspace": {"enabled": False},
+        "open": {"return_conditions": {"connect_scouted": False, "declares": False}},
+        "transport": {
+            "unicast": {"open_timeout": 5_000, "accept_timeout": 5_000},
+            "link": {"tx": {"lease": 5_000}},
+        },
+    }
+    if peers.tls is not None:
+        found["transport"]["link"]["tls"] = {
+            "root_ca_certificate": str(peers.tls.authority),
+            "listen_certificate": str(peers.tls.certificate),
+            "listen_private_key": str(peers.tls.key),
+            "connect_certificate": str(peers.tls.certificate),
+            "connect_private_key": str(peers.tls.key),
+            "enable_mtls": True,
+            "verify_name_on_connect": False,
+            "close_link_on_expiration": True,
+        }
+        found["access_control"] = access(peers, topic)
+    return found
+
+
+def access(peers: Peers, topic: str) -> dict[str, Any]:
+    """Return what each station may do: write under its own keys, and ask the others; anybody else may do nothing."""
+    own = peers.own.name
+    rules, policies, subjects = [], [], []
+    ours = [key_of(topic, own, "*")]
+    for name in peers.others:
+        theirs = [key_of(topic, name, "*")]
+        rules.append(_rule(f"says {name}", theirs, ("put", "reply", "declare_queryable"), ("ingress",)))
+        rules.append(_rule(f"asks {name}", ours, ("query", "declare_subscriber"), ("ingress",)))
+        rules.append(_rule(f"told {name}", ours, ("put", "reply", "declare_queryable"), ("egress",)))
+        rules.append(_rule(f"asked {name}", theirs, ("query", "declare_subscriber"), ("egress",)))
+        subjects.append({"id": name, "cert_common_names": [name]})
+        policies.append(
+            {"rules": [f"{verb} {name}" for verb in ("says", "asks", "told", "asked")], "subjects": [name]}
+        )
+    return {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": rules,
+        "subjects": subjects,
+        "policies": policies,
+    }
+
+
+def _rule(name: str, keys: list[str], messages: tuple[str, ...], flows: tuple[str, ...]) -> dict[str, Any]:
+    return {
+        "id": name,
+        "permission": "allow",
+        "messages": list(messages),
+        "flows": list(flows),
+        "key_exprs": keys,
+    }
+
+
+def _library() -> Any:
+    try:
+        import zenoh  # noqa: PLC0415 - an extra
+    except ImportError as missing:
+        hint = "install the extra: pip install 'bigactors[stations]'"
+        raise PhysicalError(
+            "stations-extra", "stations need Zenoh, which is not installed", hint
+        ) from missing
+    return zenoh

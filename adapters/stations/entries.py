@@ -1,0 +1,313 @@
+"""What a station says, entry by entry: numbered, and as plain data within bounds."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+from adapters.plugin import Aged, Gone, Published
+from physical import PhysicalProperty, Velocity
+from semantics.plain import band_of, geometry_json, geometry_of
+
+MOST_BYTES: Final = 256 * 1024
+"""The longest entry, as text."""
+
+LONGEST: Final = 200
+MOST_CHANNELS: Final = 100
+MOST_WORDS: Final = 2_000
+LARGEST: Final = 10**15
+"""No number, index or time is larger."""
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """What is known of an entity: a property or that it is gone; its time is set.
+
+    Attributes:
+        published: The property, perhaps with a time to live, or that the entity is gone.
+        since: Since when the entity is seen on these channels.
+        owned: Whether it was told by the entity's own link: nobody else speaks of a vehicle.
+    """
+
+    published: Published
+    since: float
+    owned: bool = False
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What it replaces: the older word on the same entity."""
+        return ("said", self.entity)
+
+    @property
+    def entity(self) -> str:
+        """Whom it is about."""
+        return entity_of(self.published)
+
+    @property
+    def time(self) -> float:
+        """When it was so."""
+        said = self.published.property if isinstance(self.published, Aged) else self.published
+        assert said.time is not None
+        return said.time
+
+    @property
+    def until(self) -> float:
+        """Until when it may stand in P."""
+        return self.time + self.published.time_to_live if isinstance(self.published, Aged) else math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Sent:
+    """A vehicle was sent to a node, or (an empty name) is not under way any more."""
+
+    entity: str
+    to: str
+    time: float
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What it replaces: where the vehicle was sent before."""
+        return ("sent", self.entity)
+
+
+@dataclass(frozen=True, slots=True)
+class Hosted:
+    """A bigActor that runs at the station is hosted at a node."""
+
+    agent: str
+    host: str
+    time: float
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What it replaces: where the agent was hosted before."""
+        return ("hosted", self.agent)
+
+
+@dataclass(frozen=True, slots=True)
+class Believed:
+    """What the station has written into a slot of L: `parent` (of what L has not, no name) or `links` of a node."""
+
+    node: str
+    slot: str
+    names: tuple[str, ...]
+    time: float
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What it replaces: what it had written there before."""
+        return ("believed", self.slot, self.node)
+
+
+@dataclass(frozen=True, slots=True)
+class Broke:
+    """The station has seen an assumption of the mission break; an empty text is said when a run begins anew."""
+
+    assumption: str
+    time: float
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What it replaces: what broke before."""
+        return ("broke",)
+
+
+@dataclass(frozen=True, slots=True)
+class Posted:
+    """A parcel for another station.
+
+    Attributes:
+        to: Where it goes.
+        index: The how-many-th it is.
+        parcel: What is in it, as plain data.
+        knows: The last numbers of other stations that the sender had heard of: what it did may rest on them.
+    """
+
+    to: str
+    index: int
+    parcel: Any
+    knows: tuple[tuple[str, int], ...] = ()
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """Nothing replaces it: it stays until it is taken."""
+        return ("posted", self.to, str(self.index))
+
+
+@dataclass(frozen=True, slots=True)
+class Took:
+    """All parcels of another station up to an index were taken: the acknowledgement."""
+
+    of: str
+    index: int
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What it replaces: earlier acknowledgements to the same station."""
+        return ("took", self.of)
+
+
+Content = Said | Sent | Hosted | Believed | Broke | Posted | Took
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One entry of a station's log. A station never gives a number twice, and later ones are larger."""
+
+    station: str
+    number: int
+    content: Content
+
+
+def entity_of(published: Published) -> str:
+    """Return whom a publication is about."""
+    return published.property.entity if isinstance(published, Aged) else published.entity
+
+
+def stamped(published: Published, now: float) -> Published:
+    """Return a publication with its time set: what has none is so now."""
+    match published:
+        case PhysicalProperty(time=None):
+            return replace(published, time=now)
+        case Aged(PhysicalProperty(time=None) as said, time_to_live):
+            return Aged(replace(said, time=now), time_to_live)
+        case _:
+            return published
+
+
+# --- as plain data --------------------------------------------------------------------------------------
+
+
+def entry_json(entry: Entry) -> dict[str, Any]:
+    """Return an entry as plain data, without its station."""
+    match entry.content:
+        case Said(published, since, owned):
+            return {"n": entry.number, **_published_json(published), "since": since, "owned": owned}
+        case Sent(entity, to, time):
+            return {"n": entry.number, "sent": entity, "to": to, "time": time}
+        case Hosted(agent, host, time):
+            return {"n": entry.number, "hosted": agent, "host": host, "time": time}
+        case Believed(node, slot, names, time):
+            data = {"n": entry.number, "believed": node, "slot": slot, "names": list(names)}
+            return {**data, "time": time}
+        case Broke(assumption, time):
+            return {"n": entry.number, "broke": assumption, "time": time}
+        case Posted(to, index, parcel, knows):
+            data = {"n": entry.number, "to": to, "index": index, "parcel": parcel}
+            return data | ({"knows": dict(knows)} if knows else {})
+        case Took(of, index):
+            return {"n": entry.number, "took": of, "index": index}
+
+
+def entry_text(entry: Entry) -> str:
+    """Return an entry as one line of JSON."""
+    return json.dumps(entry_json(entry), ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+
+
+def entry_of(station: str, data: Any) -> Entry:
+    """Read an entry of a station.
+
+    Raises:
+        ValueError: The data are none; the message says why.
+    """
+    if not isinstance(data, dict):
+        raise ValueError(f"{data!r:.60} is no entry")
+    number = _whole(data, "n")
+    match data:
+        case {"took": str()}:
+            return Entry(station, number, Took(_word(data, "took"), _whole(data, "index")))
+        case {"sent": str(), "to": str(to)}:
+            goal = _word(data, "to") if to else ""
+            return Entry(station, number, Sent(_word(data, "sent"), goal, _time(data.get("time"))))
+        case {"hosted": str()}:
+            home = Hosted(_word(data, "hosted"), _word(data, "host"), _time(data.get("time")))
+            return Entry(station, number, home)
+        case {"believed": str(), "slot": "parent" | "links" as slot, "names": names}:
+            node, time = _word(data, "believed"), _time(data.get("time"))
+            return Entry(station, number, Believed(node, slot, _channels(names), time))
+        case {"broke": str(assumption)} if len(assumption) <= MOST_WORDS and assumption.isprintable():
+            return Entry(station, number, Broke(assumption, _time(data.get("time"))))
+        case {"to": str(), "parcel": parcel}:
+            knows = _knows(data.get("knows", {}))
+            return Entry(station, number, Posted(_word(data, "to"), _whole(data, "index"), parcel, knows))
+        case {"entity": str(), "since": since, "owned": bool(owned)}:
+            return Entry(station, number, Said(_published(station, data), _time(since), owned))
+    raise ValueError("an entry says or does none of what stations do")
+
+
+def _published_json(published: Published) -> dict[str, Any]:
+    if isinstance(published, Gone):
+        return {"entity": published.entity, "time": published.time, "gone": True}
+    said = published.property if isinstance(published, Aged) else published
+    data: dict[str, Any] = {"entity": said.entity, "kind": said.kind, "at": geometry_json(said.geometry)}
+    data["time"] = said.time
+    if said.altitude is not None:
+        data["altitude"] = [said.altitude.low, said.altitude.high]
+    if said.channels:
+        data["channels"] = list(said.channels)
+    if said.carried_by is not None:
+        data["by"] = said.carried_by
+    if said.velocity is not None:
+        data["velocity"] = [said.velocity.speed, said.velocity.course]
+    return {**data, "ttl": published.time_to_live} if isinstance(published, Aged) else data
+
+
+def _published(station: str, data: dict[str, Any]) -> Published:
+    entity, time = _word(data, "entity"), _time(data.get("time"))
+    if data.get("gone") is True:
+        return Gone(entity, time, station)
+    said = PhysicalProperty(
+        entity,
+        _word(data, "kind"),
+        geometry_of(data.get("at")),
+        band_of(data.get("altitude")),
+        _channels(data.get("channels", [])),
+        None if data.get("by") is None else _word(data, "by"),
+        time,
+        station,
+        _velocity(data.get("velocity")),
+    )
+    return Aged(said, _time(data["ttl"])) if "ttl" in data else said
+
+
+def _knows(data: Any) -> tuple[tuple[str, int], ...]:
+    if not isinstance(data, dict) or len(data) > MOST_CHANNELS:
+        raise ValueError("'knows' should give a number to each station")
+    return tuple((name, _whole(data, name)) for name in sorted(data))
+
+
+def _channels(data: Any) -> tuple[str, ...]:
+    if not isinstance(data, list) or len(data) > MOST_CHANNELS:
+        raise ValueError(f"channels should be a list of at most {MOST_CHANNELS}")
+    return tuple(_word({"channel": each}, "channel") for each in data)
+
+
+def _velocity(data: Any) -> Velocity | None:
+    match data:
+        case None:
+            return None
+        case [int() | float() as speed, int() | float() as course]:
+            return Velocity(_time(speed), _time(course))
+    raise ValueError(f"{data!r:.60} is no speed and course")
+
+
+def _word(data: dict[str, Any], name: str) -> str:
+    value = data.get(name)
+    if not isinstance(value, str) or not 0 < len(value) <= LONGEST or not value.isprintable():
+        raise ValueError(f"'{name}' should be a word of 1 to {LONGEST} characters, not {value!r:.60}")
+    return value
+
+
+def _whole(data: dict[str, Any], name: str) -> int:
+    value = data.get(name)
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 < value <= LARGEST:
+        raise ValueError(f"'{name}' should be a whole number from 1, not {value!r:.60}")
+    return value
+
+
+def _time(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= LARGEST:
+        raise ValueError(f"{value!r:.60} is no number of seconds")
+    return float(value)

@@ -1,0 +1,184 @@
+"""A station's own entries on disk: appended before anybody is told of them, so that no number is given twice."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import time
+from collections.abc import Iterator
+from itertools import takewhile
+from pathlib import Path
+from typing import Any, BinaryIO, Final
+
+from adapters.stations.entries import MOST_BYTES, Content, Entry, Posted, Took, entry_of, entry_text
+
+SCHEMA: Final = "bigactors.station/1"
+SPARE: Final = 10_000
+"""How many entries that are superseded may stand in the file before it is written anew."""
+
+
+class JournalError(ValueError):
+    """A file that is not this station's log of this mission; the message says why."""
+
+
+class Journal:
+    """What one station has said and is still true, with its numbers; kept in a file that only grows, and is tidied.
+
+    A log that was lost begins anew above every number that it may have had: at the time in milliseconds.
+    """
+
+    def __init__(self, path: Path, station: str, digest: str) -> None:
+        """Open or begin a log; raises JournalError, OSError."""
+        self.path = path
+        self.station = station
+        self.last = 0
+        self._head = {"log": SCHEMA, "station": station, "mission": digest}
+        self._entries: dict[tuple[str, ...], Entry] = {}
+        self._sent: dict[str, int] = {}
+        self._spare = 0
+        self._file = _locked(path)
+        try:
+            if not self._read():
+                self.last = time.time_ns() // 1_000_000
+                self._rewrite()
+        except BaseException:
+            self._file.close()
+            raise
+
+    # --- what it knows
+
+    def after(self, number: int, most: int) -> tuple[list[Entry], int]:
+        """Return entries after a number, the oldest first, and up to which number they tell everything."""
+        found = list(takewhile(lambda entry: entry.number > number, reversed(self._entries.values())))[::-1]
+        if len(found) <= most:
+            return found, self.last
+        return found[:most], found[most - 1].number
+
+    def word(self, key: tuple[str, ...]) -> Content | None:
+        """Return what it says of something."""
+        entry = self._entries.get(key)
+        return None if entry is None else entry.content
+
+    def entries(self) -> Iterator[Entry]:
+        """Yield all that is still true, the oldest first."""
+        yield from self._entries.values()
+
+    def sent(self, to: str) -> int:
+        """Return how many parcels were posted to a station."""
+        return self._sent.get(to, 0)
+
+    def took(self, of: str) -> int:
+        """Return up to which parcel of a station all were taken."""
+        word = self.word(("took", of))
+        return word.index if isinstance(word, Took) else 0
+
+    def waiting(self, to: str) -> int:
+        """Count the parcels that a station has not taken yet."""
+        return sum(1 for key in self._entries if key[:2] == ("posted", to))
+
+    # --- what it is told
+
+    def add(self, contents: list[Content]) -> list[Entry]:
+        """Number what is said, and write it; what it replaces is true no more."""
+        entries = []
+        for content in contents:
+            self.last += 1
+            entries.append(Entry(self.station, self.last, content))
+        self._append([entry_text(entry) for entry in entries])
+        for entry in entries:
+            self._keep(entry)
+        if self._spare > SPARE + len(self._entries):
+            self._rewrite()
+        return entries
+
+    def taken(self, to: str, index: int) -> None:
+        """Forget the parcels that a station has taken."""
+        for key, entry in list(self._entries.items()):
+            if isinstance(entry.content, Posted) and entry.content.to == to and entry.content.index <= index:
+                del self._entries[key]
+                self._spare += 1
+
+    def close(self) -> None:
+        """Give the file free."""
+        self._file.close()
+
+    # --- the file
+
+    def _keep(self, entry: Entry) -> None:
+        key = entry.content.key
+        if self._entries.pop(key, None) is not None:
+            self._spare += 1
+        self._entries[key] = entry
+        self.last = max(self.last, entry.number)
+        if isinstance(entry.content, Posted):
+            self._sent[entry.content.to] = max(self.sent(entry.content.to), entry.content.index)
+
+    def _read(self) -> bool:
+        """Read the file, and cut off what a killed process has left of a line."""
+        self._file.seek(0)
+        head = self._file.readline(MOST_BYTES)
+        if not head:
+            return False
+        self._check(_parsed(head))
+        end = self._file.tell()
+        while (line := self._file.readline(2 * MOST_BYTES)).endswith(b"\n"):
+            data = _parsed(line)
+            try:
+                self._take(data)
+            except ValueError as error:
+                raise JournalError(f"{self.path}: {error}") from error
+            end = self._file.tell()
+        self._file.truncate(end)
+        self._file.seek(end)
+        return True
+
+    def _take(self, data: Any) -> None:
+        match data:
+            case {"last": int(last), "sent": dict(sent)}:
+                self.last = max(self.last, last)
+                self._sent |= {str(to): int(index) for to, index in sent.items()}
+            case _:
+                self._keep(entry_of(self.station, data))
+
+    def _check(self, head: Any) -> None:
+        if not isinstance(head, dict) or head.get("log") != SCHEMA:
+            raise JournalError(f"{self.path} is no log of a station")
+        for key in ("station", "mission"):
+            if head.get(key) != self._head[key]:
+                what = f"{key} '{head.get(key)!s:.80}'"
+                raise JournalError(f"{self.path} is the log of {what}: move it away, or name another file")
+
+    def _append(self, lines: list[str]) -> None:
+        self._file.write("".join(f"{line}\n" for line in lines).encode())
+        self._file.flush()
+
+    def _rewrite(self) -> None:
+        """Write the file anew with what is still true; the old one stands until the new one does."""
+        part = self.path.with_name(self.path.name + ".part")
+        part.unlink(missing_ok=True)
+        old, self._file = self._file, _locked(part)
+        state = {"last": self.last, "sent": self._sent}
+        lines = [json.dumps(self._head), json.dumps(state), *map(entry_text, self._entries.values())]
+        self._append(lines)
+        os.replace(part, self.path)
+        old.close()
+        self._spare = 0
+
+
+def _parsed(line: bytes) -> Any:
+    try:
+        return json.loads(line)
+    except (ValueError, RecursionError) as error:
+        raise JournalError(f"a line of the log is not JSON: {error!s:.100}") from error
+
+
+def _locked(path: Path) -> BinaryIO:
+    """Open a file that no other process uses so."""
+    file = path.open("a+b")
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        file.close()
+        raise JournalError(f"{path}: another run of this station writes there") from error
+    return file

@@ -1,0 +1,172 @@
+"""The merge: one world of what all stations say, whatever was lost, doubled or reordered on the way.
+
+Each station's word on an entity is a register: its newest by number. Registers are joined by `newer`, which is
+commutative, associative and idempotent, so the same words come to the same registers in whatever order they are heard.
+What holds of an entity is a function of its registers and of the time alone: the newest by its time stamp, ties by
+station and number. Clocks decide nothing but which of two stations is believed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Final
+
+from adapters.live.sightings import MOST_AHEAD
+from adapters.plugin import Aged, Gone, Published
+from adapters.stations.entries import Believed, Entry, Hosted, Said, Sent
+from physical import PhysicalProperty
+
+MOST_ENTITIES: Final = 20_000
+"""Of how many entities one station may speak."""
+
+Words = Mapping[str, Entry]
+"""The newest word of each station on one entity."""
+
+
+def newer(one: Entry, other: Entry) -> Entry:
+    """Return the newer of two words of one station on one thing."""
+    return max(one, other, key=_numbered)
+
+
+def _numbered(entry: Entry) -> tuple[int, str]:
+    return (
+        entry.number,
+        repr(entry.content),
+    )  # a number is given once; a liar's two are ordered all the same
+
+
+class Merge:
+    """The registers of all stations.
+
+    Attributes:
+        words: For each entity the newest word of each station.
+        legs: For each vehicle where each station has sent it last.
+        homes: For each bigActor where each station has hosted it last.
+        beliefs: For each slot of L what each station has written there last.
+    """
+
+    def __init__(self) -> None:
+        self.words: dict[str, dict[str, Entry]] = {}
+        self.legs: dict[str, dict[str, Entry]] = {}
+        self.homes: dict[str, dict[str, Entry]] = {}
+        self.beliefs: dict[str, dict[str, Entry]] = {}
+        self._counts: dict[str, int] = {}
+
+    def hear(self, entry: Entry) -> str | None:
+        """Join an entry to its register; return the entity if that made a difference.
+
+        Raises:
+            ValueError: The station speaks of too many entities.
+        """
+        match entry.content:
+            case Said() as said:
+                return said.entity if self._join(self.words, said.entity, entry) else None
+            case Sent(entity):
+                return entity if self._join(self.legs, entity, entry) else None
+            case Hosted(agent):
+                return agent if self._join(self.homes, agent, entry) else None
+            case Believed(node, slot):
+                return node if self._join(self.beliefs, f"{slot} {node}", entry) else None
+            case _:
+                return None
+
+    def _join(self, registers: dict[str, dict[str, Entry]], entity: str, entry: Entry) -> bool:
+        known = registers.get(entity, {}).get(entry.station)
+        if known is None:
+            count = self._counts.get(entry.station, 0)
+            if count >= MOST_ENTITIES:
+                raise ValueError(f"it speaks of more than {MOST_ENTITIES:,} entities")
+            self._counts[entry.station] = count + 1
+        elif newer(known, entry) is known:
+            return False
+        registers.setdefault(entity, {})[entry.station] = entry
+        return True
+
+    def leg(self, entity: str) -> Entry | None:
+        """Return where a vehicle was sent last, by the time stamps of those who sent it."""
+        return max(self.legs.get(entity, {}).values(), key=_stamp, default=None)
+
+    def home(self, agent: str) -> Entry | None:
+        """Return where a bigActor was hosted last."""
+        return max(self.homes.get(agent, {}).values(), key=_stamp, default=None)
+
+    def belief(self, slot: str, node: str) -> Entry | None:
+        """Return what was written into a slot of L last."""
+        return max(self.beliefs.get(f"{slot} {node}", {}).values(), key=_stamp, default=None)
+
+    def holds(self, entity: str, now: float) -> Said | None:
+        """Return what holds of an entity at a time, None if nobody has said anything that counts yet."""
+        return holding(self.words.get(entity, {}), now)
+
+    def ahead(self, now: float) -> list[Entry]:
+        """Return the words whose time stamps lie too far in the future to count."""
+        return [
+            entry
+            for words in self.words.values()
+            for entry in words.values()
+            if not _counts(entry.content, now)
+        ]
+
+
+def holding(words: Words, now: float) -> Said | None:
+    """Return what holds of an entity at a time: the newest word on it, with the channels that are known the latest.
+
+    A vehicle may be heard by two stations of which one has not read its new authority yet: so the newest *change* of
+    channels counts, among the words that had not grown too old when the newest was said.
+    """
+    found = [entry for entry in words.values() if _counts(entry.content, now)]
+    if not found:
+        return None
+    newest = _said(max(found, key=_stamp))
+    if isinstance(newest.published, Gone):
+        return newest
+    if newest.until <= now:  # whoever hears of it only now comes to the same world as who saw it grow old
+        return Said(Gone(newest.entity, newest.time, ""), newest.since, newest.owned)
+    told = [
+        entry
+        for entry in found
+        if not isinstance(_said(entry).published, Gone) and _said(entry).until >= newest.time
+    ]
+    latest = _said(max(told, key=_since)) if told else newest
+    return replace(newest, published=on(newest.published, channels_of(latest.published)), since=latest.since)
+
+
+def _said(entry: Entry) -> Said:
+    assert isinstance(entry.content, Said)
+    return entry.content
+
+
+def _counts(content: object, now: float) -> bool:
+    return isinstance(content, Said) and content.time <= now + MOST_AHEAD
+
+
+def _stamp(entry: Entry) -> tuple[float, str, int]:
+    assert isinstance(entry.content, Said | Sent | Hosted | Believed)
+    return (entry.content.time, entry.station, entry.number)
+
+
+def _since(entry: Entry) -> tuple[float, str, int]:
+    return (_said(entry).since, entry.station, entry.number)
+
+
+def channels_of(published: Published) -> tuple[str, ...]:
+    """Return the channels that an entity was seen on; none of what is gone."""
+    match published:
+        case Aged(said, _):
+            return said.channels
+        case PhysicalProperty():
+            return published.channels
+        case _:
+            return ()
+
+
+def on(published: Published, channels: Iterable[str]) -> Published:
+    """Return a publication with other channels."""
+    match published:
+        case Aged(said, time_to_live):
+            return Aged(said.on(channels), time_to_live)
+        case PhysicalProperty():
+            return published.on(channels)
+        case _:
+            return published

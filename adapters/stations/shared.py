@@ -1,0 +1,96 @@
+"""A plugin of a station: whatever it publishes, and is told to do, is told to the station, which tells all."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+from typing import Final, Protocol
+
+from adapters.plugin import Command, Plugin, Published, Refused, Rejected, Report, World
+from adapters.stations.authority import LASTING
+
+LOOK: Final = 0.1
+"""Seconds between two looks whether a link knows what is known."""
+
+
+class Station(Protocol):
+    """Who shares."""
+
+    def publish(self, plugin: Plugin, world: World, published: Published) -> None:
+        """Take what a plugin publishes."""
+
+    def commanded(self, command: Command) -> None:
+        """Take note of what a plugin was told."""
+
+    def lags(self, entity: str) -> bool:
+        """Tell whether a vehicle obeys us, and our link does not know it yet."""
+
+
+class Shared:
+    """A plugin whose world is that of all stations."""
+
+    def __init__(self, plugin: Plugin, station: Station) -> None:
+        self.plugin = plugin
+        self.station = station
+        self._world: World | None = None
+        self._waiting: set[asyncio.Task[None]] = set()
+
+    @property
+    def name(self) -> str:
+        """What reports call it."""
+        return self.plugin.name
+
+    def owns(self, entity: str) -> bool:
+        """Whether the entity takes commands from it."""
+        return self.plugin.owns(entity)
+
+    async def command(self, command: Command) -> None:
+        """Hand on a command, as soon as the link knows that the vehicle was handed to us."""
+        self.station.commanded(command)
+        if not self.station.lags(command.entity):
+            await self.plugin.command(command)
+            return
+        task = asyncio.create_task(self._command_later(command))
+        self._waiting.add(task)
+        task.add_done_callback(self._waiting.discard)
+
+    async def _command_later(self, command: Command) -> None:
+        for _ in range(round(LASTING / LOOK)):
+            await asyncio.sleep(LOOK)
+            if not self.station.lags(command.entity):
+                break
+        try:
+            await self.plugin.command(command)
+        except Refused as refused:
+            if self._world is not None:
+                now = self._world.now()
+                self._world.report(Rejected(command.request, command.entity, now, refused.reason))
+
+    async def run(self, world: World) -> None:
+        """Publish until cancelled."""
+        self._world = world
+        try:
+            await self.plugin.run(SharedWorld(world, self))
+        finally:
+            for task in self._waiting:
+                task.cancel()
+
+
+@dataclass(frozen=True, slots=True)
+class SharedWorld:
+    """The world of a plugin at a station."""
+
+    world: World
+    shared: Shared
+
+    def publish(self, published: Published) -> None:
+        """Take what is known of an entity now."""
+        self.shared.station.publish(self.shared.plugin, self.world, published)
+
+    def now(self) -> float:
+        """Return the time."""
+        return self.world.now()
+
+    def report(self, report: Report) -> None:
+        """Take a report."""
+        self.world.report(report)

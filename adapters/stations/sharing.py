@@ -1,0 +1,403 @@
+"""A station among others, as a plugin: what its own plugins see goes to the others, and what those see comes here.
+
+Everything that it says is an entry of its log, appended before anybody hears of it. Entries are put to all at once, and
+asked for by whoever has missed some: what is lost on the way is only late. A parcel stands in the log until the other
+station's log says that it was taken, so that it arrives once, whoever is killed or cut off meanwhile.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import Any, Final
+
+from adapters.live.sightings import MOST_AHEAD
+from adapters.live.state import Heard, Turn
+from adapters.plugin import (
+    Believes,
+    Broken,
+    Command,
+    Delivered,
+    HandOver,
+    Hosts,
+    Plugin,
+    Published,
+    Refused,
+    Report,
+    Trouble,
+    Underway,
+    World,
+)
+from adapters.stations.authority import Authority
+from adapters.stations.bus import Bus
+from adapters.stations.entries import (
+    Believed,
+    Broke,
+    Content,
+    Entry,
+    Hosted,
+    Posted,
+    Said,
+    Sent,
+    Took,
+    entity_of,
+    entry_of,
+    stamped,
+)
+from adapters.stations.journal import Journal
+from adapters.stations.merge import Merge, on
+from adapters.stations.messages import MOST_ENTRIES, Message, fitting, read, written
+from adapters.stations.others import Other
+from adapters.stations.peers import Peers
+from adapters.stations.shared import Shared
+from adapters.stations.skew import measured
+from adapters.stations.telling import believed, entered, moved, told
+from adapters.troubles import Troubles
+
+NAME: Final = "stations"
+"""What the plugin is called."""
+
+TICK: Final = 0.02
+"""Seconds for which entries are gathered before they are put; of an entity the newest goes."""
+
+MOVING: Final = frozenset({"migrate", "spawn", "enter"})
+"""The rules by which an agent comes to be hosted somewhere."""
+
+POLL: Final = 1.0
+"""Seconds between two questions to each station."""
+
+PATIENCE: Final = 2.0
+SILENCE: Final = 4.0
+"""Seconds without an answer after which a station is said not to be reached."""
+
+MOST_SKEW: Final = 1.0
+"""Seconds by which clocks may differ before it is said."""
+
+MOST_PARCELS: Final = 10_000
+"""How many parcels of one station may wait here; for more it is asked later."""
+
+
+class Sharing:
+    """The plugin of one station; it looks on at the run, too.
+
+    Arguments:
+        peers: Who the stations are.
+        journal: The log of this one.
+        topic: What the mission is called between them.
+        digest: Of the mission: who flies another is not listened to.
+        vehicles: The entities of which only their own links may speak.
+    """
+
+    name = NAME
+
+    def __init__(
+        self, peers: Peers, journal: Journal, topic: str, digest: str, vehicles: frozenset[str]
+    ) -> None:
+        self.merge = Merge()
+        self.others = {name: Other() for name in peers.others}
+        self._peers = peers
+        self._journal = journal
+        self._topic = topic
+        self._digest = digest
+        self._vehicles = vehicles
+        self._authority = Authority(journal.station)
+        self._troubles = Troubles(NAME)
+        self._ahead: set[str] = set()
+        self._unsaid: dict[tuple[str, ...], Entry] = {}
+        self._said = journal.last
+        self._world: World | None = None
+        self._introduced = False
+
+    # --- a plugin
+
+    def owns(self, entity: str) -> bool:  # noqa: ARG002 - a plugin's interface
+        """Other stations' vehicles take no commands from here."""
+        return False
+
+    async def command(self, command: Command) -> None:
+        """Refuse: commands go over a vehicle's own link."""
+        raise Refused(f"{command.entity} is another station's", f"say --vehicle {command.entity}=...")
+
+    async def run(self, world: World) -> None:
+        """Share until cancelled."""
+        self._world = world
+        bus = Bus(self._peers, self._topic, self._hear, self._answer)
+        began = world.now()
+        for other in self.others.values():
+            other.answered = began
+        for entry in self._journal.entries():
+            self._take(entry)
+        try:
+            following = (self._follow(bus, name, other) for name, other in self.others.items())
+            await asyncio.gather(self._putting(bus), self._watching(), *following)
+        finally:
+            self._put(bus)
+            bus.close()
+            self.close()
+
+    def close(self) -> None:
+        """Give the log free; for a run that has not begun, too."""
+        self._journal.close()
+
+    def sharing(self, plugin: Plugin) -> Plugin:
+        """Return a plugin that tells what it learns to all stations."""
+        return Shared(plugin, self)
+
+    # --- looking on
+
+    def arrived(self, heard: Heard, now: float) -> None:
+        """See something come in: nothing is to be done."""
+
+    def reported(self, report: Report, now: float) -> None:
+        """See what a plugin reports: nothing is to be done."""
+
+    def turned(self, turn: Turn, now: float) -> None:
+        """Tell the others what concerns them; the recording has it all already."""
+        for station, number in entered(turn).items():
+            self.others[station].drop(number)
+        contents: list[Content] = [*believed(turn, self.merge)]
+        if not self._introduced or any(step.transition.label.rule in MOVING for step in turn.steps):
+            contents += moved(turn.state.configuration, self.merge, now)
+            self._introduced = True
+        known = {name: other.last for name, other in self.others.items() if other.last}
+        contents += told(turn, self._vehicles, known)
+        for entry in self._add(contents):
+            self.merge.hear(entry)
+
+    # --- saying
+
+    def publish(self, plugin: Plugin, world: World, published: Published) -> None:
+        """Take what a plugin of ours publishes: it is said to all, and what holds then is told to our own world."""
+        published = stamped(published, world.now())
+        entity, owned = entity_of(published), plugin.owns(entity_of(published))
+        if entity in self._vehicles and not owned:
+            world.publish(published)  # refused there, and reported
+            return
+        before = self._journal.word(("said", entity))
+        if isinstance(before, Said) and before.time > Said(published, 0.0).time:
+            return
+        said = Said(published, world.now(), owned)
+        if owned:
+            known = self.merge.holds(entity, world.now())
+            channels, since = self._authority.channels(entity, published, known, world.now())
+            said = Said(on(published, channels), since, owned)
+        for entry in self._add([said]):
+            self._join(entry)
+        self._show(world, entity)
+
+    def lags(self, entity: str) -> bool:
+        """Tell whether a vehicle obeys us, and our link does not know it yet."""
+        now = 0.0 if self._world is None else self._world.now()
+        return self._authority.lags(entity, self.merge.holds(entity, now))
+
+    def commanded(self, command: Command) -> None:
+        """Take note of a hand-over that one of our vehicles is told."""
+        if isinstance(command, HandOver):
+            self._authority.handing[command.entity] = command
+
+    def _add(self, contents: Sequence[Content]) -> list[Entry]:
+        entries = self._journal.add(list(contents)) if contents else []
+        for entry in entries:
+            self._unsaid.pop(entry.content.key, None)
+            self._unsaid[entry.content.key] = entry
+        return entries
+
+    async def _putting(self, bus: Bus) -> None:
+        while True:
+            await asyncio.sleep(TICK)
+            self._put(bus)
+
+    def _put(self, bus: Bus) -> None:
+        """Put what was said since; whoever has not heard what came before asks for it."""
+        if self._unsaid:
+            entries = list(self._unsaid.values())
+            texts, upto = fitting(entries, self._journal.last)
+            bus.put(self._message(texts, upto, after=self._said))
+            self._said = upto
+            for entry in entries[: len(texts)]:
+                del self._unsaid[entry.content.key]
+
+    def _message(self, texts: Sequence[str], upto: int, after: int) -> bytes:
+        assert self._world is not None
+        return written(Message(self._digest, self._world.now(), after, upto, self._journal.last), texts)
+
+    def _answer(self, _key: str, question: bytes) -> bytes:
+        """Answer what was said after a number."""
+        after = 0
+        with suppress(ValueError, RecursionError):
+            match json.loads(question):
+                case {"after": int(number)}:
+                    after = number
+        texts, upto = fitting(*self._journal.after(after, MOST_ENTRIES))
+        return self._message(texts, upto, after)
+
+    # --- hearing
+
+    def _hear(self, station: str, said: bytes) -> None:
+        """Take what was put; ask at once for what was missed."""
+        other, message = self.others[station], self._read(station, said)
+        if message is None:
+            return
+        if not other.follow(message, whole=self._take_all(station, message.entries)):
+            other.awake.set()
+        self._deliver()
+
+    async def _follow(self, bus: Bus, station: str, other: Other) -> None:
+        """Ask a station again and again for what we have not heard, and what its clock says."""
+        assert self._world is not None
+        world = self._world
+        while True:
+            asked = world.now()
+            try:
+                answer = await bus.ask(station, json.dumps({"after": other.heard}).encode(), PATIENCE)
+            except OSError:
+                self._silent(world, station, other)
+                await asyncio.sleep(POLL)
+                continue
+            more = self._told(world, station, self._read(station, answer), asked)
+            other.delivered = 0  # what has not entered is told again
+            self._deliver()
+            if not more:
+                other.awake.clear()
+                with suppress(TimeoutError):
+                    await asyncio.wait_for(other.awake.wait(), POLL)
+
+    def _told(self, world: World, station: str, message: Message | None, asked: float) -> bool:
+        """Take an answer; return whether there is more to ask for."""
+        other = self.others[station]
+        if message is None:
+            return False
+        self._found(world, station, other, message.time, asked)
+        return (
+            other.follow(message, whole=self._take_all(station, message.entries)) and other.heard < other.last
+        )
+
+    def _read(self, station: str, said: bytes) -> Message | None:
+        """Read a message; what is none is reported, and who flies another mission."""
+        try:
+            message = read(said)
+        except ValueError as error:
+            self._troubles.note("unreadable message", f"from {station}: {error!s:.200}")
+            return None
+        if message.mission != self._digest:
+            detail = f"{station} flies another mission, or another version of it: give all the same"
+            self._troubles.note("another mission", detail)
+            return None
+        return message
+
+    def _take_all(self, station: str, entries: Sequence[Any]) -> bool:
+        """Take entries; return whether there was room for all."""
+        for data in entries:
+            try:
+                entry = entry_of(station, data)
+                if isinstance(entry.content, Posted) and len(self.others[station].parcels) >= MOST_PARCELS:
+                    return False
+                self._take(entry)
+            except ValueError as error:
+                self._troubles.note("unreadable entry", f"from {station}: {error!s:.200}")
+        return True
+
+    def _take(self, entry: Entry) -> None:
+        assert self._world is not None
+        match entry.content:
+            case Said(_, _, owned) as said:
+                if said.entity in self._vehicles and not owned:
+                    detail = f"{entry.station} speaks of {said.entity}, which is a vehicle, without its link"
+                    self._troubles.note("not its vehicle", detail)
+                elif self._join(entry):
+                    self._show(self._world, said.entity)
+            case Sent(entity) if self.merge.hear(entry):
+                self._pass_on(self.merge.leg(entity))
+            case Hosted(agent) if self.merge.hear(entry):
+                self._pass_on(self.merge.home(agent))
+            case Believed(node, slot) if self.merge.hear(entry):
+                self._pass_on(self.merge.belief(slot, node))
+            case Broke(assumption) if assumption and entry.station != self._journal.station:
+                self._world.report(Broken(entry.station, self._world.now(), assumption))
+            case Posted(to, index) as posted:
+                if to == self._journal.station and index > self._journal.took(entry.station):
+                    self.others[entry.station].parcels[index] = posted
+            case Took(of, index):
+                if of == self._journal.station:
+                    self._journal.taken(entry.station, index)
+
+    def _pass_on(self, entry: Entry | None) -> None:
+        """Tell the run what another station has said the latest, of a vehicle that it sent or an agent that it has."""
+        assert self._world is not None
+        now = self._world.now()
+        match entry:
+            case Entry(content=Believed(node, slot, names)):
+                self._world.report(Believes(node, now, slot, names))
+            case Entry(station) if station == self._journal.station:
+                pass  # the run knows
+            case Entry(content=Sent(entity, to)):
+                self._world.report(Underway(entity, now, to))
+            case Entry(content=Hosted(agent, host)):
+                self._world.report(Hosts(agent, now, host))
+
+    def _join(self, entry: Entry) -> bool:
+        """Join a word to what is known; return whether it made a difference."""
+        assert self._world is not None
+        if self.merge.hear(entry) is None:
+            return False
+        said, now = entry.content, self._world.now()
+        if isinstance(said, Said) and said.time > now + MOST_AHEAD:
+            self._ahead.add(said.entity)
+            detail = (
+                f"{entry.station} says of {said.entity} what is {said.time - now:.0f} s ahead: set its clock"
+            )
+            self._troubles.note("time stamp in the future", detail)
+        return True
+
+    def _show(self, world: World, entity: str) -> None:
+        said = self.merge.holds(entity, world.now())
+        if said is not None:
+            world.publish(said.published)
+
+    def _deliver(self) -> None:
+        """Tell the run of the parcels that may enter."""
+        assert self._world is not None
+        for station, other in self.others.items():
+            if other.parcels:
+                for index, posted in other.due(self.others, self._journal.took(station)):
+                    self._world.report(Delivered(station, self._world.now(), index, posted.parcel))
+
+    # --- links and clocks
+
+    async def _watching(self) -> None:
+        """Let words count whose time has come, and report what went wrong."""
+        assert self._world is not None
+        world = self._world
+        while True:
+            await asyncio.sleep(POLL)
+            early = (
+                {entry.content.key[1] for entry in self.merge.ahead(world.now())} if self._ahead else set()
+            )
+            for entity in sorted(self._ahead - early):
+                self._show(world, entity)
+            self._ahead &= early
+            self._troubles.report(world)
+
+    def _silent(self, world: World, station: str, other: Other) -> None:
+        if other.reached is not False and world.now() - other.answered > SILENCE:
+            other.reached = False
+            where = ", ".join(self._peers.others[station].connect)
+            waiting = self._journal.waiting(station)
+            kept = f"; {waiting:,} parcels wait for it" if waiting else ""
+            detail = f"nothing of {station} at {where} for {world.now() - other.answered:.0f} s; it is tried on{kept}"
+            world.report(Trouble(NAME, world.now(), f"{station} is not reached", detail))
+
+    def _found(self, world: World, station: str, other: Other, theirs: float, asked: float) -> None:
+        now = world.now()
+        if other.reached is False:
+            world.report(Trouble(NAME, now, f"{station} is reached again"))
+        other.reached, other.answered = True, now
+        other.skew.add(measured(asked, theirs, now))
+        best = other.skew.best
+        skewed = best is not None and best.exceeds(MOST_SKEW)
+        if best is not None and skewed and not other.skewed:
+            detail = f"it is {best.ahead:+.1f} s off ours (to {best.error:.2f} s): set both, as by NTP"
+            world.report(Trouble(NAME, now, f"the clock of {station}", detail))
+        other.skewed = skewed

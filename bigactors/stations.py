@@ -1,0 +1,165 @@
+"""`run --station NAME --peers FILE`: a mission flown by several stations, each with its own part of it."""
+
+from __future__ import annotations
+
+import time
+from argparse import Namespace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from adapters.live.state import Plan
+from adapters.plugin import Plugin
+from adapters.stations.entries import Believed, Broke, Content, Posted, Sent, Took
+from adapters.stations.journal import Journal, JournalError
+from adapters.stations.peers import Peers, read_peers
+from adapters.stations.sharing import NAME, Sharing
+from bigactors.files import file_stem
+from bigactors.missions import digest_of
+from bigactors.mistakes import Mistake, suggestion, unreadable
+from bigactors.recordings import Resumed
+from physical import PhysicalError
+from semantics.parting import Parting, parted, took_cell
+from semantics.plain_parcels import parcel_json
+from specs.elaboration import ElaboratedMission
+
+
+@dataclass(frozen=True, slots=True)
+class Company:
+    """One station among the others.
+
+    Attributes:
+        sharing: The plugin by which it shares.
+        parting: Which part of the mission is its own.
+    """
+
+    sharing: Sharing
+    parting: Parting
+
+    def plan(self, plan: Plan, mission: ElaboratedMission) -> Plan:
+        """Return what stays the same at this station: its part of the mission; others' vehicles are heard from them."""
+        elsewhere = dict.fromkeys(driven(mission) - plan.vehicles.keys(), NAME)
+        first = parted(mission.initial, self.parting)
+        return replace(plan, first=first, vehicles={**plan.vehicles, **elsewhere}, peers=NAME)
+
+    def plugins(self, plugins: Sequence[Plugin]) -> tuple[Plugin, ...]:
+        """Return the plugin by which the others are heard, begun first, and ours, each telling them what it learns."""
+        return (self.sharing, *map(self.sharing.sharing, plugins))
+
+
+def own_station(options: Namespace) -> str | None:
+    """Return the station that this run is, None where it is the only one; raises Mistake."""
+    found = sorted({name for name, number in options.station if number is None})
+    if len(found) > 1:
+        raise Mistake(f"a run is one station, not {' and '.join(found)}", "start another run for the other")
+    if found and options.peers is None:
+        raise Mistake(f"who are the others of station '{found[0]}'?", "say so: --peers FILE")
+    if options.peers is not None and not found:
+        raise Mistake("which of the stations is this?", "say so: --station NAME")
+    return found[0] if found else None
+
+
+def company_of(options: Namespace, mission: ElaboratedMission, before: Resumed | None) -> Company | None:
+    """Return the station that a run is among the others, None where it is the only one; raises Mistake."""
+    station = own_station(options)
+    if station is None:
+        return None
+    peers = _peers(options, station)
+    _check_hosts(peers, mission, options.peers)
+    if before is not None and not _is_same(before.station, peers):
+        raise Mistake(
+            "it records another station, or other peers", f"resume it as {station} was run", options.resume
+        )
+    digest = digest_of(mission)
+    path = Path(options.station_log or f"{file_stem(mission.name)}.{station}.log")
+    try:
+        journal = Journal(path, station, digest)
+    except JournalError as error:
+        raise Mistake(str(error), "give another with --station-log FILE") from error
+    except OSError as error:
+        raise unreadable(str(path), error) from error
+    parting = _parting(peers, journal, before)
+    topic = file_stem(mission.name)
+    return Company(Sharing(peers, journal, topic, digest, frozenset(driven(mission))), parting)
+
+
+def driven(mission: ElaboratedMission) -> set[str]:
+    """Return the vehicles of a mission: what is there, and of a kind that is driven."""
+    setting, physical = mission.setting, mission.initial.structure.physical
+    return {
+        name for name, kind in setting.kinds.items() if setting.signature[kind].driven and name in physical
+    }
+
+
+def _peers(options: Namespace, station: str) -> Peers:
+    try:
+        return read_peers(Path(options.peers), station)
+    except PhysicalError as error:
+        raise Mistake(error.message, error.hint, options.peers) from error
+    except OSError as error:
+        raise unreadable(options.peers, error) from error
+
+
+def _check_hosts(peers: Peers, mission: ElaboratedMission, place: str) -> None:
+    """Refuse stations and hosts that the mission doesn't have, and bigActors that nobody would run."""
+    kinds, alpha = mission.setting.kinds, mission.initial.alpha
+    for host, station in peers.hosts.items():
+        if host not in kinds:
+            what = "station" if host == station else f"host of [{station}]"
+            hint = suggestion(host, kinds) or "stations and hosts are called as in the mission"
+            raise Mistake(f"the mission has no host '{host:.60}', a {what} here", hint, place)
+    for agent in alpha.names():
+        host = alpha.host(agent)
+        if host not in peers.hosts:
+            hint = f'add hosts = ["{host}"] to the station that is to run it'
+            raise Mistake(f"no station runs the bigActor {agent}, which is hosted at {host}", hint, place)
+
+
+def _is_same(flown: Parting | None, peers: Peers) -> bool:
+    return flown is not None and (flown.here, flown.hosts) == (peers.own.name, peers.hosts)
+
+
+def _parting(peers: Peers, journal: Journal, before: Resumed | None) -> Parting:
+    """Return which part of a mission is a station's; a run that is resumed tells its log what it had not yet."""
+    here = peers.own.name
+    journal.add([*_amended(journal, before)])
+    if before is None:
+        sent = {name: journal.sent(name) for name in peers.others}
+        return Parting(here, peers.hosts, sent, {name: journal.took(name) for name in peers.others})
+    assert before.station is not None
+    for left in before.left:
+        if left.number > journal.sent(left.station):
+            journal.add([Posted(left.station, left.number, parcel_json(left.parcel))])
+    for name in peers.others:
+        taken = before.configuration.read(took_cell(name)) or 0
+        if taken > journal.took(name):
+            journal.add([Took(name, taken)])
+    return before.station
+
+
+def _amended(journal: Journal, before: Resumed | None) -> Iterator[Content]:
+    """Yield what the log has otherwise than the run: it was killed in between, or begins anew."""
+    now = time.time()
+    physical = None if before is None else before.configuration.structure.physical
+    for entry in list(journal.entries()):
+        match entry.content:
+            case Sent(entity, known):
+                to = "" if physical is None else physical.going_to(entity)
+                if to != known:
+                    yield Sent(entity, to, now)
+            case Believed(node, slot, known) if before is not None:
+                logical = before.configuration.structure.logical
+                parent = logical.parent(node)
+                nested = () if parent is None else (parent,)
+                names = nested if slot == "parent" else logical.links(node)
+                if names != known:
+                    yield Believed(node, slot, names, now)
+            case Broke(assumption) if assumption and before is None:
+                yield Broke("", now)
+
+
+def parting_json(parting: Parting) -> dict[str, Any]:
+    """Return which part of a mission was flown as plain data."""
+    counts = {"sent": dict(parting.sent), "took": dict(parting.took)}
+    return {"here": parting.here, "hosts": dict(parting.hosts), **counts}

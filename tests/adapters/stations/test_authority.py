@@ -1,0 +1,70 @@
+"""Whom a vehicle obeys, told by links of which none knows when it was so."""
+
+import pytest
+
+from adapters.plugin import HandOver
+from adapters.stations.authority import LASTING, Authority
+from adapters.stations.entries import Said
+from physical import PhysicalProperty, point
+
+GCS0, GCS1, GCS2 = (("control:gcs0",), ("control:gcs1",), ("control:gcs2",))
+
+
+def shown(channels):
+    return PhysicalProperty("uav0", "UAV", point(37, -8), channels=channels, time=1.0)
+
+
+def known(channels, since=5.0):
+    return Said(shown(channels), since, owned=True)
+
+
+def believed(authority, channels, of, now=10.0):
+    return authority.channels("uav0", shown(channels), of, now)
+
+
+def test_the_first_who_tells_is_believed():
+    assert believed(Authority("gcs2"), GCS0, None) == (GCS0, 10.0)
+
+
+def test_a_hand_over_that_was_commanded_counts_at_once_and_after_all_that_was_known():
+    authority = Authority("gcs0")
+    authority.handing["uav0"] = HandOver("op0-1", "uav0", *GCS0, *GCS1)
+    assert believed(authority, GCS0, known(GCS0)) == (GCS0, 5.0)
+    channels, since = believed(authority, GCS1, known(GCS0, since=99.0))  # another's clock is ahead
+    assert (channels, since > 99.0) == (GCS1, True)
+    assert authority.handing == {}
+
+
+def test_a_link_that_lags_behind_is_not_believed():
+    """It tells gcs1 when gcs2 has already handed on to gcs0: the network was faster."""
+    authority = Authority("gcs0")
+    for late in (GCS1, GCS2):
+        assert believed(authority, late, known(GCS0)) == (GCS0, 5.0)
+    assert believed(authority, GCS0, known(GCS0)) == (GCS0, 5.0)
+    assert authority.doubts == {}
+
+
+def test_what_lasts_is_believed():
+    authority = Authority("gcs0")
+    assert believed(authority, GCS2, known(GCS0), 10.0) == (GCS0, 5.0)
+    assert believed(authority, GCS2, known(GCS0), 10.0 + LASTING - 0.1) == (GCS0, 5.0)
+    assert believed(authority, GCS2, known(GCS0), 10.0 + LASTING) == (GCS2, 10.0 + LASTING)
+
+
+def test_what_a_link_has_shown_all_along_is_no_news_when_others_have_handed_on():
+    """A vehicle may answer only whom it obeys: another's link shows for ever what it has read last."""
+    authority = Authority("gcs2")
+    assert believed(authority, GCS0, known(GCS0)) == (GCS0, 5.0)
+    for now in (20.0, 20.0 + 2 * LASTING):
+        assert believed(authority, GCS0, known(GCS1, 19.0), now) == (GCS1, 19.0)
+
+
+def test_what_was_commanded_since_is_newer_than_a_doubt():
+    authority = Authority("gcs2")
+    assert believed(authority, GCS0, known(GCS1, 9.0), 10.0) == (GCS1, 9.0)
+    assert believed(authority, GCS0, known(GCS1, 11.0), 10.0 + LASTING) == (GCS1, 11.0)
+
+
+@pytest.mark.parametrize(("of", "counts"), [(GCS0, True), (GCS1, False)])
+def test_a_link_that_is_lost_says_so_only_of_its_own_authority(of, counts):
+    assert believed(Authority("gcs0"), (), known(of)) == (((), 10.0) if counts else (of, 5.0))

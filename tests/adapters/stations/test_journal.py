@@ -1,0 +1,185 @@
+import json
+
+import pytest
+from test_merge import word
+
+from adapters.plugin import Aged, Gone
+from adapters.stations import journal as journals
+from adapters.stations.entries import (
+    Believed,
+    Broke,
+    Entry,
+    Hosted,
+    Posted,
+    Said,
+    Sent,
+    Took,
+    entry_of,
+    entry_text,
+)
+from adapters.stations.journal import Journal, JournalError
+from physical import Band, PhysicalProperty, Velocity, box
+
+EVERYTHING = PhysicalProperty(
+    "a", "UAV", box((1, 2), (3, 4)), Band(1, 2), ("c", "d"), "b", 5.0, "gcs0", Velocity(1.5, 2)
+)
+
+
+def said(entity, time):
+    return word("gcs0", 1, time, entity=entity).content
+
+
+@pytest.fixture
+def opened(tmp_path):
+    """Open the log of a station; what is open at the end is closed."""
+    found = []
+
+    def opening(**other):
+        found.append(Journal(tmp_path / "x.log", **{"station": "gcs0", "digest": "d", **other}))
+        return found[-1]
+
+    yield opening
+    for journal in found:
+        journal.close()
+
+
+def test_a_restarted_station_goes_on_counting_and_knows_what_it_has_said(opened):
+    journal = opened()
+    journal.add([said("a", 1.0), said("b", 1.0), Posted("gcs1", 1, {}), Took("gcs1", 3)])
+    last = journal.last
+    journal.close()
+    again = opened()
+    assert again.last == last
+    assert (again.sent("gcs1"), again.took("gcs1"), again.waiting("gcs1")) == (1, 3, 1)
+    (entry,) = again.add([said("a", 2.0)])
+    assert entry.number == last + 1
+    found, upto = again.after(0, 10)
+    assert [each.number for each in found] == [last - 2, last - 1, last, last + 1]
+    assert upto == last + 1
+    assert again.after(last - 2, 1) == ([found[1]], last - 1)
+
+
+def test_a_log_that_was_lost_begins_above_every_number_it_may_have_had(opened, tmp_path):
+    journal = opened()
+    last = journal.add([said("a", 1.0)] * 100)[-1].number
+    journal.close()
+    (tmp_path / "x.log").unlink()
+    assert opened().add([said("a", 1.0)])[0].number + 1_000 > last
+
+
+def test_what_was_taken_is_posted_no_more_and_its_number_is_not_given_again(opened):
+    journal = opened()
+    journal.add([Posted("gcs1", number, {}) for number in (1, 2, 3)])
+    journal.taken("gcs1", 2)
+    assert journal.waiting("gcs1") == 1
+    journal._rewrite()
+    journal.close()
+    again = opened()
+    assert (again.sent("gcs1"), again.waiting("gcs1"), again.last) == (3, 1, journal.last)
+
+
+def test_the_file_is_tidied_and_stays_small(opened, tmp_path, monkeypatch):
+    monkeypatch.setattr(journals, "SPARE", 50)
+    journal = opened()
+    for time in range(1_000):
+        journal.add([said("a", float(time)), said("b", float(time))])
+    assert len((tmp_path / "x.log").read_text().splitlines()) < 70
+    last = journal.last
+    journal.close()
+    again = opened()
+    assert again.last == last
+    assert again.word(("said", "a")) == said("a", 999.0)
+
+
+def test_what_a_killed_process_has_left_of_a_line_is_cut_off(opened, tmp_path):
+    journal = opened()
+    journal.add([said("a", 1.0), said("b", 1.0)])
+    journal.close()
+    path = tmp_path / "x.log"
+    path.write_bytes(path.read_bytes()[:-20])
+    again = opened()
+    assert again.word(("said", "b")) is None
+    again.add([said("b", 2.0)])
+    again.close()
+    assert opened().word(("said", "b")) == said("b", 2.0)
+
+
+def test_only_one_run_writes_a_log(opened):
+    journal = opened()
+    with pytest.raises(JournalError, match="another run of this station"):
+        opened()
+    journal.close()
+    opened().close()
+
+
+@pytest.mark.parametrize(
+    ("other", "says"),
+    [({"station": "gcs1"}, "is the log of station 'gcs0'"), ({"digest": "e"}, "is the log of mission 'd'")],
+)
+def test_the_log_of_another_station_or_mission_is_refused(opened, other, says):
+    opened().close()
+    with pytest.raises(JournalError, match=says):
+        opened(**other)
+
+
+@pytest.mark.parametrize("text", ["{}\n", "hello\n", '{"log": "bigactors.station/2"}\n'])
+def test_what_is_no_log_is_refused(opened, tmp_path, text):
+    (tmp_path / "x.log").write_text(text)
+    with pytest.raises(JournalError, match="log"):
+        opened()
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        Said(EVERYTHING, 3.0, owned=True),
+        Said(Aged(EVERYTHING, 60.0), 3.0),
+        Said(Gone("a", 5.0, "gcs0"), 5.0),
+        Sent("uav0", "east0", 5.0),
+        Sent("uav0", "", 5.0),
+        Posted("gcs1", 3, {"x": [1]}),
+        Posted("gcs1", 3, {}, (("gcs2", 7),)),
+        Hosted("op0", "gcs0", 5.0),
+        Broke("it rains", 5.0),
+        Believed("uav0", "links", ("control:gcs0",), 5.0),
+        Believed("uav0", "parent", (), 5.0),
+        Took("gcs1", 3),
+    ],
+)
+def test_an_entry_is_read_as_it_was_written(content):
+    entry = Entry("gcs0", 7, content)
+    assert entry_of("gcs0", json.loads(entry_text(entry))) == entry
+
+
+GOOD = json.loads(entry_text(Entry("gcs0", 7, Said(EVERYTHING, 3.0))))
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        3,
+        {},
+        {"n": 0, "took": "a", "index": 1},
+        {"n": True, "took": "a", "index": 1},
+        {"n": 10**20, "took": "a", "index": 1},
+        {"n": 1, "took": "a", "index": -1},
+        {"n": 1, "sent": "a\n", "to": "", "time": 1},
+        {"n": 1, "to": "a", "index": 1, "parcel": {}, "knows": {"gcs0": -1}},
+        {"n": 1, "to": "a", "index": 1, "parcel": {}, "knows": [1]},
+        {"n": 1, "broke": "x" * 9_000, "time": 1},
+        GOOD | {"entity": "x" * 300},
+        GOOD | {"time": float("nan")},
+        GOOD | {"time": None},
+        GOOD | {"since": "x"},
+        GOOD | {"owned": 1},
+        GOOD | {"at": {"ring": [[10**12, 0]]}},
+        GOOD | {"at": {"ring": []}},
+        GOOD | {"channels": ["x"] * 1000},
+        GOOD | {"velocity": [1]},
+        GOOD | {"altitude": ["x", 1]},
+        GOOD | {"ttl": float("inf")},
+    ],
+)
+def test_what_is_no_entry_is_refused(data):
+    with pytest.raises(ValueError, match=r"."):
+        entry_of("gcs0", data)
