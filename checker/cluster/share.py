@@ -16,7 +16,7 @@ from checker.cluster.keys import Keys
 from checker.cluster.parcels import Dictionary, Entry, Parcel, Told
 from checker.exploration import memory_taken
 from checker.fast import kernel as loops
-from checker.fast.columns import WORD, Packing
+from checker.fast.columns import WORD, Packing, shifts
 from checker.fast.engine import FIRST_ROWS, MOST_ROWS, Space
 from checker.fast.kernel import AT, CROWDS, CUT, EXPANDED, GATHERED, LIMIT, SIZE
 from checker.fast.learner import Learner
@@ -91,7 +91,7 @@ class Outbox:
         for rows, to in zip(self.rows, packed, strict=True):
             flat = to.ravel()
             flat[: rows.size] = rows.ravel()
-            loops.repack(flat, len(rows), old.columns, new.columns, old.words, new.words)
+            loops.repack(flat, len(rows), shifts(old, new), old.words, new.words)
         self.rows = packed
 
     def taken_out(self, peer: int, words: int) -> tuple[NDArray[np.uint64], NDArray[np.uint32]]:

@@ -222,3 +222,20 @@ def packing(sizes: Sequence[int], words: int = 1) -> Packing:
             columns[number] = word, shift % WORD, (1 << wide) - 1
             shift += wide
     return Packing(len(rows), columns.ravel())
+
+
+def shifts(old: Packing, new: Packing) -> NDArray[np.uint64]:
+    """Return how the bits of a row move from one packing to another: five numbers for all that move alike.
+
+    These are the old word, the new word, the mask of the bits in the old word, and how far they are shifted left, then
+    right.
+    """
+    masks: dict[tuple[int, int, int], int] = {}
+    for column in np.flatnonzero(old.mask):
+        far = int(new.shift[column]) - int(old.shift[column])
+        way = (int(old.word[column]), int(new.word[column]), far)
+        masks[way] = masks.get(way, 0) | int(old.mask[column]) << int(old.shift[column])
+    found = [
+        (source, target, mask, max(far, 0), max(-far, 0)) for (source, target, far), mask in masks.items()
+    ]
+    return np.array(found, np.uint64).ravel()

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from checker.bounding import look
 from checker.fast import kernel
 from checker.fast.arrays import Growing
-from checker.fast.columns import Packing, packing
+from checker.fast.columns import Packing, packing, shifts
 from checker.fast.kernel import (
     ALPHA,
     AT,
@@ -377,7 +377,7 @@ class Space:
         self.state[WORDS] = self.packing.words
         self._reserve_rows(len(self.origins.room))
         new = self.packing
-        kernel.repack(self.words.room, self.size, old.columns, new.columns, old.words, new.words)
+        kernel.repack(self.words.room, self.size, shifts(old, new), old.words, new.words)
         self.masks.size = self.located = 0
         self._make_batches(len(self.batch.hashes))
         self._rebuild(len(self.table.room))

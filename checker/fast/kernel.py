@@ -89,7 +89,7 @@ BLOCK = 1 << 12
 WIDE = -2
 """What stands in the place of a node where one row has more successors than a batch holds."""
 
-PLACE = 3
+PLACE, MOVE = 3, 5
 _MULTIPLIER = np.uint64(0x9E3779B97F4A7C15)
 _HALF, _ONE = np.uint64(32), np.uint64(1)
 
@@ -408,16 +408,17 @@ def rebuild(words: Words, size: int, width: int, table: Any) -> None:
 
 
 @njit(cache=True)
-def repack(words: Words, size: int, old: Words, new: Words, old_width: int, new_width: int) -> None:
-    """Pack rows anew in their place, from the last to the first: a row of the new packing is not shorter."""
+def repack(words: Words, size: int, moves: Words, old_width: int, new_width: int) -> None:
+    """Pack rows anew in their place, from the last to the first: a row of the new packing is not shorter.
+
+    What moves is told by `columns.shifts`.
+    """
     packed = np.zeros(new_width, np.uint64)
-    used = np.flatnonzero(old[2::PLACE])
     for row in range(size - 1, -1, -1):
         packed[:] = 0
-        for column in used:
-            code = np.uint64(code_at(words, row * old_width, old, column))
-            where = PLACE * column
-            packed[np.int64(new[where])] |= code << new[where + 1]
+        for k in range(0, len(moves), MOVE):
+            bits = words[row * old_width + np.int64(moves[k])] & moves[k + 2]
+            packed[np.int64(moves[k + 1])] |= (bits << moves[k + 3]) >> moves[k + 4]
         for k in range(new_width):
             words[row * new_width + k] = packed[k]
 

@@ -27,7 +27,10 @@ def test_what_the_symbolic_engine_does_not_decide_is_incomplete(bigactors):
     [
         (["--engine", "symbolic", "--scheduler", "fcfs"], "the symbolic engine does not do scheduler fcfs"),
         (["--engine", "symbolic", "--reduce", "por"], "the symbolic explorer does not reduce"),
-        (["--engine", "symbolic", "--paranoid", "1"], "--checkpoint, --paranoid and --hash-compact are of the fast explorer"),
+        (
+            ["--engine", "symbolic", "--paranoid", "1"],
+            "--checkpoint, --paranoid and --hash-compact are of the fast explorer",
+        ),
         (["--spill", "there"], "--spill is for when memory ends"),
         (
             ["--spill", "there", "--max-memory", "1G", "--engine", "symbolic"],
