@@ -121,6 +121,7 @@ class _Explorer:
         self.journey = Journey(0, 1, 0.0)
         self.layers = [1]
         self.bounds: list[str] = []
+        self.exploring = 1.0
 
     def choosing(self) -> "Choosing | None":
         """Return what chooses the transitions that are followed, None where all are."""
@@ -139,6 +140,7 @@ class _Explorer:
 
     def run(self, inspect: tuple[Inspect, ...]) -> Exploration:
         began = time.monotonic()
+        self.exploring = EXPLORING if inspect or self.keeping.doubted else 1.0
         path = self.checkpoint
         if path is not None and self.keeping.resumed and path.exists():
             self.journey = resume(self.space, self.keeping.digest, path)
@@ -238,7 +240,7 @@ class _Explorer:
     def is_over(self, seconds: float) -> bool:
         """Tell whether time or memory has come to its end, and note it."""
         most = self.limits.seconds
-        if most is not None and seconds + self.limits.spent > EXPLORING * most:
+        if most is not None and seconds + self.limits.spent > self.exploring * most:
             self.bounds.append(time_met(most))
         elif is_full(self.limits) and not self.makes_room():
             self.bounds.append(memory_met(self.limits))
