@@ -440,9 +440,17 @@ def memory_met(limits: Limits) -> str:
     return f"the memory limit of {(limits.memory or 0) / 1e6:,.0f} MB"
 
 
+OMITTING = "hash compaction"
+
+
+def cut(bound: str) -> str:
+    """Say what a bound has done."""
+    return bound if bound.startswith(OMITTING) else f"stopped at {bound}: what lies beyond was not explored"
+
+
 def omission_met(bits: int, chance: float) -> str:
     """Say that configurations may have been taken for others."""
-    return f"hash compaction to {bits} bits: some were left out with a probability of at most {chance:.1g}"
+    return f"{OMITTING} to {bits} bits: some were left out with a probability of at most {chance:.1g}"
 
 
 def crowd_met(most: int) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from checker.coverage_report import coverage_json
+from checker.exploration import cut
 from checker.traces import Trace, print_length, print_trace, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
 from semantics.setting import Control
@@ -43,7 +44,7 @@ def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[s
     complete = "complete" if report.complete else "INCOMPLETE"
     yield f"{name}: {size}, {complete}{searched}, {report.seconds:.2f} s"
     for bound in report.bounds:
-        yield f"  stopped at {bound}: what lies beyond was not explored"
+        yield f"  {cut(bound)}"
     width = max((len(verdict.property.name) for verdict in report.verdicts), default=0)
     for verdict in report.verdicts:
         yield from _verdict(verdict, width, traces=traces)

@@ -7,6 +7,7 @@ from enum import Enum
 
 from checker.coverage import Gap
 from checker.coverage_report import coverage_text, line_text
+from checker.exploration import cut
 from checker.places import violation_line
 from checker.report import report_text
 from checker.traces import Trace, print_length, print_trace
@@ -114,12 +115,8 @@ class Result:
         return verdict.property.line or self.check_line
 
     def _cut_off(self) -> str:
-        bounds = " and ".join(self.report.bounds) if self.report else ""
-        return (
-            f"not decided: stopped at {bounds}, what lies beyond was not explored"
-            if bounds
-            else "not decided"
-        )
+        bounds = map(cut, self.report.bounds if self.report else ())
+        return "; ".join(["not decided", *bounds])
 
     def _violation(self, verdict: Verdict, violation: Violation) -> Issue:
         asked = verdict.property
