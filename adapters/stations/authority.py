@@ -3,6 +3,7 @@
 No message of a vehicle says when it began to obey whom, a vehicle may answer nobody else, and the network between
 stations may be faster than a link. So a change counts at once where it was commanded, and where our own link is lost.
 What else a link tells *anew* counts once it has lasted so long that it was read again, if nothing was commanded since.
+A link that never told has lost nothing: of a vehicle that was handed to us it has as long to come to know it.
 """
 
 from __future__ import annotations
@@ -43,19 +44,18 @@ class Authority:
 
     def channels(self, entity: str, published: Published, known: Said | None, now: float) -> Channels:
         """Return what counts of a vehicle's channels where its link shows some, and others are known."""
-        shown = channels_of(published)
-        news = shown != self.shown.get(entity)
+        shown, before = channels_of(published), self.shown.get(entity)
         self.shown[entity] = shown
         if known is None:
             return shown, now
         believed = (channels_of(known.published), known.since)
-        if news or shown == believed[0]:
-            self.doubts.pop(entity, None)
         if shown == believed[0]:
+            self.doubts.pop(entity, None)
             return believed
-        if news:
+        if shown != before or (_is_silent(shown) and not self._doubts(entity, known.since)):
             self.doubts[entity] = (now, known.since)
-        if self._counts(entity, shown, believed, now):
+        lost = _is_silent(shown) and not _is_silent(before or ())
+        if self._counts(entity, shown, believed, now, lost=lost):
             return shown, max(now, known.since + A_MOMENT)
         return believed
 
@@ -67,12 +67,23 @@ class Authority:
             known is not None and ours in channels_of(known.published) and bool(shown) and ours not in shown
         )
 
-    def _counts(self, entity: str, shown: tuple[str, ...], believed: Channels, now: float) -> bool:
+    def _counts(
+        self, entity: str, shown: tuple[str, ...], believed: Channels, now: float, *, lost: bool
+    ) -> bool:
         told = self.handing.get(entity)
         if told is not None and is_done(told, shown):
             del self.handing[entity]
             return True
-        if not any(map(is_authority, shown)):  # it is lost, or does not tell
-            return f"{CONTROL_AUTHORITY}:{self.station}" in believed[0]
-        since, known = self.doubts.get(entity, (now, believed[1]))
-        return known == believed[1] and now - since >= LASTING
+        if _is_silent(shown) and f"{CONTROL_AUTHORITY}:{self.station}" not in believed[0]:
+            return False
+        since = self.doubts[entity][0] if self._doubts(entity, believed[1]) else now
+        return lost or now - since >= LASTING
+
+    def _doubts(self, entity: str, since: float) -> bool:
+        """Tell whether what has been known of a vehicle since then is in doubt."""
+        return entity in self.doubts and self.doubts[entity][1] == since
+
+
+def _is_silent(shown: tuple[str, ...]) -> bool:
+    """Tell whether a link shows no authority: it has lost the vehicle, or was never answered as to whom it obeys."""
+    return not any(map(is_authority, shown))

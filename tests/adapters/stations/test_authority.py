@@ -67,4 +67,30 @@ def test_what_was_commanded_since_is_newer_than_a_doubt():
 
 @pytest.mark.parametrize(("of", "counts"), [(GCS0, True), (GCS1, False)])
 def test_a_link_that_is_lost_says_so_only_of_its_own_authority(of, counts):
-    assert believed(Authority("gcs0"), (), known(of)) == (((), 10.0) if counts else (of, 5.0))
+    authority = Authority("gcs0")
+    assert believed(authority, GCS0, known(GCS0)) == (GCS0, 5.0)
+    assert believed(authority, (), known(of)) == (((), 10.0) if counts else (of, 5.0))
+
+
+def test_a_link_that_was_never_told_has_lost_nothing_when_its_vehicle_is_handed_to_us():
+    """The vehicle answers nobody but whom it obeys: so our link is to hear of it only now."""
+    authority = Authority("gcs1")
+    assert believed(authority, (), known(GCS0)) == (GCS0, 5.0)
+    for now in (100.0, 100.0 + LASTING - 0.1):
+        assert believed(authority, (), known(GCS1, 99.0), now) == (GCS1, 99.0)
+    assert believed(authority, GCS1, known(GCS1, 99.0), 100.0 + LASTING) == (GCS1, 99.0)
+    assert authority.doubts == {}
+
+
+def test_a_link_that_is_never_told_is_believed_in_the_end():
+    authority = Authority("gcs1")
+    assert believed(authority, (), known(GCS1, 99.0), 100.0) == (GCS1, 99.0)
+    assert believed(authority, (), known(GCS1, 99.0), 100.0 + LASTING) == ((), 100.0 + LASTING)
+
+
+def test_a_link_that_was_never_told_is_given_its_time_from_each_hand_over():
+    authority = Authority("gcs1")
+    believed(authority, (), known(GCS1, 9.0), 10.0)
+    believed(authority, (), known(GCS0, 15.0), 15.0)
+    assert believed(authority, (), known(GCS1, 20.0), 10.0 + LASTING) == (GCS1, 20.0)
+    assert believed(authority, (), known(GCS1, 20.0), 10.0 + 2 * LASTING) == ((), 10.0 + 2 * LASTING)
