@@ -3,6 +3,7 @@
 import json
 import os
 import selectors
+import signal
 import socket
 import subprocess
 import sys
@@ -168,6 +169,11 @@ class Station:
     def kill(self):
         self._process.kill()
         self._process.wait()
+
+    def interrupt(self):
+        """Let it end as its operator does."""
+        self._process.send_signal(signal.SIGINT)
+        self._process.wait(20)
 
     def see(self, **places):
         """Let the station's camera see entities at places."""
