@@ -68,9 +68,7 @@ async def measure(rate: int, seconds: float, folder: Path) -> tuple[list[float],
     sharings = []
     for name in NAMES:
         journal = Journal(folder / f"{name}.log", name, "benchmark")
-        sharings.append(
-            Sharing(peers_of(table, name, folder), journal, "benchmark", "benchmark", frozenset())
-        )
+        sharings.append(Sharing(peers_of(table, name, folder), journal, "benchmark", "benchmark", {}))
     worlds = [Run() for _ in NAMES]
     tasks = [asyncio.ensure_future(each.run(world)) for each, world in zip(sharings, worlds, strict=True)]
     await asyncio.sleep(2.0)

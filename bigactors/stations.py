@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from adapters.live.orders import is_authority
 from adapters.live.state import Plan
 from adapters.plugin import Plugin
 from adapters.stations.entries import Believed, Broke, Content, Posted, Sent, Took
@@ -81,7 +82,7 @@ def company_of(options: Namespace, mission: ElaboratedMission, before: Resumed |
         raise unreadable(str(path), error) from error
     parting = _parting(peers, journal, before)
     topic = file_stem(mission.name)
-    return Company(Sharing(peers, journal, topic, digest, frozenset(driven(mission))), parting)
+    return Company(Sharing(peers, journal, topic, digest, _obeying(mission)), parting)
 
 
 def driven(mission: ElaboratedMission) -> set[str]:
@@ -90,6 +91,12 @@ def driven(mission: ElaboratedMission) -> set[str]:
     return {
         name for name, kind in setting.kinds.items() if setting.signature[kind].driven and name in physical
     }
+
+
+def _obeying(mission: ElaboratedMission) -> dict[str, bool]:
+    """Return the vehicles of a mission, and whether each obeys a station in it."""
+    physical = mission.initial.structure.physical
+    return {name: any(map(is_authority, physical.channels(name))) for name in sorted(driven(mission))}
 
 
 def _peers(options: Namespace, station: str) -> Peers:

@@ -52,9 +52,9 @@ class Authority:
         if shown == believed[0]:
             self.doubts.pop(entity, None)
             return believed
-        if shown != before or (_is_silent(shown) and not self._doubts(entity, known.since)):
+        if shown != before or (is_silent(shown) and not self._doubts(entity, known.since)):
             self.doubts[entity] = (now, known.since)
-        lost = _is_silent(shown) and not _is_silent(before or ())
+        lost = is_silent(shown) and not is_silent(before or ())
         if self._counts(entity, shown, believed, now, lost=lost):
             return shown, max(now, known.since + A_MOMENT)
         return believed
@@ -74,7 +74,7 @@ class Authority:
         if told is not None and is_done(told, shown):
             del self.handing[entity]
             return True
-        if _is_silent(shown) and f"{CONTROL_AUTHORITY}:{self.station}" not in believed[0]:
+        if is_silent(shown) and f"{CONTROL_AUTHORITY}:{self.station}" not in believed[0]:
             return False
         since = self.doubts[entity][0] if self._doubts(entity, believed[1]) else now
         return lost or now - since >= LASTING
@@ -84,6 +84,6 @@ class Authority:
         return entity in self.doubts and self.doubts[entity][1] == since
 
 
-def _is_silent(shown: tuple[str, ...]) -> bool:
+def is_silent(shown: tuple[str, ...]) -> bool:
     """Tell whether a link shows no authority: it has lost the vehicle, or was never answered as to whom it obeys."""
     return not any(map(is_authority, shown))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Any, Final
 
@@ -30,7 +30,7 @@ from adapters.plugin import (
     Underway,
     World,
 )
-from adapters.stations.authority import Authority
+from adapters.stations.authority import Authority, is_silent
 from adapters.stations.bus import Bus
 from adapters.stations.entries import (
     Believed,
@@ -47,7 +47,7 @@ from adapters.stations.entries import (
     stamped,
 )
 from adapters.stations.journal import Journal
-from adapters.stations.merge import Merge, on
+from adapters.stations.merge import Merge, channels_of, on
 from adapters.stations.messages import MOST_ENTRIES, Message, fitting, read, written
 from adapters.stations.others import Other
 from adapters.stations.peers import Peers
@@ -87,13 +87,13 @@ class Sharing:
         journal: The log of this one.
         topic: What the mission is called between them.
         digest: Of the mission: who flies another is not listened to.
-        vehicles: The entities of which only their own links may speak.
+        vehicles: The entities of which only their own links may speak, and whether each obeys a station.
     """
 
     name = NAME
 
     def __init__(
-        self, peers: Peers, journal: Journal, topic: str, digest: str, vehicles: frozenset[str]
+        self, peers: Peers, journal: Journal, topic: str, digest: str, vehicles: Mapping[str, bool]
     ) -> None:
         self.merge = Merge()
         self.others = {name: Other() for name in peers.others}
@@ -181,6 +181,8 @@ class Sharing:
         said = Said(published, world.now(), owned)
         if owned:
             known = self.merge.holds(entity, world.now())
+            if known is None and self._vehicles.get(entity) and is_silent(channels_of(published)):
+                return  # nobody knows whom it obeys: another's link may be the one that it answers
             channels, since = self._authority.channels(entity, published, known, world.now())
             said = Said(on(published, channels), since, owned)
         for entry in self._add([said]):

@@ -34,7 +34,7 @@ from semantics.configuration import Label, Transition
 from semantics.parting import Parting, parted
 
 MISSION = "sha256:mission"
-VEHICLES = frozenset({"uav0"})
+VEHICLES = {"uav0": True}
 
 
 class World:
@@ -211,7 +211,7 @@ def test_of_a_vehicle_only_its_own_links_speak(tmp_path):
             gcs0.see("boat0", WEST)
             await until(lambda: gcs1.world.at("boat0") == WEST)
             assert gcs1.world.at("uav0") is None
-            gcs0.see("uav0", WEST, owned=True)
+            gcs0.see("uav0", WEST, owned=True, channels=("control:gcs0",))
             await until(lambda: gcs1.world.at("uav0") == WEST)
             gcs0.sharing._add([Sent("uav0", "east0", time.time())])
             await until(lambda: [each.to for each in gcs1.world.of(Underway)] == ["east0"])
@@ -244,6 +244,28 @@ def test_where_bigactors_are_and_what_broke_all_know(tmp_path):
             assert gcs0.world.of(Broken) == gcs0.world.of(Hosts) == []
 
     asyncio.run(telling())
+
+
+def test_a_vehicle_is_not_seen_before_a_link_tells_whom_it_obeys(tmp_path):
+    """It answers only that link: the other hears where it is, and whoever begins then should not take it for lost."""
+    table = both()
+    gcs0, gcs1 = (Node(peers_of(table, name, tmp_path), tmp_path) for name in ("gcs0", "gcs1"))
+
+    async def hearing():
+        async with running(gcs0, gcs1):
+            gcs1.see("uav0", WEST, owned=True)
+            gcs1.see("boat0", WEST)
+            await until(lambda: gcs0.world.at("boat0") == WEST)
+            assert gcs0.world.at("uav0") is gcs1.world.at("uav0") is None
+            gcs0.see("uav0", WEST, owned=True, channels=("control:gcs0",))
+            await until(lambda: gcs1.world.at("uav0") == WEST)
+            gcs1.see("uav0", EAST, owned=True)
+            await until(lambda: gcs0.world.at("uav0") == EAST)
+            for node in (gcs0, gcs1):
+                said = [each.property for each in node.world.published]
+                assert {each.channels for each in said if each.entity == "uav0"} == {("control:gcs0",)}
+
+    asyncio.run(hearing())
 
 
 class Link(Camera):
