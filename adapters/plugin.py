@@ -36,10 +36,12 @@ class Aged:
     Attributes:
         property: What was observed; its `time` is set.
         time_to_live: For how many seconds from its `time` on it may stand in P, if nothing newer comes.
+        clock: When that was by the entity's own clock, in milliseconds: it orders what several links tell of it.
     """
 
     property: PhysicalProperty
     time_to_live: float
+    clock: int | None = None
 
 
 Published = PhysicalProperty | Aged | Gone

@@ -249,7 +249,8 @@ def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Published, ...]
         return pilot, (), ()
     changed = pilot.shown[1:] != shown[1:]
     trouble = _authority_trouble(pilot, now) if changed and not pilot.link.lost else ()
-    published = Aged(property_of(pilot.craft, position, _channels(pilot)), pilot.craft.time_to_live)
+    said = property_of(pilot.craft, position, _channels(pilot))
+    published = Aged(said, pilot.craft.time_to_live, pilot.known.placed or None)
     return replace(pilot, shown=shown), (published,), trouble
 
 

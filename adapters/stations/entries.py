@@ -53,6 +53,11 @@ class Said:
         return said.time
 
     @property
+    def clock(self) -> int | None:
+        """When that was by the entity's own clock, where its link tells."""
+        return self.published.clock if self.owned and isinstance(self.published, Aged) else None
+
+    @property
     def until(self) -> float:
         """Until when it may stand in P."""
         return self.time + self.published.time_to_live if isinstance(self.published, Aged) else math.inf
@@ -171,8 +176,8 @@ def stamped(published: Published, now: float) -> Published:
     match published:
         case PhysicalProperty(time=None):
             return replace(published, time=now)
-        case Aged(PhysicalProperty(time=None) as said, time_to_live):
-            return Aged(replace(said, time=now), time_to_live)
+        case Aged(PhysicalProperty(time=None) as said):
+            return replace(published, property=replace(said, time=now))
         case _:
             return published
 
@@ -251,7 +256,10 @@ def _published_json(published: Published) -> dict[str, Any]:
         data["by"] = said.carried_by
     if said.velocity is not None:
         data["velocity"] = [said.velocity.speed, said.velocity.course]
-    return {**data, "ttl": published.time_to_live} if isinstance(published, Aged) else data
+    if not isinstance(published, Aged):
+        return data
+    clock = {} if published.clock is None else {"clock": published.clock}
+    return {**data, "ttl": published.time_to_live, **clock}
 
 
 def _published(station: str, data: dict[str, Any]) -> Published:
@@ -269,7 +277,9 @@ def _published(station: str, data: dict[str, Any]) -> Published:
         station,
         _velocity(data.get("velocity")),
     )
-    return Aged(said, _time(data["ttl"])) if "ttl" in data else said
+    if "ttl" not in data:
+        return said
+    return Aged(said, _time(data["ttl"]), _whole(data, "clock") if "clock" in data else None)
 
 
 def _knows(data: Any) -> tuple[tuple[str, int], ...]:

@@ -8,7 +8,7 @@ station and number. Clocks decide nothing but which of two stations is believed.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -16,6 +16,9 @@ from adapters.live.sightings import MOST_AHEAD
 from adapters.plugin import Aged, Gone, Published
 from adapters.stations.entries import Believed, Entry, Hosted, Said, Sent
 from physical import PhysicalProperty
+
+ABREAST: Final = 5.0
+"""Seconds within which words of several links go by their vehicle's own clock; later it may have booted anew."""
 
 MOST_ENTITIES: Final = 20_000
 """Of how many entities one station may speak."""
@@ -113,12 +116,13 @@ def holding(words: Words, now: float) -> Said | None:
     """Return what holds of an entity at a time: the newest word on it, with the channels that are known the latest.
 
     A vehicle may be heard by two stations of which one has not read its new authority yet: so the newest *change* of
-    channels counts, among the words that had not grown too old when the newest was said.
+    channels counts, among the words that had not grown too old when the newest was said. Of its positions the newest by
+    its own clock counts: what came over a slow link is stamped late, and would put it where it no longer is.
     """
     found = [entry for entry in words.values() if _counts(entry.content, now)]
     if not found:
         return None
-    newest = _said(max(found, key=_stamp))
+    newest = _newest(found, now)
     if isinstance(newest.published, Gone):
         return newest
     if newest.until <= now:  # whoever hears of it only now comes to the same world as who saw it grow old
@@ -130,6 +134,15 @@ def holding(words: Words, now: float) -> Said | None:
     ]
     latest = _said(max(told, key=_since)) if told else newest
     return replace(newest, published=on(newest.published, channels_of(latest.published)), since=latest.since)
+
+
+def _newest(found: Sequence[Entry], now: float) -> Said:
+    newest = max(found, key=_stamp)
+    if _said(newest).clock is None:
+        return _said(newest)
+    since = _said(newest).time - ABREAST
+    abreast = [entry for entry in found if _said(entry).time >= since and _said(entry).until > now]
+    return _said(max(abreast or [newest], key=lambda entry: (_said(entry).clock or 0, _stamp(entry))))
 
 
 def _said(entry: Entry) -> Said:
@@ -164,8 +177,8 @@ def channels_of(published: Published) -> tuple[str, ...]:
 def on(published: Published, channels: Iterable[str]) -> Published:
     """Return a publication with other channels."""
     match published:
-        case Aged(said, time_to_live):
-            return Aged(said.on(channels), time_to_live)
+        case Aged(said):
+            return replace(published, property=said.on(channels))
         case PhysicalProperty():
             return published.on(channels)
         case _:

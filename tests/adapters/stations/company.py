@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from contextlib import ExitStack, contextmanager, suppress
+from random import SystemRandom
 
 from adapters.recording.mcap_files import RecordingError
 from adapters.recording.reading import read_recording
@@ -38,9 +39,12 @@ WEST, EAST, NOWHERE = (37.01, -8.65), (37.01, -8.61), (37.03, -8.63)
 
 
 def free_port():
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return found.getsockname()[1]
+    """Return a port that nobody has, below those that the system gives away meanwhile to whoever connects."""
+    while True:
+        port = SystemRandom().randrange(20_000, 32_000)
+        with socket.socket() as found, suppress(OSError):
+            found.bind(("127.0.0.1", port))
+            return port
 
 
 def until(what, seconds=60.0):

@@ -134,6 +134,7 @@ def test_what_is_no_log_is_refused(opened, tmp_path, text):
     [
         Said(EVERYTHING, 3.0, owned=True),
         Said(Aged(EVERYTHING, 60.0), 3.0),
+        Said(Aged(EVERYTHING, 60.0, 7_300), 3.0, owned=True),
         Said(Gone("a", 5.0, "gcs0"), 5.0),
         Sent("uav0", "east0", 5.0),
         Sent("uav0", "", 5.0),

@@ -11,7 +11,7 @@ from adapters.live.sightings import MOST_AHEAD
 from adapters.live.state import Heard
 from adapters.plugin import Aged, Gone
 from adapters.stations.entries import Entry, Said
-from adapters.stations.merge import MOST_ENTITIES, Merge, newer
+from adapters.stations.merge import ABREAST, MOST_ENTITIES, Merge, newer
 from physical import PhysicalProperty, point
 from semantics.abstraction import as_it_is
 
@@ -152,6 +152,27 @@ def test_the_channels_of_a_station_that_fell_silent_count_no_more_than_its_place
     silent = word("gcs0", 1, NOW, WEST, channels=("control:gcs0",), since=NOW, ttl=30.0)
     heard = word("gcs1", 1, NOW + 31.0, EAST, channels=("control:gcs1",), since=NOW - 5.0, ttl=30.0)
     assert merged([silent, heard]).holds("boat0", NOW + 31.0).published.property.channels == ("control:gcs1",)
+
+
+def seen(station, time, clock, at, ttl=60.0):
+    said = PhysicalProperty("uav0", "UAV", point(*at), time=time)
+    return Entry(station, 1, Said(Aged(said, ttl, clock), time, owned=True))
+
+
+def test_of_a_vehicle_the_newest_by_its_own_clock_counts_though_a_slow_link_stamps_it_later():
+    fast, slow = seen("gcs0", NOW - 1.0, 7_300, EAST), seen("gcs1", NOW - 0.7, 7_000, WEST)
+    for entries in ((fast, slow), (slow, fast)):
+        assert merged(entries).holds("uav0", NOW).published.property.geometry == point(*EAST)
+
+
+def test_what_a_vehicle_told_before_it_booted_anew_counts_no_more_after_a_while():
+    before, after = seen("gcs0", NOW - ABREAST - 0.1, 90_000, WEST), seen("gcs1", NOW, 2_000, EAST)
+    assert merged([before, after]).holds("uav0", NOW).published.property.geometry == point(*EAST)
+
+
+def test_what_has_grown_old_counts_no_more_by_its_clock_either():
+    old, young = seen("gcs0", NOW - 2.0, 9_000, WEST, ttl=1.0), seen("gcs1", NOW, 8_000, EAST)
+    assert merged([old, young]).holds("uav0", NOW).published.property.geometry == point(*EAST)
 
 
 def test_one_station_may_not_speak_of_any_number_of_entities(monkeypatch):
