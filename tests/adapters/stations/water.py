@@ -7,8 +7,10 @@ import asyncio
 import socket
 import threading
 import time
+from bisect import bisect
 from contextlib import contextmanager
 from dataclasses import dataclass
+from operator import attrgetter
 from urllib.request import Request, urlopen
 
 from pyais.encode import encode_dict
@@ -42,14 +44,27 @@ class Moment:
         return point(*self.at)
 
 
+class Witnessed(Vehicle):
+    """A simulated vehicle of which each movement is written down, before anybody hears of it."""
+
+    def __init__(self, track, *rest):
+        super().__init__(*rest)
+        self.track = track
+
+    def move(self, now):
+        super().move(now)
+        authority = round(self.parameters[AUTHORITY_PARAMETER])
+        self.track.append(Moment(time.time(), (self.body.latitude, self.body.longitude), authority))
+
+
 class Water:
     """The sea; `vehicle`, `ais` and `camera` are the ports of the UAV, of who hears AIS, of who is told of spills."""
 
     def __init__(self, vehicle, ais, camera):
         self.track = []
         self.answers = []
-        self._plane = Vehicle(Kind.PLANE, (37.147, -8.582, 20.0))
-        self._simulator = Simulator(f"udp:127.0.0.1:{vehicle}", [self._plane])
+        plane = Witnessed(self.track, Kind.PLANE, (37.147, -8.582, 20.0))
+        self._simulator = Simulator(f"udp:127.0.0.1:{vehicle}", [plane])
         self._ais, self._camera = ("127.0.0.1", ais), f"http://127.0.0.1:{camera}/detections"
         self._begun, self._end = threading.Event(), None
 
@@ -65,7 +80,7 @@ class Water:
             thread.join()
 
     async def _go_on(self):
-        parts = (self._simulator.run(), self._witness(), self._drift(), self._film())
+        parts = (self._simulator.run(), self._drift(), self._film())
         going = asyncio.gather(*parts)
         loop = asyncio.get_running_loop()
         self._end = lambda: loop.call_soon_threadsafe(going.cancel)
@@ -74,13 +89,6 @@ class Water:
             await going
         except asyncio.CancelledError:
             return
-
-    async def _witness(self):
-        while True:
-            body, parameters = self._plane.body, self._plane.parameters
-            authority = round(parameters[AUTHORITY_PARAMETER])
-            self.track.append(Moment(time.time(), (body.latitude, body.longitude), authority))
-            await asyncio.sleep(0.5)
 
     async def _drift(self):
         """Say every half a minute what the drifters' transponders say."""
@@ -105,7 +113,8 @@ class Water:
 
     def between(self, begin, end):
         """Return the moments of a time."""
-        return [moment for moment in self.track if begin <= moment.time <= end]
+        first, last = (bisect(self.track, when, key=attrgetter("time")) for when in (begin, end))
+        return self.track[first:last]
 
 
 def drifted(mmsi, second=AGROUND):
