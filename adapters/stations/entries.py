@@ -171,6 +171,13 @@ def entity_of(published: Published) -> str:
     return published.property.entity if isinstance(published, Aged) else published.entity
 
 
+def stamped_at(published: Published, time: float) -> Published:
+    """Return a publication with another time."""
+    if isinstance(published, Aged):
+        return replace(published, property=replace(published.property, time=time))
+    return replace(published, time=time)
+
+
 def stamped(published: Published, now: float) -> Published:
     """Return a publication with its time set: what has none is so now."""
     match published:

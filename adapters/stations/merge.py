@@ -14,7 +14,7 @@ from typing import Final
 
 from adapters.live.sightings import MOST_AHEAD
 from adapters.plugin import Aged, Gone, Published
-from adapters.stations.entries import Believed, Entry, Hosted, Said, Sent
+from adapters.stations.entries import Believed, Entry, Hosted, Said, Sent, stamped_at
 from physical import PhysicalProperty
 
 ABREAST: Final = 5.0
@@ -138,11 +138,15 @@ def holding(words: Words, now: float) -> Said | None:
 
 def _newest(found: Sequence[Entry], now: float) -> Said:
     newest = max(found, key=_stamp)
+    time = _said(newest).time
     if _said(newest).clock is None:
         return _said(newest)
-    since = _said(newest).time - ABREAST
-    abreast = [entry for entry in found if _said(entry).time >= since and _said(entry).until > now]
-    return _said(max(abreast or [newest], key=lambda entry: (_said(entry).clock or 0, _stamp(entry))))
+    abreast = [
+        entry for entry in found if _said(entry).time >= time - ABREAST and _said(entry).until > now
+    ] or [newest]
+    ahead = _said(max(abreast, key=lambda entry: (_said(entry).clock or 0, _stamp(entry))))
+    # It is so at the later time still: stamps go on, or a run would keep what it was told with a later one.
+    return replace(ahead, published=stamped_at(ahead.published, time))
 
 
 def _said(entry: Entry) -> Said:
