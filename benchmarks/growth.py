@@ -1,6 +1,6 @@
 """Measure how rate and memory change while a search grows: one search of the patrol, looked at on its way, and plotted.
 
-Usage: `python benchmarks/growth.py [--most N] [--output FILE] [--plot FILE] [SIZE]`, by default 3x4 up to 10⁸. What the
+Usage: `python benchmarks/growth.py [--most N] [--output FILE] [--plot FILE] [SIZE]`, by default 3x5 up to 10⁸. What the
 search learns and loads falls before its first mark, a quarter of the next, which is no row of the table.
 """
 
@@ -79,7 +79,7 @@ def plot(rows: Sequence[Mark], title: str, path: Path) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Search, keep what was seen on the way, and plot it."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("size", nargs="?", type=patrol, default=Size(3, 4), metavar="SIZE")
+    parser.add_argument("size", nargs="?", type=patrol, default=Size(3, 5), metavar="SIZE")
     parser.add_argument("--most", type=int, default=100 * FIRST, help="where to stop (default 10⁸)")
     parser.add_argument("--first", type=int, default=FIRST, help="where the table begins (default 10⁶)")
     parser.add_argument("--output", type=Path, default=RESULTS, help="where the figures are kept")
