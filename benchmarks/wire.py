@@ -43,6 +43,9 @@ RATE = 10.0
 GROUPS = 10
 """Vehicles send in as many groups, one after the other in each tenth of a second."""
 
+APART = 100
+"""Vehicles that begin each 0.7 m east of the one before: 0.07 s of flight."""
+
 NAMED = 50
 """Vessels that the mission names; the others pass by outside of its places."""
 
@@ -72,8 +75,8 @@ def mission_text(vehicles: int) -> str:
 
 
 def home(number: int) -> tuple[float, float]:
-    """Return where a vehicle begins: in the west of its lane."""
-    return 37.00075 + number % LANES * 0.002, -8.6495
+    """Return where a vehicle begins: in the west of its lane; no two together, so that not all arrive at once."""
+    return 37.00075 + number % LANES * 0.002, -8.6499 + number % APART * 0.000008
 
 
 def berth(number: int) -> tuple[float, float]:
