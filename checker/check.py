@@ -48,10 +48,6 @@ PATIENCE = 1.0
 """Seconds after which a mission that the reference explorer has not got through is given to the fast one."""
 
 
-PATIENCE = 1.0
-"""Seconds after which a mission that the reference explorer has not got through is given to the fast one."""
-
-
 def check(  # noqa: PLR0913 - each says one thing of a check
     initial: Configuration,
     properties: Iterable[Property],

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from semantics.configuration import Configuration
-from semantics.requests import REQUESTS
 from semantics.signature import REGION, Name
 from semantics.statements import React
 from semantics.stepping import next_statement
@@ -265,6 +264,3 @@ class Property:
     line: int = 0
     temporal: "Temporal | None" = None
     fairness: tuple["Fairness", ...] = ()
-
-
-REQUEST_WORDS = tuple(kind.__name__ for kind in REQUESTS)

@@ -150,8 +150,8 @@ def _long_runs(parser: Parser) -> None:
         "--hash-compact",
         metavar="BITS",
         type=tag_bits,
-        help=f"keep {LEAST_TAG} to {MOST_TAG} bits of each hash in memory and compare nothing else; what "
-        "that may leave out is told with its probability, and nothing is said to hold (by --engine fast only; "
+        help=f"keep {LEAST_TAG} to {MOST_TAG} bits of each hash in memory and compare nothing else; what that may "
+        "leave out is told with its probability, and what holds of everything is incomplete (by --engine fast only; "
         "docs/performance.md)",
     )
     group.add_argument(

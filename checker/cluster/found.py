@@ -1,5 +1,6 @@
 """What was found by a crew: configurations, where they came from, and the graph, asked of whoever has them."""
 
+from abc import abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import Any, TypeVar, overload
@@ -80,9 +81,9 @@ class Numbered(Sequence[Value]):
             return [self[each] for each in range(*number.indices(len(self)))]
         return self.at(*self.found.places.find(range(len(self))[number]))
 
+    @abstractmethod
     def at(self, worker: int, row: int) -> Value:
         """Return it of a worker's row."""
-        raise NotImplementedError
 
 
 class Configurations(Numbered[Configuration]):

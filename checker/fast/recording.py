@@ -6,7 +6,7 @@ configuration that answers the same questions alike. What is never written is no
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 from checker.fast.values import Hole, put_together
 from semantics.cells import Cell, Changes, Part, Question, Row, State, merged
@@ -35,16 +35,14 @@ Asked = dict[Ask, Any]
 """Questions with their answers, in the order in which they were asked first."""
 
 
-class Source:
+class Source(Protocol):
     """One configuration taken apart: what `Recorder` reads."""
 
     def skeleton(self, cell: Cell) -> Any:
         """Return the skeleton of a cell's value, None where there is no such cell."""
-        raise NotImplementedError
 
     def fact(self, cell: Cell, number: int, name: Name) -> Fact:
         """Return what a hole of a cell says of a mobile name."""
-        raise NotImplementedError
 
 
 @dataclass(slots=True)
