@@ -25,6 +25,9 @@ MAX_UNSENT: Final = 262_144
 BURST: Final = 1_048_576
 """Bytes that a socket is asked to hold while something else is served; systems give less."""
 
+MAX_AT_ONCE: Final = 32
+"""Datagrams that are read before others are served."""
+
 MAX_PEERS: Final = 64
 """Connections accepted by one port."""
 
@@ -69,49 +72,66 @@ async def open_port(address: Address, receive: Receive) -> AsyncIterator[Port]:
 # --- UDP --------------------------------------------------------------------------------------------
 
 
-class _Datagrams(asyncio.DatagramProtocol):
-    """One UDP socket."""
+class _Datagrams:
+    """One UDP socket. All that waits there is read at once: asyncio's own way reads one datagram between two looks."""
 
-    def __init__(self, receive: Receive, peer: Remote | None) -> None:
+    def __init__(self, link: socket.socket, receive: Receive, *, connected: bool) -> None:
+        self._link = link
         self._receive = receive
-        self._peer = peer
-        self._transport: Any = None
+        self._connected = connected
 
-    def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        self._transport = transport
-        link = transport.get_extra_info("socket")
-        link.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BURST)
-
-    def datagram_received(self, data: bytes, addr: tuple[Any, ...]) -> None:
-        self._receive((addr[0], addr[1]), data)
-
-    def error_received(self, exc: Exception) -> None:
-        """Pass over that nobody listens there: it may yet."""
+    def read(self) -> None:
+        """Hand over what has come in, up to a bound: others want to be served too."""
+        for _ in range(MAX_AT_ONCE):
+            try:
+                data, sender = self._link.recvfrom(CHUNK)
+            except BlockingIOError:
+                return
+            except OSError:
+                continue  # nobody listens where something was sent: somebody may yet
+            self._receive((sender[0], sender[1]), data)
 
     def send(self, data: bytes, remote: Remote | None = None) -> None:
-        to = self._peer or remote
-        if to is not None and self._transport.get_write_buffer_size() < MAX_UNSENT:
-            self._transport.sendto(data, None if self._peer else to)
+        with suppress(OSError):  # what can't be sent now is dropped
+            if self._connected:
+                self._link.send(data)
+            elif remote is not None:
+                self._link.sendto(data, remote)
 
     @property
     def local(self) -> Remote:
-        name = self._transport.get_extra_info("sockname")
+        name = self._link.getsockname()
         return name[0], name[1]
 
 
 @asynccontextmanager
 async def _udp(address: Address, receive: Receive) -> AsyncIterator[Port]:
-    where = (address.host, address.port)
-    out = address.scheme == "udpout"
-    transport, protocol = await asyncio.get_running_loop().create_datagram_endpoint(
-        lambda: _Datagrams(receive, where if out else None),
-        local_addr=None if out else where,
-        remote_addr=where if out else None,
-    )
-    try:
-        yield protocol
-    finally:
-        transport.close()
+    loop, out = asyncio.get_running_loop(), address.scheme == "udpout"
+    family, where = await _resolved(address)
+    with socket.socket(family, socket.SOCK_DGRAM) as link:
+        link.setblocking(False)
+        link.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BURST)
+        if out:
+            link.connect(where)
+        else:
+            link.bind(where)
+        port = _Datagrams(link, receive, connected=out)
+        loop.add_reader(link, port.read)
+        try:
+            yield port
+        finally:
+            loop.remove_reader(link)
+
+
+async def _resolved(address: Address) -> tuple[int, Any]:
+    kind = socket.SOCK_DGRAM
+    with suppress(socket.gaierror):  # nobody has to be asked for a number
+        family, *_, where = socket.getaddrinfo(
+            address.host, address.port, type=kind, flags=socket.AI_NUMERICHOST
+        )[0]
+        return family, where
+    found = await asyncio.get_running_loop().getaddrinfo(address.host, address.port, type=kind)
+    return found[0][0], found[0][4]
 
 
 # --- TCP and serial lines ---------------------------------------------------------------------------

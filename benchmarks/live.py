@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from adapters.live.core import started
-from adapters.live.loop import LiveRun
+from adapters.live.loop import LiveRun, settle
 from adapters.live.state import Heard, Plan, Turn
 from adapters.plugin import Aged, Command, GoTo, Report, World
 from adapters.recording.writing import Recorder
@@ -195,6 +195,7 @@ async def measure(
             watchers = [Tape(recorder, lambda _finding: ()), watch]
         async with TimedRun(plan, started(plan), [fleet, ais], watchers) as run:
             await run.begin(5.0)
+            settle()
             before, began = time.process_time(), time.perf_counter()
             published = fleet.published + ais.published
             await run.go(seconds=seconds)

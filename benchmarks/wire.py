@@ -19,6 +19,7 @@ from pyais.encode import encode_dict
 
 from adapters.ais import AisFeed
 from adapters.live.core import started
+from adapters.live.loop import settle
 from adapters.live.state import Heard, Plan, Turn
 from adapters.mavlink import Autopilot, Craft
 from adapters.mavlink.message import Message
@@ -97,6 +98,7 @@ async def simulate(vehicles: int, vessels: int, link: int, receiver: int) -> Non
     start = asyncio.get_running_loop().time()
     sys.stdout.write(f"{start}\n")
     sys.stdout.flush()
+    settle()
     groups = [range(first, vehicles, GROUPS) for first in range(min(GROUPS, vehicles))]
     await asyncio.gather(_send_ais(vessels, receiver), *(_fly(group, link, start) for group in groups))
 
@@ -220,6 +222,7 @@ async def measure(vehicles: int, vessels: int, seconds: float) -> dict[str, floa
                     assert others.stdout is not None
                     link.start = float(await asyncio.to_thread(others.stdout.readline))
                     await run.begin(60.0)
+                    settle()
                     await run.go(seconds=WARM_UP)
                     return await _measured(run, watch, seconds)
                 finally:

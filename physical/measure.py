@@ -10,7 +10,7 @@ import shapely
 
 from physical.errors import GeometryError
 from physical.frame import E7, PositionE7, equal_area, geod, local_frame, rounded
-from physical.shape import Geometry, contains, intern, planar
+from physical.shape import MEMO, Geometry, contains, intern, planar
 
 _GAUSS: Final = (
     (0.019855071751231912, 0.05061426814518853),
@@ -25,15 +25,17 @@ _GAUSS: Final = (
 """Nodes and weights of Gauss-Legendre quadrature on [0, 1]."""
 
 
-@lru_cache(maxsize=1 << 16)
 def area(geometry: Geometry) -> float:
     """Return the area on the ellipsoid in square metres; a point has none.
 
     The edges are straight in latitude and longitude, so the area is an integral of the equal-area
     projection's height along each of them.
     """
-    if geometry.is_point:
-        return 0.0
+    return 0.0 if geometry.is_point else _area(geometry)
+
+
+@lru_cache(maxsize=MEMO)
+def _area(geometry: Geometry) -> float:
     edges = list(pairwise(planar(geometry).exterior.coords))
     norths = [a[1] + t * (b[1] - a[1]) for a, b in edges for t, _ in _GAUSS]
     _, heights = equal_area()([0.0] * len(norths), [north / E7 for north in norths])
@@ -48,11 +50,15 @@ def area(geometry: Geometry) -> float:
     )
 
 
-@lru_cache(maxsize=1 << 16)
 def distance(a: Geometry, b: Geometry) -> float:
     """Return the metres between the nearest points of two geometries, 0 where they meet."""
     if a.is_point and b.is_point:
         return _between(a.ring[0], b.ring[0])
+    return _apart(a, b)
+
+
+@lru_cache(maxsize=1 << 12)
+def _apart(a: Geometry, b: Geometry) -> float:
     frame = local_frame(_middle(a))
     for _ in range(2):  # near where they are nearest, the frame is exact
         line = shapely.shortest_line(frame.project(planar(a)), frame.project(planar(b)))
@@ -72,11 +78,13 @@ def _middle(geometry: Geometry) -> PositionE7:
     return rounded((south + north) / 2 / E7, (west + east) / 2 / E7)
 
 
-@lru_cache(maxsize=1 << 16)
 def centroid(geometry: Geometry) -> Geometry:
     """Return the centre of area; of a moved polygon, the point to which it was moved."""
-    if geometry.is_point:
-        return geometry
+    return geometry if geometry.is_point else _centroid(geometry)
+
+
+@lru_cache(maxsize=MEMO)
+def _centroid(geometry: Geometry) -> Geometry:
     if geometry.anchor is not None:
         return intern((geometry.anchor,))
     centre = _middle(geometry)
@@ -87,11 +95,13 @@ def centroid(geometry: Geometry) -> Geometry:
     return intern((centre,))
 
 
-@lru_cache(maxsize=1 << 16)
 def interior_point(geometry: Geometry) -> Geometry:
     """Return a point well inside a polygon; of a point, itself."""
-    if geometry.is_point:
-        return geometry
+    return geometry if geometry.is_point else _inside(geometry)
+
+
+@lru_cache(maxsize=MEMO)
+def _inside(geometry: Geometry) -> Geometry:
     frame = local_frame(_middle(geometry))
     spot = deep_spot(frame.project(planar(geometry)), 0.001)
     inside = spot and intern((frame.position(*spot),))

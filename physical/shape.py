@@ -30,6 +30,8 @@ CIRCLE_VERTICES: Final = 64
 SMALLEST_RADIUS: Final = 0.5
 LARGEST_RADIUS: Final = 10_000_000.0
 SHOWN_VERTICES: Final = 8
+MEMO: Final = 1 << 14
+"""How many answers about polygons are remembered; none about points, of which live feeds bring ever new ones."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, weakref_slot=True)
@@ -301,11 +303,15 @@ def _twice_area(plane: Sequence[PositionE7]) -> int:
 # --- relations ------------------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=1 << 14)
 def planar(geometry: Geometry) -> shapely.Geometry:
-    """Return the shape in the plane of longitudes and latitudes (x and y, in 1e-7 degree), prepared."""
+    """Return the shape in the plane of longitudes and latitudes (x and y, in 1e-7 degree), a polygon prepared."""
     if geometry.is_point:
         return shapely.Point(geometry.ring[0][1], geometry.ring[0][0])
+    return _prepared(geometry)
+
+
+@lru_cache(maxsize=MEMO)
+def _prepared(geometry: Geometry) -> shapely.Geometry:
     shape = shapely.Polygon([(east, north) for north, east in _unrolled(geometry.ring)])
     shapely.prepare(shape)
     return shape
@@ -323,26 +329,42 @@ def _shifted(shape: shapely.Geometry, by: int) -> shapely.Geometry:
     return translate(shape, by)
 
 
-@lru_cache(maxsize=1 << 16)
-def latitudes(geometry: Geometry) -> tuple[int, int]:
-    """Return the southern-most and northern-most latitude, in 1e-7 degree: edges are straight between vertices."""
-    ring = [latitude for latitude, _ in geometry.ring]
-    return min(ring), max(ring)
+@lru_cache(maxsize=MEMO)
+def _bounds(geometry: Geometry) -> tuple[int, int, int, int]:
+    """Return the bounds of a polygon in the plane: west, south, east, north; edges are straight between vertices."""
+    west, south, east, north = planar(geometry).bounds
+    return int(west), int(south), int(east), int(north)
 
 
-@lru_cache(maxsize=1 << 18)
 def contains(outer: Geometry, inner: Geometry) -> bool:
     """Whether all of `inner`, its border too, lies in the interior of `outer`. A point contains nothing."""
     if outer.is_point or outer is inner:
         return False
-    (south, north), (lowest, highest) = latitudes(outer), latitudes(inner)
-    if lowest <= south or highest >= north:  # most pairs are decided here, a hundred times faster
+    return _contains_point(outer, *inner.ring[0]) if inner.is_point else _contains_polygon(outer, inner)
+
+
+def _contains_point(outer: Geometry, north: int, east: int) -> bool:
+    """Not remembered: what moves is at each place once."""
+    left, bottom, right, top = _bounds(outer)
+    if not bottom < north < top:  # most pairs are decided here, a hundred times faster
+        return False
+    if east > right:
+        east -= TURN
+    elif east < left:
+        east += TURN
+    return left < east < right and bool(shapely.contains_xy(planar(outer), east, north))
+
+
+@lru_cache(maxsize=MEMO)
+def _contains_polygon(outer: Geometry, inner: Geometry) -> bool:
+    (_, south, _, north), (_, lowest, _, highest) = _bounds(outer), _bounds(inner)
+    if lowest <= south or highest >= north:  # so are most of these
         return False
     fixed = planar(outer)
     return bool(shapely.contains_properly(fixed, beside(fixed, planar(inner))))
 
 
-@lru_cache(maxsize=1 << 18)
+@lru_cache(maxsize=MEMO)
 def overlaps(a: Geometry, b: Geometry) -> bool:
     """Whether two different polygons share interior, and neither contains the other.
 

@@ -71,7 +71,7 @@ def down_cell(channel: Name) -> Cell:
     return ("down", channel)
 
 
-@lru_cache(maxsize=1 << 16)
+@lru_cache(maxsize=1 << 12)  # live, what moves is at each place once: more would only be in the way
 def encloses(outer: Placed, inner: Placed) -> bool:
     """Tell interior containment, and that of altitude where both have a band."""
     levels = band_contains(outer.altitude, inner.altitude)
@@ -86,6 +86,11 @@ def is_carried(placement: Placement | None) -> bool:
 def is_placed(placement: Placement | None) -> bool:
     """Ask whether something stands by itself, not in transit."""
     return isinstance(placement, Placed)
+
+
+def stands_within(placement: Placement | None, at: Placed) -> bool:
+    """Ask whether what stands there is within a place that stands so."""
+    return isinstance(placement, Placed) and encloses(at, placement)
 
 
 def stands_in(placement: Placement | None, place: Name, holders: tuple[Holder, ...]) -> bool:
@@ -197,9 +202,17 @@ class PhysicalModel:
     def is_in(self, entity: Name, place: Name) -> bool:
         """Tell whether an entity's parent in A(P) is a place; only that is asked of where it stands."""
         where = placement_cell(entity)
-        if self.cells.test(where, is_placed):
-            return self.cells.test(where, stands_in, place, self._holders(entity))
-        return entity in self and self.abstract_parent(entity) == place
+        if place != REGION and place not in self.setting.containers(self.setting.kind(entity)):
+            return self.carries(place, entity)
+        if not self.cells.test(where, is_placed):
+            return entity in self and self.abstract_parent(entity) == place
+        if place != REGION and not self._encloses(place, entity):
+            return False  # most places: the others that may contain it need not be looked at
+        return self.cells.test(where, stands_in, place, self._holders(entity))
+
+    def _encloses(self, place: Name, entity: Name) -> bool:
+        at = None if place == entity or self.carrier(place) is not None else self.position(place)
+        return at is not None and self.cells.test(placement_cell(entity), stands_within, at)
 
     def _holders(self, entity: Name) -> "tuple[Holder, ...]":
         """Return what may contain an entity, the smallest first; what is carried has no room of its own."""

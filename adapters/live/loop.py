@@ -6,6 +6,7 @@ Of positions that come in between two turns the newest of each entity counts; re
 from __future__ import annotations
 
 import asyncio
+import gc
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -161,6 +162,15 @@ class Clock:
     def __call__(self) -> float:
         """Return the time."""
         return self._offset + asyncio.get_running_loop().time()
+
+
+def settle() -> None:
+    """Collect garbage once, and look no more at what is there now: to look at all of it stops a run for a while.
+
+    For the process of one run, once it is about to begin: what is garbage later of what is there now is kept.
+    """
+    gc.collect()
+    gc.freeze()
 
 
 class LiveRun:

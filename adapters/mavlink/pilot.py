@@ -242,7 +242,8 @@ def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Published, ...]
     position, authority = pilot.known.position, pilot.known.authority
     if position is None or pilot.known.profile is None:  # a run begins when it is known what flies
         return replace(pilot, since=None), (), ()
-    pilot = replace(pilot, since=now if pilot.since is None else pilot.since)
+    if pilot.since is None:
+        pilot = replace(pilot, since=now)
     shown = (position, authority, pilot.link.lost)
     untold = authority is None and not pilot.link.lost
     if shown == pilot.shown or (untold and now - (pilot.since or now) < AUTHORITY_UNKNOWN):

@@ -104,7 +104,7 @@ def absorb(known: Telemetry, message: Message, now: float) -> Telemetry:
     """Return what is known after one more message from the vehicle's autopilot."""
     if message.component != AUTOPILOT_COMPONENT:
         return known
-    known = _clocked(replace(known, heard=now), message.fields.get("time_boot_ms"), now)
+    known = _clocked(known, message.fields.get("time_boot_ms"), now)
     reader = _READERS.get(message.name)
     return known if reader is None else reader(known, message.fields, now)
 
@@ -124,13 +124,13 @@ def property_of(craft: Craft, at: Position, channels: tuple[str, ...]) -> Physic
 
 
 def _clocked(known: Telemetry, clock: int | None, now: float) -> Telemetry:
-    """Follow the vehicle's clock; two messages in a row that are far behind mean that it booted anew."""
+    """Note that it is heard, and follow its clock; two messages in a row that are far behind mean a new boot."""
     if not clock:  # messages without, and those from before its clock began
-        return known
+        return replace(known, heard=now)
     if known.clock is None or clock > known.clock - BACKWARDS:
-        return replace(known, clock=max(clock, known.clock or 0), suspect=None)
+        return replace(known, heard=now, clock=max(clock, known.clock or 0), suspect=None)
     if known.suspect is None or not 0 <= clock - known.suspect <= BACKWARDS:
-        return replace(known, suspect=clock)
+        return replace(known, heard=now, suspect=clock)
     return Telemetry(heard=now, profile=known.profile, clock=clock, boots=known.boots + 1)
 
 

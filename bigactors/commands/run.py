@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from adapters.live.core import resumed, started
-from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, Watcher
+from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, Watcher, settle
 from adapters.live.saying import listening
 from adapters.live.state import Finding, LiveState, Plan
 from adapters.plugin import Plugin
@@ -187,6 +187,7 @@ async def fly(flight: Flight, watchers: Sequence[Watcher]) -> Ending:
             raise Mistake(error.strerror or str(error), "give another with --socket", str(path)) from error
         await live.begin(options.wait, forced=options.unverified)
         check_places(flight.mission, flight.plugins)
+        settle()
         say(f"{flight.mission.name} begins; bigactors say AGENT MESSAGE reaches it at {path}")
         return await live.go(seconds=options.duration)
 

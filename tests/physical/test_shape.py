@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from physical import GeometryError, box, circle, contains, equal, overlaps, point, polygon, translate_to
+from physical.shape import _INTERNED
 
 lats = st.floats(-84, 84)
 lons = st.floats(-180, 180)
@@ -289,3 +290,11 @@ def test_equal_compares_where_geometries_are_and_not_what_they_are_placements_of
     assert equal(moved, copied)
     assert moved is not copied
     assert not equal(moved, ship)
+
+
+def test_positions_that_come_and_go_are_not_remembered():
+    shape = polygon([(0, 0), (0, 2), (2, 2), (2, 0)])
+    before = len(_INTERNED)
+    inside = [contains(shape, point(1 + number * 1e-5, 1)) for number in range(3_000)]
+    assert all(inside)
+    assert len(_INTERNED) - before < 100

@@ -1,0 +1,53 @@
+"""Bytes by UDP: all that waits is read, nobody who is not there stops anything."""
+
+import asyncio
+import socket
+
+import pytest
+
+from adapters.addresses import parse_address
+from adapters.transport import MAX_AT_ONCE, open_port
+
+
+def test_what_waits_at_a_socket_is_read_in_few_looks_of_the_loop():
+    async def main():
+        heard, looks = [], 0
+        async with open_port(parse_address("udp:127.0.0.1:0"), lambda _, data: heard.append(data)) as port:
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+                for number in range(100):
+                    link.sendto(b"%d" % number, port.local)
+            while len(heard) < 100:
+                await asyncio.sleep(0)
+                looks += 1
+        assert heard == [b"%d" % number for number in range(100)]
+        assert looks <= 100 // MAX_AT_ONCE + 3
+
+    asyncio.run(asyncio.wait_for(main(), 10))
+
+
+def test_who_sends_where_nobody_listens_is_heard_once_somebody_does():
+    async def main():
+        heard = asyncio.Event()
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as spot:
+            spot.bind(("127.0.0.1", 0))
+            free = spot.getsockname()[1]
+        async with open_port(parse_address(f"udpout:127.0.0.1:{free}"), lambda *_: None) as sender:
+            for _ in range(3):  # each may raise the refusal of the one before
+                sender.send(b"lost")
+                await asyncio.sleep(0.01)
+            async with open_port(parse_address(f"udp:127.0.0.1:{free}"), lambda *_: heard.set()):
+                while not heard.is_set():
+                    sender.send(b"heard")
+                    await asyncio.sleep(0.01)
+
+    asyncio.run(asyncio.wait_for(main(), 10))
+
+
+def test_a_name_is_looked_up_and_one_that_is_unknown_is_an_error():
+    async def main(host):
+        async with open_port(parse_address(f"udp:{host}:0"), lambda *_: None) as port:
+            return port.local
+
+    assert asyncio.run(main("localhost"))[1]
+    with pytest.raises(OSError, match=r"not known|resolution|Name"):
+        asyncio.run(main("nobody.invalid"))
