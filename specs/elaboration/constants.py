@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from semantics.values import Truth, Value
 from specs import syntax as s
 from specs.codes import Code
+from specs.elaboration.findings import shorten
 from specs.elaboration.names import Names
 
 
@@ -29,7 +30,7 @@ def elaborate_constant(node: s.Expression, names: Names, bound: Mapping[str, str
             if bound and name in bound:
                 return bound[name]
             if name not in names.agents:
-                names.entity(node)
+                names.entity(node, otherwise=f'a text stands in quotes: "{shorten(name)}"')
             return name
         case _:
             hint = "write a text, a number, a name, true, false, or a tuple or set of these"

@@ -83,11 +83,11 @@ class Names:
         """Tell whether a name is an entity's."""
         return name in self.kinds
 
-    def entity(self, name: s.Name) -> str | None:
+    def entity(self, name: s.Name, otherwise: str = "") -> str | None:
         """Return the kind of the entity of that name; reports a name that is none."""
         kind = self.kinds.get(name.text)
         if kind is None:
-            self._missing(name, "entity", self.kinds)
+            self._missing(name, "entity", self.kinds, otherwise)
         return kind
 
     def kind(self, name: s.Name, otherwise: str = "") -> bool:

@@ -488,3 +488,9 @@ def test_a_missing_extra_names_it(monkeypatch, tmp_path):
     assert code == "LS308"
     assert "pyais" in message
     assert "ais" in hint
+
+
+def test_who_says_a_bare_word_is_told_that_texts_stand_in_quotes():
+    text = actor('react { case "go" => skip }', "b", "base0") + "environment { someone says go to b }"
+    ((code, message, hint),) = mistakes(f"{SIGNATURE} world {{ base0: Station = point (1, 1) }} {text}")
+    assert (code, message, hint) == ("LS201", "unknown entity 'go'", 'a text stands in quotes: "go"')
