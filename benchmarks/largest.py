@@ -1,21 +1,26 @@
 """Look how large an oil spill and a rendezvous can be explored in given time and memory: in full, then reduced.
 
-Usage: `python benchmarks/largest.py [--minutes N] [--gigabytes N] [--uavs N] [--spills N] [--robots N]`.
+Usage: `python benchmarks/largest.py [--minutes N] [--gigabytes N] [--uavs N] [--spills N] [--robots N] [--no-peer]`.
 One more UAV or robot is added until a search meets a limit; from there on partial-order reduction goes on alike.
+What was searched, SPIN searches too, within the same limits: the counts of full searches are asserted to be equal.
 """
 
 import argparse
 import json
 import sys
+import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import oil_spill
 import rendezvous
 from machine import describe
 from ours import Explored, explored
 from run import say
+from spin import Bounds, Searched, agree, bounded, has_peer
 
 RESULTS = Path(__file__).parent / "results" / "largest.json"
 
@@ -30,11 +35,21 @@ Row = dict[str, object]
 
 
 @dataclass(frozen=True, slots=True)
+class Model:
+    """A mission, and the same in Promela: to be searched in full, and by SPIN's partial order."""
+
+    mission: str
+    promela: str
+    reducible: str
+
+
+@dataclass(frozen=True, slots=True)
 class Limits:
-    """What one search may take."""
+    """What one search may take, and whether SPIN takes part."""
 
     minutes: float
     gigabytes: float
+    peer: bool = True
 
     def have_room(self, wanted: float, before: Explored) -> bool:
         """Tell whether so many configurations may find room and time, if each takes what it took before."""
@@ -46,18 +61,21 @@ class Limits:
         return ("--minutes", str(self.minutes), "--gigabytes", str(self.gigabytes))
 
 
-def climb(family: str, missions: dict[str, str], limits: Limits) -> Iterator[Row]:
-    """Explore missions, each larger than the one before: in full until a limit is met, from there on reduced."""
+def climb(family: str, models: dict[str, Model], limits: Limits) -> Iterator[Row]:
+    """Explore models, each larger than the one before: in full until a limit is met, from there on reduced."""
     reduced, found = False, list[Explored]()
-    for name, text in missions.items():
+    for name, model in models.items():
         if not reduced:
-            found.append(_search(name, text, limits, found, reduced=False))
-            yield _row(family, name, found[-1], reduced=False)
+            found.append(_search(name, model.mission, limits, found, reduced=False))
+            yield _row(family, name, found[-1], reduced=False) | _beside(
+                name, model.promela, found[-1], limits
+            )
             if found[-1].bounds:
                 reduced, found = True, []
         if reduced:
-            found.append(_search(name, text, limits, found, reduced=True))
-            yield _row(family, name, found[-1], reduced=True)
+            found.append(_search(name, model.mission, limits, found, reduced=True))
+            row = _row(family, name, found[-1], reduced=True)
+            yield row | _beside(name, model.reducible, found[-1], limits, reduced=True)
             if found[-1].bounds:
                 return
 
@@ -69,6 +87,31 @@ def _search(name: str, text: str, limits: Limits, before: list[Explored], *, red
         say(f"{name}: some {wanted:.1g} configurations are expected")
         return Explored(0, 0, [f"not tried: some {wanted:.0e} expected"], 0.0)
     return explored(text, "--engine", "fast", *(["--reduce"] if reduced else []), *limits.options())
+
+
+def _beside(name: str, promela: str, ours: Explored, limits: Limits, *, reduced: bool = False) -> Row:
+    """Have SPIN search what ours has searched; SystemExit where both are complete and their counts differ."""
+    if not (limits.peer and ours.configurations):
+        return {}
+    with tempfile.TemporaryDirectory() as folder:
+        bounds = Bounds(limits.minutes, limits.gigabytes)
+        peer = bounded(promela, Path(folder), bounds, reduced=reduced)
+    counts, theirs = (ours.configurations, ours.transitions), (peer.configurations, peer.transitions)
+    if not (reduced or ours.bounds or peer.bounds or agree(counts, theirs)):
+        raise SystemExit(f"{name}: the counts are {counts}, and SPIN's are {theirs}")
+    ended = ", ".join(peer.bounds) or "complete"
+    say(f"  SPIN: {peer.configurations:,}, {ended}, {peer.seconds:.1f} s")
+    figures = {key: value for key, value in asdict(peer).items() if key != "marks"}
+    return {"peer": figures | {"ended": ended}, "ratio_to_spin": ratios(ours, peer)}
+
+
+def ratios(ours: Explored, peer: Searched) -> dict[str, float]:
+    """Return how many times SPIN's rate ours is, and what part of its configurations and of its memory for each."""
+    return {
+        "configurations_per_second": ours.rate / peer.rate,
+        "configurations": ours.configurations / peer.configurations,
+        "memory_each": (ours.memory / ours.configurations) / (peer.memory / peer.configurations),
+    }
 
 
 def expected(before: Sequence[Explored]) -> float | None:
@@ -104,26 +147,41 @@ def largest(rows: Sequence[Row]) -> dict[str, Row]:
     }
 
 
-def _spills(most: int, spills: int) -> dict[str, str]:
+def _spills(most: int, spills: int) -> dict[str, Model]:
     return {
-        f"oil_spill, {uavs} UAVs, {spills} spill{'s' if spills > 1 else ''}": oil_spill.mission_text(
-            uavs, spills
-        )
+        f"oil_spill, {uavs} UAVs, {spills} spill{'s' if spills > 1 else ''}": _spill(uavs, spills)
         for uavs in range(2, most + 1)
     }
 
 
-def _meetings(most: int) -> dict[str, str]:
-    return {f"rendezvous, {robots} robots": rendezvous.mission_text(robots) for robots in range(3, most + 1)}
+def _spill(uavs: int, spills: int) -> Model:
+    promela = oil_spill.promela_text(uavs, spills)
+    return Model(oil_spill.mission_text(uavs, spills), promela, promela)
 
 
-def families(uavs: int, spills: int, robots: int) -> dict[str, Callable[[], dict[str, str]]]:
-    """Return what makes the missions of each family, the larger the later."""
-    found: dict[str, Callable[[], dict[str, str]]] = {
-        f"oil_spill, spills: {count}": lambda count=count: _spills(uavs, count)  # type: ignore[misc]
-        for count in range(1, spills + 1)
+def _meetings(most: int) -> dict[str, Model]:
+    return {f"rendezvous, {robots} robots": _meeting(robots) for robots in range(3, most + 1)}
+
+
+def _meeting(robots: int) -> Model:
+    texts = (rendezvous.promela_text(robots, channels=channels) for channels in (False, True))
+    return Model(rendezvous.mission_text(robots), *texts)
+
+
+def families(uavs: int, spills: int, robots: int) -> dict[str, Callable[[], dict[str, Model]]]:
+    """Return what makes the models of each family, the larger the later."""
+    found: dict[str, Callable[[], dict[str, Model]]] = {
+        f"oil_spill, spills: {count}": partial(_spills, uavs, count) for count in range(1, spills + 1)
     }
-    return found | {"rendezvous": lambda: _meetings(robots)}
+    return found | {"rendezvous": partial(_meetings, robots)}
+
+
+_NOTHING: dict[str, Any] = {"searches": []}
+
+
+def _kept(path: Path) -> dict[str, Any]:
+    """Return what was kept before; nothing where there is no such file."""
+    return json.loads(path.read_text(encoding="utf-8")) if path.exists() else _NOTHING
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -139,20 +197,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
         action="append",
         help="only this one, such as rendezvous; the others are left as they were kept",
     )
+    parser.add_argument("--no-peer", action="store_true", help="without SPIN")
     parser.add_argument("--output", type=Path, default=RESULTS, help="where the figures are kept")
     given = parser.parse_args(arguments)
-    limits = Limits(given.minutes, given.gigabytes)
+    limits = Limits(given.minutes, given.gigabytes, peer=has_peer(wanted=not given.no_peer))
     machine, rows = describe(), []
-    before = json.loads(given.output.read_text(encoding="utf-8")) if given.family else {"searches": []}
-    for family, missions in families(given.uavs, given.spills, given.robots).items():
+    before = _kept(given.output) if given.family else _NOTHING
+    known = families(given.uavs, given.spills, given.robots)
+    if unknown := set(given.family or ()) - known.keys():
+        parser.error(f"no such family: {', '.join(sorted(unknown))}; there are {', '.join(known)}")
+    for family, models in known.items():
         if given.family and family not in given.family:
             rows += [row for row in before["searches"] if row["family"] == family]
         else:
-            rows += climb(family, missions(), limits)
+            rows += climb(family, models(), limits)
     kept = {
         "machine": machine,
         "limits": {
-            what: max(most, before.get("limits", {}).get(what, 0)) for what, most in asdict(limits).items()
+            what: max(most, before.get("limits", {}).get(what, 0))
+            for what, most in (("minutes", limits.minutes), ("gigabytes", limits.gigabytes))
         },
         "largest": {name: row["name"] for name, row in largest(rows).items()},
         "searches": rows,

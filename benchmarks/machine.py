@@ -43,9 +43,11 @@ def _field(path: str, name: str) -> str | None:
     return next(values, None)
 
 
-def resident(name: str = "VmHWM") -> float:
-    """Return the memory of this process in MB: at its peak (`VmHWM`), or now (`VmRSS`)."""
-    value = _field("/proc/self/status", name)
+def resident(name: str = "VmHWM", process: str = "self") -> float:
+    """Return the memory of a process in MB: at its peak (`VmHWM`), or now (`VmRSS`); none where it has just ended."""
+    value = _field(f"/proc/{process}/status", name)
+    if value is None and process != "self":
+        return 0.0
     if value is None:
         raise SystemExit("the benchmarks read memory from /proc: run them on Linux")
     return int(value.split()[0]) / 1024

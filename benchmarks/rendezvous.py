@@ -1,4 +1,4 @@
-"""The rendezvous with any number of robots, and how much less of it the reductions visit.
+"""The rendezvous with any number of robots, as a mission and in Promela, and how much less the reductions visit.
 
     python benchmarks/rendezvous.py [--most N] [ROBOTS ...]
 
@@ -12,6 +12,7 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from string import Template
 
 from checker import Exploration, Limits, Reduction, explore
 from checker.reduction import Reduced
@@ -21,7 +22,7 @@ from specs.elaboration import ElaboratedMission, elaborate
 FEWEST = 2
 
 COUNTS = {2: (18, 21), 3: (167, 341), 4: (1_685, 5_128), 5: (18_051, 73_275), 6: (197_233, 999_394)}
-"""Configurations and transitions of the full search, where it was run to its end."""
+"""Configurations and transitions of the full search, where it was run to its end; SPIN counts the same."""
 
 
 def mission_text(robots: int) -> str:
@@ -30,8 +31,7 @@ def mission_text(robots: int) -> str:
     Raises:
         ValueError: There are too few to meet.
     """
-    if robots < FEWEST:
-        raise ValueError(f"a rendezvous has at least {FEWEST} robots, not {robots}")
+    _check(robots)
     rooms = [f"  room{i}: Room = {_box(i)}" for i in range(robots)]
     there = [
         f"  robot{i}: Robot = point ({38.7361 + i * 0.0004:.4f}, -9.13795) linked wifi" for i in range(robots)
@@ -88,6 +88,11 @@ check {{
 """
 
 
+def _check(robots: int) -> None:
+    if robots < FEWEST:
+        raise ValueError(f"a rendezvous has at least {FEWEST} robots, not {robots}")
+
+
 def _box(number: int) -> str:
     south = 38.736 + number * 0.0004
     return f"box ({south + 0.0002:.4f}, -9.1378) ({south:.4f}, -9.1381)"
@@ -95,6 +100,104 @@ def _box(number: int) -> str:
 
 def _agent(number: int, first: str) -> str:
     return f"BigActor r{number} hosted_at robot{number} with_behavior {{\n  {first}\n  follow()\n}}\n"
+
+
+def promela_text(robots: int, *, channels: bool = False) -> str:
+    """Write the same rendezvous in Promela: a process for each robot, whose location is its code, and the network.
+
+    Args:
+        robots: How many.
+        channels: Whether messages go through channels that one process writes and one reads: SPIN's partial-order
+            reduction looks for these. The state vector is twice as long then.
+
+    Raises:
+        ValueError: There are too few to meet.
+    """
+    _check(robots)
+    everyone = range(robots)
+    couriers = [(k,) for k in everyone] if channels else [tuple(everyone)]
+    processes = [_robot(k, robots, channels=channels) for k in everyone]
+    processes += [_courier(number, to, robots, channels=channels) for number, to in enumerate(couriers)]
+    names = " ".join(f"chan {name} = [1] of {{ mtype }};" for k in everyone for name in _channels(k, robots))
+    return _PROMELA.substitute(
+        robots=robots,
+        transport=_CHANNELS.substitute(channels=names) if channels else _POST.substitute(robots=robots),
+        processes="\n".join(processes),
+    )
+
+
+def _kinds(robot: int, robots: int) -> list[str]:
+    """Return which messages a robot gets: the last one is the first that tells, the first one leads."""
+    return [*(["FIRST"] if robot < robots - 1 else []), *(["LEADER"] if robot else [])]
+
+
+def _channels(robot: int, robots: int) -> list[str]:
+    return [f"mail{robot}", *(f"{kind}{robot}" for kind in _kinds(robot, robots))]
+
+
+def _robot(number: int, robots: int, *, channels: bool) -> str:
+    tells = [("LEADER", k) for k in range(1, robots)] if number == 0 else [("FIRST", number - 1)]
+    asks = [f"ASK({kind}, {to}); /* req_snd */" for kind, to in tells]
+    lines = (
+        [] if number == 0 else [f"byte at = {number}, in = {number}, line; /* P, L, and what is in line */"]
+    )
+    if channels:
+        lines.append(f"xr mail{number}; xs {', '.join(f'{kind}{to}' for kind, to in tells)};")
+    if 0 < number < robots - 1:
+        lines.append("true; /* fun: announce(before) */")
+    if number < robots - 1:
+        lines.append(f"RECEIVE(FIRST, {number}); /* rcv_msg */")
+    lines += asks
+    if number:
+        lines += ["true; /* fun: follow() */", f"RECEIVE(LEADER, {number}); /* rcv_msg */", "MEET"]
+    return _process(f"robot{number}", [*lines, "false"])
+
+
+def _courier(number: int, to: Sequence[int], robots: int, *, channels: bool) -> str:
+    delivers = [f":: DELIVER({kind}, {k}) /* snd */" for k in to for kind in _kinds(k, robots)]
+    own = [f"xs mail{number}; xr {', '.join(f'{kind}{number}' for kind in _kinds(number, robots))};"]
+    return _process(f"network{number}", [*(own if channels else []), "do", *delivers, "od"])
+
+
+def _process(name: str, lines: Sequence[str]) -> str:
+    return "\n".join([f"active proctype {name}() {{", *(f"  {line}" for line in lines), "}", ""])
+
+
+_POST = Template("""\
+#define FIRST 1 /* it is asked to deliver it; one more, and it is in the mailbox */
+#define LEADER 3
+byte post[$robots]; /* of the messages to each robot there is one at a time */
+#define ASK(kind, to) post[to] = kind
+#define DELIVER(kind, to) d_step { post[to] == kind -> post[to] = kind + 1 }
+#define RECEIVE(kind, to) d_step { post[to] == kind + 1 -> post[to] = 0 }
+""")
+
+_CHANNELS = Template("""\
+mtype = { FIRST, LEADER };
+$channels
+#define ASK(kind, to) kind##to!kind
+#define DELIVER(kind, to) d_step { kind##to?kind -> mail##to!kind }
+#define RECEIVE(kind, to) mail##to?kind
+""")
+
+_PROMELA = Template("""\
+/* The rendezvous of $robots robots: each rule is one step, each cell of a configuration that varies stands in the state
+   vector; what a store holds follows from the location. The leader never moves. */
+$transport
+#define NOTHING 0
+#define OBS 1
+#define READY 2
+#define CTR 3
+#define MEET \\
+    true; /* fun: rendezvous(leader) */ \\
+    line = OBS; /* req_obs */ \\
+    line = READY; /* sense */ \\
+    line = NOTHING; /* rcv_obs */ \\
+    line = CTR; /* req_ctr */ \\
+    d_step { at = 0; in = 0; line = NOTHING } /* actuate */;
+
+$processes
+""")
 
 
 def rendezvous(robots: int) -> ElaboratedMission:

@@ -1,16 +1,27 @@
-"""SPIN as a peer: compile a Promela model, search all of it without reduction, and say what that took."""
+"""SPIN as a peer: compile a Promela model, search it all or as far as bounds allow, and say what that took."""
 
+import math
 import os
 import re
 import shutil
+import signal
 import subprocess
+import sys
 import time
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
-COMPILE = ("-O2", "-DSAFETY", "-DNOREDUCE")
-"""No reduction and no compression of states: every one is stored as it is."""
+from machine import resident
+
+TRANSLATE = ("spin", "-a", "-o3", "model.pml")
+"""Statements are not merged: each is a step of its own."""
+
+COMPILE = ("-O2", "-DSAFETY")
+UNREDUCED = "-DNOREDUCE"
+GROWING = "-DAUTO_RESIZE"
+"""The hash table grows with what it holds; else it keeps its size."""
 
 FIRST_DEPTH, MOST_DEPTH = 1_000_000, 256_000_000
 """How deep SPIN's stack is tried. All of it counts into SPIN's memory, so what is measured has the depth it needs."""
@@ -18,13 +29,23 @@ FIRST_DEPTH, MOST_DEPTH = 1_000_000, 256_000_000
 CLAIM_DEPTH = 100_000
 """How deep claims are searched: what is cut without an error is refused."""
 
+BOUNDED_DEPTH = 100_000
+"""How deep searches within bounds are: their models are shallow, or searched breadth-first."""
+
+EVERY = 0.02
+"""Seconds between two looks at what a search within bounds takes."""
+
+EXACT = 99_999_999
+"""Above it SPIN prints counts with eight digits."""
+
 CUT = "max search depth too small"
 """What SPIN says beside "errors: 0" where it has not searched everything."""
 
-_STORED = re.compile(r"^\s*(\d+) states, stored", re.MULTILINE)
-_TRANSITIONS = re.compile(r"^\s*(\d+) transitions \(= stored\+matched\)", re.MULTILINE)
+_STORED = re.compile(r"^\s*(\S+) states, stored", re.MULTILINE)
+_TRANSITIONS = re.compile(r"^\s*(\S+) transitions \(= stored\+matched\)", re.MULTILINE)
 _ERRORS = re.compile(r"errors: (\d+)")
 _REACHED = re.compile(r"depth reached (\d+)")
+_PROGRESS = re.compile(r"States=\s*(\S+) Transitions=\s*(\S+) Memory=\s*(\S+)(?:\s+t=\s*(\S+))?")
 
 
 class SpinError(Exception):
@@ -41,6 +62,8 @@ class Searched:
         seconds: By the clock, apart from what had to be prepared.
         memory: Of the process at its peak, in MB.
         preparing: Seconds for what comes before: translating, compiling, loading.
+        bounds: What cut it; nothing where it is complete.
+        marks: What it said on its way, rounded to three digits.
     """
 
     configurations: int
@@ -48,11 +71,55 @@ class Searched:
     seconds: float
     memory: float
     preparing: float
+    bounds: tuple[str, ...] = ()
+    marks: tuple[Mapping[str, float], ...] = ()
+
+    @property
+    def rate(self) -> float:
+        """Configurations a second."""
+        return self.configurations / max(self.seconds, 1e-9)
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """Where a search ends at the latest."""
+
+    minutes: float = math.inf
+    gigabytes: float = math.inf
+    configurations: float = math.inf
+
+    def met(self, seconds: float, memory: float, configurations: float) -> str:
+        """Say which is met, by so many seconds, megabytes and configurations; nothing where none is."""
+        if seconds > 60 * self.minutes:
+            return f"the time limit of {60 * self.minutes:g} s"
+        if memory > 1000 * self.gigabytes:
+            return f"the memory limit of {self.gigabytes:g} GB"
+        if configurations >= self.configurations:
+            return f"stopped at {self.configurations:,.0f} configurations"
+        return ""
 
 
 def missing() -> tuple[str, ...]:
     """Return what SPIN needs and is not installed."""
     return tuple(tool for tool in ("spin", "gcc") if shutil.which(tool) is None)
+
+
+def has_peer(*, wanted: bool) -> bool:
+    """Tell whether SPIN takes part where it need not; say why where it was wanted and cannot."""
+    if wanted and missing():
+        sys.stderr.write(
+            f"without SPIN, not installed: {', '.join(missing())} (Debian: apt-get install spin gcc)\n"
+        )
+    return wanted and not missing()
+
+
+def agree(counts: Sequence[int], printed: Sequence[int]) -> bool:
+    """Tell whether counts are those that SPIN printed, as far as it prints them.
+
+    >>> agree((18, 119_745_396), (18, 119_745_400)), agree((18,), (19,))
+    (True, False)
+    """
+    return all(a == b or (b > EXACT and abs(a - b) <= b * 1e-7) for a, b in zip(counts, printed, strict=True))
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,21 +142,37 @@ def search(promela: str, folder: Path) -> Searched:
 
 def prepared(promela: str, folder: Path) -> Prepared:
     """Compile a model, and find by a search that is not measured how deep it is."""
-    began = time.monotonic()
-    (folder / "model.pml").write_text(promela, encoding="ascii")
-    _run("spin", "-a", "model.pml", folder=folder)
-    _run("gcc", *COMPILE, "-o", "pan", "pan.c", folder=folder)
-    preparing = time.monotonic() - began
+    preparing = _compile(promela, folder, *COMPILE, UNREDUCED)
     return Prepared(folder, _depth(folder), preparing)
 
 
 def searched(model: Prepared) -> Searched:
-    """Search all of a prepared model. SPIN counts storing the initial state as a transition; here it is not one."""
-    output, seconds, memory = _verify(model.folder, model.depth)
-    if CUT in output:
+    """Search all of a prepared model."""
+    report = _verify(model.folder, model.depth)
+    if CUT in report.text:
         raise SpinError(f"the search was cut at {model.depth:,} steps")
-    stored, transitions = _count(_STORED, output), _count(_TRANSITIONS, output)
-    return Searched(stored, transitions - 1, seconds, memory, model.preparing)
+    return report.searched(model.preparing)
+
+
+def bounded(
+    promela: str, folder: Path, bounds: Bounds, *, reduced: bool = False, breadth_first: bool = False
+) -> Searched:
+    """Search a model as far as bounds allow, and say what cut it.
+
+    Args:
+        promela: The model.
+        folder: For SPIN's files.
+        bounds: Where to stop.
+        reduced: By SPIN's partial order, which keeps deadlocks.
+        breadth_first: Instead of depth-first.
+
+    Raises:
+        SpinError: The model is refused or violated.
+    """
+    options = [GROWING, *([] if reduced else [UNREDUCED]), *(["-DBFS"] if breadth_first else [])]
+    preparing = _compile(promela, folder, *COMPILE, *options)
+    report = _verify(folder, BOUNDED_DEPTH, bounds)
+    return replace(report.searched(preparing), marks=tuple(_marks(report.text)))
 
 
 def verdicts(promela: str, claims: Mapping[str, str], folder: Path) -> dict[bool, dict[str, bool]]:
@@ -101,9 +184,7 @@ def verdicts(promela: str, claims: Mapping[str, str], folder: Path) -> dict[bool
         SpinError: The model or a claim is refused, or the search was cut.
     """
     written = "".join(f"ltl {name} {{ {formula} }}\n" for name, formula in claims.items())
-    (folder / "model.pml").write_text(promela + written, encoding="ascii")
-    _run("spin", "-a", "model.pml", folder=folder)
-    _run("gcc", "-DNOREDUCE", "-o", "pan", "pan.c", folder=folder)
+    _compile(promela + written, folder, UNREDUCED)
     return {fair: {name: _holds(name, folder, fair=fair) for name in claims} for fair in (False, True)}
 
 
@@ -120,11 +201,20 @@ def _depth(folder: Path) -> int:
     """Return how deep the stack has to be, by a search that is not measured: an uncut one."""
     depth = FIRST_DEPTH
     while depth <= MOST_DEPTH:
-        output, _, _ = _verify(folder, depth)
-        if CUT not in output:
-            return _count(_REACHED, output) + 10
+        report = _verify(folder, depth)
+        if CUT not in report.text:
+            return _count(_REACHED, report.text) + 10
         depth *= 4
     raise SpinError(f"the search is deeper than {MOST_DEPTH:,} steps")
+
+
+def _compile(promela: str, folder: Path, *options: str) -> float:
+    """Translate and compile a model; return the seconds that it took."""
+    began = time.monotonic()
+    (folder / "model.pml").write_text(promela, encoding="ascii")
+    _run(*TRANSLATE, folder=folder)
+    _run("gcc", *options, "-o", "pan", "pan.c", folder=folder)
+    return time.monotonic() - began
 
 
 def _run(*command: str, folder: Path) -> None:
@@ -133,25 +223,73 @@ def _run(*command: str, folder: Path) -> None:
         raise SpinError(f"{command[0]} refused the model: {done.stdout}{done.stderr}")
 
 
-def _verify(folder: Path, depth: int) -> tuple[str, float, float]:
-    """Run the verifier once: its output, seconds by the clock, and megabytes at its peak."""
+class _Report(NamedTuple):
+    """What the verifier printed, seconds by the clock, megabytes at its peak, and the bound that it met."""
+
+    text: str
+    seconds: float
+    memory: float
+    met: str
+
+    def searched(self, preparing: float) -> Searched:
+        """Return the figures; SPIN counts storing the initial state as a transition, and here it is not one."""
+        depth = f"the depth of {BOUNDED_DEPTH:,} steps" if CUT in self.text else ""
+        return Searched(
+            _count(_STORED, self.text),
+            _count(_TRANSITIONS, self.text) - 1,
+            self.seconds,
+            self.memory,
+            preparing,
+            tuple(filter(None, (self.met, depth))),
+        )
+
+
+def _verify(folder: Path, depth: int, bounds: Bounds | None = None) -> _Report:
+    """Run the verifier once."""
     report = folder / "report.txt"
     began = time.monotonic()
     with report.open("w", encoding="utf-8") as output:
         verifier = subprocess.Popen(
             ["./pan", "-E", f"-m{depth}"], cwd=folder, stdout=output, stderr=subprocess.STDOUT
         )
+        met = "" if bounds is None else _watch(verifier.pid, report, bounds)
         _, status, usage = os.wait4(verifier.pid, 0)
         verifier.returncode = os.waitstatus_to_exitcode(status)
     seconds = time.monotonic() - began
     text = report.read_text(encoding="utf-8")
     if verifier.returncode or "errors: 0" not in text:  # the verifier exits 0 on a violation too
         raise SpinError(f"the search failed: {text}")
-    return text, seconds, usage.ru_maxrss / 1024
+    return _Report(text, seconds, usage.ru_maxrss / 1024, met if "not completed" in text else "")
+
+
+def _watch(verifier: int, report: Path, bounds: Bounds) -> str:
+    """Wait for a verifier to end, and interrupt it at a bound, upon which it reports; return what was met."""
+    began = time.monotonic()
+    while os.waitid(os.P_PID, verifier, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None:
+        stored = _last_stored(report) if bounds.configurations < math.inf else 0
+        met = bounds.met(time.monotonic() - began, resident("VmRSS", str(verifier)), stored)
+        if met:
+            os.kill(verifier, signal.SIGINT)
+            return met
+        time.sleep(EVERY)
+    return ""
+
+
+def _last_stored(report: Path) -> float:
+    found = _PROGRESS.findall(report.read_text(encoding="utf-8"))
+    return float(found[-1][0]) if found else 0.0
+
+
+def _marks(text: str) -> list[dict[str, float]]:
+    names = ("configurations", "transitions", "memory", "seconds")
+    return [
+        dict(zip(names, (float(value or 0) for value in found), strict=True))
+        for found in _PROGRESS.findall(text)
+    ]
 
 
 def _count(pattern: re.Pattern[str], output: str) -> int:
     found = pattern.search(output)
     if found is None:
         raise SpinError(f"the report has no count: {output}")
-    return int(found[1])
+    return int(float(found[1]))

@@ -84,7 +84,7 @@ def growth_tables(kept: Kept) -> str:
 
 
 def largest_tables(kept: Kept) -> str:
-    """Lay out every search of the two families, and name the largest complete ones."""
+    """Lay out every search of the two families, name the largest complete ones, and what SPIN did beside them."""
     head = "mission|search|configurations|transitions|seconds|peak MB|rules run in Python|ended"
     rows = [
         (
@@ -102,7 +102,34 @@ def largest_tables(kept: Kept) -> str:
     limits = f"{kept['limits']['minutes']:g} minutes and {kept['limits']['gigabytes']:g} GB"
     named = "; ".join(f"{family}: *{name}*" for family, name in kept["largest"].items())
     said = f"The largest that were complete within {limits} a search: {named}.\n"
-    return "\n".join([_table(head, rows), said, machine(kept)])
+    return "\n".join([_table(head, rows), said, *_beside_spin(kept["searches"]), machine(kept)])
+
+
+def _beside_spin(searches: Iterable[Kept]) -> list[str]:
+    """Lay out what SPIN did within the same limits; rates and bytes are compared where all of the same is searched."""
+    head = (
+        "mission|SPIN's search|configurations|transitions|seconds|peak MB|ended"
+        "|rate, SPIN's = 1|memory each, SPIN's = 1|configurations, SPIN's = 1"
+    )
+    rows = [
+        (row["name"], *_peer(row, row["peer"], row["ratio_to_spin"])) for row in searches if "peer" in row
+    ]
+    return [_table(head, rows)] if rows else []
+
+
+def _peer(row: Kept, peer: Kept, ratio: Kept) -> tuple[str, ...]:
+    reduced, complete = row["reduced"], row["complete"] and not peer["bounds"]
+    return (
+        "reduced by its own" if reduced else "in full",
+        f"{peer['configurations']:,}",
+        f"{peer['transitions']:,}",
+        f"{peer['seconds']:.1f}",
+        f"{peer['memory']:,.0f}",
+        peer["ended"],
+        "" if reduced else f"{ratio['configurations_per_second']:.2f}",
+        "" if reduced else f"{ratio['memory_each']:.2f}",
+        f"{ratio['configurations']:.2g}" if reduced and complete else "",
+    )
 
 
 def _table(head: str, rows: Iterable[Sequence[str]]) -> str:
