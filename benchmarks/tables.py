@@ -80,7 +80,33 @@ def growth_tables(kept: Kept) -> str:
         f"Patrol {kept['size']}, {ended} Rates are those since the row before. Of the first row's rate the last"
         f" keeps {share['configurations']:.0%} in configurations and {share['transitions']:.0%} in transitions.\n"
     )
-    return "\n".join([_table(head, rows), said, machine(kept)])
+    return "\n".join([_table(head, rows), said, *_growth_beside_spin(kept), machine(kept)])
+
+
+def _growth_beside_spin(kept: Kept) -> list[str]:
+    """Lay out the same model in SPIN, breadth-first too, at the sizes at which ours was looked at."""
+    beside = [(mark, mark["peer"]) for mark in kept["marks"] if mark.get("peer")]
+    if not beside:
+        return []
+    head = "configurations|SPIN's transitions/s|SPIN's bytes each|rate, SPIN's = 1|bytes each, SPIN's = 1"
+    rows = [
+        (
+            f"{peer['configurations']:,.0f}",
+            f"{peer['transitions_per_second']:,.0f}",
+            f"{peer['bytes_per_configuration']:.1f}",
+            f"{mark['transitions_per_second'] / peer['transitions_per_second']:.2f}",
+            f"{mark['bytes_per_configuration'] / peer['bytes_per_configuration']:.2f}",
+        )
+        for mark, peer in beside
+    ]
+    whole, ratio = kept["peer"], kept["ratio_to_spin"]
+    said = (
+        f"{whole['tool']}, {', '.join(whole['bounds']) or 'complete'}: {whole['transitions']:,} transitions in"
+        f" {whole['seconds']:.1f} s and {whole['memory']:,.0f} MB. At the last size in the table ours had found"
+        f" {ratio['transitions_per_second']:.2f} times as many transitions a second since the start, in"
+        f" {ratio['memory']:.2f} of the memory, Python included.\n"
+    )
+    return [_table(head, rows), said]
 
 
 def largest_tables(kept: Kept) -> str:
@@ -118,7 +144,7 @@ def _beside_spin(searches: Iterable[Kept]) -> list[str]:
 
 
 def _peer(row: Kept, peer: Kept, ratio: Kept) -> tuple[str, ...]:
-    reduced, complete = row["reduced"], row["complete"] and not peer["bounds"]
+    reduced, below = row["reduced"], "< " if peer["bounds"] else ""
     return (
         "reduced by its own" if reduced else "in full",
         f"{peer['configurations']:,}",
@@ -128,7 +154,7 @@ def _peer(row: Kept, peer: Kept, ratio: Kept) -> tuple[str, ...]:
         peer["ended"],
         "" if reduced else f"{ratio['configurations_per_second']:.2f}",
         "" if reduced else f"{ratio['memory_each']:.2f}",
-        f"{ratio['configurations']:.2g}" if reduced and complete else "",
+        f"{below}{ratio['configurations']:.2g}" if reduced and row["complete"] else "",
     )
 
 
