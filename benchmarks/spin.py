@@ -35,6 +35,9 @@ BOUNDED_DEPTH = 100_000
 EVERY = 0.02
 """Seconds between two looks at what a search within bounds takes."""
 
+GRACE = 1.0
+"""Seconds that a search within bounds has at least: by then the verifier knows what to do when it is interrupted."""
+
 EXACT = 99_999_999
 """Above it SPIN prints counts with eight digits."""
 
@@ -266,12 +269,13 @@ def _watch(verifier: int, report: Path, bounds: Bounds) -> str:
     """Wait for a verifier to end, and interrupt it at a bound, upon which it reports; return what was met."""
     began = time.monotonic()
     while os.waitid(os.P_PID, verifier, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None:
+        time.sleep(EVERY)
+        seconds = time.monotonic() - began
         stored = _last_stored(report) if bounds.configurations < math.inf else 0
-        met = bounds.met(time.monotonic() - began, resident("VmRSS", str(verifier)), stored)
-        if met:
+        met = bounds.met(seconds, resident("VmRSS", str(verifier)), stored)
+        if met and seconds > GRACE:
             os.kill(verifier, signal.SIGINT)
             return met
-        time.sleep(EVERY)
     return ""
 
 

@@ -1,21 +1,17 @@
 """The rendezvous that is measured is the one that ships, and its counts are those that are asserted."""
 
-import importlib.util
-from pathlib import Path
-
 import pytest
+from scripts import BENCHMARKS, script
 
 from checker import explore
 from specs.elaboration import load_mission
 
-ROOT = Path(__file__).parents[2]
-SPEC = importlib.util.spec_from_file_location("benchmarks_rendezvous", ROOT / "benchmarks" / "rendezvous.py")
-rendezvous = importlib.util.module_from_spec(SPEC)  # the folder is no package
-SPEC.loader.exec_module(rendezvous)
+rendezvous = script("rendezvous")
+spin = script("spin")
 
 
 def test_five_robots_are_the_mission_that_ships():
-    shipped = load_mission(ROOT / "specs" / "missions" / "rendezvous.mission").initial
+    shipped = load_mission(BENCHMARKS.parent / "specs" / "missions" / "rendezvous.mission").initial
     assert dict(rendezvous.rendezvous(5).initial.state.items()).keys() == dict(shipped.state.items()).keys()
     assert len(rendezvous.reduced(rendezvous.rendezvous(5)).configurations) == 67
 
@@ -31,6 +27,21 @@ def test_eight_robots_are_few_configurations_when_reduced():
     assert (len(found.configurations), found.transitions) == (218, 538)
 
 
-def test_one_robot_meets_nobody():
+@pytest.mark.parametrize("write", [rendezvous.mission_text, rendezvous.promela_text])
+def test_one_robot_meets_nobody(write):
     with pytest.raises(ValueError, match="at least 2 robots, not 1"):
-        rendezvous.mission_text(1)
+        write(1)
+
+
+@pytest.mark.skipif(bool(spin.missing()), reason=f"not installed: {', '.join(spin.missing())}")
+@pytest.mark.parametrize(("robots", "channels"), [(3, False), (4, False), (4, True)])
+def test_spin_counts_the_same_configurations_and_transitions(robots, channels, tmp_path):
+    found = spin.bounded(rendezvous.promela_text(robots, channels=channels), tmp_path, spin.Bounds())
+    assert not found.bounds
+    assert (found.configurations, found.transitions) == rendezvous.COUNTS[robots]
+
+
+@pytest.mark.skipif(bool(spin.missing()), reason=f"not installed: {', '.join(spin.missing())}")
+def test_channels_of_one_reader_and_one_writer_let_spin_reduce(tmp_path):
+    found = spin.bounded(rendezvous.promela_text(4, channels=True), tmp_path, spin.Bounds(), reduced=True)
+    assert (found.configurations, found.transitions) == (57, 57)
