@@ -30,7 +30,7 @@ types: $(STAMP)
 fuzz: $(STAMP)  ## 100,000 mutated missions, a million mutated packets and sentences (some 25 minutes on two cores)
 	BIGACTORS_FUZZ=100000 BIGACTORS_FUZZ_PACKETS=1000000 $(BIN)/python -m pytest -n 2 -q -m fuzz
 
-bench: $(STAMP)  ## the explorer beside SPIN, its growth, the largest missions; writes docs/performance.md (some 15 minutes)
+bench: $(STAMP)  ## the explorer beside SPIN, its growth, the largest missions; writes docs/performance.md (some 25 minutes)
 	$(BIN)/python benchmarks/run.py
 	$(BIN)/python benchmarks/growth.py
 	$(BIN)/python benchmarks/largest.py

@@ -9,14 +9,14 @@ import json
 import statistics
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from machine import describe
 from ours import Explored, explored
 from patrol import COUNTS, mission_text, promela_text, starts
-from spin import Searched, missing, prepared, searched
+from spin import Searched, agree, missing, prepared, searched
 
 RESULTS = Path(__file__).parent / "results" / "patrol.json"
 
@@ -96,12 +96,18 @@ def measure(size: Size, turns: int) -> dict[str, list[Run]]:
 
 
 def _assert_counts(size: Size, runs: dict[str, list[Run]]) -> None:
-    counts = {(run.configurations, run.transitions) for several in runs.values() for run in several}
-    if len(counts) != 1 or size.counts not in (None, *counts):
-        raise SystemExit(f"{size}: the counts are {sorted(counts)}, and should all be {size.counts}")
+    theirs = _counts(runs[SPIN])
+    ours = _counts(run for name, several in runs.items() if name != SPIN for run in several)
+    if len(ours) != 1 or size.counts not in (None, *ours) or not all(agree(*ours, each) for each in theirs):
+        counts = sorted(ours | theirs)
+        raise SystemExit(f"{size}: the counts are {counts}, and should all be {size.counts}")
     for run in (*runs[FAST], *runs[ONE_CORE]):
         if isinstance(run, Explored) and run.bounds:
             raise SystemExit(f"{size}: incomplete, {', '.join(run.bounds)}")
+
+
+def _counts(runs: Iterable[Run]) -> set[tuple[int, int]]:
+    return {(run.configurations, run.transitions) for run in runs}
 
 
 def median(runs: Sequence[Run]) -> Run:
