@@ -33,6 +33,8 @@ ANY = "*"
 Slot = tuple[str, Name]
 """`("parent", n)`, `("links", n)` or `("children", n)`."""
 
+ANYTHING: frozenset[Slot] = frozenset((kind, ANY) for kind in ("parent", "links", "children"))
+
 
 @dataclass(frozen=True, slots=True)
 class Footprint:
@@ -72,6 +74,8 @@ def _overlaps(one: Slot, other: Slot) -> bool:
 def footprint(c: Configuration, agent: Name) -> Footprint:
     """Return what an agent may write and read, from its text alone."""
     text = _Text(c, agent)
+    if text.reactions is None:
+        return Footprint(agent, ANYTHING, ANYTHING)
     writes = frozenset[Slot]().union(*(text.writes(reaction) for reaction in text.reactions))
     reads = frozenset[Slot]().union(*(text.redex(reaction) for reaction in text.reactions))
     return Footprint(agent, writes, reads | text.tested if text.reactions else frozenset())
@@ -105,12 +109,15 @@ class _Text:
         return str(expression.value) if known and isinstance(expression, Literal) else ANY
 
     @cached_property
-    def reactions(self) -> tuple[Reaction, ...]:
-        """The reactions that the agent may request, for every name that an argument may come to."""
+    def reactions(self) -> tuple[Reaction, ...] | None:
+        """The reactions that the agent may request, for every name that an argument may come to; None if too many."""
         controls = [statement for statement in self.statements if isinstance(statement, ControlBy)]
         setting = self.c.setting
         hosts = frozenset(setting.kinds) if self.host == ANY else frozenset({self.host})
-        return tuple(reaction for each in controls for reaction in instances(setting, each, hosts))
+        found = [instances(setting, each, hosts) for each in controls]
+        if any(each is None for each in found):
+            return None
+        return tuple(reaction for each in found for reaction in each or ())
 
     def writes(self, reaction: Reaction) -> frozenset[Slot]:
         """Return the slots that a reaction may change.

@@ -24,12 +24,14 @@ class Realisation:
         logical: The writes of L[m(R) ↦ m(R′)].
         physical: The writes of P′.
         flying: What has to travel for it, and where to.
+        via: The places that it passes on its way.
     """
 
     match: Match
     logical: Changes
     physical: Changes
     flying: tuple[tuple[Name, Name], ...]
+    via: tuple[Name, ...] = ()
 
     def waits(self, c: Configuration) -> bool:
         """Tell whether what moves, or what carries it, is in transit: then a command waits."""
@@ -78,7 +80,7 @@ def realisations(c: Configuration, request: CTR) -> Iterator[Realisation]:
             driven = drive(c, c.setting, request.reaction, match)
             if driven is not None:
                 logical = reacting(c.structure.logical, request.reaction, match)
-                yield Realisation(match, logical, driven.changes, driven.flying)
+                yield Realisation(match, logical, driven.changes, driven.flying, request.reaction.via)
 
 
 def reacting(logical: LogicalModel, reaction: Reaction, match: Match) -> Changes:
@@ -98,7 +100,7 @@ def commits(c: Configuration, fly: FLY, reach: Reach | None = None) -> Realisati
     if driven is None:
         return None
     logical = reacting(c.structure.logical, fly.reaction, fly.match)
-    return Realisation(fly.match, logical, driven.changes, driven.flying)
+    return Realisation(fly.match, logical, driven.changes, driven.flying, fly.reaction.via)
 
 
 def flight_obstacle(c: Configuration, fly: FLY) -> Obstacle | None:

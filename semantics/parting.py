@@ -240,7 +240,8 @@ def _is_closed(request: Request) -> bool:
     named = all(node in nodes for node, _ in redex.parents) and all(node in nodes for _, node in redex.links)
     known = all(node in nodes and _known(place, nodes | places) for node, place in reactum.parents)
     joined = all(node in nodes and _known(link, links) for link, node in reactum.links)
-    return named and known and joined and nodes.issuperset((*redex.closed, *reactum.nodes, *reactum.closed))
+    others = (*redex.closed, *reactum.nodes, *reactum.closed, *request.reaction.via)
+    return named and known and joined and nodes.issuperset(others)
 
 
 def _known(term: object, among: Collection[object]) -> bool:

@@ -6,6 +6,7 @@ own disjointness is kept by `bigraphs.matching`, for `.big` systems.)
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Final
 
 from semantics.logical_model import LogicalModel
 from semantics.physical_model import PhysicalModel
@@ -79,11 +80,19 @@ class Pattern:
 
 @dataclass(frozen=True, slots=True)
 class Reaction:
-    """R ⇒ R', printed as the programmer wrote it."""
+    """R ⇒ R', printed as the programmer wrote it.
+
+    Attributes:
+        text: What was written.
+        redex: R.
+        reactum: R'.
+        via: The places that what travels passes on its way, in their order; R and R' name them, and change nothing.
+    """
 
     text: str
     redex: Pattern
     reactum: Pattern
+    via: tuple[Name, ...] = ()
 
     def __hash__(self) -> int:
         return hash(self.text)  # which strings remember; requests are hashed with every step
@@ -278,26 +287,36 @@ class _Search:
 # --- the commands of the language -----------------------------------------------------------------------------
 
 
-def move_host_to(host: Name, place: Name) -> Reaction:
-    """`MOVE_HOST_TO place`: uses only `parent(host)`; where the host is there already it is the identity."""
+def move_host_to(host: Name, place: Name, *via: Name) -> Reaction:
+    """`MOVE_HOST_TO place VIA ...`: uses only `parent(host)`; where the host is there already it is the identity.
+
+    The places on the way are context: nodes with sites, on both sides.
+    """
     anywhere = PlaceVariable("x")
+    nodes = (host, place, *via)
     return Reaction(
-        f"MOVE_HOST_TO {place}",
-        Pattern((host, place), parents=((host, anywhere),)),
-        Pattern((host, place), parents=((host, place),)),
+        f"MOVE_HOST_TO {place}{_by_way_of(via)}",
+        Pattern(nodes, parents=((host, anywhere),)),
+        Pattern(nodes, parents=((host, place),)),
+        via,
     )
 
 
-def move(host: Name, vehicle: Name, place: Name) -> Reaction:
-    """`MOVE u TO place`: the host has control authority over u; `h[c] || u[c]`, u anywhere."""
+def move(host: Name, vehicle: Name, place: Name, *via: Name) -> Reaction:
+    """`MOVE u TO place VIA ...`: the host has control authority over u; `h[c] || u[c]`, u anywhere."""
     anywhere, authority = PlaceVariable("x"), LinkVariable("c", CONTROL_AUTHORITY)
     links = ((authority, host), (authority, vehicle))
-    nodes = (host, vehicle, place)
+    nodes = (host, vehicle, place, *via)
     return Reaction(
-        f"MOVE {vehicle} TO {place}",
+        f"MOVE {vehicle} TO {place}{_by_way_of(via)}",
         Pattern(nodes, ((vehicle, anywhere),), links),
         Pattern(nodes, ((vehicle, place),), links),
+        via,
     )
+
+
+def _by_way_of(via: tuple[Name, ...]) -> str:
+    return f" VIA {', '.join(via)}" if via else ""
 
 
 def put(host: Name, cargo: Name, place: Name) -> Reaction:
@@ -338,6 +357,9 @@ def disconnect_host_from(host: Name, node: Name) -> Reaction:
         Pattern((host, node), links=((channel, node),)),
     )
 
+
+MOST_VIA: Final = 20
+"""Places that a move may name on its way: a longer path is several moves."""
 
 COMMANDS: Mapping[str, Callable[..., Reaction]] = {
     "MOVE_HOST_TO": move_host_to,

@@ -129,18 +129,23 @@ def _asked(expression: Expression | QueryOf | None) -> Iterator[Key]:
 
 def _slots(setting: Setting, control: ControlBy, hosts: Names) -> Questions:
     """Return the slots that a control may use, whatever its arguments come to."""
-    if prod(map(len, _ranges(setting, control, hosts))) > MOST_INSTANCES:
+    found = instances(setting, control, hosts)
+    if found is None:
         return SLOTS
-    redexes = {reaction.redex for reaction in instances(setting, control, hosts)}
-    return frozenset[Key]().union(*map(slots_of, redexes))
+    return frozenset[Key]().union(*map(slots_of, {reaction.redex for reaction in found}))
 
 
-def instances(setting: Setting, control: ControlBy, hosts: Names) -> Iterator[Reaction]:
-    """Yield the reactions that a control may request, for every name that an argument may come to."""
+def instances(setting: Setting, control: ControlBy, hosts: Names) -> tuple[Reaction, ...] | None:
+    """Return the reactions that a control may request, for every name that an argument may come to; None if too many."""
+    ranges = _ranges(setting, control, hosts)
+    if prod(map(len, ranges)) > MOST_INSTANCES:
+        return None
     make = setting.program.reactions[control.name]
-    for host, *names in product(*map(sorted, _ranges(setting, control, hosts))):
+    found = []
+    for host, *names in product(*map(sorted, ranges)):
         with suppress(Fault):  # not every name is one that the command takes
-            yield make(host, *names)
+            found.append(make(host, *names))
+    return tuple(found)
 
 
 def _ranges(setting: Setting, control: ControlBy, hosts: Names) -> list[Names]:

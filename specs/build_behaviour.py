@@ -161,10 +161,13 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
     # --- control actions
 
     def move_host(self, c: Children) -> s.MoveHost:
-        return s.MoveHost(c[1], span=cover(c))
+        return s.MoveHost(c[1], _via(c[2]), span=cover(c))
 
     def move(self, c: Children) -> s.Move:
-        return s.Move(c[1], c[3], span=cover(c))
+        return s.Move(c[1], c[3], _via(c[4]), span=cover(c))
+
+    def via(self, c: Children) -> Part:
+        return Part(cover(c), nodes(c))
 
     def connect(self, c: Children) -> s.Connect:
         return s.Connect(c[1], span=cover(c))
@@ -226,6 +229,10 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
     def group(self, c: Children) -> s.Expression:
         expression: s.Expression = c[1]
         return expression
+
+
+def _via(part: Part | None) -> tuple[s.Expression, ...]:
+    return () if part is None else part.value
 
 
 def _literal(c: Children) -> s.TextLiteral | s.IntegerLiteral | s.TruthLiteral:

@@ -117,8 +117,8 @@ class Code(Enum):
     MISSING_DESTINATION = (
         "LS109",
         "control action without its destination",
-        """Control actions are written `MOVE_HOST_TO place`, `MOVE entity TO place`, `CONNECT_HOST_TO
-        node`, `DISCONNECT_HOST_FROM node`, `HAND entity TO station`, `PUT entity IN place`,
+        """Control actions are written `MOVE_HOST_TO place`, `MOVE entity TO place`, both with `VIA place, place`
+        behind if they are to pass something on the way, `CONNECT_HOST_TO node`, `DISCONNECT_HOST_FROM node`, `HAND entity TO station`, `PUT entity IN place`,
         `rule(arguments)` or `{ redex -> reactum }`.""",
     )
     MISSPELT_KEYWORD = (
@@ -212,6 +212,12 @@ class Code(Enum):
         "LS126",
         "unknown escape",
         """In a string, a backslash stands before a quote, a backslash, `n` or `t`.""",
+    )
+    MISPLACED_VIA = (
+        "LS127",
+        "'VIA' where nothing travels",
+        """Only moves have a way: `MOVE_HOST_TO place VIA gate0, gate1` and `MOVE entity TO place VIA gate0,
+        gate1`. VIA stands once, behind the destination.""",
     )
     # --- LS2: names and kinds
     UNKNOWN_NAME = (
@@ -378,6 +384,12 @@ class Code(Enum):
         "LS507",
         "node of another kind",
         """A node is written with a kind that is not its own: `uav0_Vessel` where uav0 is a UAV.""",
+    )
+    BAD_WAY = (
+        "LS508",
+        "way that cannot be taken",
+        """Behind VIA stand the places that a move passes on its way: twenty at the most, each named once, none of
+        them what travels or where it goes, and each of a kind that may contain what travels.""",
     )
     # --- LS6: environment and checks
     SAME_PLACEMENT = (

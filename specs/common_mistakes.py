@@ -105,9 +105,17 @@ def missing_destination(at: Situation) -> Diagnostic | None:
             message = f"expected '{word}' and a {'place' if word == 'IN' else 'destination'}, found {at.found.shown}"
             hint = "control actions are MOVE u TO place, HAND u TO station, PUT x IN place"
             return at.mistake(Code.MISSING_DESTINATION, message, hint)
-    if at.before.text in ACTION_WORDS and at.at_expression and at.found.text == ")":
+    if at.before.text in ACTION_WORDS and at.at_expression and at.found.text in (")", "VIA"):
         return at.mistake(Code.MISSING_DESTINATION, f"'{at.before.text}' needs a name behind it", "say which")
     return None
+
+
+def misplaced_via(at: Situation) -> Diagnostic | None:
+    """`control(CONNECT_HOST_TO gcs0 VIA gate0)`, or VIA twice."""
+    if at.found.text != "VIA":
+        return None
+    hint = "write MOVE_HOST_TO place VIA gate0, gate1, or MOVE u TO place VIA gate0, gate1"
+    return at.mistake(Code.MISPLACED_VIA, "'VIA' stands where nothing travels, or has its way already", hint)
 
 
 def missing_arrow(at: Situation) -> Diagnostic | None:
@@ -240,6 +248,7 @@ MISTAKES: Final[tuple[Callable[[Situation], Diagnostic | None], ...]] = (
     misspelt_word_before,
     misplaced_statement,
     missing_destination,
+    misplaced_via,
     missing_arrow,
     chained_comparison,
     missing_unit,

@@ -63,7 +63,7 @@ QUERY_WORDS: Final = frozenset(
     ]
 )
 ACTION_WORDS: Final = frozenset(
-    ["MOVE_HOST_TO", "MOVE", "TO", "CONNECT_HOST_TO", "DISCONNECT_HOST_FROM", "HAND", "PUT", "IN"]
+    ["MOVE_HOST_TO", "MOVE", "TO", "VIA", "CONNECT_HOST_TO", "DISCONNECT_HOST_FROM", "HAND", "PUT", "IN"]
 )
 RESERVED: Final = (
     SECTIONS

@@ -142,12 +142,16 @@ def _(node: s.QueryApplication) -> str:
 
 @write.register
 def _(node: s.MoveHost) -> str:
-    return f"MOVE_HOST_TO {write(node.destination)}"
+    return f"MOVE_HOST_TO {write(node.destination)}{_via(node.via)}"
 
 
 @write.register
 def _(node: s.Move) -> str:
-    return f"MOVE {write(node.entity)} TO {write(node.destination)}"
+    return f"MOVE {write(node.entity)} TO {write(node.destination)}{_via(node.via)}"
+
+
+def _via(places: tuple[s.Expression, ...]) -> str:
+    return f" VIA {listed(places)}" if places else ""
 
 
 @write.register

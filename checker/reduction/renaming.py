@@ -143,7 +143,10 @@ SPECIAL: Mapping[type, Callable[[Renaming, Any], Any]] = {
     InTransit: lambda renaming, placement: InTransit(placement.origin, renaming.name(placement.to)),
     Match: lambda renaming, match: Match(tuple((term, renaming.name(name)) for term, name in match.binding)),
     Reaction: lambda renaming, each: Reaction(
-        renaming.text(each.text), renaming.value(each.redex), renaming.value(each.reactum)
+        renaming.text(each.text),
+        renaming.value(each.redex),
+        renaming.value(each.reactum),
+        renaming.value(each.via),
     ),
     Pattern: _each_field,
 }

@@ -10,6 +10,7 @@ from physical import Geometry, PhysicalError, area, band_contains, nearest_place
 from semantics.expressions import Expression, Host, Literal
 from semantics.physical_model import Placed
 from semantics.reactions import NodeVariable
+from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.bodies import Bodies, body_key, possible_hosts
 from specs.elaboration.findings import a
@@ -26,7 +27,10 @@ MOST_HOLES: Final = 50
 """Places that may swallow a node: of more than these, where it fits is left to the run."""
 
 _MOVING: Final = {"MOVE_HOST_TO": (None, 0), "MOVE": (0, 1), "PUT": (0, 1)}
-"""For each command that moves: which argument is moved (None for the host), and which is where to."""
+"""For each command that moves: which argument is moved (None for the host), and which is where to.
+
+What is passed on the way stands behind that.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +74,17 @@ class Ground:
             message = f"{a(place.kind)} cannot contain {a(node.kind)}"
             return message, f"declare it: kind {place.kind} contains {node.kind}"
         return self._room(node, place)
+
+    def bars(self, node: Someone, place: Someone) -> tuple[str, str] | None:
+        """Return why a node can never pass a place on its way, and what to do; None where it may be possible."""
+        if node.name is not None and node.name == place.name:
+            return f"'{node.name}' is what travels", "name the places that it passes"
+        if node.kind is None or place.kind is None:
+            return None
+        if self.names.signature[place.kind].may_contain(node.kind):
+            return None
+        message = f"{place.shown} is no place to pass: {a(place.kind)} cannot contain {a(node.kind)}"
+        return message, f"pass another, or declare it: kind {place.kind} contains {node.kind}"
 
     def _mobile(self, node: Someone) -> bool:
         carried = (
@@ -159,14 +174,12 @@ def _check_site(
     name, arguments = site.statement.name, site.statement.arguments
     if name in _MOVING:
         moved, place = _MOVING[name]
-        problems = [
-            ground.obstacle(
-                _value(None if moved is None else arguments[moved], host, ground),
-                _value(arguments[place], host, ground),
-            )
-            for host in hosts
-        ]
-        _report(site, problems, ground)
+        movers = [_value(None if moved is None else arguments[moved], host, ground) for host in hosts]
+        places = [_value(arguments[place], host, ground) for host in hosts]
+        _report(site.where, map(ground.obstacle, movers, places), ground)
+        for node, via in zip(site.via, arguments[place + 1 :], strict=True):
+            passed = [_value(via, host, ground) for host in hosts]
+            _report(node, map(ground.bars, movers, passed), ground, Code.BAD_WAY)
     elif name in schemas and len(arguments) == len(schemas[name].parameters):
         _check_use(site, schemas[name], hosts, ground)
 
@@ -202,14 +215,19 @@ def _check_use(site: ControlSite, rule: Schema, hosts: tuple[str, ...], ground: 
                 )
                 for host in able
             ]
-            _report(site, problems, ground)
+            _report(site.where, problems, ground)
 
 
-def _report(site: ControlSite, problems: Iterable[tuple[str, str] | None], ground: Ground) -> None:
+def _report(
+    where: s.Node,
+    problems: Iterable[tuple[str, str] | None],
+    ground: Ground,
+    code: Code = Code.UNREALISABLE,
+) -> None:
     """Report the first problem if there is one whoever the host is."""
     found = list(problems)
     if found and (first := found[0]) is not None and all(found):
-        ground.names.findings.add(Code.UNREALISABLE, site.where, *first)
+        ground.names.findings.add(code, where, *first)
 
 
 def _value(expression: Expression | None, host: str, ground: Ground) -> Someone:

@@ -25,6 +25,7 @@ from specs.elaboration.regions import regions_of
 from specs.elaboration.rules import elaborate_rule, word_of
 from specs.elaboration.schemas import HOST, Parameter, Schema
 from specs.elaboration.scopes import Scope, Variables
+from specs.elaboration.ways import check_way
 
 _FILLED_LATER: Final = k.Tested()
 """Keeps the place of a statement until its blocks are numbered."""
@@ -53,8 +54,13 @@ class SpawnSite:
 class ControlSite:
     """A `control`, as it was written and as it is."""
 
-    where: s.Node
+    where: s.Action
     statement: k.ControlBy
+
+    @property
+    def via(self) -> tuple[s.Expression, ...]:
+        """What stands behind VIA."""
+        return self.where.via if isinstance(self.where, s.MoveHost | s.Move) else ()
 
 
 @dataclass(slots=True)
@@ -175,7 +181,10 @@ class _Statements:
                 check_arity(action.rule, len(action.arguments), len(rule.parameters), self.names.findings)
             return action.rule.text, tuple(self.node(each, place) for each in action.arguments)
         name, parts = _command(action)
-        return name, tuple(self.node(each, place) for each in parts)
+        arguments = tuple(self.node(each, place) for each in parts)
+        if isinstance(action, s.MoveHost | s.Move):
+            check_way(action, arguments, self.names.findings)
+        return name, arguments
 
     def node(self, node: s.Expression, place: _Place) -> Expression:
         return elaborate_node(node, place.scope, self.names)
@@ -323,10 +332,10 @@ class _Statements:
 
 def _command(action: s.Action) -> tuple[str, tuple[s.Expression, ...]]:
     match action:
-        case s.MoveHost(place):
-            return "MOVE_HOST_TO", (place,)
-        case s.Move(entity, place):
-            return "MOVE", (entity, place)
+        case s.MoveHost(place, via):
+            return "MOVE_HOST_TO", (place, *via)
+        case s.Move(entity, place, via):
+            return "MOVE", (entity, place, *via)
         case s.Connect(node):
             return "CONNECT_HOST_TO", (node,)
         case s.Disconnect(node):

@@ -14,17 +14,22 @@ from specs.syntax.nodes import Name, Node
 
 @dataclass(frozen=True, slots=True)
 class MoveHost(Node):
-    """`MOVE_HOST_TO e`: move the agent's host into a place."""
+    """`MOVE_HOST_TO e` or `MOVE_HOST_TO e VIA v, w`: move the agent's host into a place.
+
+    It passes the places behind VIA on its way, in their order: twenty at the most, each named once.
+    """
 
     destination: Expression
+    via: tuple[Expression, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Move(Node):
-    """`MOVE u TO e`: move another entity into a place."""
+    """`MOVE u TO e` or `MOVE u TO e VIA v, w`: move another entity into a place."""
 
     entity: Expression
     destination: Expression
+    via: tuple[Expression, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
