@@ -73,15 +73,24 @@ class GoTo:
 
 @dataclass(frozen=True, slots=True)
 class Follow:
-    """Fly a path of points in their order, then stay at the last.
+    """Pass places in their order, then go into the last and stay there.
 
-    `altitude` is the band to be in, in metres above sea level; the vehicle's own choice if None.
+    The same request with another path of as many places means that some of them have moved on: go on along the path as
+    it is now.
+
+    Attributes:
+        request: Names the request in reports; unique in a run.
+        entity: Who shall go.
+        path: The polygons (or points) as they are now; the waypoint of each is `physical.waypoint(place)`.
+        altitude: The band to be in, in metres above sea level; the vehicle's own choice if None.
+        name: The last place's name, for messages.
     """
 
     request: str
     entity: str
     path: tuple[Geometry, ...]
     altitude: Band | None = None
+    name: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +151,7 @@ class Accepted:
 class Arrived:
     """The vehicle's position, or for a hand-over its authority, shows that the request is done.
 
-    Whether it is done in logical space is decided by the rules, from what is published, not from this.
+    Of a path it says that all of it is behind the vehicle, which no position shows. Whether it is done in logical space is decided by the rules, from what is published, not from this.
     """
 
     request: str

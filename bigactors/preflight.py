@@ -45,11 +45,13 @@ def check_places(mission: ElaboratedMission, plugins: tuple[Plugin, ...]) -> Non
 
     def objection(reaction: Reaction) -> str:
         reasons = (
-            plugin.objection(str(vehicle), geometry, str(place))
+            judge(str(vehicle), geometry, str(node))
             for vehicle, place in _moves(reaction)
             for plugin in pilots
-            if plugin.owns(str(vehicle)) and isinstance(place, str)
-            for geometry in placements_of(place, mission)
+            if plugin.owns(str(vehicle))
+            for node, judge in (*((via, plugin.bar) for via in reaction.via), (place, plugin.objection))
+            if isinstance(node, str)
+            for geometry in placements_of(node, mission)
         )
         return next((f"it cannot: {reason}" for reason in reasons if reason), "")
 
@@ -93,8 +95,16 @@ def _instances(
     for chosen in islice(product(*several), MOST_INSTANCES):
         with suppress(Fault):  # not every name is one that the command takes
             reaction = make(*chosen)
-            if all(_may_be(mission, *move) for move in _moves(reaction)):
+            if _may_take(mission, reaction):
                 yield reaction
+
+
+def _may_take(mission: ElaboratedMission, reaction: Reaction) -> bool:
+    """Tell whether what a reaction moves may be where it goes and at what it passes, each of them another place."""
+    moves = tuple(_moves(reaction))
+    ways = ((node, place) for node, to in moves for place in (*reaction.via, to))
+    each_once = all(len({*reaction.via, to}) == len(reaction.via) + 1 for _, to in moves)
+    return each_once and all(_may_be(mission, *way) for way in ways)
 
 
 def _may_be(mission: ElaboratedMission, node: NodeTerm, place: PlaceTerm) -> bool:

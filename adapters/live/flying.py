@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from adapters.live.orders import destination, hand_overs, renewed
+from adapters.live.orders import hand_overs, journey, renewed
 from adapters.live.serving import in_turn
 from adapters.live.state import Order
 from adapters.live.turning import Turning
-from adapters.plugin import HandOver
+from adapters.plugin import Follow, HandOver
 from semantics.control import commits, realisations
 from semantics.observed import Sight, arriving
 from semantics.physical_model import placement_cell
@@ -17,10 +17,15 @@ from semantics.signature import Name
 
 
 def arrive(turning: Turning, entity: Name) -> bool:
-    """Commit the flight of a vehicle if it was seen where it was to go, and whoever flies with it too."""
+    """Commit the flight of a vehicle if it was seen where it was to go, and whoever flies with it too.
+
+    Who was told a path may come through its destination on the way: it has to have said that the path is behind it.
+    """
     transit, order = turning.c.structure.physical.transit(entity), turning.orders.get(entity)
     at = turning.where_seen(entity)
     if transit is None or order is None or at is None or order.agent in turning.grounded:
+        return False
+    if isinstance(order.command, Follow) and not order.through:
         return False
     if transit.to not in turning.around(entity, turning.c.setting.kind(entity), at):
         return False
@@ -35,24 +40,35 @@ def arrive(turning: Turning, entity: Name) -> bool:
     return True
 
 
+def come_through(turning: Turning, entity: Name, request: str) -> None:
+    """Note that a vehicle has the path behind it that it was told by a request."""
+    order = turning.orders.get(entity)
+    if order is not None and order.command.request == request:
+        turning.orders[entity] = replace(order, through=True)
+        arrive(turning, entity)
+
+
 def renew(turning: Turning, place: Name) -> None:
-    """Send vehicles on where the place that they go to has moved, and let those arrive that it has reached."""
+    """Send vehicles on where a place that they go to or pass has moved, and let those arrive that it has reached."""
     physical = turning.c.structure.physical
     for entity, order in sorted(turning.orders.items()):
         transit = physical.transit(entity)
-        if transit is None or transit.to != place or turning.suspended or order.agent in turning.grounded:
+        if transit is None or turning.suspended or order.agent in turning.grounded:
             continue
-        if not arrive(turning, entity):
-            _send_on(turning, entity, order)
+        if transit.to != place or not arrive(turning, entity):
+            _send_on(turning, entity, order, place)
 
 
-def _send_on(turning: Turning, entity: Name, order: Order) -> None:
+def _send_on(turning: Turning, entity: Name, order: Order, place: Name) -> None:
     fly = next((p.request for p in in_turn(turning.c) if p.request.agent == order.agent), None)
     if not isinstance(fly, FLY) or isinstance(order.command, HandOver):
         return
+    transit = turning.c.structure.physical.transit(entity)
+    if transit is None or place not in (transit.to, *fly.reaction.via):
+        return
     command = renewed(turning.c, fly, order.command)
     if command is not None:
-        turning.orders[entity] = replace(order, command=command)
+        turning.orders[entity] = replace(order, command=command, through=False)
         turning.commands.append(command)
 
 
@@ -72,6 +88,6 @@ def _remember_flight(turning: Turning, fly: FLY) -> None:
     found = commits(turning.c, fly)
     for node, place in found.flying if found is not None else ():
         assert found is not None
-        going = destination(turning.c, found, node, place, turning.request_of(fly.agent))
+        going = journey(turning.c, found, node, place, turning.request_of(fly.agent))
         if going is not None:
             turning.orders[node] = Order(going, fly.agent, turning.now)

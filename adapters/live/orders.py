@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
-from adapters.plugin import GoTo, HandOver
+from adapters.plugin import Follow, GoTo, HandOver
 from physical import waypoint
 from semantics.configuration import Configuration
 from semantics.control import Realisation, commits
+from semantics.mobility import passed
 from semantics.physical_model import Carried, InTransit, Placed, placement_cell
 from semantics.reactions import CONTROL_AUTHORITY, moved, relinked
 from semantics.requests import CTR, FLY
 from semantics.signature import Name
+
+
+def journey(
+    c: Configuration, found: Realisation, node: Name, place: Name, request: str
+) -> GoTo | Follow | None:
+    """Return the command to go into a place, by way of what is to be passed, all as it is now."""
+    going = destination(c, found, node, place, request)
+    if going is None or not found.via:
+        return going
+    return Follow(request, node, (*passed(c, found), going.place), going.altitude, place)
 
 
 def destination(c: Configuration, found: Realisation, node: Name, place: Name, request: str) -> GoTo | None:
@@ -29,13 +40,13 @@ def destination(c: Configuration, found: Realisation, node: Name, place: Name, r
     return GoTo(request, node, target.geometry if central else waypoint(spot.geometry), spot.altitude, place)
 
 
-def renewed(c: Configuration, fly: FLY, told: GoTo) -> GoTo | None:
-    """Return the command again with the place where it is now, None where it is the same or can't be known."""
+def renewed(c: Configuration, fly: FLY, told: GoTo | Follow) -> GoTo | Follow | None:
+    """Return the command again with its places where they are now, None where it is the same or can't be known."""
     found = commits(c, fly)
     transit = c.structure.physical.placement(told.entity)
     if found is None or not isinstance(transit, InTransit):
         return None
-    command = destination(c, found, told.entity, transit.to, told.request)
+    command = journey(c, found, told.entity, transit.to, told.request)
     return command if command != told else None
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from adapters.plugin import Command, GoTo, HandOver, Published, Report
+from adapters.plugin import Command, Follow, GoTo, HandOver, Published, Report
 from physical import PhysicalProperty
 from semantics.configuration import Configuration, Transition
 from semantics.observed import Sight
@@ -52,11 +52,13 @@ class Order:
         command: What it was told last.
         agent: Whose request it serves.
         since: When it was first told.
+        through: Whether the vehicle has said that the path that it was told is behind it.
     """
 
-    command: GoTo | HandOver
+    command: GoTo | Follow | HandOver
     agent: Name
     since: float
+    through: bool = False
 
 
 @dataclass(frozen=True, slots=True)

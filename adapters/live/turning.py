@@ -7,7 +7,7 @@ from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import replace
 
-from adapters.live.orders import destination, hand_overs, is_authority, is_done, unshown
+from adapters.live.orders import hand_overs, is_authority, is_done, journey, unshown
 from adapters.live.serving import PATIENCE, STEPS_PER_SECOND, in_turn, own_steps, refilled, served
 from adapters.live.sightings import Fences, placement_seen
 from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Outgoing, Pace, Plan, Turn
@@ -254,7 +254,7 @@ class Turning:
                 return (), False
         if way.flying:
             for node, place in way.flying:
-                going = destination(self.c, way, node, place, self.request_of(request.agent))
+                going = journey(self.c, way, node, place, self.request_of(request.agent))
                 if going is None:
                     return (), False
                 self.orders[node] = Order(going, request.agent, self.now)

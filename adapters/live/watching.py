@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from adapters.live.assumptions import broken_by_place, clause_of_leaving
 from adapters.live.elsewhere import hear_of
-from adapters.live.flying import arrive, renew
+from adapters.live.flying import arrive, come_through, renew
 from adapters.live.orders import is_authority
 from adapters.live.sightings import Fences, Refusal, placement_seen, sighting_of
 from adapters.live.state import Answer, Heard, Saying, Sighting
@@ -225,8 +225,10 @@ def _on_channel(turning: Turning, entity: Name, channel: Name) -> None:
 def note(turning: Turning, report: Report) -> None:
     """Take in what a plugin reports; nothing is committed by it."""
     match report:
-        case Accepted() | Arrived():
+        case Accepted():
             pass  # recorded; positions decide
+        case Arrived(request, entity):
+            come_through(turning, entity, request)
         case Delivered() | Underway() | Hosts() | Believes() | Broken():
             hear_of(turning, report)
         case Rejected(request, entity, _, reason):

@@ -16,7 +16,7 @@ from adapters.mavlink.fleet import Craft, Stations
 from adapters.mavlink.keys import Keeper
 from adapters.mavlink.message import Message, say
 from adapters.mavlink.numbers import GROUND_COMPONENT, GROUND_STATION, NO_AUTOPILOT
-from adapters.mavlink.objections import unfit
+from adapters.mavlink.objections import impassable, unfit
 from adapters.mavlink.pilot import Outcome, Pilot
 from adapters.mavlink.roster import Roster
 from adapters.mavlink.signing import Verdict
@@ -97,6 +97,10 @@ class Autopilot:
         """Return why a place is none for a vehicle, as far as its kind is known; None if nothing is against it."""
         pilot = self._pilots[entity]
         return unfit(GoTo("", entity, place, name=name), pilot.craft, pilot.known.profile)
+
+    def bar(self, entity: str, place: Geometry, name: str) -> str | None:
+        """Return why a vehicle can't pass a place on its way; None if nothing is against it."""
+        return impassable(place, self._pilots[entity].craft, name)
 
     async def command(self, command: Command) -> None:
         """Take on a command; raises Refused."""

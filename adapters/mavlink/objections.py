@@ -25,17 +25,25 @@ def _objections(command: Command, craft: Craft, stations: Stations, known: Telem
         yield from _of_hand_over(command, stations, known)
     if isinstance(command, Follow) and not 0 < len(command.path) <= MAX_PATH:
         yield f"a path has 1 to {MAX_PATH} points, this one {len(command.path)}"
+        return
     yield from _of_place(command, craft, known.profile)
 
 
-def unfit(command: GoTo, craft: Craft, profile: Profile | None) -> str | None:
+def unfit(command: GoTo | Follow, craft: Craft, profile: Profile | None) -> str | None:
     """Return why a place is none for a vehicle, whoever commands it: it is too small, or outside the fence."""
     return next(_of_place(command, craft, profile), None)
 
 
+def impassable(place: Geometry, craft: Craft, name: str) -> str | None:
+    """Return why a place can't be passed: a circle needs no room there."""
+    if craft.fence is None or contains(craft.fence, waypoint(place)):
+        return None
+    return f"{name} lies outside the fence"
+
+
 def _of_place(command: Command, craft: Craft, profile: Profile | None) -> Iterator[str]:
     yield from _of_fence(command, craft, profile)
-    if isinstance(command, GoTo) and profile is not None:
+    if isinstance(command, GoTo | Follow) and profile is not None:
         yield from _of_size(command, craft, profile)
 
 
@@ -57,7 +65,7 @@ def _of_fence(command: Command, craft: Craft, profile: Profile | None) -> Iterat
     """Object to points outside of the fence, and to a circle around the last that leaves it."""
     if craft.fence is None or not isinstance(command, GoTo | Follow):
         return
-    points = (waypoint(command.place),) if isinstance(command, GoTo) else command.path
+    points = tuple(map(waypoint, _path(command)))
     radius = 0.0 if profile is None else craft.circle_of(profile)
     outside = [at for at in points if not contains(craft.fence, at)]
     if outside:
@@ -66,9 +74,13 @@ def _of_fence(command: Command, craft: Craft, profile: Profile | None) -> Iterat
         yield f"a circle of {radius:g} m around {points[-1]!r} leaves the fence"
 
 
-def _of_size(command: GoTo, craft: Craft, profile: Profile) -> Iterator[str]:
+def _path(command: GoTo | Follow) -> tuple[Geometry, ...]:
+    return (command.place,) if isinstance(command, GoTo) else command.path
+
+
+def _of_size(command: GoTo | Follow, craft: Craft, profile: Profile) -> Iterator[str]:
     radius = craft.circle_of(profile)
-    if not holds_circle(command.place, radius):
+    if not holds_circle(_path(command)[-1], radius):
         name = command.name or "the place"
         yield f"{name} is too small: the {profile.kind} needs a circle of {radius:g} m around its centre to stay"
 

@@ -120,11 +120,17 @@ def _check_not_rejected(before: Task | None, told: Command) -> None:
 
 
 def _continued(before: Task | None, task: Task) -> Task:
-    """Keep of a task whose place has moved on that it had armed and begun."""
-    if before is None or before.over or before.command.request != task.command.request:
+    """Keep of a task whose place has moved on that it had armed and begun; a path goes on where it was."""
+    follows = isinstance(task.command, Follow)
+    if before is None or before.command.request != task.command.request or (before.over and not follows):
         return task
     return replace(
-        task, height=before.height, begun=before.begun, was_armed=before.was_armed, boots=before.boots
+        task,
+        height=before.height,
+        begun=before.begun and not follows,
+        resumes=before.resumes or (before.begun and follows),
+        was_armed=before.was_armed,
+        boots=before.boots,
     )
 
 
@@ -217,6 +223,7 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
         circle=pilot.craft.circle_of(profile),
         height=task.height or 0.0,
         begun=task.begun,
+        resumes=task.resumes,
     )
     step = plan.next_step(task.command, task.station, vehicle)
     return tasks.advance(task, step, vehicle, lost=pilot.link.lost, now=now)

@@ -74,7 +74,8 @@ class Vehicle:
         fence: The polygon that it is to be kept within.
         circle: The radius in metres that it needs to stay somewhere.
         height: Metres above home at which the command is carried out.
-        begun: Whether its mission was seen at its first item since the command.
+        begun: Whether its mission was seen to begin since the command.
+        resumes: Whether that goes on with the item that it is at.
     """
 
     system: int
@@ -85,6 +86,7 @@ class Vehicle:
     circle: float
     height: float
     begun: bool
+    resumes: bool = False
 
 
 def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
@@ -180,13 +182,15 @@ def _targets(known: Telemetry, at: Geometry) -> bool:
 
 
 def _follow(command: Follow, vehicle: Vehicle) -> Step:
-    profile = vehicle.profile
-    items = route(command.path, vehicle.height, takeoff=profile.takeoff is not TakeOff.NONE)
+    profile, path = vehicle.profile, tuple(map(waypoint, command.path))
+    items = route(path, vehicle.height, takeoff=profile.takeoff is not TakeOff.NONE)
     # What flies need not take off again: it begins with the point behind the take-off.
     first = 2 if profile.takeoff is not TakeOff.NONE and vehicle.known.flying else 1
+    if vehicle.resumes:
+        first = vehicle.known.current or first
     return (
         _loaded(vehicle, items, MissionType.MISSION)
-        or (_off_the_ground(vehicle, command.path[0]) if profile.takeoff is TakeOff.COMMAND else None)
+        or (_off_the_ground(vehicle, path[0]) if profile.takeoff is TakeOff.COMMAND else None)
         or _begun(vehicle, first)
         or _in_mode(vehicle, profile.auto)
         or _armed(vehicle)
@@ -202,8 +206,8 @@ def _begun(vehicle: Vehicle, first: int) -> Step | None:
 
 
 def _at_the_end(command: Follow, items: Items, vehicle: Vehicle) -> bool:
-    near = distance(_spot(vehicle), command.path[-1]) <= vehicle.profile.reach
-    return vehicle.known.current == len(items) - 1 and near
+    last = command.path[-1]
+    return vehicle.known.current == len(items) - 1 and _reached(last, waypoint(last), vehicle)
 
 
 def _hand_over(station: int, vehicle: Vehicle) -> Step:

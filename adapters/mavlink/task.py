@@ -10,7 +10,7 @@ from adapters.mavlink import command as telling
 from adapters.mavlink import sync as syncing
 from adapters.mavlink.items import Items
 from adapters.mavlink.message import Message
-from adapters.mavlink.numbers import Cmd, MissionType
+from adapters.mavlink.numbers import Cmd, MissionType, Result
 from adapters.mavlink.plan import Load, Step, Tell, Underway, Vehicle, Wait
 from adapters.plugin import Accepted, Arrived, Command, Rejected, Report
 
@@ -38,7 +38,8 @@ class Task:
         accepted: Whether the state has shown that the vehicle does it.
         over: Whether it has arrived or was rejected.
         rejection: Why it was rejected, if it was.
-        begun: Whether the mission was seen at its first item.
+        begun: Whether the mission was seen at its first item, or the vehicle has said that it resumes it.
+        resumes: Whether the path has moved under way: the vehicle is told again to go to the item that it is at.
         was_armed: Whether it was armed since the command.
         strange: Since when the state contradicts what it was.
         boots: The vehicle's boots that all this is about.
@@ -55,6 +56,7 @@ class Task:
     over: bool = False
     rejection: str | None = None
     begun: bool = False
+    resumes: bool = False
     was_armed: bool = False
     strange: float | None = None
     boots: int = 0
@@ -109,13 +111,28 @@ def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
     known = vehicle.known
     if known.boots != task.boots:  # all but that it was armed is void
         task = replace(
-            task, boots=known.boots, step=None, since=now, accepted=False, begun=False, strange=None
+            task,
+            boots=known.boots,
+            step=None,
+            since=now,
+            accepted=False,
+            begun=False,
+            resumes=False,
+            strange=None,
         )
-    asked = task.step.message.fields if isinstance(task.step, Tell) else {}
-    begins = asked.get("command") == Cmd.SET_MISSION_CURRENT and known.current == asked.get("param1")
-    begun, was_armed = task.begun or begins, task.was_armed or known.armed is True
+    begun, was_armed = task.begun or _begins(task, vehicle), task.was_armed or known.armed is True
     unchanged = (begun, was_armed) == (task.begun, task.was_armed)
     return task if unchanged else replace(task, begun=begun, was_armed=was_armed)
+
+
+def _begins(task: Task, vehicle: Vehicle) -> bool:
+    """Tell whether the vehicle is at the item that it was told: where it was before, only its answer shows that."""
+    asked = task.step.message.fields if isinstance(task.step, Tell) else {}
+    if asked.get("command") != Cmd.SET_MISSION_CURRENT:
+        return False
+    if task.resumes:
+        return isinstance(task.doing, telling.Telling) and task.doing.answer == Result.ACCEPTED
+    return vehicle.known.current == asked.get("param1")
 
 
 def _underway(task: Task, step: Underway, now: float) -> Progress:

@@ -43,6 +43,7 @@ SHIPPED: dict[str, Expected] = {
     "surveillance": Expected(153, 663, witnesses={"an alarm is raised": 6}),
     "takeover": Expected(630, 2_214, witnesses={"landed after an emergency": 25}),
     "tanker": Expected(56, 125, witnesses={"both drifters deployed": 14}),
+    "two_gates": Expected(38, 76, witnesses={"there and back": 10}),
 }
 
 

@@ -71,6 +71,10 @@ PLACES = {
     "searchArea0": box((37.04, -8.59), (36.94, -8.79)),
     "airfield0": circle((37.149, -8.584), 900.0),
     "oilSpill0": circle((37.0, -8.7), 650.0),
+    "bay0": box((37.105, -8.57), (37.085, -8.6)),
+    "northGate0": circle((37.14, -8.612), 300.0),
+    "southGate0": circle((37.108, -8.612), 300.0),
+    "town0": box((37.135, -8.57), (37.115, -8.6)),
 }
 STATIONS = {"gcs0": 255.0, "gcs1": 254.0}
 GOOD = Disturbance()
@@ -86,6 +90,7 @@ class Witness:
     vehicle: Vehicle
     truth: list = field(default_factory=list)
     rules: list = field(default_factory=list)
+    commits: list = field(default_factory=list)  # how much of the truth came before each
     findings: list = field(default_factory=list)
     untrue: list = field(default_factory=list)
 
@@ -116,7 +121,8 @@ class Witness:
             label = step.transition.label
             self.rules.append(label.rule)
             if label.rule == "commit":
-                place = label.about.reaction.text.rpartition(" ")[2]
+                self.commits.append(len(self.truth))
+                ((_, place),) = label.about.reaction.reactum.parents
                 self.check(label, any(contains(PLACES[place], point(*at)) for _, at, _ in self.recent()))
             elif label.rule == "actuate" and "HAND" in str(label):
                 station = label.about.reaction.text.rpartition(" ")[2]
