@@ -151,7 +151,8 @@ class Accepted:
 class Arrived:
     """The vehicle's position, or for a hand-over its authority, shows that the request is done.
 
-    Of a path it says that all of it is behind the vehicle, which no position shows. Whether it is done in logical space is decided by the rules, from what is published, not from this.
+    Of a path it says that all of it is behind the vehicle, which no position shows. Whether the request is done in
+    logical space is decided by the rules, from what is published, not from this.
     """
 
     request: str

@@ -110,7 +110,7 @@ class _Text:
 
     @cached_property
     def reactions(self) -> tuple[Reaction, ...] | None:
-        """The reactions that the agent may request, for every name that an argument may come to; None if too many."""
+        """The reactions that the agent may request, whatever its arguments may name; None if too many."""
         controls = [statement for statement in self.statements if isinstance(statement, ControlBy)]
         setting = self.c.setting
         hosts = frozenset(setting.kinds) if self.host == ANY else frozenset({self.host})

@@ -53,10 +53,12 @@ T = TypeVar("T")
 AGENT_NAMES = ("a", "b", "c", "d")
 SPAWNED_NAMES = ("d", "c", "a")
 ONE_ARGUMENT = frozenset({"MOVE_HOST_TO", "CONNECT_HOST_TO", "DISCONNECT_HOST_FROM"})
+TRAVELS = frozenset({"MOVE_HOST_TO", "MOVE"})
+"""Commands that may have places on their way, behind their other arguments."""
 
 
 def arity(command: str) -> int:
-    """Return how many arguments a command of the language takes."""
+    """Return how many arguments a command of the language takes, those behind VIA left out."""
     return 1 if command in ONE_ARGUMENT else 2
 
 
@@ -156,7 +158,9 @@ class _Writer:
         command = self.pick(["MOVE_HOST_TO", "MOVE_HOST_TO", *sorted(COMMANDS)])
         places = [Literal(name) for name in self.names if name.startswith("place")]
         to = self.one(*places, self.name(scope))
-        return ControlBy(command, (*(self.name(scope) for _ in range(arity(command) - 1)), to))
+        before = [self.name(scope) for _ in range(arity(command) - 1)]
+        via = [self.name(scope) for _ in range(self.pick([0, 0, 0, 1, 2]))] if command in TRAVELS else []
+        return ControlBy(command, (*before, to, *via))
 
     def write_react(self, scope: Variables, depth: int) -> Statement:
         return React(self.cases(scope, depth))

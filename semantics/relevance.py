@@ -136,7 +136,7 @@ def _slots(setting: Setting, control: ControlBy, hosts: Names) -> Questions:
 
 
 def instances(setting: Setting, control: ControlBy, hosts: Names) -> tuple[Reaction, ...] | None:
-    """Return the reactions that a control may request, for every name that an argument may come to; None if too many."""
+    """Return the reactions that a control may request, whatever its arguments may name; None if too many."""
     ranges = _ranges(setting, control, hosts)
     if prod(map(len, ranges)) > MOST_INSTANCES:
         return None

@@ -32,6 +32,7 @@ from semantics.reactions import (
     PlaceTerm,
     PlaceVariable,
     Reaction,
+    move,
     move_host_to,
 )
 from semantics.setting import Control, Scheduler, Setting
@@ -267,7 +268,10 @@ def queries(names: Sequence[Name]) -> st.SearchStrategy[Query]:
 def commands(host: Name, names: Sequence[Name]) -> st.SearchStrategy[Reaction]:
     """Yield the reactions of the language's commands, from a host, over these names."""
     name = st.sampled_from(names)
+    via = st.lists(name, min_size=1, max_size=2)
     return st.one_of(
+        st.builds(lambda place, way: move_host_to(host, place, *way), name, via),
+        st.builds(lambda entity, place, way: move(host, entity, place, *way), name, name, via),
         *(st.builds(COMMANDS[one], st.just(host), name) for one in sorted(ONE_ARGUMENT)),
         *(
             st.builds(COMMANDS[two], st.just(host), name, name)

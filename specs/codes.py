@@ -118,8 +118,8 @@ class Code(Enum):
         "LS109",
         "control action without its destination",
         """Control actions are written `MOVE_HOST_TO place`, `MOVE entity TO place`, both with `VIA place, place`
-        behind if they are to pass something on the way, `CONNECT_HOST_TO node`, `DISCONNECT_HOST_FROM node`, `HAND entity TO station`, `PUT entity IN place`,
-        `rule(arguments)` or `{ redex -> reactum }`.""",
+        behind where something is to be passed, `CONNECT_HOST_TO node`, `DISCONNECT_HOST_FROM node`, `HAND entity
+        TO station`, `PUT entity IN place`, `rule(arguments)` or `{ redex -> reactum }`.""",
     )
     MISSPELT_KEYWORD = (
         "LS110",

@@ -6,12 +6,17 @@ PLACES = ("gate0", "north0", "south0")
 EVERYONES = (
     *(f"control(MOVE {uav} TO {place})" for uav in ("uav0", "uav1") for place in PLACES[:2]),
     *(f"control(HAND {uav} TO {gcs})" for uav in ("uav0", "uav1") for gcs in ("gcs0", "gcs1")),
+    "control(MOVE uav1 TO south0 VIA gate0)",
     "control(CONNECT_HOST_TO uav1)",
     "control(DISCONNECT_HOST_FROM uav0)",
     "control(land(uav0, south0))",
     "control(swap(uav1))",
 )
-DRIVERS = (*(f"control(MOVE_HOST_TO {place})" for place in (*PLACES, "vessel0")), *EVERYONES)
+DRIVERS = (
+    *(f"control(MOVE_HOST_TO {place})" for place in (*PLACES, "vessel0")),
+    "control(MOVE_HOST_TO south0 VIA north0, gate0)",
+    *EVERYONES,
+)
 CONTROLS = {
     "uav0": DRIVERS[:3] + DRIVERS,
     "uav1": DRIVERS,

@@ -1,5 +1,6 @@
 """Realisations and obstacles of controls, `drive`, and control that takes time."""
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_missions import SHAPES, aboard, around, enabled, explore, mission, move_to, run
@@ -171,6 +172,49 @@ def test_the_three_obstacles_are_told_apart():
     assert meets(beliefs=Beliefs({"u0": "area"}), entities=("base", "area", "u0")) is Obstacle.INCONSISTENT
     still = Signature.of([Kind("Place", frozenset({"Uav"})), Kind("Uav")])
     assert meets(signature=still) is Obstacle.UNREALISABLE
+
+
+def test_what_is_passed_on_the_way_has_to_be_believed_and_there():
+    def meets(**more):
+        c = commanding(by("MOVE_HOST_TO", "area", "sea"), entities=("sea", "base", "area", "u0"), **more)
+        return obstacle(c, c.eta.all()[0].request)
+
+    assert meets() is None
+    assert meets(beliefs=Beliefs({"sea": None, "area": REGION})) is Obstacle.UNMATCHED
+    assert (
+        meets(beliefs=Beliefs({"sea": REGION, "area": REGION}), placed={"sea": None}) is Obstacle.INCONSISTENT
+    )
+
+
+@pytest.mark.parametrize("control", Control)
+def test_a_way_changes_nothing_but_where_the_mover_is(control):
+    entities = ("sea", "base", "area", "u0")
+    rules = ("actuate",) if control is Control.ATOMIC else ("command", "commit")
+    straight, round_about = (
+        run(commanding(each, entities=entities, control=control), *rules)
+        for each in (move_to("area"), by("MOVE_HOST_TO", "area", "base", "sea"))
+    )
+    assert dict(straight.state.items()) == dict(round_about.state.items())
+    assert round_about.structure.logical.parent("u0") == "area"
+
+
+def test_what_flies_a_way_is_in_transit_to_its_destination_alone():
+    c = run(commanding(by("MOVE_HOST_TO", "area", "sea"), entities=("sea", "base", "area", "u0")), "command")
+    assert c.structure.physical.transit("u0").to == "area"
+    assert c.structure.physical.abstract_parent("u0") == REGION
+
+
+def test_what_is_passed_and_vanishes_is_a_lost_target():
+    c = run(
+        commanding(
+            by("MOVE_HOST_TO", "area", "spill"),
+            entities=("sea", "base", "area", "spill", "u0"),
+            environment=(Vanishes("spill"),),
+        ),
+        "command",
+        "env",
+    )
+    assert obstacle(c, c.eta.all()[0].request) is Obstacle.INCONSISTENT
 
 
 @given(strategies.configurations())

@@ -274,6 +274,10 @@ REACTION = next(
         (Parcel("nomad", (), running(requests=(MGR("op1", "gcs1"),))), "another agent"),
         (Parcel("nomad", (), running(requests=(MGR("nomad", "gcs8"),))), "nothing is known of gcs8"),
         (
+            Parcel("nomad", (), running(requests=(CTR("nomad", replace(REACTION, via=("gcs8",))),))),
+            "no mission can",
+        ),
+        (
             Parcel(
                 "nomad",
                 (),

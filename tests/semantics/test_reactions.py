@@ -2,6 +2,7 @@
 
 from itertools import product
 
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from small_missions import aboard, mission
@@ -190,6 +191,26 @@ def test_every_command_prints_as_it_is_written():
         "MOVE_HOST_TO u",
         "PUT u IN v",
     ]
+
+
+def test_moves_print_their_ways_and_name_them_as_context():
+    moving = COMMANDS["MOVE_HOST_TO"]("u0", "area", "base", "sea")
+    assert str(moving) == "MOVE_HOST_TO area VIA base, sea"
+    assert str(COMMANDS["MOVE"]("gcs0", "u0", "area", "base")) == "MOVE u0 TO area VIA base"
+    assert moving.via == ("base", "sea")
+    assert moving.redex.nodes == moving.reactum.nodes == ("u0", "area", "base", "sea")
+    straight = move_host_to("u0", "area")
+    assert (moving.redex.parents, moving.reactum.parents) == (
+        straight.redex.parents,
+        straight.reactum.parents,
+    )
+
+
+@pytest.mark.parametrize("way", [("area",), ("u0",), ("base", "base"), ("nowhere",)])
+def test_a_way_by_what_is_named_twice_or_not_believed_matches_nothing(way):
+    logical = logical_of("sea", "base", "area", "u0")
+    assert matches(move_host_to("u0", "area", "sea").redex, logical)
+    assert matches(move_host_to("u0", "area", *way).redex, logical) == ()
 
 
 def test_a_reaction_that_does_not_involve_the_host_is_not_applicable():

@@ -2,9 +2,10 @@
 
 from small_missions import around, explore, is_in, mission, move_to, of_name, received
 
-from semantics.expressions import Apply, Variable
+from checker.ownership import owned
+from semantics.expressions import Apply, Literal, Variable
 from semantics.provenance import EVERYTHING
-from semantics.relevance import ANY, anybodys, meet, questions_of, relevant, slots_of
+from semantics.relevance import ANY, SLOTS, anybodys, meet, questions_of, relevant, slots_of
 from semantics.requests import CTR
 from semantics.statements import Assign, ControlBy, For, ForEach, If, Migrate, Observe, Send
 
@@ -45,6 +46,17 @@ def test_a_control_may_use_the_slots_of_every_place_that_its_argument_may_name()
     statements = (ControlBy("MOVE", (Variable("x"), Variable("y"))),)
     slots = {name for kind, name in asked(statements, (0,)) if kind == "slot parent"}
     assert {"u0", "u1"} <= slots
+
+
+def test_what_is_passed_on_the_way_is_context_of_which_no_slot_is_used():
+    straight, round_about = (move_to("area"), ControlBy("MOVE_HOST_TO", (Literal("area"), Literal("sea"))))
+    assert asked((straight,), (0,)) == asked((round_about,), (0,)) == {("slot parent", "u0")}
+
+
+def test_a_control_that_may_name_too_much_may_use_any_slot():
+    way = ControlBy("MOVE_HOST_TO", tuple(map(Variable, "uvwxyz")))
+    assert asked((way,), (0,)) == SLOTS
+    assert not owned(mission(NAMES, (way,), {"a": ("u0", (0,)), "b": ("u1", (0,))}))
 
 
 def test_who_may_migrate_may_be_anywhere():
