@@ -59,6 +59,48 @@ def test_every_kind_follows_a_path_to_its_end(kind, path):
     run(main())
 
 
+@pytest.mark.parametrize("loss", [0.0, 0.3])
+def test_a_path_that_moves_on_is_followed_from_where_the_vehicle_is_on_it(loss):
+    async def main():
+        async with flight(disturbance=Disturbance(loss=loss), seed=3) as f:
+            await f.plugin.command(Follow("r1", "uav0", PATH))
+            await until(lambda: f.vehicle.current == 3)
+            at = set()
+            further = box((37.025, -8.59), (37.015, -8.605))
+            await f.plugin.command(Follow("r1", "uav0", (*PATH[:2], further)))
+            await until(lambda: at.add(f.vehicle.current) or f.world.of(Arrived, request="r1"), 900)
+            assert contains(further, here(f.vehicle))
+            assert at == {3, 4}  # what was passed is not passed again
+            assert len(f.world.of(Arrived, request="r1")) == 1
+
+    run(main())
+
+
+def test_a_path_that_moves_on_after_its_end_is_followed_to_its_new_end():
+    async def main():
+        async with flight(Kind.COPTER) as f:
+            await f.plugin.command(Follow("r1", "uav0", SHORT))
+            assert isinstance(await f.ended("r1"), Arrived)
+            at = set()
+            await f.plugin.command(Follow("r1", "uav0", (*SHORT[:2], point(37.002, -8.604))))
+            await until(lambda: at.add(f.vehicle.current) or len(f.world.of(Arrived, request="r1")) == 2)
+            assert distance(here(f.vehicle), point(37.002, -8.604)) <= 10
+            assert at == {4}
+
+    run(main())
+
+
+def test_a_path_whose_end_is_too_small_for_the_circle_is_refused_and_what_it_passes_may_be_small():
+    async def main():
+        async with flight() as f:
+            await until(lambda: f.world.property("uav0"))
+            with pytest.raises(Refused, match=r"the nest is too small: the plane needs a circle of 80 m"):
+                await f.plugin.command(Follow("r1", "uav0", (PATH[0], TINY), name="the nest"))
+            await f.plugin.command(Follow("r2", "uav0", (TINY, AREA)))
+
+    run(main())
+
+
 def test_a_plane_stays_inside_the_place_where_it_circles():
     async def main():
         async with flight() as f:

@@ -114,6 +114,20 @@ def test_a_place_outside_the_fence_is_refused_before_take_off(tmp_path):
     assert not plane.armed
 
 
+def test_what_is_passed_outside_the_fence_is_refused_with_its_line_and_may_be_small(tmp_path):
+    plane = Vehicle(Kind.PLANE, (37.01, -8.65, 20.0))
+    statements = ("control(MOVE_HOST_TO west0 VIA pad0)", "control(MOVE_HOST_TO west0 VIA pad0, far0)")
+    asked = options(tmp_path, *statements)
+    text = (tmp_path / "carrier.mission").read_text()
+    far = "far0: Location = circle (37.09, -8.59) radius 30 m\n  range0: Location = box (37.05, -8.55) (36.95, -8.7)"
+    (tmp_path / "carrier.mission").write_text(text.replace("  ship0:", f"  {far}\n  ship0:"))
+    asked.fence = "range0"
+    with pytest.raises(Mistake, match="VIA pad0, far0: it cannot: far0 lies outside the fence") as error:
+        run(flown(prepare(asked), plane))
+    assert error.value.place.endswith("carrier.mission:27")
+    assert not plane.armed
+
+
 def test_a_copter_flies_where_a_plane_could_not(tmp_path):
     copter = Vehicle(Kind.COPTER, (37.01, -8.65, 20.0))
     ending = run(flown(prepare(options(tmp_path, "control(MOVE_HOST_TO pad0)")), copter))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from physical import box, centroid, distance, read_plan, read_waypoints
+from physical import box, centroid, circle, distance, read_plan, read_waypoints
 
 
 @pytest.fixture
@@ -46,3 +46,17 @@ def test_what_cannot_be_written_as_a_route_is_told(simulated, bigactors, route, 
     code, _, err = bigactors("replay", "run.json", "--waypoints", route)
     assert code == 2
     assert said in err
+
+
+@pytest.mark.parametrize(("name", "read"), [("uav0.plan", read_plan), ("uav0.waypoints", read_waypoints)])
+def test_what_is_passed_on_the_way_is_written_before_the_place_that_is_gone_to(
+    missions, bigactors, name, read
+):
+    assert bigactors("simulate", "two_gates", "--json", "run.json")[0] == 0
+    assert bigactors("replay", "run.json", "--waypoints", f"uav0={name}")[0] == 0
+    _, *points = [item.point for item in read((missions / name).read_text())]
+    north, south = centroid(circle((37.14, -8.612), 300)), centroid(circle((37.108, -8.612), 300))
+    bay, airfield = centroid(box((37.105, -8.57), (37.085, -8.6))), centroid(circle((37.149, -8.584), 900))
+    way = [north, south, bay, south, north, airfield]
+    assert len(points) == len(way)
+    assert all(distance(at, wanted) < 1 for at, wanted in zip(points, way, strict=True))
