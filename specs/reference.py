@@ -178,6 +178,18 @@ BigActor a hosted_at uav0 with_behavior {
   }
 }
 """,
+    "Control actions": """\
+BigActor pilot hosted_at uav0 with_behavior {
+  control(MOVE_HOST_TO searchArea0 VIA northGate0, southGate0)
+  observe(PARENT(HOST))
+  react { case obs => control(land(HOST, base0)) }
+}
+
+BigActor op hosted_at gcs0 with_behavior {
+  control(MOVE uav1 TO base0 VIA southGate0)
+  control(HAND uav1 TO gcs1)
+}
+""",
     "Statements": """\
 def patrol(places) = {
   for place in places {

@@ -16,7 +16,9 @@ from specs.syntax.nodes import Name, Node
 class MoveHost(Node):
     """`MOVE_HOST_TO e` or `MOVE_HOST_TO e VIA v, w`: move the agent's host into a place.
 
-    It passes the places behind VIA on its way, in their order: twenty at the most, each named once.
+    It passes the places behind VIA on its way, in their order: twenty at the most, each named once. These are context:
+    L has to have them, P has to show them, and nothing else is asked of them. On its way it is in none of them: what
+    flies is in transit to its destination. Live, the vehicle gets the way as a mission on board.
     """
 
     destination: Expression
