@@ -37,6 +37,13 @@ class Sync:
             return f"what is on board differs from the {self.kind.name.lower()} after {ROUNDS} uploads"
         return None
 
+    @property
+    def reached(self) -> tuple[int, int, int]:
+        """How far it is: rounds, whether it reads back, items."""
+        reads = isinstance(self.doing, reading.Download)
+        items = self.doing.items if isinstance(self.doing, reading.Download) else self.doing.wanted
+        return self.rounds, int(reads), len(items)
+
 
 Step = tuple[Sync, tuple[Message, ...]]
 

@@ -15,7 +15,7 @@ from adapters.mavlink.plan import Load, Step, Tell, Underway, Vehicle, Wait
 from adapters.plugin import Accepted, Arrived, Command, Rejected, Report
 
 PATIENCE: Final = 45.0
-"""Seconds, while the vehicle is heard, that one step may take."""
+"""Seconds, while the vehicle is heard, that one step may take; that an upload may take without getting further."""
 
 BOOT_PATIENCE: Final = 120.0
 """Seconds that a vehicle may take to be ready: its filters settle, its receiver finds satellites."""
@@ -33,7 +33,8 @@ class Task:
         station: Of a HandOver, the system id of the station that gets the authority.
         height: Metres above home at which it is carried out, once known.
         step: What is being done.
-        since: Since when it was, or since when the vehicle could be heard.
+        since: Since when it was, or since when the vehicle could be heard, or since when an upload has got no further.
+        reached: How far an upload has got.
         doing: The exchange that this takes.
         accepted: Whether the state has shown that the vehicle does it.
         over: Whether it has arrived or was rejected.
@@ -51,6 +52,7 @@ class Task:
     height: float | None = None
     step: Step | None = None
     since: float = 0.0
+    reached: tuple[int, int, int] = (0, 0, 0)
     doing: telling.Telling | syncing.Sync | None = None
     accepted: bool = False
     over: bool = False
@@ -91,7 +93,9 @@ def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float)
     if task.accepted or (task.was_armed and vehicle.known.armed is False):
         return _contradicted(task, step, vehicle, now)
     if step != task.step:
-        task = replace(task, step=step, since=now, doing=_exchange(step, vehicle))
+        task = replace(task, step=step, since=now, reached=(0, 0, 0), doing=_exchange(step, vehicle))
+    if isinstance(task.doing, syncing.Sync) and task.doing.reached > task.reached:
+        task = replace(task, since=now, reached=task.doing.reached)
     if lost:
         return Progress(replace(task, since=now))
     if now - task.since > _patience(step):

@@ -8,6 +8,7 @@ from worlds import AREA, EPOCH, FIELD, HOME, TINY, World, flight, running, until
 
 from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.numbers import MissionType
+from adapters.mavlink.task import PATIENCE
 from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Hold, Refused, Rejected, Return
 from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
 from physical import Band, box, circle, contains, distance, point, waypoint
@@ -72,6 +73,23 @@ def test_a_path_that_moves_on_is_followed_from_where_the_vehicle_is_on_it(loss):
             assert contains(further, here(f.vehicle))
             assert at == {3, 4}  # what was passed is not passed again
             assert len(f.world.of(Arrived, request="r1")) == 1
+
+    run(main())
+
+
+LONG = tuple(point(37.001 + 0.0005 * n, -8.601) for n in range(20))
+WORST = Disturbance(loss=0.3, duplication=0.1, delay=(0.0, 1.0))
+
+
+def test_a_long_path_is_uploaded_though_that_takes_longer_than_another_step_may():
+    async def main():
+        async with flight(Kind.COPTER, WORST, seed=1) as f:
+            await f.plugin.command(Follow("r1", "uav0", LONG))
+            told = f.world.now()
+            assert isinstance(await f.ended("r1", 1200), Arrived)
+            (accepted,) = f.world.of(Accepted, request="r1")
+            assert accepted.time - told > PATIENCE
+            assert len(f.vehicle.store.items[MissionType.MISSION]) == 22
 
     run(main())
 

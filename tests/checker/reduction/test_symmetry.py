@@ -245,6 +245,7 @@ def test_robots_apart_are_counted_as_a_multiset():
 STEPS = (
     "control(MOVE_HOST_TO room0)",
     "control(MOVE_HOST_TO dock0)",
+    "control(MOVE_HOST_TO dock0 VIA room0)",
     "control(CONNECT_HOST_TO gcs0)",
     "control(DISCONNECT_HOST_FROM gcs0)",
     "observe(PARENT(HOST)) react { case o => skip }",
