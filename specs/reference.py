@@ -182,7 +182,9 @@ BigActor a hosted_at uav0 with_behavior {
 BigActor pilot hosted_at uav0 with_behavior {
   control(MOVE_HOST_TO searchArea0 VIA northGate0, southGate0)
   observe(PARENT(HOST))
-  react { case obs => control(land(HOST, base0)) }
+  react {
+    case obs => control(land(HOST, base0))
+  }
 }
 
 BigActor op hosted_at gcs0 with_behavior {
