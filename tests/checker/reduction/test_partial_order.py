@@ -347,7 +347,12 @@ TWICE = """
 BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) }
 BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }
 """
+PASSED = """
+BigActor a hosted_at uav0 with_behavior { let mark = gcs2 control(MOVE_HOST_TO south0 VIA mark) }
+environment { gcs2 vanishes }
+"""
 MUTATIONS = {
+    "what is passed on the way": ("there", PASSED),
     "messages that are delivered": ("mail", LATE),
     "where vehicles are": ("where", DRIFTS),
     "channels that drop": ("connected", AWAY),
