@@ -6,15 +6,16 @@ import pytest
 
 from adapters.mavlink import Autopilot, pilot
 from adapters.mavlink.fleet import Craft, Stations
+from adapters.mavlink.items import route
 from adapters.mavlink.message import Message, say
-from adapters.mavlink.numbers import Cmd, Result
+from adapters.mavlink.numbers import Cmd, MissionType, Result
 from adapters.mavlink.pilot import Pilot
 from adapters.mavlink.plan import Load, Tell, Underway, Vehicle, Wait, next_step
 from adapters.mavlink.profiles import BOAT, COPTER, PLANE, ROVER, profile_of
 from adapters.mavlink.task import PATIENCE, STRANGE
 from adapters.mavlink.telemetry import Position, Telemetry
 from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Hold, Refused, Rejected, Return
-from physical import PhysicalError, box, point
+from physical import PhysicalError, box, point, waypoint
 
 AREA = box((37.015, -8.61), (37.005, -8.625))
 THERE = GoTo("r1", "uav0", AREA)
@@ -283,3 +284,37 @@ def test_a_message_of_another_component_changes_nothing():
 def test_vehicles_that_cannot_be_told_apart_are_the_users_mistake(crafts):
     with pytest.raises(PhysicalError):
         Autopilot("autopilot", "udp:0", crafts)
+
+
+WAY = (point(37.004, -8.604), point(37.008, -8.61), AREA)
+ON_ITS_WAY = {"armed": True, "active": True, "mode": PLANE.auto, "current": 3}
+
+
+def aboard(way):
+    items = route(tuple(map(waypoint, way)), 100.0, takeoff=True)
+    return {MissionType.MISSION: items}
+
+
+def test_a_way_that_has_moved_is_told_from_the_item_that_it_is_at_until_that_is_acknowledged():
+    state = begun(Follow("r1", "uav0", WAY), **ON_ITS_WAY)
+    state = replace(state, on_board=aboard(WAY), moving=replace(state.moving, begun=True))
+    state, sent, _ = ticked(state, 0, 2)
+    assert of(sent, Cmd.SET_MISSION_CURRENT) == []
+    moved = (*WAY[:2], box((37.025, -8.61), (37.015, -8.625)))
+    state = pilot.command(state, Follow("r1", "uav0", moved), 2.0).pilot
+    state, sent, reports = ticked(replace(state, on_board=aboard(moved)), 2, 7)
+    assert {message["param1"] for message in of(sent, Cmd.SET_MISSION_CURRENT)} == {3.0}
+    assert len(of(sent, Cmd.SET_MISSION_CURRENT)) == 4  # that it is at item 3 shows nothing
+    assert ended(reports) == []
+    yes = say("COMMAND_ACK", command=int(Cmd.SET_MISSION_CURRENT), result=int(Result.ACCEPTED))
+    state = pilot.hear(state, replace(yes, system=1, component=1), 7.0).pilot
+    _, sent, reports = ticked(state, 7, 20)
+    assert [type(report) for report in ended(reports)] == [Accepted]
+    assert of(sent, Cmd.SET_MISSION_CURRENT) == []
+
+
+def test_an_upload_that_gets_no_further_is_given_up():
+    _, sent, reports = ticked(begun(Follow("r1", "uav0", WAY)), 0, PATIENCE + 10)
+    assert any(message.name == "MISSION_COUNT" for message in sent)
+    (end,) = ended(reports)
+    assert end.reason == "the mission could not be confirmed on board in 45 s"
