@@ -139,15 +139,15 @@ def rebuild(words: Words, size: int, width: int, table: Any) -> None:
 @njit(cache=True)
 def in_parts(words: Words, begin: int, count: int, width: int, hashes: Words, rows: Any) -> None:
     """Note the hashes and numbers of rows, ordered by the parts of a table into which they belong."""
-    ends = np.zeros(PARTS + 1, np.int64)
-    for row in range(begin, begin + count):
-        ends[np.int64(hashed(words, row * width, width) >> _PART) + 1] += 1
+    mixed, ends = np.empty(count, np.uint64), np.zeros(PARTS + 1, np.int64)
+    for k in range(count):
+        mixed[k] = hashed(words, (begin + k) * width, width)
+        ends[np.int64(mixed[k] >> _PART) + 1] += 1
     for part in range(PARTS):
         ends[part + 1] += ends[part]
-    for row in range(begin, begin + count):
-        mixed = hashed(words, row * width, width)
-        part = np.int64(mixed >> _PART)
-        hashes[ends[part]], rows[ends[part]] = mixed, row
+    for k in range(count):
+        part = np.int64(mixed[k] >> _PART)
+        hashes[ends[part]], rows[ends[part]] = mixed[k], begin + k
         ends[part] += 1
 
 
