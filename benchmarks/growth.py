@@ -125,6 +125,8 @@ def plot(rows: Sequence[Row], title: str, path: Path) -> None:
     rates.set(ylabel="million a second", xscale="log", title=title)
     rates.legend()
     room.plot(sizes, [row["bytes_per_configuration"] for row in rows], "o-", label="bigactors")
+    most = [row["most_bytes_per_configuration"] for row in rows]
+    room.plot(sizes, most, "s--", label="bigactors at most, since the mark before")
     room.axhline(40, color="grey", linestyle="--", label="the aim")
     room.legend()
     room.set(xlabel="configurations", ylabel="bytes a configuration")

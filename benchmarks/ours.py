@@ -50,7 +50,7 @@ class Explored:
         wall: Seconds of the process from its start to its end.
         processor: Seconds of the processor, whatever else it did meanwhile, from the start to the exploration's end.
         memory: Of the process at its peak, in MB.
-        bytes_per_configuration: What rows, parent links and visited set take, room included.
+        bytes_per_configuration: What rows, parent links and the visited set take.
         rule_runs: How often rules were run in Python.
         allowed: How many transitions the visited configurations allow.
         marks: What was so on the way, where that was asked for.
@@ -221,11 +221,20 @@ def _marked(mission: "ElaboratedMission", marks: list[int], began: float) -> Exp
 
     importing, started = time.monotonic() - began, time.monotonic()
     learner = Learner(mission.initial.setting, mission.initial.state, Limits().pending)  # type: ignore[arg-type]
-    space, found = Space(learner, None), []
+    held: list[float] = []
+
+    class Watched(Space):
+        def _make_room(self, rows: int) -> None:
+            super()._make_room(rows)
+            held.append(self.bytes_used / self.size)  # it is most when the table has just grown
+
+    space, found = Watched(learner, None), []
     for mark in marks:
         while space.size < mark and space.expanded < space.size:
             space.advance(min(space.expanded + CHUNK, space.size))
         found.append(_mark(space, time.monotonic() - started))
+        found[-1]["most_bytes_per_configuration"] = max([*held, found[-1]["bytes_per_configuration"]])
+        held.clear()
     ended = found[-1]
     bounds = [] if space.expanded == space.size else [f"stopped at {space.size:,} configurations"]
     return Explored(

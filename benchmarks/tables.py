@@ -61,7 +61,9 @@ def _run(run: Kept) -> tuple[str, ...]:
 
 def growth_tables(kept: Kept) -> str:
     """Lay out how rate and memory change as a search grows."""
-    head = "configurations|expanded|expanded/s|transitions/s|bytes each|rules run in Python|transitions"
+    head = (
+        "configurations|expanded|expanded/s|transitions/s|bytes each|at most|rules run in Python|transitions"
+    )
     rows = [
         (
             f"{mark['configurations']:,}",
@@ -69,6 +71,7 @@ def growth_tables(kept: Kept) -> str:
             f"{mark['expanded_per_second']:,.0f}",
             f"{mark['transitions_per_second']:,.0f}",
             f"{mark['bytes_per_configuration']:.1f}",
+            f"{mark['most_bytes_per_configuration']:.1f}",
             f"{mark['rule_runs']:,}",
             f"{mark['transitions']:,}",
         )

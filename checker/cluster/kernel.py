@@ -17,13 +17,9 @@ from checker.fast.kernel import (
     TOUCHED,
     WORDS,
     State,
-    Words,
-    bits_for,
     code_at,
-    find,
-    hashed,
-    touch,
 )
+from checker.fast.table import Words, bits_for, entry_of, find, hashed, touch
 
 _ONE, _HALF, _TOP = np.uint64(1), np.uint64(32), np.uint64(58)
 
@@ -109,7 +105,7 @@ def settle(
             for j in range(width):
                 words[size * width + j] = rows[k * width + j]
             origins[size] = np.uint64(reached_from[k])
-            table[-found - 1] = ((np.uint32(hashes[k]) >> bits) << bits) | np.uint32(size + 1)
+            table[-found - 1] = entry_of(hashes[k], size, bits)
             size += 1
     state[SIZE] = size
 

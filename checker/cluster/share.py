@@ -40,7 +40,7 @@ class Standing:
         crowded: Whether some were not followed.
         runs: How many times rules were run in Python.
         memory: How many bytes its process takes.
-        used: How many bytes rows, origins and the visited set take, room included.
+        used: How many bytes rows, origins and the visited set take.
         sent: How many bytes of rows it sent so far.
     """
 
@@ -150,6 +150,7 @@ class Share(Space):
         self.learner.forget()
         self.state[[AT, EXPANDED, SIZE, CUT, CROWDS, GATHERED]] = 0
         self.state[LIMIT] = MOST_ROWS
+        self.words = Pages(np.uint64, len(self.words.room))
         self.origins = Pages(np.uint64, len(self.origins.room))
         self.learner.columns.codes(self.learner.still)  # makes columns that only the first row needs
         self._see()

@@ -27,14 +27,11 @@ from checker.fast.kernel import (
     Ints,
     Model,
     State,
-    Words,
-    bits_for,
     code_at,
-    find,
     gather,
-    touch,
     walk,
 )
+from checker.fast.table import Words, bits_for, entry_of, find, most_in, touch
 
 DONE, MISSED, FULL = 0, 1, 2
 """How `advance_reduced` ends: all rows were expanded; something is not known; there is no room."""
@@ -287,7 +284,7 @@ def advance_reduced(
 
     It is counted how often each transition was met, and how often it was followed.
     """
-    most = min(len(origins), len(words) // state[WORDS], len(table) * 3 // 4)
+    most = min(len(origins), len(words) // state[WORDS], most_in(len(table)))
     width, limit = state[WORDS], state[LIMIT]
     bits = np.uint32(bits_for(len(table)))
     while state[AT] < until:
@@ -320,7 +317,7 @@ def advance_reduced(
             for j in range(width):
                 words[size * width + j] = batch.words[k * width + j]
             origins[size] = row
-            table[-found - 1] = ((np.uint32(batch.hashes[k]) >> bits) << bits) | np.uint32(size + 1)
+            table[-found - 1] = entry_of(batch.hashes[k], size, bits)
             size += 1
         state[SIZE] = size
         state[EXPANDED] = row + 1

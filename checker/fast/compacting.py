@@ -24,10 +24,8 @@ from checker.fast.kernel import (
     WORDS,
     Batch,
     State,
-    Words,
-    hashed,
-    slot_of,
 )
+from checker.fast.table import ENTERED, Words, enter, in_parts, slot_of
 
 _ONE, _WORD, _FOLD, _MULTIPLIER = map(np.uint64, (1, 64, 29, 0xBF58476D1CE4E5B9))
 
@@ -104,12 +102,11 @@ def store_tags(
 @njit(cache=True)
 def rebuild_tags(words: Words, size: int, width: int, table: Any, bits: int) -> None:
     """Fill an empty table with the tags of the rows."""
-    slots = np.uint64(len(table))
-    for row in range(size):
-        mixed = hashed(words, row * width, width)
-        slot = slot_of(mixed, len(table))
-        while table[slot] != 0:
-            slot += _ONE
-            if slot == slots:
-                slot = np.uint64(0)
-        table[slot] = tag_of(mixed, bits)
+    hashes, rows = np.zeros(ENTERED, np.uint64), np.zeros(ENTERED, np.int64)
+    tags = np.zeros(ENTERED, table.dtype)
+    for begin in range(0, size, ENTERED):
+        count = min(ENTERED, size - begin)
+        in_parts(words, begin, count, width, hashes, rows)
+        for k in range(count):
+            tags[k] = tag_of(hashes[k], bits)
+        enter(table, hashes, tags, count)

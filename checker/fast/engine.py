@@ -36,6 +36,7 @@ from checker.fast.kernel import (
 )
 from checker.fast.learner import Actor, CodedSource, Learner
 from checker.fast.pages import Pages
+from checker.fast.table import most_in, rebuild, slots_for
 from checker.fast.trees import RECORD
 from semantics.cells import AGENTS, Row
 from semantics.configuration import Configuration
@@ -135,8 +136,9 @@ class Space:
 
     @property
     def bytes_used(self) -> int:
-        """How many bytes rows, origins and the visited set take, room included."""
-        return sum(each.room.nbytes for each in (self.words, self.origins, self.table))
+        """How many bytes rows, origins and the visited set take; of room that was never written, nothing."""
+        rows = self.words.held(self.size * self.packing.words) + self.origins.held(self.size)
+        return rows + self.table.room.nbytes
 
     def rules(self, *, followed: bool = True) -> Counter[str]:
         """Return how many transitions each rule has: those that were followed, or all."""
@@ -300,7 +302,7 @@ class Space:
         self.origins.room[: len(origins)] = origins
         self.masks.size = self.located = 0
         self._make_batches(BATCH)
-        self._rebuild(2 * len(origins))
+        self._rebuild(slots_for(len(origins)))
         self._make_room(BATCH)
         self._see()
 
@@ -412,8 +414,8 @@ class Space:
         wanted = min(self.size + rows, int(self.state[LIMIT]))
         if wanted > len(self.origins.room):
             self._reserve_rows(max(wanted, more(len(self.origins.room))))
-        if len(self.table.room) * 3 // 4 < wanted:
-            self._rebuild(max(2 * wanted, 2 * len(self.table.room)))
+        if most_in(len(self.table.room)) < wanted:
+            self._rebuild(slots_for(wanted))
 
     def spill(self, folder: Path) -> None:
         """Let rows and origins go over to files in a folder; the table, which is looked up at random, stays in memory.
@@ -433,7 +435,7 @@ class Space:
         rows = (self.words.room, self.size, self.packing.words)
         if self.compact is None:
             self.table = Pages(np.uint32, slots)
-            kernel.rebuild(*rows, self.table.room)
+            rebuild(*rows, self.table.room)
             return
         from checker.fast.compacting import rebuild_tags  # noqa: PLC0415  # compiled where it is wanted
 

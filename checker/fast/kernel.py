@@ -1,9 +1,8 @@
 """The compiled loops: walk the trees over the frontier, keep the exact visited set.
 
-Rows are packed words (see `columns.Packing`). The visited set is an open hash table of row numbers, each beside as
-many bits of its hash as 32 bits leave room for; equality is decided on whole rows. Successors are gathered, and their
-places in the table and the rows found there are touched one after another before any is compared: what these loops
-wait for is memory, which answers many questions at once.
+Rows are packed words (see `columns.Packing`), and found again by a table (see `table`). Successors are gathered, and
+their places there and the rows found are touched one after another before any is compared: what these loops wait for
+is memory, which answers many questions at once.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
@@ -32,10 +31,10 @@ from checker.fast.leaves import (
     WRITES,
     WRITES_END,
 )
+from checker.fast.table import Words, bits_for, entry_of, find, hashed, touch
 from checker.fast.trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
 
 Ints = NDArray[np.int32]
-Words = NDArray[np.uint64]
 State = NDArray[np.int64]
 
 
@@ -90,8 +89,6 @@ WIDE = -2
 """What stands in the place of a node where one row has more successors than a batch holds."""
 
 PLACE, MOVE = 3, 5
-_MULTIPLIER = np.uint64(0x9E3779B97F4A7C15)
-_HALF, _ONE = np.uint64(32), np.uint64(1)
 
 # Indices are unsigned in the inner loops: of signed ones numba asks whether they count from the end.
 _RECORD, _LOW, _WIDTH, _BASE, _WORD, _SHIFT, _MASK = map(
@@ -123,31 +120,6 @@ def walk(words: Words, at: int, start: int, nodes: Words, leads: Ints, state: St
         state[NODE] = -1 if start == 0 else np.int64(record // _RECORD)
         state[CODE] = np.int64(code)
     return reference
-
-
-@njit(cache=True, inline="always")
-def hashed(words: Words, at: int, count: int) -> np.uint64:
-    """Return the hash of a row."""
-    mixed, begin = np.uint64(count), np.uint64(at)
-    for k in range(np.uint64(count)):
-        mixed = (mixed ^ words[begin + k]) * _MULTIPLIER
-        mixed ^= mixed >> _HALF
-    return mixed * _MULTIPLIER
-
-
-@njit(cache=True, inline="always")
-def slot_of(mixed: np.uint64, slots: int) -> np.uint64:
-    """Return where a hash belongs in a table of so many slots."""
-    return ((mixed >> _HALF) * np.uint64(slots)) >> _HALF
-
-
-@njit(cache=True)
-def bits_for(slots: int) -> int:
-    """Return how many bits a row's number takes in a table of so many slots; the others hold bits of its hash."""
-    bits = 1
-    while (1 << bits) <= slots:
-        bits += 1
-    return bits
 
 
 @njit(cache=True, inline="always")
@@ -198,51 +170,6 @@ def is_repeated(target: Words, taken: Ints, steps: Ints, began: int, end: int, s
     return False
 
 
-@njit(cache=True, inline="always")
-def find(
-    words: Words, table: Any, target: Words, k: int, mixed: np.uint64, width: int, bits: np.uint32
-) -> int:
-    """Return the number of the row that a successor is; -slot - 1 where it is new, with where it belongs."""
-    slots, wide = np.uint64(len(table)), np.uint64(width)
-    numbers = np.uint32((np.int64(1) << np.int64(bits)) - 1)
-    tag = np.uint32(mixed) >> bits
-    slot, goal = slot_of(mixed, len(table)), np.uint64(k) * wide
-    found = np.int64(-1)
-    while True:
-        entry = table[slot]
-        if entry == 0:
-            found = -np.int64(slot) - 1
-            break
-        if entry >> bits == tag:
-            row = np.uint64(entry & numbers) - _ONE
-            same = True
-            for j in range(wide):
-                same = same and words[row * wide + j] == target[goal + j]
-            if same:
-                found = np.int64(row)
-                break
-        slot += _ONE
-        if slot == slots:
-            slot = np.uint64(0)
-    return found
-
-
-@njit(cache=True)
-def touch(words: Words, table: Any, hashes: Words, begin: int, end: int, width: int) -> int:
-    """Read what successors will be compared with, so that the memory fetches it side by side."""
-    wide = np.uint64(width)
-    bits = np.uint32(bits_for(len(table)))
-    numbers = np.uint32((np.int64(1) << np.int64(bits)) - 1)
-    touched = np.uint64(0)
-    for k in range(np.uint64(begin), np.uint64(end)):
-        touched += np.uint64(table[slot_of(hashes[k], len(table))])
-    for k in range(np.uint64(begin), np.uint64(end)):
-        entry = table[slot_of(hashes[k], len(table))]
-        if entry != 0 and entry >> bits == np.uint32(hashes[k]) >> bits:
-            touched += words[(np.uint64(entry & numbers) - _ONE) * wide]
-    return np.int64(touched & _ONE)
-
-
 @njit(cache=True, nogil=True)
 def store(
     words: Words, origins: Any, table: Any, batch: Batch, gathered: int, at: int, counts: State, state: State
@@ -268,7 +195,7 @@ def store(
             for j in range(width):
                 words[size * width + j] = target[k * width + j]
             origins[size] = reached_from[k]
-            table[-found - 1] = ((np.uint32(hashes[k]) >> bits) << bits) | np.uint32(size + 1)
+            table[-found - 1] = entry_of(hashes[k], size, bits)
             size += 1
     state[SIZE] = size
     state[EXPANDED] = at
@@ -382,29 +309,6 @@ def look_up(words: Words, table: Any, batch: Batch, targets: Any, state: State) 
         state[TOUCHED] = touch(words, table, hashes, begin, end, width)
         for k in range(begin, end):
             targets[k] = find(words, table, target, k, hashes[k], width, bits)
-
-
-@njit(cache=True)
-def rebuild(words: Words, size: int, width: int, table: Any) -> None:
-    """Fill an empty table with the rows, all of them different; their places are touched some ahead."""
-    slots = np.uint64(len(table))
-    bits = np.uint32(bits_for(len(table)))
-    ahead = 256
-    hashes = np.zeros(ahead, np.uint64)
-    touched = np.uint32(0)
-    for begin in range(0, size, ahead):
-        for row in range(begin, min(begin + ahead, size)):
-            hashes[row - begin] = hashed(words, row * width, width)
-            touched += table[slot_of(hashes[row - begin], len(table))]
-        for row in range(begin, min(begin + ahead, size)):
-            mixed = hashes[row - begin]
-            slot = slot_of(mixed, len(table))
-            while table[slot] != 0:
-                slot += _ONE
-                if slot == slots:
-                    slot = np.uint64(0)
-            table[slot] = ((np.uint32(mixed) >> bits) << bits) | np.uint32(row + 1)
-    hashes[0] = touched
 
 
 @njit(cache=True)

@@ -17,6 +17,9 @@ from numpy.typing import NDArray
 PIECE = 1 << 20
 """Numbers that are copied at once."""
 
+HUGE = 1 << 21
+"""Bytes of a huge page: memory is taken in such pieces at most."""
+
 
 class Pages:
     """A one-dimensional array that grows in place; what was never written takes no memory.
@@ -37,6 +40,12 @@ class Pages:
     def spilled(self) -> bool:
         """Whether the array is in a file."""
         return self._file is not None
+
+    def held(self, used: int) -> int:
+        """Return how many bytes it takes if only so many first numbers were written; a file takes all of its room."""
+        if self.spilled:
+            return self.room.nbytes
+        return min(-(-used * self._kind.itemsize // HUGE) * HUGE, self.room.nbytes)
 
     def grow(self, count: int) -> None:
         """Make room for so many in all.

@@ -1,6 +1,10 @@
-import numpy as np
+import sys
 
-from checker.fast.pages import Pages
+import numpy as np
+import pytest
+
+from checker.exploration import memory_taken
+from checker.fast.pages import HUGE, Pages
 
 
 def test_pages_grow_in_place_and_keep_what_was_written():
@@ -18,3 +22,16 @@ def test_pages_on_which_somebody_still_holds_an_array_grow_all_the_same():
     pages.room[0] = 5
     assert (held[999], held[0]) == (7, 0)
     assert (pages.room[999], pages.room[0], pages.room[999_999]) == (7, 5, 0)
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is told of by /proc")
+def test_room_that_was_never_written_takes_no_memory():
+    before = memory_taken()
+    pages = Pages(np.uint64, 50_000_000)
+    pages.room[:4_000_000] = 1
+    assert 32_000_000 <= pages.held(4_000_000) < 32_000_000 + HUGE
+    assert memory_taken() - before == pytest.approx(pages.held(4_000_000), abs=2 * HUGE)
+
+
+def test_pages_hold_no_more_than_their_room():
+    assert Pages(np.uint32, 1024).held(1) == 4096
