@@ -147,6 +147,7 @@ def _property_json(name: str, digest: str, verdict: Verdict) -> dict[str, Any]:
                 "subject": v.subject,
                 "message": v.message,
                 "details": list(v.details),
+                "shortest": v.trace.shortest,
                 "trace": trace(v.trace),
             }
             for v in verdict.violations

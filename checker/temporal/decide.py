@@ -9,7 +9,7 @@ from checker.temporal.branching import Branching
 from checker.temporal.components import Conditions
 from checker.temporal.fairness import EACH_RULE_AND_REQUEST, classes, conditions_of, optional
 from checker.temporal.lassos import Lasso
-from checker.temporal.linear import counterexample
+from checker.temporal.linear import shortest_counterexample
 from checker.temporal.progress import Pending, Progress, Starved, owed, pending_requests
 from checker.temporal.truth import Truth, Valuation, valuation
 from checker.temporal.words import is_true_on
@@ -69,7 +69,9 @@ class Decider:
         """Return the verdict on what is claimed of every fair run."""
         assert asked.temporal is not None
         try:
-            lasso = counterexample(self.graph, self.truth, asked.temporal, self.conditions(asked.fairness))
+            lasso = shortest_counterexample(
+                self.graph, self.truth, asked.temporal, self.conditions(asked.fairness)
+            )
         except TooLargeError as error:
             return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {error}; split the formula")
         note, remarks = (
@@ -82,7 +84,7 @@ class Decider:
         message = f"false{'' if lasso.loop else ', whatever follows'}: {asked.temporal}"
         if lasso.loop and is_true_on(lasso, asked.temporal, self.truth):
             raise AssertionError(f"the counterexample is none: {asked.temporal}")
-        violation = Violation(asked.kind, message, self.trace(lasso))
+        violation = Violation(asked.kind, message, self.trace(lasso), tuple(self.pauses(lasso)))
         return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
 
     def vacuous(self, formula: Temporal) -> Iterator[str]:
@@ -106,9 +108,11 @@ class Decider:
             witness = self.trace(tree.evidence(formula)) if surely else None
             examined = int(tree.where(formula).sum())
             return Verdict(asked, outcome, examined=examined, witness=witness, note=note, remarks=remarks)
-        trace = self.trace(tree.evidence(formula, claimed=False))
-        details = () if trace.steps else ("no single run shows it: it is about all that may follow",)
-        violation = Violation(asked.kind, f"false at c0: {formula}", trace, details)
+        lasso = tree.evidence(formula, claimed=False)
+        details = tuple(self.pauses(lasso))
+        if not len(lasso):
+            details = ("no single run shows it: it is about all that may follow",)
+        violation = Violation(asked.kind, f"false at c0: {formula}", self.trace(lasso), details)
         return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
 
     # --- progress
@@ -169,12 +173,18 @@ class Decider:
         """Return what it means that nothing speaks against a property."""
         return Outcome.HOLDS if self.found.complete else Outcome.INCOMPLETE
 
+    def pauses(self, lasso: Lasso) -> Iterator[str]:
+        """Yield where a run stays for a moment only: in a trace that is no step."""
+        edges = (*lasso.stem, *lasso.loop)
+        steps = [self.graph.actions[edge] >= 0 for edge in edges]
+        for at, is_step in enumerate(steps):
+            if not is_step and any(steps[at:]):
+                yield f"it stays at c{sum(steps[:at])} for a moment before it goes on"
+
     def trace(self, lasso: Lasso) -> Trace:
-        """Return a run as a trace, replayed through the rules; staying at an end is no step."""
-        edges = [edge for edge in (*lasso.stem, *lasso.loop) if self.graph.actions[edge] >= 0]
-        loop = None
-        if lasso.loop or len(edges) < len(lasso.stem):
-            loop = min(len(lasso.stem), len(edges))
+        """Return a run as a trace, replayed through the rules; staying is no step."""
+        stem, loop = ([e for e in edges if self.graph.actions[e] >= 0] for edges in (lasso.stem, lasso.loop))
+        stays = lasso.loop or (lasso.stem and self.graph.actions[lasso.stem[-1]] < 0)
         configurations = self.found.configurations
         steps = (
             step_of(
@@ -182,9 +192,10 @@ class Decider:
                 self.graph.labels[self.graph.actions[edge]],
                 configurations[self.graph.targets[edge]],
             )
-            for edge in edges
+            for edge in (*stem, *loop)
         )
-        trace = Trace(configurations[0], tuple(steps), loop)
+        shortest = lasso.shortest and self.found.reducer is None
+        trace = Trace(configurations[0], tuple(steps), len(stem) if stays else None, shortest)
         if replay(trace.initial, to_json(trace, "", "")) != trace:
             raise AssertionError("the rules do not replay a run that they gave")
         return trace

@@ -102,9 +102,9 @@ def test_a_run_stays_where_nothing_has_to_happen():
 def test_a_report_says_how_long_a_run_is_and_what_of_it_repeats():
     report = checked(f'{THERE_AND_BACK} check {{ ltl "q": <> ended g }}')
     lines = "\n".join(report_text("m", report))
-    assert "a run of 9 steps, the last 7 repeated for ever:" in lines
+    assert "a shortest run of 9 steps, the last 7 repeated for ever:" in lines
     report = checked(f'{ONCE} check {{ ltl "q": [] <> uav0 in north0 }}')
-    assert "a run of 2 steps, at whose end it stays for ever:" in "\n".join(report_text("m", report))
+    assert "a shortest run of 2 steps, at whose end it stays for ever:" in "\n".join(report_text("m", report))
 
 
 # --- what was cut off -----------------------------------------------------------------------------------------
