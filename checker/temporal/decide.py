@@ -12,11 +12,13 @@ from checker.temporal.lassos import Lasso
 from checker.temporal.linear import shortest_counterexample
 from checker.temporal.progress import Pending, Progress, Starved, owed, pending_requests
 from checker.temporal.truth import Truth, Valuation, valuation
+from checker.temporal.vacuity import Judged, is_judged, judge_branching, judge_linear
 from checker.temporal.words import is_true_on
 from checker.traces import Trace, replay, step_of, to_json
+from checker.vacuity import atoms_of
 from checker.verdicts import Outcome, Verdict, Violation
 from semantics.propositions import Property, Proposition
-from semantics.temporal import Denied, Either, Fairness, Globally, Now, Temporal, atoms
+from semantics.temporal import Fairness, Now, atoms
 
 
 def kept_graph(found: Exploration) -> Graph:
@@ -51,6 +53,8 @@ class Decider:
         self.graph: Graph = kept.total(optional(kept.labels, self.setting.arriving))
         asked = (atom for each in properties if each.temporal is not None for atom in atoms(each.temporal))
         propositions = [atom.proposition for atom in asked if isinstance(atom, Now)]
+        if is_judged(self.graph):  # part by part
+            propositions = [atom for each in propositions for atom in atoms_of(each)]
         self.truth = Truth(self.graph, where_true(found, propositions))
 
     def decide(self, asked: Property) -> Verdict:
@@ -74,25 +78,25 @@ class Decider:
             )
         except TooLargeError as error:
             return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {error}; split the formula")
-        note, remarks = (
-            self.note(asked.fairness),
-            (*self.empty(asked.fairness), *self.vacuous(asked.temporal)),
-        )
+        note, remarks = self.note(asked.fairness), tuple(self.empty(asked.fairness))
         if lasso is None:
-            outcome = self.unless_violated()
-            return Verdict(asked, outcome, examined=self.graph.size, note=note, remarks=remarks)
+            outcome, judged = self.unless_violated(), Judged()
+            if outcome is Outcome.HOLDS:
+                fairness = self.conditions(asked.fairness)
+                judged = judge_linear(self.truth, asked.temporal, fairness, self.setting.kinds)
+            return Verdict(
+                asked,
+                outcome,
+                examined=self.graph.size,
+                witness=None if judged.witness is None else self.trace(judged.witness),
+                note=note,
+                remarks=(*remarks, *judged.remarks),
+            )
         message = f"false{'' if lasso.loop else ', whatever follows'}: {asked.temporal}"
         if lasso.loop and is_true_on(lasso, asked.temporal, self.truth):
             raise AssertionError(f"the counterexample is none: {asked.temporal}")
         violation = Violation(asked.kind, message, self.trace(lasso), tuple(self.pauses(lasso)))
         return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
-
-    def vacuous(self, formula: Temporal) -> Iterator[str]:
-        """Yield what a formula rests on and never happens."""
-        match formula:
-            case Globally(Either(Denied(Now(proposition)), _)):
-                if not self.truth.here(Now(proposition)).any():
-                    yield f"vacuous: nowhere is it true that {proposition}"
 
     # --- branching time
 
@@ -104,10 +108,19 @@ class Decider:
         surely, perhaps = bool(tree.where(formula)[0]), bool(tree.where(formula, perhaps=True)[0])
         note, remarks = self.note(asked.fairness), tuple(self.empty(asked.fairness))
         if perhaps:
-            outcome = self.unless_violated()
-            witness = self.trace(tree.evidence(formula)) if surely else None
-            examined = int(tree.where(formula).sum())
-            return Verdict(asked, outcome, examined=examined, witness=witness, note=note, remarks=remarks)
+            outcome, witness = self.unless_violated(), tree.evidence(formula) if surely else None
+            if outcome is Outcome.HOLDS:
+                judged = judge_branching(tree, formula, self.setting.kinds)
+                remarks += judged.remarks
+                witness = judged.witness or witness
+            return Verdict(
+                asked,
+                outcome,
+                examined=int(tree.where(formula).sum()),
+                witness=None if witness is None else self.trace(witness),
+                note=note,
+                remarks=remarks,
+            )
         lasso = tree.evidence(formula, claimed=False)
         details = tuple(self.pauses(lasso))
         if not len(lasso):
