@@ -90,7 +90,10 @@ def judge_branching(tree: Branching, formula: Temporal, kinds: Mapping[Name, str
     if len(tree.evidence(formula)):
         return Judged(remarks)
     found = (tree.evidence(each, claimed=False) for each in trials.failed)
-    return Judged(remarks, max(filter(len, found), key=len, default=None))
+    try:
+        return Judged(remarks, max(filter(len, found), key=len, default=None))
+    except BoundMet:
+        return Judged(remarks)
 
 
 # --- what is never needed -------------------------------------------------------------------------------------

@@ -176,6 +176,7 @@ def test_a_branching_formula_is_told_of_too():
     assert (found.remarks, len(found.witness)) == ((), 2)
     assert verdict(ONCE, 'ctl "q": AG (uav0 in north0 or uav0 in gate0 or AF ended a)').remarks == (
         "'uav0 in north0 or uav0 in gate0' is never needed: it holds without",
+        "'A <> ended a' is never needed: it holds without",
     )
 
 
