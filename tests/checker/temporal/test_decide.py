@@ -99,6 +99,17 @@ def test_a_run_stays_where_nothing_has_to_happen():
         assert list(print_trace(trace))[-1] == "c2 stays for ever: nothing has to happen"
 
 
+def test_a_stay_of_a_moment_is_told_and_takes_no_loop_out_of_place():
+    text = ONCE + " environment { uav0 drifts among north0, south0 }\n"
+    paused = "not pending a and ended a and not taken env and X taken env"
+    ended = verdict(text, f'ltl "q": [] not ({paused})').violations[0]
+    assert (len(ended.trace), ended.trace.loop) == (3, None)
+    assert ended.details == ("it stays at c2 for a moment before it goes on",)
+    again = verdict(text, f'ltl "q": not infinitely often ({paused})').violations[0]
+    assert again.trace.configurations[again.trace.loop] == again.trace.configurations[-1]
+    assert len(again.details) == 1
+
+
 def test_a_report_says_how_long_a_run_is_and_what_of_it_repeats():
     report = checked(f'{THERE_AND_BACK} check {{ ltl "q": <> ended g }}')
     lines = "\n".join(report_text("m", report))
