@@ -20,7 +20,7 @@ from checker.temporal.automaton import TooLargeError
 from checker.temporal.branching import Branching
 from checker.temporal.components import Conditions
 from checker.temporal.lassos import Lasso
-from checker.temporal.linear import counterexample
+from checker.temporal.linear import shortest_counterexample
 from checker.temporal.truth import Truth
 from checker.temporal.words import is_true_on
 from semantics.configuration import Label
@@ -92,14 +92,15 @@ class Decider:
     def linear(self, claim: str, formula: Temporal) -> Decided:
         """Decide what is claimed of every run."""
         try:
-            lasso = counterexample(self.graph, self.truth, formula, NO_FAIRNESS)
+            lasso = shortest_counterexample(self.graph, self.truth, formula, NO_FAIRNESS)
         except TooLargeError as error:
             return Decided(claim, Outcome.INCOMPLETE, note=f"not decided: {error}; split the formula")
         if lasso is None:
             return Decided(claim, self.unless_violated())
         if lasso.loop and is_true_on(lasso, formula, self.truth):
             raise AssertionError(f"the counterexample is none: {formula}")
-        what = "a run on which it is false" + ("" if lasso.loop else ", whatever follows")
+        what = f"a {'shortest ' if lasso.shortest else ''}run on which it is false"
+        what += "" if lasso.loop else ", whatever follows"
         return Decided(claim, Outcome.VIOLATED, self.run(lasso), what)
 
     def branching(self, claim: str, formula: Temporal) -> Decided:

@@ -3,23 +3,23 @@
 What is said of a formula's parts is said of the body of a quantifier once, and not of each of its instances.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 from typing import Any
 
-from semantics.propositions import Always, And, Or, Proposition
+from semantics.propositions import Always
 from semantics.signature import Name
 
 Path = tuple[int, ...]
 """Where a part stands in a formula: which operand of which operand."""
 
 
-def is_quantified(formula: Proposition, kinds: Mapping[Name, str]) -> bool:
-    """Tell whether the operands of a connective differ in one name only, which goes through all entities of a kind."""
-    if not isinstance(formula, And | Or) or len(formula.formulas) < 2:
+def is_quantified(operands: Sequence[Any], kinds: Mapping[Name, str]) -> bool:
+    """Tell whether operands of a connective differ in one name only, which goes through all entities of a kind."""
+    if len(operands) < 2:
         return False
-    names = _varying([list(_words(part)) for part in formula.formulas])
-    if names is None or names[0] not in kinds:
+    names = _varying([list(_words(part)) for part in operands])
+    if names is None or not isinstance(names[0], str) or names[0] not in kinds:
         return False
     return set(names) == {name for name, kind in kinds.items() if kind == kinds[names[0]]}
 

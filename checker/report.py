@@ -22,6 +22,7 @@ UNITS = {
     "arrival": (" end of a flight", " ends of flights"),
     "computation": (" internal step", " internal steps"),
     "invariant": (" configuration", " configurations"),
+    "ltl": (" configuration", " configurations"),
     "ctl": (" configuration", " configurations"),
 }
 """What is examined for each kind of property, one and several; of what is to be reachable, configurations with it."""
@@ -147,6 +148,7 @@ def _property_json(name: str, digest: str, verdict: Verdict) -> dict[str, Any]:
                 "subject": v.subject,
                 "message": v.message,
                 "details": list(v.details),
+                "shortest": v.trace.shortest,
                 "trace": trace(v.trace),
             }
             for v in verdict.violations

@@ -50,7 +50,8 @@ class Trace:
         steps: What is done.
         loop: The number of the configuration from which the run repeats for ever: the last is the same. If it is the
             last itself, nothing has to happen there, and the run stays. None where the run is not for ever.
-        shortest: Whether no other run to its end is shorter; not known where steps were put off (`--reduce por`).
+        shortest: Whether it is certain that no other run that shows the same is shorter: not where steps were put
+            off (`--reduce por`), nor where to find out would take too long.
     """
 
     initial: Configuration
@@ -150,9 +151,10 @@ def print_length(trace: Trace) -> str:
     steps = "1 step" if len(trace) == 1 else f"{len(trace):,} steps"
     if trace.loop is None:
         return f"{trace.called}, {steps}"
+    run = f"a shortest run of {steps}" if trace.shortest else f"a run of {steps}, not proved shortest"
     if trace.loop == len(trace):
-        return f"a run of {steps}, at whose end it stays for ever"
-    return f"a run of {steps}, {_last(len(trace) - trace.loop)} repeated for ever"
+        return f"{run}, at whose end it stays for ever"
+    return f"{run}, {_last(len(trace) - trace.loop)} repeated for ever"
 
 
 def _last(count: int) -> str:

@@ -1,8 +1,7 @@
 """Vacuity: whether an invariant holds for want of anything that could break it.
 
-A part of a formula is *never needed* if the formula holds whatever that part is: if it still holds with the part
-replaced by false where it stands positively, by true where negatively (Kupferman and Vardi, Vacuity detection in
-temporal model checking, 1999). Of an invariant that is decided exactly on the valuations of its atoms that were met.
+Which parts of it are never needed (`checker.occurrences`) is decided exactly: on the valuations of its atoms that were
+met.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
@@ -11,7 +10,7 @@ from functools import reduce
 from operator import and_, or_
 from typing import Any, Final
 
-from checker.quantified import Path, is_quantified
+from checker.occurrences import Part, few, never_needed, unneeded
 from semantics import cells
 from semantics.cells import Cell, Cells, Changes, Question, State, Written, is_, merged
 from semantics.configuration import Configuration
@@ -20,8 +19,6 @@ from semantics.signature import Name
 
 MOST_ATOMS: Final = 64
 """The most different atoms of a formula whose valuations are gathered."""
-
-MOST_REMARKS: Final = 3
 
 Columns = Mapping[Atom, int]
 """For each atom the valuations in which it is true, a bit for each."""
@@ -84,9 +81,7 @@ class Valuations:
             return ("vacuous: nothing that it speaks of ever changes",)
         if not self.atoms:
             return ()
-        found = tuple(unneeded(self.formula, self.columns, len(self.met), kinds))
-        rest = len(found) - MOST_REMARKS
-        return found if rest <= 0 else (*found[:MOST_REMARKS], f"{rest:,} more of its parts are never needed")
+        return few(tuple(remarks_on(self.formula, self.columns, len(self.met), kinds)))
 
 
 Answers = dict[tuple[Cell, Question, tuple[Any, ...]], bool]
@@ -168,85 +163,22 @@ def truth(formula: Proposition, columns: Columns, every: int) -> int:
             return columns[formula]
 
 
-@dataclass(frozen=True, slots=True)
-class Part:
-    """A part of a formula as it was written: in the body of a quantifier it stands in many places.
-
-    Attributes:
-        formula: What it is; in the body of a quantifier its first instance.
-        paths: Where it stands.
-        positive: Whether it stands below an even number of negations.
-    """
-
-    formula: Proposition
-    paths: tuple[Path, ...]
-    positive: bool = True
-
-    def parts(self, kinds: Mapping[Name, str]) -> Iterator["Part"]:
-        """Yield the parts that it has itself."""
-        operands = operands_of(self.formula)
-        positive = self.positive is not isinstance(self.formula, Not)
-        if is_quantified(self.formula, kinds):
-            everywhere = tuple((*path, rank) for path in self.paths for rank in range(len(operands)))
-            yield Part(operands[0], everywhere, positive)
-            return
-        for rank, operand in enumerate(operands):
-            yield Part(operand, tuple((*path, rank) for path in self.paths), positive)
-
-
-def unneeded(formula: Proposition, columns: Columns, count: int, kinds: Mapping[Name, str]) -> Iterator[str]:
+def remarks_on(
+    formula: Proposition, columns: Columns, count: int, kinds: Mapping[Name, str]
+) -> Iterator[str]:
     """Yield in words the outermost parts of an invariant that are never needed, on so many valuations."""
     every = (1 << count) - 1
-    if truth(formula, columns, every) == every:
-        yield from _unneeded(formula, Part(formula, ((),)), columns, every, kinds)
 
+    def is_true(formula: Any) -> bool:
+        return truth(formula, columns, every) == every
 
-def _unneeded(
-    formula: Proposition, around: Part, columns: Columns, every: int, kinds: Mapping[Name, str]
-) -> Iterator[str]:
-    for part in around.parts(kinds):
-        if isinstance(part.formula, Always):
-            continue
-        mutant = formula
-        for path in part.paths:
-            mutant = replaced(mutant, path, Always(not part.positive))
-        if truth(mutant, columns, every) == every:
-            yield _remark(around, part, columns, every)
-        else:
-            yield from _unneeded(formula, part, columns, every, kinds)
-
-
-def operands_of(formula: Proposition) -> tuple[Proposition, ...]:
-    """Return the operands of a connective, of an atom none."""
-    match formula:
-        case Not(inner):
-            return (inner,)
-        case And(parts) | Or(parts):
-            return parts
-        case _:
-            return ()
-
-
-def replaced(formula: Proposition, path: Path, by: Proposition) -> Proposition:
-    """Return a formula with another in the place of a part."""
-    if not path:
-        return by
-    rank, rest = path[0], path[1:]
-    if isinstance(formula, Not):
-        return Not(replaced(formula.formula, rest, by))
-    assert isinstance(formula, And | Or)
-    parts = list(formula.formulas)
-    parts[rank] = replaced(parts[rank], rest, by)
-    return type(formula)(tuple(parts))
+    if is_true(formula):
+        yield from (_remark(*each, columns, every) for each in unneeded(formula, kinds, is_true))
 
 
 def _remark(around: Part, part: Part, columns: Columns, every: int) -> str:
     """Say that a part is never needed, and why."""
-    many = len(part.paths) > 1
-    shown = part.formula
-    if isinstance(shown, Not) and isinstance(around.formula, Or):
-        shown = shown.formula  # the condition of an implication
-    said = f"'{shown}' and its like are never needed" if many else f"'{shown}' is never needed"
+    many, said = len(part.paths) > 1, never_needed(around, part)
     match around.formula:
         case Or((Not(condition), conclusion)) if part.formula == conclusion:
             never = f"'{condition}' {'and its like are' if many else 'is'} never true"

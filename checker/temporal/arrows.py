@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from checker.bounding import look
 from checker.graph import Bools, Numbers
+from checker.temporal.effort import Effort
 
 Indices = NDArray[np.int64]
 
@@ -104,6 +105,25 @@ def shortest(
             return _path(arrows, parents, int(hits[0]))
         frontier = _discovered(arrows, edges, seen, parents)
     return None
+
+
+def distances(arrows: Arrows, start: int, most: int, effort: Effort, through: Bools | None = None) -> Numbers:
+    """Return how far each node is from one, -1 where that is more than so many edges.
+
+    Raises:
+        Exhausted: More would have to be looked at than the effort allows.
+    """
+    found = np.full(len(arrows.starts) - 1, -1, dtype=np.int64)
+    found[start] = 0
+    frontier: Numbers = np.array([start])
+    for distance in range(1, most + 1):
+        edges = leaving(arrows, frontier)
+        effort.spend(len(edges))
+        targets = arrows.targets[edges]
+        new = targets[(found[targets] < 0) & (True if through is None else through[targets])]
+        found[new] = distance
+        frontier = np.unique(new)
+    return found
 
 
 def _discovered(arrows: Arrows, edges: Indices, seen: Bools, parents: Indices) -> Numbers:

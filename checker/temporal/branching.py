@@ -11,6 +11,7 @@ from checker.graph import Bools, Graph
 from checker.temporal.arrows import Rows, reaching, reversed_rows, shortest
 from checker.temporal.components import Conditions, fair_components
 from checker.temporal.lassos import Lasso, component_of, fair_cycle, tightened
+from checker.temporal.shortest import shortest_run
 from checker.temporal.truth import Truth
 from semantics.propositions import Always
 from semantics.temporal import (
@@ -131,7 +132,7 @@ class Branching:
                 if self.until(kept, kept & self._surely(left, True), False)[at]:
                     return self.going(at, kept, Both(left, right))
                 return self.staying(at, kept)
-        return Lasso(())
+        return Lasso((), shortest=True)
 
     def _surely(self, formula: Temporal, claimed: bool) -> Bools:
         known = self._where(formula, not claimed and self.graph.partial is not None)
@@ -146,7 +147,7 @@ class Branching:
         path = shortest(self.graph, at, arriving, through=within)
         assert path is not None  # it was computed backwards that there is one
         rest = self._evidence(then, int(self.graph.targets[path[-1]]), True)
-        return Lasso((*path, *rest.stem), rest.loop)
+        return Lasso((*path, *rest.stem), rest.loop, self.graph.partial is None and not len(rest))
 
     def staying(self, at: int, kept: Bools) -> Lasso:
         """Return a fair run that keeps to some configurations for ever."""
@@ -158,7 +159,8 @@ class Branching:
             path = ()
         entry = int(self.graph.targets[path[-1]]) if path else at
         part = component_of(self.graph, components, entry, self.fairness)
-        return tightened(Lasso(path, fair_cycle(part, entry)))
+        known = tightened(Lasso(path, fair_cycle(part, entry)))
+        return shortest_run(self.graph, components, self.fairness, known, start=at, through=kept)
 
 
 def core(formula: Temporal) -> Temporal:

@@ -9,14 +9,16 @@ from checker.temporal.branching import Branching
 from checker.temporal.components import Conditions
 from checker.temporal.fairness import EACH_RULE_AND_REQUEST, classes, conditions_of, optional
 from checker.temporal.lassos import Lasso
-from checker.temporal.linear import counterexample
+from checker.temporal.linear import shortest_counterexample
 from checker.temporal.progress import Pending, Progress, Starved, owed, pending_requests
 from checker.temporal.truth import Truth, Valuation, valuation
+from checker.temporal.vacuity import Judged, is_judged, judge_branching, judge_linear
 from checker.temporal.words import is_true_on
 from checker.traces import Trace, replay, step_of, to_json
+from checker.vacuity import atoms_of
 from checker.verdicts import Outcome, Verdict, Violation
 from semantics.propositions import Property, Proposition
-from semantics.temporal import Denied, Either, Fairness, Globally, Now, Temporal, atoms
+from semantics.temporal import Fairness, Now, atoms
 
 
 def kept_graph(found: Exploration) -> Graph:
@@ -51,6 +53,8 @@ class Decider:
         self.graph: Graph = kept.total(optional(kept.labels, self.setting.arriving))
         asked = (atom for each in properties if each.temporal is not None for atom in atoms(each.temporal))
         propositions = [atom.proposition for atom in asked if isinstance(atom, Now)]
+        if is_judged(self.graph):  # part by part
+            propositions = [atom for each in propositions for atom in atoms_of(each)]
         self.truth = Truth(self.graph, where_true(found, propositions))
 
     def decide(self, asked: Property) -> Verdict:
@@ -69,28 +73,30 @@ class Decider:
         """Return the verdict on what is claimed of every fair run."""
         assert asked.temporal is not None
         try:
-            lasso = counterexample(self.graph, self.truth, asked.temporal, self.conditions(asked.fairness))
+            lasso = shortest_counterexample(
+                self.graph, self.truth, asked.temporal, self.conditions(asked.fairness)
+            )
         except TooLargeError as error:
             return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {error}; split the formula")
-        note, remarks = (
-            self.note(asked.fairness),
-            (*self.empty(asked.fairness), *self.vacuous(asked.temporal)),
-        )
+        note, remarks = self.note(asked.fairness), tuple(self.empty(asked.fairness))
         if lasso is None:
-            outcome = self.unless_violated()
-            return Verdict(asked, outcome, examined=self.graph.size, note=note, remarks=remarks)
+            outcome, judged = self.unless_violated(), Judged()
+            if outcome is Outcome.HOLDS:
+                fairness = self.conditions(asked.fairness)
+                judged = judge_linear(self.truth, asked.temporal, fairness, self.setting.kinds)
+            return Verdict(
+                asked,
+                outcome,
+                examined=self.graph.size,
+                witness=None if judged.witness is None else self.trace(judged.witness),
+                note=note,
+                remarks=(*remarks, *judged.remarks),
+            )
         message = f"false{'' if lasso.loop else ', whatever follows'}: {asked.temporal}"
         if lasso.loop and is_true_on(lasso, asked.temporal, self.truth):
             raise AssertionError(f"the counterexample is none: {asked.temporal}")
-        violation = Violation(asked.kind, message, self.trace(lasso))
+        violation = Violation(asked.kind, message, self.trace(lasso), tuple(self.pauses(lasso)))
         return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
-
-    def vacuous(self, formula: Temporal) -> Iterator[str]:
-        """Yield what a formula rests on and never happens."""
-        match formula:
-            case Globally(Either(Denied(Now(proposition)), _)):
-                if not self.truth.here(Now(proposition)).any():
-                    yield f"vacuous: nowhere is it true that {proposition}"
 
     # --- branching time
 
@@ -102,13 +108,24 @@ class Decider:
         surely, perhaps = bool(tree.where(formula)[0]), bool(tree.where(formula, perhaps=True)[0])
         note, remarks = self.note(asked.fairness), tuple(self.empty(asked.fairness))
         if perhaps:
-            outcome = self.unless_violated()
-            witness = self.trace(tree.evidence(formula)) if surely else None
-            examined = int(tree.where(formula).sum())
-            return Verdict(asked, outcome, examined=examined, witness=witness, note=note, remarks=remarks)
-        trace = self.trace(tree.evidence(formula, claimed=False))
-        details = () if trace.steps else ("no single run shows it: it is about all that may follow",)
-        violation = Violation(asked.kind, f"false at c0: {formula}", trace, details)
+            outcome, witness = self.unless_violated(), tree.evidence(formula) if surely else None
+            if outcome is Outcome.HOLDS:
+                judged = judge_branching(tree, formula, self.setting.kinds)
+                remarks += judged.remarks
+                witness = judged.witness or witness
+            return Verdict(
+                asked,
+                outcome,
+                examined=int(tree.where(formula).sum()),
+                witness=None if witness is None else self.trace(witness),
+                note=note,
+                remarks=remarks,
+            )
+        lasso = tree.evidence(formula, claimed=False)
+        details = tuple(self.pauses(lasso))
+        if not len(lasso):
+            details = ("no single run shows it: it is about all that may follow",)
+        violation = Violation(asked.kind, f"false at c0: {formula}", self.trace(lasso), details)
         return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
 
     # --- progress
@@ -169,12 +186,18 @@ class Decider:
         """Return what it means that nothing speaks against a property."""
         return Outcome.HOLDS if self.found.complete else Outcome.INCOMPLETE
 
+    def pauses(self, lasso: Lasso) -> Iterator[str]:
+        """Yield where a run stays for a moment only: in a trace that is no step."""
+        edges = (*lasso.stem, *lasso.loop)
+        steps = [self.graph.actions[edge] >= 0 for edge in edges]
+        for at, is_step in enumerate(steps):
+            if not is_step and any(steps[at:]):
+                yield f"it stays at c{sum(steps[:at])} for a moment before it goes on"
+
     def trace(self, lasso: Lasso) -> Trace:
-        """Return a run as a trace, replayed through the rules; staying at an end is no step."""
-        edges = [edge for edge in (*lasso.stem, *lasso.loop) if self.graph.actions[edge] >= 0]
-        loop = None
-        if lasso.loop or len(edges) < len(lasso.stem):
-            loop = min(len(lasso.stem), len(edges))
+        """Return a run as a trace, replayed through the rules; staying is no step."""
+        stem, loop = ([e for e in edges if self.graph.actions[e] >= 0] for edges in (lasso.stem, lasso.loop))
+        stays = lasso.loop or (lasso.stem and self.graph.actions[lasso.stem[-1]] < 0)
         configurations = self.found.configurations
         steps = (
             step_of(
@@ -182,9 +205,10 @@ class Decider:
                 self.graph.labels[self.graph.actions[edge]],
                 configurations[self.graph.targets[edge]],
             )
-            for edge in edges
+            for edge in (*stem, *loop)
         )
-        trace = Trace(configurations[0], tuple(steps), loop)
+        shortest = lasso.shortest and self.found.reducer is None
+        trace = Trace(configurations[0], tuple(steps), len(stem) if stays else None, shortest)
         if replay(trace.initial, to_json(trace, "", "")) != trace:
             raise AssertionError("the rules do not replay a run that they gave")
         return trace

@@ -1,7 +1,7 @@
 """Lassos: a way to a fair component, and a cycle in it that is fair."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -18,10 +18,17 @@ fewer where that means to search more than so many edges, and at one at least.""
 
 @dataclass(frozen=True, slots=True)
 class Lasso:
-    """The edges of a run: `stem`, and then `loop` again and again; without a loop whatever may follow."""
+    """The edges of a run: `stem`, and then `loop` again and again; without a loop whatever may follow.
+
+    Attributes:
+        stem: How it begins.
+        loop: What it repeats.
+        shortest: Whether it is known that no other run that shows the same has fewer edges.
+    """
 
     stem: tuple[int, ...]
     loop: tuple[int, ...] = ()
+    shortest: bool = field(default=False, compare=False)
 
     def __len__(self) -> int:
         return len(self.stem) + len(self.loop)

@@ -1,19 +1,37 @@
-"""Linear time: is there a fair run on which a formula is false? If so, one that is as short as reasonable."""
+"""Linear time: is there a fair run on which a formula is false? If so, a shortest one where that can be found."""
+
+from collections.abc import Collection
 
 from checker.graph import Bools, Graph
 from checker.temporal.automaton import automaton_of
 from checker.temporal.components import Conditions, fair_components
 from checker.temporal.lassos import Lasso, fair_cycles, tightened
 from checker.temporal.product import Product, product_of
+from checker.temporal.shortest import shortest_false
 from checker.temporal.truth import Truth
 from semantics.temporal import Both, Globally, Temporal
+
+
+def shortest_counterexample(
+    graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions
+) -> Lasso | None:
+    """Return what `counterexample` does, with as short a loop as can be found, and whether it is known to be shortest.
+
+    Raises:
+        TooLargeError: The automaton of some conjunct would be too large.
+    """
+    found = counterexamples(graph, truth, formula, fairness)
+    known = least(found.values())
+    if known is None or not known.loop:
+        return known
+    return shortest_false(graph, truth, found, fairness, known)
 
 
 def counterexample(graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions) -> Lasso | None:
     """Return a fair run from configuration 0 on which a formula is false; None where there is none.
 
     Without a loop it is a run after which the formula is false whatever follows: a fair continuation there always
-    is. Conjuncts are decided one by one, since their automata are smaller.
+    is.
 
     Args:
         graph: What was explored, total. Where it is partial, None is no proof.
@@ -24,8 +42,20 @@ def counterexample(graph: Graph, truth: Truth, formula: Temporal, fairness: Cond
     Raises:
         TooLargeError: The automaton of some conjunct would be too large.
     """
-    found = (_counterexample(graph, truth, each, fairness) for each in conjuncts(formula))
-    return min((lasso for lasso in found if lasso is not None), key=len, default=None)
+    return least(counterexamples(graph, truth, formula, fairness).values())
+
+
+def counterexamples(
+    graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions
+) -> dict[Temporal, Lasso]:
+    """Return a run for each conjunct that is violated; they are decided one by one, as their automata are smaller."""
+    found = {each: _counterexample(graph, truth, each, fairness) for each in conjuncts(formula)}
+    return {each: lasso for each, lasso in found.items() if lasso is not None}
+
+
+def least(found: Collection[Lasso]) -> Lasso | None:
+    """Return the shortest of some runs; those that need no loop come first, as they say more."""
+    return min(found, key=lambda lasso: (bool(lasso.loop), len(lasso)), default=None)
 
 
 def conjuncts(formula: Temporal) -> list[Temporal]:
@@ -44,7 +74,7 @@ def _counterexample(graph: Graph, truth: Truth, formula: Temporal, fairness: Con
         return None
     product = product_of(graph, automaton, truth)
     if product.prefix is not None:
-        return Lasso(product.prefix)
+        return Lasso(product.prefix, shortest=graph.partial is None)
     known = None if fairness.none else ~graph.open[product.configurations]
     return _lasso(product, product.conditions(automaton.marks, fairness), known)
 

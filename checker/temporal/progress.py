@@ -11,6 +11,7 @@ from checker.temporal.arrows import shortest
 from checker.temporal.components import Conditions, fair_components
 from checker.temporal.fairness import arrives
 from checker.temporal.lassos import Lasso, component_of, fair_cycle, tightened
+from checker.temporal.shortest import shortest_run
 from semantics.configuration import Configuration, Label
 from semantics.requests import FLY, READY, Request
 from semantics.signature import Name
@@ -112,11 +113,11 @@ class Progress:
         loop = fair_cycle(part, entry)
         stem = shortest(self.graph, 0, self.graph.targets == entry) if entry else ()
         assert stem is not None  # everything that was explored is reached
+        known = tightened(Lasso(stem, loop))
+        run = shortest_run(self.graph, components, self.fairness, known, by=~serving)
         enabled = self.graph.enabled(serving)
-        places = [int(self.graph.sources[edge]) for edge in loop]
-        return Starved(
-            request, tightened(Lasso(stem, loop)), bool(enabled[places].any()), self._behind(request, places)
-        )
+        places = [int(self.graph.sources[edge]) for edge in run.loop]
+        return Starved(request, run, bool(enabled[places].any()), self._behind(request, places))
 
     def _behind(self, request: Request, places: Iterable[int]) -> tuple[Request, ...]:
         found: dict[Request, None] = {}

@@ -8,8 +8,8 @@ import numpy as np
 from checker.bounding import look
 from checker.graph import Bools, Graph
 from semantics.configuration import Configuration
-from semantics.propositions import Always, Proposition, holds
-from semantics.temporal import Both, Denied, Either, Enabled, Now, Steps, Taken, Temporal, atoms
+from semantics.propositions import Always, And, Not, Or, Proposition, holds
+from semantics.temporal import Both, Denied, Either, Enabled, Now, Steps, Taken, Temporal, atoms, parts
 
 Valuation = Mapping[Proposition, Bools]
 
@@ -38,7 +38,7 @@ class Truth:
 
     Attributes:
         graph: The graph, total.
-        values: Of the propositions.
+        values: Of the propositions, or of the atoms that they are made of.
     """
 
     graph: Graph
@@ -59,8 +59,14 @@ class Truth:
         match formula:
             case Now(Always(value)):
                 return np.full(self.graph.size, value)
-            case Now(proposition):
+            case Now(proposition) if proposition in self.values:
                 return self.values[proposition]
+            case Now(Not(inner)):
+                return ~self.here(Now(inner))
+            case Now(And(formulas)):
+                return self.joined(np.logical_and, True, formulas)
+            case Now(Or(formulas)):
+                return self.joined(np.logical_or, False, formulas)
             case Enabled(steps):
                 return self.graph.enabled(self.steps(steps))
             case Denied(inner):
@@ -70,6 +76,29 @@ class Truth:
             case Either(left, right):
                 return self.here(left) | self.here(right)
         raise ValueError(f"more than the configuration is asked for: {formula}")
+
+    def joined(self, how: np.ufunc, neutral: bool, formulas: Iterable[Proposition]) -> Bools:
+        """Return for each configuration what a connective makes of propositions."""
+        found = np.full(self.graph.size, neutral)
+        for each in formulas:
+            how(found, self.here(Now(each)), out=found)
+        return found
+
+    def everywhere(self, formula: Temporal) -> Bools | None:
+        """Return for each edge whether a formula without temporal operators is true; None of one that has some."""
+        if isinstance(formula, Taken):
+            return self.taken(formula)
+        if isinstance(formula, Now | Enabled):
+            return self.here(formula)[self.graph.sources]
+        if not isinstance(formula, Denied | Both | Either):
+            return None
+        inner = [self.everywhere(each) for each in parts(formula)]
+        known = [each for each in inner if each is not None]
+        if len(known) < len(inner):
+            return None
+        if isinstance(formula, Denied):
+            return ~known[0]
+        return known[0] & known[1] if isinstance(formula, Both) else known[0] | known[1]
 
     def taken(self, atom: Taken) -> Bools:
         """Return for each edge whether an atom about it is true."""

@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from checker import check
+from checker.occurrences import replaced
 from checker.quantified import is_quantified
-from checker.vacuity import Valuations, atoms_of, replaced, truth, unneeded
+from checker.vacuity import Valuations, atoms_of, remarks_on, truth
 from semantics.propositions import Always, And, Ended, Inside, LinkedWith, Not, Or, Waiting, holds
 
 A, B, C = Waiting("a"), Waiting("b"), Waiting("c")
@@ -136,7 +137,7 @@ def occurrences(formula, path=()):
 def test_a_part_is_never_needed_exactly_where_anything_may_stand_in_its_place(formula, met):
     """Each operand that is told may be replaced by either truth value; where none is told, none may."""
     met = sorted(met)
-    told = list(unneeded(formula, columns(met), len(met), {}))
+    told = list(remarks_on(formula, columns(met), len(met), {}))
     if not all(value(formula, row) for row in met):
         assert told == []
         return
@@ -168,16 +169,16 @@ def test_every_valuation_is_remembered_once():
 
 def test_operands_that_go_through_a_kind_are_a_quantifiers():
     every = And(tuple(Not(Inside(name, "gate0")) for name in ("uav0", "uav1")))
-    assert is_quantified(every, KINDS)
-    assert not is_quantified(And(every.formulas[:1]), KINDS)
-    assert not is_quantified(every, KINDS | {"uav2": "UAV"})
-    assert not is_quantified(Or((Inside("uav0", "a"), LinkedWith("uav1", "a"))), KINDS)
-    assert not is_quantified(Or((Inside("uav0", "a"), Inside("uav1", "b"))), KINDS)
+    assert is_quantified(every.formulas, KINDS)
+    assert not is_quantified(every.formulas[:1], KINDS)
+    assert not is_quantified(every.formulas, KINDS | {"uav2": "UAV"})
+    assert not is_quantified((Inside("uav0", "a"), LinkedWith("uav1", "a")), KINDS)
+    assert not is_quantified((Inside("uav0", "a"), Inside("uav1", "b")), KINDS)
     pairs = And(tuple(Or((Always(x == "uav0"), Inside(x, "uav0"))) for x in ("uav0", "uav1")))
-    assert is_quantified(pairs, KINDS)
+    assert is_quantified(pairs.formulas, KINDS)
 
 
 def test_all_valuations_of_three_atoms_need_all_of_them():
     met = list(product((False, True), repeat=3))
     formula = Or((A, Not(A)))
-    assert list(unneeded(formula, columns(met), len(met), {})) == []
+    assert list(remarks_on(formula, columns(met), len(met), {})) == []

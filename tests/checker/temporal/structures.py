@@ -12,7 +12,7 @@ from checker.temporal.arrows import rows_of
 from checker.temporal.fairness import conditions_of
 from checker.temporal.truth import Truth
 from semantics.configuration import Label
-from semantics.propositions import Known
+from semantics.propositions import Always, Known
 from semantics.temporal import (
     Both,
     Denied,
@@ -68,6 +68,7 @@ def truths(draw, most=4):
 
 def valued(graph, chance):
     values = {each: [chance.random() < 0.5 for _ in range(graph.size)] for each in (P, Q)}
+    values |= {Always(value): [value] * graph.size for value in (False, True)}
     return Truth(graph, {each: np.array(row, dtype=np.bool_) for each, row in values.items()})
 
 

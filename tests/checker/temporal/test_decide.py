@@ -99,12 +99,23 @@ def test_a_run_stays_where_nothing_has_to_happen():
         assert list(print_trace(trace))[-1] == "c2 stays for ever: nothing has to happen"
 
 
+def test_a_stay_of_a_moment_is_told_and_takes_no_loop_out_of_place():
+    text = ONCE + " environment { uav0 drifts among north0, south0 }\n"
+    paused = "not pending a and ended a and not taken env and X taken env"
+    ended = verdict(text, f'ltl "q": [] not ({paused})').violations[0]
+    assert (len(ended.trace), ended.trace.loop) == (3, None)
+    assert ended.details == ("it stays at c2 for a moment before it goes on",)
+    again = verdict(text, f'ltl "q": not infinitely often ({paused})').violations[0]
+    assert again.trace.configurations[again.trace.loop] == again.trace.configurations[-1]
+    assert len(again.details) == 1
+
+
 def test_a_report_says_how_long_a_run_is_and_what_of_it_repeats():
     report = checked(f'{THERE_AND_BACK} check {{ ltl "q": <> ended g }}')
     lines = "\n".join(report_text("m", report))
-    assert "a run of 9 steps, the last 7 repeated for ever:" in lines
+    assert "a shortest run of 9 steps, the last 7 repeated for ever:" in lines
     report = checked(f'{ONCE} check {{ ltl "q": [] <> uav0 in north0 }}')
-    assert "a run of 2 steps, at whose end it stays for ever:" in "\n".join(report_text("m", report))
+    assert "a shortest run of 2 steps, at whose end it stays for ever:" in "\n".join(report_text("m", report))
 
 
 # --- what was cut off -----------------------------------------------------------------------------------------
@@ -138,7 +149,7 @@ def test_fairness_to_what_never_is_is_pointed_out():
 
 def test_what_leads_to_something_and_never_is_is_pointed_out():
     found = verdict(ONCE, 'ltl "q": pending MGR a leads to ended a')
-    assert found.remarks == ("vacuous: nowhere is it true that pending MGR a",)
+    assert found.remarks == ("vacuous: 'pending MGR a' is never true, so that '<> ended a' is never needed",)
 
 
 def test_a_formula_that_is_too_large_is_not_decided():

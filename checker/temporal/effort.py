@@ -1,0 +1,32 @@
+"""Effort: how much a search may look at, counted in edges and not in seconds, so that it ends alike everywhere."""
+
+from dataclasses import dataclass
+from typing import Final
+
+from checker.bounding import look
+
+MOST: Final = 8_000_000
+LAYER: Final = 250
+"""What each layer of a search costs besides its edges: a hundredth of a millisecond or two, as they do."""
+
+
+class Exhausted(Exception):
+    """More would have to be looked at than is worth it."""
+
+
+@dataclass(slots=True)
+class Effort:
+    """What is left to be spent."""
+
+    left: int = MOST
+
+    def spend(self, edges: int) -> None:
+        """Count a layer with so many edges.
+
+        Raises:
+            Exhausted: Nothing is left.
+        """
+        look()
+        self.left -= edges + LAYER
+        if self.left < 0:
+            raise Exhausted
