@@ -24,6 +24,7 @@ UNITS = {
     "invariant": (" configuration", " configurations"),
     "ltl": (" configuration", " configurations"),
     "ctl": (" configuration", " configurations"),
+    "progress": (" request", " requests"),
 }
 """What is examined for each kind of property, one and several; of what is to be reachable, configurations with it."""
 

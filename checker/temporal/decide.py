@@ -135,10 +135,12 @@ class Decider:
         arriving = self.setting.arriving
         pending = owed(where_pending(self.found), arriving)
         fairness = self.conditions((*EACH_RULE_AND_REQUEST, *asked.fairness))
-        starved, count = Progress(self.graph, pending, fairness, arriving).starved()
+        progress = Progress(self.graph, pending, fairness, arriving)
+        starved, count = progress.starved()
         note = self.note(asked.fairness, "weak fairness of each rule and request")
         violations = sorted(map(self.violation, starved), key=lambda violation: len(violation.trace))
         outcome = Outcome.VIOLATED if violations else self.unless_violated()
+        witness = progress.served() if outcome is Outcome.HOLDS else None
         empty = () if pending else ("vacuous: nothing is ever requested",)
         return Verdict(
             asked,
@@ -146,6 +148,7 @@ class Decider:
             tuple(violations),
             count,
             len(pending) - count,
+            witness=None if witness is None else self.trace(witness),
             note=note,
             different=count,
             remarks=(*self.empty(asked.fairness), *empty),

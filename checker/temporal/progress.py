@@ -18,10 +18,10 @@ from semantics.signature import Name
 from semantics.temporal import SERVES
 
 Pending = Mapping[Request, Sequence[int] | Numbers]
+"""For each request, the configurations in which it is pending."""
 
 OFTEN = 1024
 """Configurations between two looks at the clock."""
-"""For each request, the configurations in which it is pending."""
 
 
 def pending_requests(configurations: Iterable[Configuration]) -> Pending:
@@ -105,6 +105,13 @@ class Progress:
         """Return for each edge whether it serves a request."""
         labels = (label.rule in SERVES and label.about == request for label in self.graph.labels)
         return self.graph.taken(np.fromiter(labels, dtype=np.bool_, count=len(self.graph.labels)))
+
+    def served(self) -> Lasso | None:
+        """Return a shortest run at whose end one of the requests is served; None where none ever is."""
+        labels = (label.rule in SERVES and label.about in self.pending for label in self.graph.labels)
+        goal = self.graph.taken(np.fromiter(labels, dtype=np.bool_, count=len(self.graph.labels)))
+        path = shortest(self.graph, 0, goal)
+        return None if path is None else Lasso(path, shortest=True)
 
     def _starved(self, request: Request, entry: int) -> Starved:
         serving = self.serving(request)

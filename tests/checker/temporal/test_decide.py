@@ -67,6 +67,19 @@ def test_it_holds(text, claim):
     assert (found.outcome, found.violations) == (Outcome.HOLDS, ())
 
 
+def test_progress_that_holds_shows_a_shortest_run_that_ends_as_a_request_is_served():
+    found = verdict(THERE_AND_BACK, "progress")
+    assert found.examined == 4  # two controls and an observation of a, one observation of g
+    assert [step.label.rule for step in found.witness.steps] == ["req_ctr", "actuate"]
+    assert found.witness.shortest
+
+
+def test_progress_where_nothing_is_asked_for_has_no_witness():
+    found = verdict("BigActor a hosted_at uav0 with_behavior { skip }", "progress")
+    assert (found.outcome, found.examined, found.witness) == (Outcome.HOLDS, 0, None)
+    assert found.remarks == ("vacuous: nothing is ever requested",)
+
+
 @pytest.mark.parametrize(("text", "claim"), VIOLATED)
 def test_it_is_violated_by_a_run_that_replays(text, claim):
     found = verdict(text, claim)
