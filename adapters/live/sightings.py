@@ -37,9 +37,8 @@ def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) ->
         )
     time = now if said.time is None else said.time
     if not math.isfinite(time) or time > now + MOST_AHEAD:
-        return Refusal(
-            said.entity, f"'{heard.plugin}' gives a time {time - now:.0f} s ahead for {said.entity}"
-        )
+        ahead = f"gives times more than {MOST_AHEAD:g} s ahead"
+        return Refusal(said.entity, f"'{heard.plugin}' {ahead} for {said.entity}: set its clock")
     if known is not None and time < known.time:
         return None
     if isinstance(said, Gone):

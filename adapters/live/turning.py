@@ -33,6 +33,9 @@ from semantics.precautions import Fallback
 from semantics.requests import CTR, FLY, SND
 from semantics.signature import Name
 
+MOST_REPORTED = 1_000
+"""How many things may have been reported once before troubles are not any more: strangers make any number of them."""
+
 
 class Turning:
     """A turn being made; what it gathers becomes the next state."""
@@ -93,9 +96,10 @@ class Turning:
         return Turn(state, *gathered, tuple(self.parcels), again)
 
     def find(self, kind: str, about: Name, message: str, fallback: str = "", *, once: bool = False) -> bool:
-        """Report something; what is to be reported once is not again."""
+        """Report something; what is to be reported once is not again, and not at all where there is too much of it."""
         if once:
-            if message in self.reported:
+            full = kind == "trouble" and len(self.reported) >= MOST_REPORTED
+            if full or message in self.reported:
                 return False
             self.reported.add(message)
         self.findings.append(Finding(kind, about, message, self.now, fallback))

@@ -2,6 +2,7 @@ from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
 from adapters.live.core import resumed, watch
 from adapters.live.state import Batch, Heard, Plan, Saying
+from adapters.live.turning import MOST_REPORTED
 from adapters.plugin import Aged, Gone, GoTo, HandOver, Hold, LinkLost, LinkRestored, Rejected, Return
 from physical import PhysicalProperty, polygon
 from semantics.physical_model import InTransit, Placed
@@ -81,6 +82,22 @@ def test_a_time_stamp_far_in_the_future_is_refused():
     run.turn(0.0, seen("uav0", WEST, 3600.0))
     assert run.state.seen == {}
     assert run.kinds() == ["trouble"]
+
+
+def test_a_clock_that_is_wrong_is_told_of_once_however_wrong_it_is():
+    run = Run(plan_of(TOUR + GO))
+    for ahead in range(6, 60):
+        run.turn(0.0, seen("uav0", WEST, float(ahead)))
+    assert run.kinds() == ["trouble"]
+
+
+def test_strangers_with_ever_new_names_fill_no_memory():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, *(boat(EAST, 3600.0, f"stranger{number}") for number in range(MOST_REPORTED + 500)))
+    assert run.kinds() == ["trouble"] * MOST_REPORTED
+    assert len(run.state.reported) == MOST_REPORTED
+    run.turn(1.0, seen("uav0", WEST, 1.0), boat(EAST, 1.0))
+    assert "broken assumption" in run.kinds()
 
 
 def test_another_feed_may_not_speak_of_a_vehicle():
