@@ -16,10 +16,10 @@ from adapters.live.core import advance, is_over, watch
 from adapters.live.state import Answer, Batch, Finding, Heard, LiveState, Plan, Saying, Turn
 from adapters.plugin import Aged, Command, Plugin, Published, Refused, Rejected, Report
 
-GATHER = 0.004
+GATHER = 0.002
 """Seconds for which arrivals are gathered before the next turn."""
 
-SLICE = 3
+SLICE = 2
 """How many steps are taken before the loop looks at what has come in meanwhile."""
 
 IDLE = 0.5
@@ -167,10 +167,12 @@ class Clock:
 def settle() -> None:
     """Collect garbage once, and look no more at what is there now: to look at all of it stops a run for a while.
 
-    For the process of one run, once it is about to begin: what is garbage later of what is there now is kept.
+    For the process of one run, once it is about to begin: what is garbage later of what is there now is kept. What
+    comes is looked at less often: nearly all of it is gone by then without.
     """
     gc.collect()
     gc.freeze()
+    gc.set_threshold(10_000, 20, 50)
 
 
 class LiveRun:
