@@ -172,7 +172,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--first", type=int, default=FIRST, help="where the table begins (default 10⁶)")
     parser.add_argument("--no-peer", action="store_true", help="without SPIN")
     parser.add_argument("--minutes", type=float, default=15, help="for SPIN at most (default 15)")
-    parser.add_argument("--gigabytes", type=float, default=16, help="for SPIN at most (default 16)")
+    parser.add_argument(
+        "--gigabytes", type=float, default=16, help="for SPIN at most, in units of 2³⁰ bytes (default 16)"
+    )
     parser.add_argument("--output", type=Path, default=RESULTS, help="where the figures are kept")
     parser.add_argument("--plot", type=Path, default=PLOT, help="an SVG or PNG file")
     given = parser.parse_args(arguments)

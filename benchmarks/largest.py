@@ -56,7 +56,7 @@ class Limits:
     def have_room(self, wanted: float, before: Explored) -> bool:
         """Tell whether so many configurations may find room and time, if each takes what it took before."""
         memory = wanted * (before.bytes_per_configuration or 0)
-        return memory < self.gigabytes * 1e9 and wanted / before.rate < self.minutes * 60
+        return memory < self.gigabytes * 2**30 and wanted / before.rate < self.minutes * 60
 
     def options(self) -> tuple[str, ...]:
         """Return them as `ours.py` takes them."""
@@ -190,7 +190,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Climb each family as far as the limits allow, and keep what was found."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--minutes", type=float, default=0.5, help="for each search (default 0.5)")
-    parser.add_argument("--gigabytes", type=float, default=4, help="for each search (default 4)")
+    parser.add_argument(
+        "--gigabytes", type=float, default=4, help="for each search, in units of 2³⁰ bytes (default 4)"
+    )
     parser.add_argument("--uavs", type=int, default=8, help="at most (default 8)")
     parser.add_argument("--spills", type=int, default=4, help="at most (default 4)")
     parser.add_argument("--robots", type=int, default=12, help="at most (default 12)")

@@ -31,9 +31,6 @@ CHUNK = 1 << 16
 LONGEST = 3600
 """Seconds after which a process is given up."""
 
-EVERY = 0.25
-"""Seconds between two looks at how much memory is taken."""
-
 
 @dataclass(slots=True)
 class Explored:
@@ -125,7 +122,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--reduce", action="store_true", help="by partial order")
     parser.add_argument("--cores", type=int, help="on how many cores at most")
     parser.add_argument("--minutes", type=float, help="how long at most")
-    parser.add_argument("--gigabytes", type=float, help="how much memory at most")
+    parser.add_argument("--gigabytes", type=float, help="how much memory at most, in units of 2³⁰ bytes")
     parser.add_argument("--marks", help="numbers of configurations at which to look, and stop at the last")
     given = parser.parse_args(arguments)
     if given.cores is not None:
@@ -191,26 +188,17 @@ def _explore(given: argparse.Namespace, began: float) -> Explored:
 
 
 def _search(mission: "ElaboratedMission", given: argparse.Namespace) -> "Exploration":
-    from checker import Engine, Limits, Progress, Reduction, explore  # noqa: PLC0415  # its time is measured
+    from checker import Engine, Limits, Reduction, explore  # noqa: PLC0415  # its time is measured
     from checker.reduction import Reduced  # noqa: PLC0415
-
-    def look(progress: Progress) -> None:  # noqa: ARG001  # what it takes is asked of the system
-        if given.gigabytes is not None and resident("VmRSS") > given.gigabytes * 1000:
-            raise KeyboardInterrupt  # what explorations take for the user's wish to end
 
     reducer = None
     if given.reduce:
         formulas = [each.formula for each in mission.properties if each.kind in ("invariant", "reachable")]
         reducer = Reduced(mission.initial, [Reduction.POR], formulas)
     seconds = None if given.minutes is None else 60 * given.minutes
-    return explore(
-        mission.initial,
-        limits=Limits(configurations=None, seconds=seconds),
-        engine=Engine(given.engine),
-        report=look,
-        every=EVERY,
-        reduce=reducer,
-    )
+    memory = None if given.gigabytes is None else int(given.gigabytes * 2**30)
+    limits = Limits(configurations=None, seconds=seconds, memory=memory)
+    return explore(mission.initial, limits=limits, engine=Engine(given.engine), reduce=reducer)
 
 
 def _marked(mission: "ElaboratedMission", marks: list[int], began: float) -> Explored:

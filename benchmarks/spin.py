@@ -95,8 +95,8 @@ class Bounds:
         """Say which is met, by so many seconds, megabytes and configurations; nothing where none is."""
         if seconds > 60 * self.minutes:
             return f"the time limit of {60 * self.minutes:g} s"
-        if memory > 1000 * self.gigabytes:
-            return f"the memory limit of {self.gigabytes:g} GB"
+        if memory > 1024 * self.gigabytes:
+            return f"the memory limit of {self.gigabytes:g} GiB"
         if configurations >= self.configurations:
             return f"stopped at {self.configurations:,.0f} configurations"
         return ""

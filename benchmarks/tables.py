@@ -128,7 +128,7 @@ def largest_tables(kept: Kept) -> str:
         )
         for row in kept["searches"]
     ]
-    limits = f"{kept['limits']['minutes']:g} minutes and {kept['limits']['gigabytes']:g} GB"
+    limits = f"{kept['limits']['minutes']:g} minutes and {kept['limits']['gigabytes']:g} GiB"
     named = "; ".join(f"{family}: *{name}*" for family, name in kept["largest"].items())
     said = f"The largest that were complete within {limits} a search: {named}.\n"
     return "\n".join([_table(head, rows), said, *_beside_spin(kept["searches"]), machine(kept)])

@@ -12,10 +12,10 @@ from checker.exploration import (
     EngineError,
     Exploration,
     Keeping,
-    Limits,
     Progress,
     explore,
 )
+from checker.limits import Limits
 from checker.ownership import owned
 from checker.reduction import Reduction, RefusedError
 from checker.report import report_json, report_text

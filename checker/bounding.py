@@ -10,7 +10,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from time import monotonic
 
-from checker.exploration import Limits, is_full, memory_met, time_met
+from checker.limits import Limits, is_full, memory_met, time_met
 
 
 class BoundMet(Exception):  # what it is

@@ -6,20 +6,10 @@ from typing import TYPE_CHECKING
 
 from checker.bounding import BoundMet, bounded
 from checker.coverage import coverage
-from checker.exploration import (
-    INTERRUPTION,
-    Cluster,
-    Engine,
-    Exploration,
-    Inspect,
-    Keeping,
-    Limits,
-    Progress,
-    explore,
-    time_met,
-)
+from checker.exploration import Cluster, Engine, Exploration, Inspect, Keeping, Progress, explore
 from checker.findings import MOST_VIOLATIONS, Collected
 from checker.inspections import Computation, DeadlockFreedom, Invariant, LocalConsistency, Reachability
+from checker.limits import INTERRUPTION, Limits, time_met
 from checker.ownership import owned
 from checker.races import ControlRaces, StaleObservationRaces
 from checker.reduction.reducer import Reduced, reducing

@@ -3,8 +3,6 @@
 It visits each configuration once, in the order of its distance from the first, so a path to it is a shortest one.
 """
 
-import resource
-import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -14,6 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from checker.edges import Edges
 from checker.estimate import Estimate, estimate
+from checker.limits import INTERRUPTION, Limits, crowd_met, is_full, limit_met, memory_met, time_met
 from semantics.configuration import Configuration, Transition
 from semantics.propositions import Proposition
 from semantics.requests import Request
@@ -22,33 +21,6 @@ from semantics.successors import Expansion, expand
 if TYPE_CHECKING:
     from checker.graph import Bools, Graph, Numbers
     from checker.reduction.ample import Ample
-
-MOST_PENDING = 64
-"""Requests of one agent, or messages in one mailbox, beyond which a configuration is not explored further."""
-
-INTERRUPTION = "an interruption"
-"""The bound that is met where the user has asked for the end."""
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """Where an exploration stops: then it is *incomplete*, and says so.
-
-    Attributes:
-        configurations: How many are visited at most.
-        seconds: For how long.
-        pending: How many requests an agent may have pending, or messages in its mailbox.
-        spent: How many of the seconds are gone already.
-        memory: How many bytes the process may take; looked at now and then, so that it may be a little more.
-        spill: The folder in which the fast explorer has files for its rows when memory ends; None for nowhere.
-    """
-
-    configurations: int | None = 2_000_000
-    seconds: float | None = None
-    pending: int = MOST_PENDING
-    spent: float = 0.0
-    memory: int | None = None
-    spill: str | None = None
 
 
 class EngineError(Exception):
@@ -404,58 +376,6 @@ class _Explorer:
         total, depth, rate = len(self.configurations), self.depths[number], number / max(seconds, 1e-9)
         guess = estimate(self.layers[: depth + 1])
         return Progress(total, found.transitions, depth, total - number, rate, guess)
-
-
-def limit_met(most: int) -> str:
-    """Say that there are more configurations than were to be visited."""
-    return f"the limit of {most:,} configurations"
-
-
-def time_met(seconds: float) -> str:
-    """Say that the time was over."""
-    return f"the time limit of {seconds:g} s"
-
-
-def is_full(limits: Limits) -> bool:
-    """Tell whether the process takes more memory than it may."""
-    return limits.memory is not None and memory_taken() > limits.memory
-
-
-def memory_taken() -> int:
-    """Return how many bytes of memory the process takes now; its peak where the system doesn't tell.
-
-    What is a file's is not counted: the system takes that back when it needs memory.
-    """
-    try:
-        with open("/proc/self/statm", encoding="ascii") as file:
-            resident, of_files = map(int, file.read().split()[1:3])
-            return (resident - of_files) * resource.getpagesize()
-    except OSError:
-        unit = 1 if sys.platform == "darwin" else 1024
-        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
-
-
-def memory_met(limits: Limits) -> str:
-    """Say that there was no more memory."""
-    return f"the memory limit of {(limits.memory or 0) / 1e6:,.0f} MB"
-
-
-OMITTING = "hash compaction"
-
-
-def cut(bound: str) -> str:
-    """Say what a bound has done."""
-    return bound if bound.startswith(OMITTING) else f"stopped at {bound}: what lies beyond was not explored"
-
-
-def omission_met(bits: int, chance: float) -> str:
-    """Say that configurations may have been taken for others."""
-    return f"{OMITTING} to {bits} bits: some were left out with a probability of at most {chance:.1g}"
-
-
-def crowd_met(most: int) -> str:
-    """Say that more is pending than is followed."""
-    return f"more than {most} requests or messages of one agent pending"
 
 
 def _itself(c: Configuration) -> Configuration:

@@ -161,12 +161,11 @@ def _unneeded(
     formula: Formula, around: Part, kinds: Mapping[Name, str], holds: Callable[[Formula], bool]
 ) -> Iterator[tuple[Part, Part]]:
     found = tuple(around.parts(kinds))
-    alone = len(found) == 1 and len(found[0].paths) == len(
-        around.paths
-    )  # it is needed as what is around it is
+    alone = len(found) == 1 and len(found[0].paths) == len(around.paths)
     for part in found:
         if isinstance(_bare(part.formula), Always):
             continue
+        # What stands alone is needed as what is around it is.
         if not alone and holds(strengthened(formula, part)):
             yield around, part
         else:

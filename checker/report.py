@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from checker.coverage_report import coverage_json
-from checker.exploration import cut
+from checker.limits import cut
 from checker.traces import Trace, print_length, print_trace, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
 from semantics.setting import Control

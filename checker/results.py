@@ -7,7 +7,7 @@ from enum import Enum
 
 from checker.coverage import Gap
 from checker.coverage_report import coverage_text, line_text
-from checker.exploration import cut
+from checker.limits import cut
 from checker.places import violation_line
 from checker.report import report_text
 from checker.traces import Trace, print_length, print_trace

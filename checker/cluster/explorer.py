@@ -16,20 +16,8 @@ from checker.cluster.keeping import Latest, read_latest, write_latest
 from checker.cluster.merging import is_mergeable, merge
 from checker.cluster.placing import Places
 from checker.cluster.share import Standing
-from checker.exploration import (
-    INTERRUPTION,
-    CheckpointError,
-    Exploration,
-    Inspect,
-    Keeping,
-    Limits,
-    Progress,
-    Report,
-    crowd_met,
-    limit_met,
-    memory_met,
-    time_met,
-)
+from checker.exploration import CheckpointError, Exploration, Inspect, Keeping, Progress, Report
+from checker.limits import INTERRUPTION, Limits, crowd_met, limit_met, memory_met, time_met
 from semantics.configuration import Configuration
 
 MOST_LOSSES = 5

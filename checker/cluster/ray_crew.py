@@ -22,7 +22,8 @@ from checker.cluster.crew import ClusterError, LostError
 from checker.cluster.explorer import Expedition
 from checker.cluster.parcels import WORKERS_AT_MOST
 from checker.cluster.worker import Worker
-from checker.exploration import CheckpointError, Cluster, Exploration, Inspect, Keeping, Limits, Report
+from checker.exploration import CheckpointError, Cluster, Exploration, Inspect, Keeping, Report
+from checker.limits import Limits
 from semantics.configuration import Configuration
 
 PATIENCE = 120.0

@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 from checker.cluster import kernel
 from checker.cluster.keys import Keys
 from checker.cluster.parcels import Dictionary, Entry, Parcel, Told
-from checker.exploration import memory_taken
 from checker.fast import kernel as loops
 from checker.fast.columns import WORD, Packing, shifts
 from checker.fast.engine import FIRST_ROWS, MOST_ROWS, Space
 from checker.fast.kernel import AT, CROWDS, CUT, EXPANDED, GATHERED, LIMIT, SIZE
 from checker.fast.learner import Learner
 from checker.fast.pages import Pages
+from checker.limits import memory_taken
 from semantics.configuration import Configuration
 
 SENT = 1 << 17

@@ -25,7 +25,7 @@ from checker.fast.kernel import (
     Batch,
     State,
 )
-from checker.fast.table import ENTERED, Words, enter, in_parts, slot_of
+from checker.fast.table import Words, slot_of
 
 _ONE, _WORD, _FOLD, _MULTIPLIER = map(np.uint64, (1, 64, 29, 0xBF58476D1CE4E5B9))
 
@@ -100,13 +100,7 @@ def store_tags(
 
 
 @njit(cache=True)
-def rebuild_tags(words: Words, size: int, width: int, table: Any, bits: int) -> None:
-    """Fill an empty table with the tags of the rows."""
-    hashes, rows = np.zeros(ENTERED, np.uint64), np.zeros(ENTERED, np.int64)
-    tags = np.zeros(ENTERED, table.dtype)
-    for begin in range(0, size, ENTERED):
-        count = min(ENTERED, size - begin)
-        in_parts(words, begin, count, width, hashes, rows)
-        for k in range(count):
-            tags[k] = tag_of(hashes[k], bits)
-        enter(table, hashes, tags, count)
+def write_tags(hashes: Words, rows: Any, entries: Any, bits: int) -> None:  # noqa: ARG001  # as `table.write_numbers`
+    """Write what a table holds of rows: their tags."""
+    for k in range(len(hashes)):
+        entries[k] = tag_of(hashes[k], bits)

@@ -3,9 +3,10 @@
 It visits the same configurations in the same order and stops at the same bounds.
 """
 
+import math
 import os
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import accumulate
 from pathlib import Path
@@ -35,8 +36,8 @@ from checker.fast.kernel import (
     WORDS,
 )
 from checker.fast.learner import Actor, CodedSource, Learner
-from checker.fast.pages import Pages
-from checker.fast.table import most_in, rebuild, slots_for
+from checker.fast.pages import Pages, more
+from checker.fast.table import bits_for, most_in, rebuild, slots_for, slots_within, write_numbers
 from checker.fast.trees import RECORD
 from semantics.cells import AGENTS, Row
 from semantics.configuration import Configuration
@@ -69,6 +70,7 @@ class Space:
         counts, met: How often each transition was followed, and how often met: the same where nothing is left out.
         learned: What was not known on the way: the row, and in which tree, at which node and for which code.
         compact: How many bits a tag has, where the table has tags instead of numbers (see `compacting`).
+        left: Says how many bytes of memory may be taken besides: the table grows by less where they end.
     """
 
     def __init__(
@@ -79,6 +81,7 @@ class Space:
         compact: int | None = None,
     ) -> None:
         self.learner = learner
+        self.left: Callable[[], float] = lambda: math.inf
         self.choosing = choosing
         self.compact = compact
         self.state = np.zeros(kernel.STATE, np.int64)
@@ -415,7 +418,14 @@ class Space:
         if wanted > len(self.origins.room):
             self._reserve_rows(max(wanted, more(len(self.origins.room))))
         if most_in(len(self.table.room)) < wanted:
-            self._rebuild(slots_for(wanted))
+            self._rebuild(self._slots(wanted))
+
+    def _slots(self, rows: int) -> int:
+        """Return how many slots the next table has: for half as many rows more, or for a few where memory ends."""
+        table = self.table.room
+        left, row = self.left() + table.nbytes, 0 if self.spilled else 8 * self.packing.words + 4
+        within = min(slots_for(rows), slots_within(left, self.size, row, table.itemsize))
+        return max(int(within), slots_for(rows) * 3 // 4)
 
     def spill(self, folder: Path) -> None:
         """Let rows and origins go over to files in a folder; the table, which is looked up at random, stays in memory.
@@ -435,19 +445,14 @@ class Space:
         rows = (self.words.room, self.size, self.packing.words)
         if self.compact is None:
             self.table = Pages(np.uint32, slots)
-            rebuild(*rows, self.table.room)
+            rebuild(*rows, self.table.room, write_numbers, bits_for(len(self.table.room)))
             return
-        from checker.fast.compacting import rebuild_tags  # noqa: PLC0415  # compiled where it is wanted
+        from checker.fast.compacting import write_tags  # noqa: PLC0415  # compiled where it is wanted
 
         self.table = Pages(np.uint32 if self.compact <= 32 else np.uint64, slots)
-        rebuild_tags(*rows, self.table.room, self.compact)
+        rebuild(*rows, self.table.room, write_tags, self.compact)
 
 
 def cores() -> int:
     """Return how many cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def more(room: int) -> int:
-    """Return how much room comes after so much: the more there is, the less is added."""
-    return room * 2 if room < 1 << 22 else room * 3 // 2

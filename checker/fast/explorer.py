@@ -1,5 +1,6 @@
 """Explore with learned trees, up to the same bounds as the reference explorer."""
 
+import math
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -8,28 +9,24 @@ from typing import TYPE_CHECKING, overload
 
 from checker.bounding import BoundMet, bounded
 from checker.estimate import estimate
-from checker.exploration import (
-    INTERRUPTION,
-    Exploration,
-    Inspect,
-    Keeping,
-    Limits,
-    Progress,
-    Reducer,
-    Report,
-    crowd_met,
-    is_full,
-    limit_met,
-    memory_met,
-    omission_met,
-    time_met,
-)
+from checker.exploration import Exploration, Inspect, Keeping, Progress, Reducer, Report
 from checker.fast.checkpoint import Journey, resume, save
 from checker.fast.doubt import doubt
 from checker.fast.engine import Space
 from checker.fast.graph import GraphSurvey
 from checker.fast.inspecting import inspect_fast
 from checker.fast.learner import Learner
+from checker.limits import (
+    INTERRUPTION,
+    Limits,
+    crowd_met,
+    is_full,
+    limit_met,
+    memory_left,
+    memory_met,
+    omission_met,
+    time_met,
+)
 from semantics.configuration import Configuration
 
 if TYPE_CHECKING:
@@ -118,6 +115,7 @@ class _Explorer:
         self.learner = Learner(initial.setting, initial.state, limits.pending)  # type: ignore[arg-type]  # a stored one
         self.reduce = reduce
         self.space = Space(self.learner, limits.configurations, self.choosing(), keeping.compact)
+        self.space.left = self.left
         self.journey = Journey(0, 1, 0.0)
         self.layers = [1]
         self.bounds: list[str] = []
@@ -245,6 +243,11 @@ class _Explorer:
         elif is_full(self.limits) and not self.makes_room():
             self.bounds.append(memory_met(self.limits))
         return bool(self.bounds)
+
+    def left(self) -> float:
+        """Return how many bytes of memory may be taken yet: any number, as long as rows may go over to files."""
+        may_spill = self.limits.spill is not None and not self.space.spilled
+        return math.inf if may_spill else memory_left(self.limits)
 
     def makes_room(self) -> bool:
         """Let rows go over to files, if that is wanted and not done yet; tell whether it made room."""

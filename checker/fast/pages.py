@@ -62,9 +62,8 @@ class Pages:
 
     def _resize(self, count: int) -> None:
         if self._file is not None:
-            self._pages = mmap.mmap(
-                self._file, self._bytes(count)
-            )  # whoever has the old pages has the same file
+            # Whoever has the old pages has the same file.
+            self._pages = mmap.mmap(self._file, self._bytes(count))
             return
         try:
             self._pages.resize(self._bytes(count))
@@ -109,3 +108,8 @@ def reserve(file: int, size: int) -> None:
         os.posix_fallocate(file, 0, size)
     else:
         os.ftruncate(file, size)
+
+
+def more(room: int) -> int:
+    """Return how much room comes after so much: the more there is, the less is added."""
+    return room * 2 if room < 1 << 22 else room * 3 // 2

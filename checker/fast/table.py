@@ -7,6 +7,7 @@ hashes; where that is taken, into the next one that is free.
 # mypy: disable-error-code="return-value, assignment, arg-type"
 # (what numba compiles is typed by numba: mypy takes its integers for Python's)
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 Words = NDArray[np.uint64]
+Write = Callable[[Words, Any, Any, int], None]
 
 PARTS = 16
 """Parts of a table; rows that belong into one are entered one after another, so that they meet in a few pages."""
@@ -66,6 +68,23 @@ def slots_for(rows: int) -> int:
     So it takes 6 to 9 bytes a row, less than if it were doubled; fuller ones take less still, but looking up longer.
     """
     return rows * 9 // 4
+
+
+def slots_within(left: float, rows: int, row: int, entry: int) -> float:
+    """Return how many slots a table has that is full just when memory is, as rows come.
+
+    So that memory is not spent on slots whose rows would find none.
+
+    Args:
+        left: Bytes for the table and for rows that come.
+        rows: How many there are.
+        row: Bytes of one, with its origin.
+        entry: Bytes of a slot.
+
+    >>> slots_within(1_000 * 6 + 500 * 20, 500, 20, 4)
+    1500.0
+    """
+    return (left + rows * row) / (entry + row * 2 / 3)
 
 
 @njit(cache=True, inline="always")
@@ -122,42 +141,55 @@ def touch(words: Words, table: Any, hashes: Words, begin: int, end: int, width: 
 # --- entering all rows anew -------------------------------------------------------------------------------------------
 
 
-@njit(cache=True)
-def rebuild(words: Words, size: int, width: int, table: Any) -> None:
-    """Fill an empty table with the rows, all of them different."""
-    bits = np.uint32(bits_for(len(table)))
+def rebuild(words: Words, size: int, width: int, table: Any, write: Write, bits: int) -> None:
+    """Fill an empty table with the rows, all of them different.
+
+    Args:
+        words: The rows.
+        size: How many there are.
+        width: Words of each.
+        table: The table.
+        write: Writes entries for the hashes and numbers of rows: `write_numbers`, or `compacting.write_tags`.
+        bits: What it is given besides.
+    """
     hashes, rows = np.zeros(ENTERED, np.uint64), np.zeros(ENTERED, np.int64)
-    entries = np.zeros(ENTERED, np.uint32)
+    entries = np.zeros(ENTERED, table.dtype)
     for begin in range(0, size, ENTERED):
-        count = min(ENTERED, size - begin)
-        in_parts(words, begin, count, width, hashes, rows)
-        for k in range(count):
-            entries[k] = entry_of(hashes[k], rows[k], bits)
-        enter(table, hashes, entries, count)
+        some = slice(0, min(ENTERED, size - begin))
+        order(words, begin, width, hashes[some], rows[some])
+        write(hashes[some], rows[some], entries[some], bits)
+        enter(table, hashes[some], entries[some])
 
 
 @njit(cache=True)
-def in_parts(words: Words, begin: int, count: int, width: int, hashes: Words, rows: Any) -> None:
-    """Note the hashes and numbers of rows, ordered by the parts of a table into which they belong."""
-    mixed, ends = np.empty(count, np.uint64), np.zeros(PARTS + 1, np.int64)
-    for k in range(count):
+def order(words: Words, begin: int, width: int, hashes: Words, rows: Any) -> None:
+    """Note the hashes and numbers of as many rows, ordered by the parts of a table into which they belong."""
+    mixed, ends = np.empty(len(hashes), np.uint64), np.zeros(PARTS + 1, np.int64)
+    for k in range(len(hashes)):
         mixed[k] = hashed(words, (begin + k) * width, width)
         ends[np.int64(mixed[k] >> _PART) + 1] += 1
     for part in range(PARTS):
         ends[part + 1] += ends[part]
-    for k in range(count):
+    for k in range(len(hashes)):
         part = np.int64(mixed[k] >> _PART)
         hashes[ends[part]], rows[ends[part]] = mixed[k], begin + k
         ends[part] += 1
 
 
 @njit(cache=True)
-def enter(table: Any, hashes: Words, entries: Any, count: int) -> None:
+def write_numbers(hashes: Words, rows: Any, entries: Any, bits: int) -> None:
+    """Write what a table holds of rows whose numbers take so many bits."""
+    for k in range(len(hashes)):
+        entries[k] = entry_of(hashes[k], rows[k], np.uint32(bits))
+
+
+@njit(cache=True)
+def enter(table: Any, hashes: Words, entries: Any) -> None:
     """Enter what no slot holds yet; slots are touched some ahead."""
     slots = np.uint64(len(table))
     touched = np.uint64(0)
-    for begin in range(0, count, AHEAD):
-        end = min(begin + AHEAD, count)
+    for begin in range(0, len(hashes), AHEAD):
+        end = min(begin + AHEAD, len(hashes))
         for k in range(begin, end):
             touched += np.uint64(table[slot_of(hashes[k], len(table))])
         for k in range(begin, end):

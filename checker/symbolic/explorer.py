@@ -5,20 +5,10 @@ from collections import Counter
 from collections.abc import Callable
 
 from checker.bounding import BoundMet, bounded, look
-from checker.exploration import (
-    INTERRUPTION,
-    EngineError,
-    Exploration,
-    Inspect,
-    Limits,
-    Progress,
-    Report,
-    crowd_met,
-    limit_met,
-    memory_met,
-)
+from checker.exploration import EngineError, Exploration, Inspect, Progress, Report
 from checker.fast.engine import Space
 from checker.fast.learner import Learner
+from checker.limits import INTERRUPTION, Limits, crowd_met, limit_met, memory_met
 from checker.symbolic.inspecting import HOW, View, inspect_symbolic
 from checker.symbolic.reaching import Reach
 from semantics.configuration import Configuration

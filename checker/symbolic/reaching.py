@@ -4,9 +4,9 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
 
 from checker.bounding import look
-from checker.exploration import Limits
 from checker.fast.learner import Actor, Learner
 from checker.fast.leaves import ALIKE, STEP, UNLIKE
+from checker.limits import Limits
 from checker.symbolic.coding import Coding
 from checker.symbolic.diagrams import Diagrams, Set
 from checker.symbolic.order import Group, ordered

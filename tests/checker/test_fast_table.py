@@ -1,10 +1,29 @@
 """The visited set finds every row again, whatever its size, and takes little room."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from checker.fast.compacting import rebuild_tags, tag_of
-from checker.fast.table import ENTERED, bits_for, find, hashed, most_in, rebuild, slot_of, slots_for
+from checker import Limits
+from checker.fast import engine
+from checker.fast.compacting import tag_of, write_tags
+from checker.fast.engine import Space
+from checker.fast.learner import Learner
+from checker.fast.table import (
+    ENTERED,
+    bits_for,
+    find,
+    hashed,
+    most_in,
+    rebuild,
+    slot_of,
+    slots_for,
+    write_numbers,
+)
+from specs.elaboration import load_mission
+
+MISSIONS = Path(__file__).parents[2] / "specs" / "missions"
 
 WIDTH = 2
 
@@ -23,7 +42,7 @@ def test_a_table_that_is_filled_finds_each_row_and_no_other(count):
     words, others = rows(count), rows(count, seed=1)
     slots = next(slots for slots in range(count, 3 * count) if most_in(slots) >= count)
     table = np.zeros(slots, np.uint32)
-    rebuild(words, count, WIDTH, table)
+    rebuild(words, count, WIDTH, table, write_numbers, bits_for(slots))
     assert np.count_nonzero(table) == count
     some = range(0, count, max(count // 1000, 1))
     assert [found(words, table, words, k) for k in some] == list(some)
@@ -34,7 +53,7 @@ def test_a_table_that_is_filled_finds_each_row_and_no_other(count):
 def test_tags_stand_at_or_behind_the_slots_of_their_hashes(kind, bits):
     count = 1000
     words, table = rows(count), np.zeros(slots_for(count), kind)
-    rebuild_tags(words, count, WIDTH, table, bits)
+    rebuild(words, count, WIDTH, table, write_tags, bits)
     assert np.count_nonzero(table) == count
     for row in range(count):
         mixed = np.uint64(hashed(words, WIDTH * row, WIDTH))
@@ -51,3 +70,17 @@ def test_a_table_takes_at_most_nine_bytes_a_row_each_time_when_it_grows():
         assert 4 * slots <= 9 * rows
         assert most_in(slots) >= 1.49 * rows
         rows = most_in(slots) + 1
+
+
+@pytest.mark.parametrize("budget", range(100_000, 310_000, 30_000))
+def test_a_table_grows_by_less_where_memory_ends_so_that_rows_have_it(budget, monkeypatch):
+    monkeypatch.setattr(engine, "BATCH", 256)
+    initial = load_mission(MISSIONS / "rendezvous.mission").initial
+    space = Space(Learner(initial.setting, initial.state, Limits().pending), None)
+    row = 8 * space.packing.words + 4
+    space.left = lambda: budget - row * space.size - space.table.room.nbytes
+    while space.left() >= 0:
+        assert space.expanded < space.size
+        space.advance(min(space.expanded + 16, space.size))
+    fullest = budget / (row + 4 * 3 / 2)
+    assert space.size > 0.93 * fullest

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import checker.exploration
 import checker.fast.explorer
+import checker.limits
 from checker import Engine, Limits, check, explore
-from checker.exploration import memory_taken
 from checker.fast.pages import Pages
+from checker.limits import memory_taken
 from specs.elaboration import load_mission
 
 MISSIONS = Path(__file__).parents[2] / "specs" / "missions"
@@ -26,9 +26,7 @@ class Memory:
 
     def __init__(self, monkeypatch, tmp_path):
         self.in_files = False
-        monkeypatch.setattr(
-            checker.exploration, "memory_taken", lambda: (1 if self.in_files else 3) * MEGABYTE
-        )
+        monkeypatch.setattr(checker.limits, "memory_taken", lambda: (1 if self.in_files else 3) * MEGABYTE)
         spill = Pages.spill
 
         def noted(pages, folder, used):
