@@ -149,8 +149,10 @@ class _Check:
             *races,
         )
         everything = (*inspections, *self.formulas.values())
-        self.found = self.explore(self.initial, everything, self.limits, edges=bool(self.temporal))
-        if self.searching and not any(map(self.refused, self.properties)):
+        self.found = self.explore(
+            self.initial, everything, self.limits, self.reducer, edges=bool(self.temporal)
+        )
+        if self.searching:
             self.remembered = self.search()
         later = self.remembered.bounds if self.remembered else []
         seconds = self.found.seconds + (self.remembered.seconds if self.remembered else 0.0)
@@ -171,9 +173,14 @@ class _Check:
         )
 
     def explore(
-        self, start: Configuration, inspections: tuple[Inspect, ...], limits: Limits, *, edges: bool = False
+        self,
+        start: Configuration,
+        inspections: tuple[Inspect, ...],
+        limits: Limits,
+        reduce: Reduced | None,
+        *,
+        edges: bool = False,
     ) -> Exploration:
-        reducer = self.reducer if start is self.initial else None
         return explore(
             start,
             inspections,
@@ -181,7 +188,7 @@ class _Check:
             self.report,
             engine=self.engine,
             edges=edges,
-            reduce=reducer,
+            reduce=reduce,
             keeping=self.keeping,
             cluster=self.cluster,
         )
@@ -191,7 +198,11 @@ class _Check:
         if INTERRUPTION in self.found.bounds:
             return None
         limits = replace(self.limits, spent=self.limits.spent + self.found.seconds)
-        remembered = self.explore(monitored(self.initial), (self.stale,), limits)
+        start, by_order = monitored(self.initial), self.reducer is not None and self.reducer.putting_off
+        reduce = (
+            Reduced(start, [Reduction.POR]) if by_order else None
+        )  # symmetry would lose whose a memory is
+        remembered = self.explore(start, (self.stale,), limits, reduce)
         remembered.bounds = [f"{bound}, in the search for stale observations" for bound in remembered.bounds]
         return remembered
 
@@ -321,7 +332,8 @@ class _Check:
         different = len(control.different) + len(stale.different)
         count, examined = control.count + stale.count, control.examined + stale.examined
         searched = f"{len(self.remembered.configurations):,}"
-        note = f"searched over {searched} configurations with the monitor's memory"
+        reduced = ", reduced by por" if self.remembered.reducer else ""
+        note = f"searched over {searched} configurations with the monitor's memory{reduced}"
         remarks = self.vacuous(asked, outcome, examined)
         return Verdict(asked, outcome, shown, count, examined, witness, note, different, remarks)
 

@@ -61,18 +61,21 @@ def questions_of(c: Configuration, agent: Name) -> Questions:
     """Return what an agent may come to ask; if it may tell others what it saw, what anybody may."""
     program = c.setting.program
     reach = reachable(program, c.alpha.code(agent))
-    return (
-        anybodys(c) if _may(program, reach, Send, Spawn) else _questions(c.setting, reach, _hosts(c, agent))
-    )
+    return anybodys(c) if tells(program, reach) else questions_in(c.setting, reach, hosts_of(c, agent))
 
 
 def anybodys(c: Configuration) -> Questions:
     """Return what any agent may ever come to ask."""
     every = frozenset(range(len(c.setting.program.statements)))
-    return _questions(c.setting, every, frozenset[Name]().union(*(_hosts(c, a) for a in c.alpha.names())))
+    return questions_in(c.setting, every, frozenset[Name]().union(*(hosts_of(c, a) for a in c.alpha.names())))
 
 
-def _hosts(c: Configuration, agent: Name) -> Names:
+def tells(program: Program, reach: Iterable[int]) -> bool:
+    """Tell whether some statements may let others know what was observed."""
+    return _may(program, reach, Send, Spawn)
+
+
+def hosts_of(c: Configuration, agent: Name) -> Names:
     """Return where an agent may ever be hosted."""
     program = c.setting.program
     if _may(program, range(len(program.statements)), Migrate, Spawn):
@@ -97,7 +100,8 @@ def _may(program: Program, reach: Iterable[int], *statements: type) -> bool:
 
 
 @lru_cache(maxsize=1 << 12)
-def _questions(setting: Setting, reach: frozenset[int], hosts: Names) -> Questions:
+def questions_in(setting: Setting, reach: frozenset[int], hosts: Names) -> Questions:
+    """Return what some statements may ask, and which slots their controls may use, at some hosts."""
     found: set[Key] = set()
     for number in sorted(reach):
         statement = setting.program.statements[number]

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from checker.reduction.bounds import Bounds
 from checker.reduction.footprints import Footprints
+from checker.reduction.marks import Marks
 from checker.reduction.messages import Known, message_of
 from checker.reduction.roles import Roles
 from checker.reduction.slots import NOTHING, Footprint, joined
@@ -75,6 +76,7 @@ class Actors:
         bounds = Bounds(c)
         self.roles = Roles(bounds)
         self.footprints = Footprints(bounds, self.roles)
+        self.marks = Marks(bounds, self.roles, self.footprints)
         self._forget()
         self.footprints.settle(joined([*map(self.clause, self.setting.environment), *self._lives(c)]))
         self._forget()  # what was bounded before it was known what is settled
@@ -84,7 +86,7 @@ class Actors:
         self._of_request = lru_cache(maxsize=1 << 16)(self._request)
         self._of_statement = lru_cache(maxsize=1 << 14)(self._statement)
         self._of_code = lru_cache(maxsize=1 << 14)(self._code)
-        self._of_reaction = lru_cache(maxsize=1 << 14)(self.footprints.control)
+        self._of_reaction = lru_cache(maxsize=1 << 14)(self._reaction)
         self.clause = lru_cache(maxsize=None)(self.footprints.clause)
 
     def _lives(self, c: Configuration) -> Iterator[Footprint]:
@@ -142,20 +144,24 @@ class Actors:
 
     def _agent(self, agent: Name, code: Code, asked: Requests, told: bool, host: Name) -> dict[Actor, Acting]:
         in_line = [each for each in asked if self.ordered and not isinstance(each, SND)]
+        rested_on = self.marks.rested_on(agent, code)
         found: dict[Actor, Acting] = {}
         for request in asked:
             if request not in in_line:
-                ever = self._of_request(agent, request)
-                found[Actor("request", agent, request)] = Acting(
-                    self._serve(agent, request, {host}), ever, ever
-                )
+                found[Actor("request", agent, request)] = self._serving(agent, [request], host, rested_on)
         if in_line:
-            ever = joined(self._of_request(agent, request) for request in in_line)
-            found[Actor("line", agent)] = Acting(self._serve(agent, in_line[0], {host}), ever, ever)
+            found[Actor("line", agent)] = self._serving(agent, in_line, host, rested_on)
         if code:
+            now = self._next(agent, code[0], told)
             ever, aside = self._of_code(agent, code)
-            found[Actor("program", agent)] = Acting(self._next(agent, code[0], told), ever, aside)
+            found[Actor("program", agent)] = Acting(*(each | rested_on for each in (now, ever, aside)))
         return found
+
+    def _serving(self, agent: Name, requests: Sequence[Request], host: Name, rested_on: Footprint) -> Acting:
+        """Bound the service of some requests, the first of them now."""
+        carried = [self.marks.carried(agent, each, rested_on) for each in requests]
+        ever = joined([*carried, *(self._of_request(agent, each) for each in requests)])
+        return Acting(self._serve(agent, requests[0], {host}) | carried[0], ever, ever)
 
     def _next(self, agent: Name, number: int, told: bool) -> Footprint:
         """Bound the rules that take an agent's next step; where it is told what it asked first, no more can matter."""
@@ -163,7 +169,19 @@ class Actors:
         here = self.footprints.slots.footprint([("host", agent)])
         if isinstance(statement, React):
             return here | self.footprints.waiting(agent, number, told)
-        return here | self.footprints.spawn() if isinstance(statement, Spawn) else here
+        if isinstance(statement, Spawn):
+            here |= self.footprints.spawn()
+        return here | self.marks.told(agent, self._listeners(agent, statement))
+
+    def _listeners(self, agent: Name, statement: Statement) -> tuple[Name, ...]:
+        """Return who may learn by a statement of what an agent rests on."""
+        match statement:
+            case Send(_, to):
+                return self.roles.receivers(agent, to)
+            case Spawn(name):
+                return (name,)
+            case _:
+                return ()
 
     def _code(self, agent: Name, code: Code) -> tuple[Footprint, Footprint]:
         """Return what may come of code, and what of it may come before the agent's line has moved."""
@@ -195,6 +213,10 @@ class Actors:
     def _statement(self, agent: Name, number: int) -> Footprint:
         """Return what comes of a statement itself, not of those that stand in it."""
         statement: Statement = self.program.statements[number]
+        listeners = self._listeners(agent, statement)
+        return self._asked_by(agent, number, statement) | self.marks.told(agent, listeners)
+
+    def _asked_by(self, agent: Name, number: int, statement: Statement) -> Footprint:
         hosts = self.roles[agent].hosts
         match statement:
             case Observe(query):
@@ -215,6 +237,10 @@ class Actors:
                 return self.footprints.wary(agent, number)
             case _:
                 return NOTHING
+
+    def _reaction(self, agent: Name, reaction: Reaction) -> Footprint:
+        does = self.footprints.control(agent, reaction)
+        return does | self.marks.made(agent, does)
 
     def _control(self, agent: Name, statement: ControlBy) -> Footprint:
         arguments = (self.roles.entities(agent, each) for each in statement.arguments)

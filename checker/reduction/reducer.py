@@ -44,7 +44,7 @@ class Reduced:
 
     def refuses(self, asked: Property) -> str | None:
         """Return why a property is not decided under these reductions, None where it is."""
-        return next(filter(None, (refusal(each, asked) for each in self.names)), None)
+        return refusal(asked)
 
     def representative(self, c: Configuration) -> Configuration:
         """Return the configuration that stands for one."""

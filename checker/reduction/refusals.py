@@ -32,22 +32,23 @@ class RefusedError(ValueError):
 
 
 PRESERVED = frozenset(
-    {"local_consistency", "deadlock_freedom", "arrival", "computation", "invariant", "reachable"}
+    {
+        "local_consistency",
+        "deadlock_freedom",
+        "arrival",
+        "computation",
+        "race_freedom",
+        "invariant",
+        "reachable",
+    }
 )
 """The kinds of properties that are decided in single configurations, and of which no reduction loses any."""
 
-RACES = (
-    "what an observation rests on is changed by every control of another bigActor, so that the order of any two steps "
-    "may matter; a control race that is met is reported all the same"
-)
 
-
-def refusal(reduction: Reduction, asked: Property) -> str | None:
-    """Return why a property is not decided under a reduction, None where it is."""
-    if asked.kind in PRESERVED or (reduction is Reduction.SYMMETRY and asked.kind == "race_freedom"):
+def refusal(asked: Property) -> str | None:
+    """Return why a property is not decided under reductions, None where it is."""
+    if asked.kind in PRESERVED:
         return None
-    if asked.kind == "race_freedom":
-        return RACES
     return f"it is not known to be kept for properties of the kind '{asked.kind}'"
 
 
@@ -76,5 +77,3 @@ def refuse_partial_order(c: Configuration) -> None:
             "check it under program_order: what holds of all runs there holds under fcfs too"
         )
         raise RefusedError(Reduction.POR, reason)
-    if c.setting.monitored:
-        raise RefusedError(Reduction.POR, RACES)

@@ -4,10 +4,12 @@ A least fixpoint over the text, not over runs: an agent's variables hold the nam
 may give them. What is not a constant, a host or a place in which something was seen may be any name.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from checker.reduction.bounds import Bounds, Names, reached
+from checker.reduction.messages import may_take, message_of
+from semantics.environment import Says
 from semantics.expressions import (
     Apply,
     Expression,
@@ -16,12 +18,13 @@ from semantics.expressions import (
     QueryOf,
     Self,
     SetOf,
+    TupleOf,
     Variable,
 )
-from semantics.patterns import variables
+from semantics.patterns import Anything, Elements, Pattern, variables
 from semantics.program import reachable
 from semantics.queries import All, Nodes, Of, Query
-from semantics.requests import MGR
+from semantics.requests import MGR, SND
 from semantics.signature import REGION, Name
 from semantics.statements import (
     Assign,
@@ -32,6 +35,7 @@ from semantics.statements import (
     Match,
     Migrate,
     React,
+    Send,
     Spawn,
     Statement,
 )
@@ -95,16 +99,15 @@ class Roles:
 
     def names(self, agent: Name, expression: Expression) -> Names | None:
         """Return the names that a value, or the members of a set, may be; None for any."""
-        role = self.roles[agent]
         match expression:
             case Literal(value):
                 return _spelled(value)
             case Host():
-                return frozenset(role.hosts)
+                return frozenset(self.roles[agent].hosts)
             case Self():
                 return frozenset({agent})
             case Variable(name):
-                return role.named.get(name, frozenset())
+                return self.roles[agent].named.get(name, frozenset())
             case SetOf(items):
                 return _either(self.names(agent, item) for item in items)
             case Apply("parent", (node, _)):
@@ -162,7 +165,10 @@ class Roles:
                 self._bind(agent, variable, self.roles[agent].named.get(rest, frozenset()))
             case ChooseFrom(variable, members, _):
                 self._bind(agent, variable, self.names(agent, members))
-            case React(cases) | Match(_, cases):
+            case React(cases):
+                for case in cases:
+                    self._receive(agent, case.pattern)
+            case Match(_, cases):
                 for variable in frozenset[str]().union(*(variables(case.pattern) for case in cases)):
                     self._bind(agent, variable, None)
             case Call(behaviour, arguments):
@@ -174,6 +180,46 @@ class Roles:
                 role.hosts.update(self.entities(agent, host))
                 role.statements |= reachable(self.program, self.program.behaviours[behaviour].body)
                 self._pass(agent, name, behaviour, arguments)
+
+    def _receive(self, agent: Name, pattern: Pattern) -> None:
+        """Bind the variables of a pattern to what messages may have there; to anything if it may be an observation."""
+        if not isinstance(pattern, Elements):
+            for variable in variables(pattern):
+                self._bind(agent, variable, None)
+            return
+        for speaker, message in self._messages():
+            if may_take(pattern, message_of(message)):
+                self._take(agent, pattern, speaker, message)
+
+    def _take(self, agent: Name, pattern: Pattern, speaker: Name, message: Expression) -> None:
+        match pattern, message:
+            case Anything(str(variable), _), _:
+                self._bind(agent, variable, self.names(speaker, message))
+            case Elements(items), TupleOf(parts):
+                for item, part in zip(items, parts, strict=True):
+                    self._take(agent, item, speaker, part)
+            case Elements(items), Literal(tuple(parts)):
+                for item, value in zip(items, parts, strict=True):
+                    self._take(agent, item, speaker, Literal(value))
+            case _:
+                for variable in variables(pattern):
+                    self._bind(agent, variable, None)
+
+    def _messages(self) -> Iterator[tuple[Name, Expression]]:
+        """Yield all that may be sent or said, each with an agent that its expression is evaluated by."""
+        initial = self.bounds.initial
+        for agent in self.agents:
+            for number in sorted(self.roles[agent].statements):
+                statement = self.program.statements[number]
+                if isinstance(statement, Send):
+                    yield agent, statement.message
+        for agent in initial.alpha.names():
+            yield from ((agent, Literal(value)) for value in initial.alpha.mailbox(agent))
+            pending = (each.request for each in initial.eta.of(agent))
+            yield from ((agent, Literal(each.message)) for each in pending if isinstance(each, SND))
+        for clause in initial.setting.environment:
+            if isinstance(clause, Says):
+                yield clause.agent, Literal(clause.message)
 
     def _pass(self, giver: Name, taker: Name, behaviour: str, arguments: tuple[Expression, ...]) -> None:
         parameters = self.program.behaviours[behaviour].parameters

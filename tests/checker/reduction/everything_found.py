@@ -3,7 +3,7 @@
 from checker import Engine, Limits, explore
 from checker.findings import Collected
 from checker.inspections import Computation, DeadlockFreedom, LocalConsistency
-from checker.races import ControlRaces
+from checker.races import ControlRaces, StaleObservationRaces
 from semantics.propositions import holds
 
 
@@ -50,3 +50,17 @@ def everything(initial, formulas=(), reduce=None, most=100_000, engine=Engine.RE
     if not explored.complete:
         return None, explored
     return (found.messages, found.still, found.truths, set(explored.rules)), explored
+
+
+def stale_races(initial, reduce=None, most=100_000):
+    """Return the messages of all stale-observation races, and how many configurations were visited; None if too large.
+
+    Args:
+        initial: Where to start; monitored.
+        reduce: What lets the search visit less.
+        most: Configurations.
+    """
+    inspect = StaleObservationRaces()
+    inspect.collected = Messages()
+    explored = explore(initial, (inspect,), Limits(configurations=most), reduce=reduce)
+    return (inspect.collected.words, len(explored.configurations)) if explored.complete else None

@@ -1,0 +1,142 @@
+"""What the race monitor's memory adds to footprints: who marks what others rest on, and who passes it on.
+
+A control marks what it changes in all that others rest on (`semantics.monitor.marked`). Whatever an agent does with
+that (test it, pass it on, forget it, ask for more) ends otherwise before a mark than after it, so it reads the marks
+that may be made there. Marks of two controls are put into sets, so they commute, if neither control changes what the
+other's marks are worked out from.
+"""
+
+from collections.abc import Iterable, Iterator
+from functools import cache
+
+from checker.reduction.bounds import Bounds, Names
+from checker.reduction.footprints import Footprints
+from checker.reduction.roles import Roles
+from checker.reduction.slots import NOTHING, Footprint, Slot, joined
+from checker.reduction.tellers import tellers
+from semantics.agents import Code
+from semantics.monitor import is_local, nodes_of
+from semantics.program import reachable
+from semantics.provenance import SLOT
+from semantics.queries import Of, Query
+from semantics.relevance import ANY, Questions, anybodys, hosts_of, questions_in, slots_of, tells
+from semantics.requests import CTR, FLY, OBS, SND, Request
+from semantics.signature import Name
+from semantics.statements import Observe
+
+ANSWERS = "answers"
+"""Marks on answers to queries; those on slots of A(P) are told apart by what they are about."""
+
+PARENT, LINKS, CHILDREN = (f"{SLOT}{kind}" for kind in ("parent", "links", "children"))
+
+
+class Marks:
+    """Footprints over marks; there are none where nothing is remembered."""
+
+    def __init__(self, bounds: Bounds, roles: Roles, footprints: Footprints) -> None:
+        self.bounds = bounds
+        self.roles = roles
+        self.footprints = footprints
+        self.program = bounds.setting.program
+        self.monitored = bounds.setting.monitored
+        self.tellers = tellers(bounds.initial, roles) if self.monitored else frozenset()
+        self.held = cache(self._held)
+        self._reading = cache(self._of)
+        self.resting = cache(self._resting)
+
+    # --- who marks ------------------------------------------------------------------------------------------------
+
+    def made(self, author: Name, does: Footprint) -> Footprint:
+        """Bound what a control marks in the memory of others, and what decides that, by what it does to P."""
+        if not self.monitored:
+            return NOTHING
+        moved, linked = self._changed("placement", does), self._changed("channels", does)
+        if any(self.bounds.setting.signature[self.bounds.setting.kind(name)].holds for name in moved):
+            moved = self.bounds.names
+        touched = moved | linked
+        slots = self.footprints.slots
+        found = slots.footprint((*self.footprints.where(touched), *self.footprints.there(touched)))
+        found |= slots.footprint(self.footprints.connected(linked))
+        for other in self.roles.agents:
+            if other != author and self.held(other):
+                found |= slots.footprint(merges=self._of_slots(other, moved, linked))
+                found |= self._of_answers(other, does, touched)
+        return found
+
+    def _changed(self, what: str, does: Footprint) -> Names:
+        return frozenset(str(slot[1]) for slot in self.footprints.slots.named(does.writes) if slot[0] == what)
+
+    def _of_slots(self, holder: Name, moved: Names, linked: Names) -> Iterator[Slot]:
+        yield from ((PARENT, holder, name) for name in moved)
+        yield from ((LINKS, holder, name) for name in linked)
+        if moved:
+            yield (CHILDREN, holder)
+
+    def _of_answers(self, holder: Name, does: Footprint, touched: Names) -> Footprint:
+        """Bound the marks on answers to what an agent has asked: of those queries that look at what is changed."""
+        looks = [each for each in self.held(holder) if does.writes & self.footprints.sense(each).reads]
+        reads = 0
+        for query in looks:
+            reads |= self._deciding(query, touched).reads
+        return Footprint(reads, 0, self.footprints.slots.bits([(ANSWERS, holder)]) if looks else 0)
+
+    def _deciding(self, query: Query, touched: Names) -> Footprint:
+        """Bound what else decides how what somebody does to some entities changes the answers to a query.
+
+        Of the children of a place each is there or not whoever else is.
+        """
+        if not isinstance(query, Of) or query.operator != "CHILDREN" or not is_local(query):
+            return self.footprints.sense(query)
+        return self.footprints.sense(query if touched.intersection(nodes_of(query)) else query.of)
+
+    def _held(self, agent: Name) -> tuple[Query, ...]:
+        """Return the queries of all observations that an agent may rest on: where any are told of, all agents'."""
+        whose = self.roles.agents if self.tellers else (agent,)
+        return tuple(dict.fromkeys(query for each in whose for query in self._asked(each)))
+
+    def _asked(self, agent: Name) -> Iterator[Query]:
+        initial = self.bounds.initial
+        pending = initial.eta.of(agent) if agent in initial.alpha else ()
+        yield from (each.request.query for each in pending if isinstance(each.request, OBS))
+        for number in sorted(self.roles[agent].statements):
+            statement = self.program.statements[number]
+            if isinstance(statement, Observe):
+                yield self.roles.query(agent, statement.query)
+
+    # --- who passes marks on --------------------------------------------------------------------------------------
+
+    def rested_on(self, agent: Name, code: Code) -> Footprint:
+        """Bound the marks in an agent's memory, as long as so much is left for it to run."""
+        return self.resting(agent, reachable(self.program, code)) if self.monitored else NOTHING
+
+    def _resting(self, agent: Name, reach: frozenset[int]) -> Footprint:
+        if agent in self.tellers and tells(self.program, reach):
+            return self._reading(agent, anybodys(self.bounds.initial))
+        initial = self.bounds.initial
+        return self._reading(agent, questions_in(initial.setting, reach, hosts_of(initial, agent)))
+
+    def told(self, agent: Name, listeners: Iterable[Name]) -> Footprint:
+        """Bound the marks in what an agent tells others."""
+        if agent not in self.tellers:
+            return NOTHING
+        return joined(self._reading(each, anybodys(self.bounds.initial)) for each in listeners)
+
+    def carried(self, agent: Name, request: Request, rested_on: Footprint) -> Footprint:
+        """Bound the marks in what a request of an agent's rests on, given those in its memory."""
+        match request:
+            case SND(_, to):
+                return self.told(agent, [to])
+            case CTR(_, reaction) | FLY(_, reaction, _) if self.monitored:
+                return self._reading(agent, slots_of(reaction.redex))
+            case _:
+                return rested_on
+
+    def _of(self, holder: Name, questions: Questions) -> Footprint:
+        return self.footprints.slots.footprint([(ANSWERS, holder), *self._asked_for(holder, questions)])
+
+    def _asked_for(self, holder: Name, questions: Questions) -> Iterator[Slot]:
+        for kind, *names in questions:
+            if kind == CHILDREN:
+                yield (CHILDREN, holder)
+            elif kind in (PARENT, LINKS):
+                yield from ((kind, holder, name) for name in (self.bounds.names if ANY in names else names))
