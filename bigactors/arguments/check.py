@@ -19,78 +19,11 @@ from bigactors.arguments.values import (
 def fill(parser: Parser) -> None:
     """Add the arguments of `bigactors check`."""
     parser.add_argument("files", nargs="+", metavar="FILE", help=MISSION)
-    parser.add_argument(
-        "--json",
-        metavar="FILE",
-        type=named,
-        help="write the report as JSON (docs/json.md); - for standard output, alone",
-    )
-    parser.add_argument(
-        "--output",
-        metavar="FORMAT:FILE",
-        action="append",
-        default=[],
-        type=output,
-        help=f"write the report for other programs (docs/output.md): {', '.join(FORMATS)}; - as FILE for standard "
-        "output, alone; may be repeated",
-    )
-    parser.add_argument(
-        "--max-configurations",
-        metavar="N",
-        type=at_least_one,
-        help="visit no more than N configurations (default 100,000,000, of which each takes some 30 bytes, for each "
-        "worker of --engine ray; 2,000,000 with --engine reference or --reduce symmetry)",
-    )
-    parser.add_argument(
-        "--max-time",
-        metavar="SECONDS",
-        type=seconds,
-        help="explore and decide no longer than SECONDS; the fast explorer takes half of it (default: no limit)",
-    )
-    parser.add_argument(
-        "--max-memory",
-        metavar="SIZE",
-        type=size,
-        help="stop when the process, or one of its workers, takes more memory, such as 800M or 12G (default: no limit)",
-    )
+    _report(parser)
+    _limits(parser)
+    _exploring(parser)
     _long_runs(parser)
     _several_processes(parser)
-    parser.add_argument(
-        "--trace",
-        metavar="DIR",
-        type=named,
-        help="write the trace of each violation and witness into DIR: as text, as JSON, as pictures and as a page that "
-        "steps through it",
-    )
-    parser.add_argument(
-        "--verdict",
-        metavar="FILE",
-        type=named,
-        help="write the verdict that `run` asks for (docs/live.md); of one mission, with --control timed",
-    )
-    parser.add_argument(
-        "--violations",
-        metavar="N",
-        type=at_least_one,
-        default=5,
-        help="show no more than N different violations of each property, each with a shortest trace; the others are "
-        "counted (default 5)",
-    )
-    parser.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
-    parser.add_argument(
-        "--engine",
-        choices=("reference", "fast", "symbolic", "ray"),
-        help="how it explores; verdicts are the same (default: reference or fast, whichever is quicker for the "
-        "mission's size); symbolic, for very large missions, decides nothing of runs and races (docs/symbolic.md)",
-    )
-    parser.add_argument(
-        "--reduce",
-        metavar="NAMES",
-        type=reductions,
-        default=(),
-        help="visit less, where that is sound: por (partial-order reduction), symmetry, or por,symmetry "
-        "(docs/reduction.md)",
-    )
     varying(parser)
 
 
@@ -122,6 +55,88 @@ def _several_processes(parser: Parser) -> None:
         type=named,
         help="the Ray cluster to join, such as 10.0.0.1:6379, or auto for the one of this machine (default: one of its "
         "own on this machine alone)",
+    )
+
+
+def _report(parser: Parser) -> None:
+    group = parser.add_argument_group("report")
+    group.add_argument(
+        "--json",
+        metavar="FILE",
+        type=named,
+        help="write the report as JSON (docs/json.md); - for standard output, alone",
+    )
+    group.add_argument(
+        "--output",
+        metavar="FORMAT:FILE",
+        action="append",
+        default=[],
+        type=output,
+        help=f"write the report for other programs (docs/output.md): {', '.join(FORMATS)}; - as FILE for standard "
+        "output, alone; may be repeated",
+    )
+    group.add_argument(
+        "--trace",
+        metavar="DIR",
+        type=named,
+        help="write the trace of each violation and witness into DIR: as text, as JSON, as pictures and as a page that "
+        "steps through it",
+    )
+    group.add_argument(
+        "--verdict",
+        metavar="FILE",
+        type=named,
+        help="write the verdict that `run` asks for (docs/live.md); of one mission, with --control timed",
+    )
+    group.add_argument(
+        "--violations",
+        metavar="N",
+        type=at_least_one,
+        default=5,
+        help="show no more than N different violations of each property, each with a shortest trace; the others are "
+        "counted (default 5)",
+    )
+    group.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
+
+
+def _limits(parser: Parser) -> None:
+    group = parser.add_argument_group("limits")
+    group.add_argument(
+        "--max-configurations",
+        metavar="N",
+        type=at_least_one,
+        help="visit no more than N configurations (default 100,000,000, of which each takes some 30 bytes, for each "
+        "worker of --engine ray; 2,000,000 with --engine reference or --reduce symmetry)",
+    )
+    group.add_argument(
+        "--max-time",
+        metavar="SECONDS",
+        type=seconds,
+        help="explore and decide no longer than SECONDS; the fast explorer takes half of it (default: no limit)",
+    )
+    group.add_argument(
+        "--max-memory",
+        metavar="SIZE",
+        type=size,
+        help="stop when the process, or one of its workers, takes more memory, such as 800M or 12G (default: no limit)",
+    )
+
+
+def _exploring(parser: Parser) -> None:
+    group = parser.add_argument_group("exploring")
+    group.add_argument(
+        "--engine",
+        choices=("reference", "fast", "symbolic", "ray"),
+        help="how it explores; verdicts are the same (default: reference or fast, whichever is quicker for the "
+        "mission's size); symbolic, for very large missions, decides nothing of runs and races (docs/symbolic.md)",
+    )
+    group.add_argument(
+        "--reduce",
+        metavar="NAMES",
+        type=reductions,
+        default=(),
+        help="visit less, where that is sound: por (partial-order reduction), symmetry, or por,symmetry "
+        "(docs/reduction.md)",
     )
 
 
