@@ -96,7 +96,7 @@ class Actors:
                 if agent in c.alpha
                 else []
             )
-            yield joined([*pending, *(self._of_statement(agent, n) for n in self.roles[agent].statements)])
+            yield joined([*pending, self._life(agent)])
 
     # --- of a configuration -----------------------------------------------------------------------------------
 
@@ -107,8 +107,8 @@ class Actors:
     def of(self, c: Configuration) -> dict[Actor, Acting]:
         """Return the actors of a configuration, with what they may do.
 
-        It depends on the configuration by the cells of `local` of each agent, by the agents that there are and by the
-        counters of what may be said; by nothing else.
+        It depends on the configuration by the cells of `local` of each agent, by whether it rests on anything, by the
+        agents that there are and by the counters of what may be said; by nothing else.
         """
         found: dict[Actor, Acting] = {}
         for agent in c.alpha.names():
@@ -122,7 +122,7 @@ class Actors:
         code, line, sends, host = (c.read(cell) for cell in self.local(agent))
         asked = tuple(each for each in (*line, *(sends or ())) if not isinstance(each, READY))
         told = self.ordered and any(isinstance(each, READY) for each in line)
-        return self._known_agent(agent, code, asked, told, host)
+        return self._known_agent(agent, code, asked, told, host, self.marks.is_blank(c, agent))
 
     def of_clause(self, c: Configuration, number: int) -> dict[Actor, Acting]:
         """Return the actor that a clause of the environment is, unless it is over."""
@@ -142,26 +142,32 @@ class Actors:
 
     # --- of the values of an agent's cells --------------------------------------------------------------------
 
-    def _agent(self, agent: Name, code: Code, asked: Requests, told: bool, host: Name) -> dict[Actor, Acting]:
-        in_line = [each for each in asked if self.ordered and not isinstance(each, SND)]
+    def _agent(
+        self, agent: Name, code: Code, asked: Requests, told: bool, host: Name, blank: bool
+    ) -> dict[Actor, Acting]:
         rested_on = self.marks.rested_on(agent, code)
-        found: dict[Actor, Acting] = {}
-        for request in asked:
-            if request not in in_line:
-                found[Actor("request", agent, request)] = self._serving(agent, [request], host, rested_on)
+
+        def serving(requests: Sequence[Request]) -> Acting:
+            carried = [self.marks.carried(agent, each, rested_on) for each in requests]
+            ever = joined([*carried, *(self._of_request(agent, each) for each in requests)])
+            now = self._serve(agent, requests[0], {host})
+            begins = isinstance(requests[0], OBS)  # by it something is rested on
+            return Acting(now | carried[0] if begins or not blank else now, ever, ever)
+
+        in_line = [each for each in asked if self.ordered and not isinstance(each, SND)]
+        found = {
+            Actor("request", agent, request): serving([request])
+            for request in asked
+            if request not in in_line
+        }
         if in_line:
-            found[Actor("line", agent)] = self._serving(agent, in_line, host, rested_on)
+            found[Actor("line", agent)] = serving(in_line)
         if code:
             now = self._next(agent, code[0], told)
-            ever, aside = self._of_code(agent, code)
-            found[Actor("program", agent)] = Acting(*(each | rested_on for each in (now, ever, aside)))
+            passed = NOTHING if blank else rested_on | self._telling(agent, code[0])
+            ever, aside = (each | rested_on for each in self._of_code(agent, code))
+            found[Actor("program", agent)] = Acting(now | passed, ever, aside)
         return found
-
-    def _serving(self, agent: Name, requests: Sequence[Request], host: Name, rested_on: Footprint) -> Acting:
-        """Bound the service of some requests, the first of them now."""
-        carried = [self.marks.carried(agent, each, rested_on) for each in requests]
-        ever = joined([*carried, *(self._of_request(agent, each) for each in requests)])
-        return Acting(self._serve(agent, requests[0], {host}) | carried[0], ever, ever)
 
     def _next(self, agent: Name, number: int, told: bool) -> Footprint:
         """Bound the rules that take an agent's next step; where it is told what it asked first, no more can matter."""
@@ -169,29 +175,33 @@ class Actors:
         here = self.footprints.slots.footprint([("host", agent)])
         if isinstance(statement, React):
             return here | self.footprints.waiting(agent, number, told)
-        if isinstance(statement, Spawn):
-            here |= self.footprints.spawn()
-        return here | self.marks.told(agent, self._listeners(agent, statement))
+        return here | self.footprints.spawn() if isinstance(statement, Spawn) else here
 
-    def _listeners(self, agent: Name, statement: Statement) -> tuple[Name, ...]:
-        """Return who may learn by a statement of what an agent rests on."""
-        match statement:
+    def _telling(self, agent: Name, number: int) -> Footprint:
+        """Bound the marks in what a statement tells others."""
+        match self.program.statements[number]:
             case Send(_, to):
-                return self.roles.receivers(agent, to)
+                return self.marks.told(agent, self.roles.receivers(agent, to))
             case Spawn(name):
-                return (name,)
+                return self.marks.told(agent, [name])
             case _:
-                return ()
+                return NOTHING
 
     def _code(self, agent: Name, code: Code) -> tuple[Footprint, Footprint]:
         """Return what may come of code, and what of it may come before the agent's line has moved."""
         reach = reachable(self.program, code)
         born = self.roles.descendants(reach)
-        theirs = joined(self._of_statement(each, n) for each in born for n in self.roles[each].statements)
+        theirs = joined(map(self._life, born))
         here = self.footprints.slots.footprint([("host", agent)])  # any step may ask for HOST
         free = (each for each in reach if not isinstance(self.program.statements[each], InLine))
         aside = joined([here, theirs, *(self._of_statement(agent, each) for each in free)])
         return aside | joined(self._of_statement(agent, each) for each in reach), aside
+
+    def _life(self, agent: Name) -> Footprint:
+        """Return all that may come of an agent, but for what is pending."""
+        statements = self.roles[agent].statements
+        rested_on = self.marks.rested_on(agent, tuple(sorted(statements)))
+        return rested_on | joined(self._of_statement(agent, each) for each in statements)
 
     def _request(self, agent: Name, request: Request) -> Footprint:
         return self._serve(agent, request, self.roles[agent].hosts)
@@ -212,11 +222,10 @@ class Actors:
 
     def _statement(self, agent: Name, number: int) -> Footprint:
         """Return what comes of a statement itself, not of those that stand in it."""
-        statement: Statement = self.program.statements[number]
-        listeners = self._listeners(agent, statement)
-        return self._asked_by(agent, number, statement) | self.marks.told(agent, listeners)
+        return self._asked_by(agent, number) | self._telling(agent, number)
 
-    def _asked_by(self, agent: Name, number: int, statement: Statement) -> Footprint:
+    def _asked_by(self, agent: Name, number: int) -> Footprint:
+        statement: Statement = self.program.statements[number]
         hosts = self.roles[agent].hosts
         match statement:
             case Observe(query):

@@ -14,10 +14,13 @@ from checker.reduction.footprints import Footprints
 from checker.reduction.roles import Roles
 from checker.reduction.slots import NOTHING, Footprint, Slot, joined
 from checker.reduction.tellers import tellers
-from semantics.agents import Code
+from semantics.agents import Code, Watch, watch_cell
+from semantics.cells import MONITOR
+from semantics.configuration import Configuration
+from semantics.eta import line_cell, sends_cell
 from semantics.monitor import is_local, nodes_of
 from semantics.program import reachable
-from semantics.provenance import SLOT
+from semantics.provenance import SLOT, Provenance
 from semantics.queries import Of, Query
 from semantics.relevance import ANY, Questions, anybodys, hosts_of, questions_in, slots_of, tells
 from semantics.requests import CTR, FLY, OBS, SND, Request
@@ -105,6 +108,15 @@ class Marks:
 
     # --- who passes marks on --------------------------------------------------------------------------------------
 
+    def is_blank(self, c: Configuration, agent: Name) -> bool:
+        """Tell whether nothing rests on anything that an agent has in mind, has got or has asked for."""
+        if not self.monitored:
+            return True
+        requests = ((MONITOR, *cell) for cell in (line_cell(agent), sends_cell(agent)))
+        return c.state.test(watch_cell(agent), _is_blank) and not any(
+            c.state.test(cell, _rests) for cell in requests
+        )
+
     def rested_on(self, agent: Name, code: Code) -> Footprint:
         """Bound the marks in an agent's memory, as long as so much is left for it to run."""
         return self.resting(agent, reachable(self.program, code)) if self.monitored else NOTHING
@@ -140,3 +152,11 @@ class Marks:
                 yield (CHILDREN, holder)
             elif kind in (PARENT, LINKS):
                 yield from ((kind, holder, name) for name in (self.bounds.names if ANY in names else names))
+
+
+def _is_blank(watch: Watch) -> bool:
+    return not any((*watch.code, *watch.store, *watch.mailbox))
+
+
+def _rests(kept: tuple[Provenance, ...] | None) -> bool:
+    return any(kept or ())
