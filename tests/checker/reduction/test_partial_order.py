@@ -303,7 +303,6 @@ BigActor c hosted_at gcs1 with_behavior { react { case "go" => control(MOVE uav1
 FORGOTTEN = {
     "that controls mark": ("Marks.made", lambda *_: NOTHING, CHANGED),
     "that agents pass marks on": ("Marks._of", lambda *_: NOTHING, CHANGED),
-    "that there is something to be marked": ("Marks.is_blank", lambda *_: True, CHANGED),
     "that messages carry marks": ("tellers", lambda *_: frozenset(), TOLD),
 }
 
