@@ -70,8 +70,8 @@ class Members(NamedTuple):
         seen: Columns that properties look at through a question, each with where its answers begin.
         answers: What that question makes of each code.
         seen_whole: For each word of a row the bits that properties look at as they are.
-        here, whose, sets, sizes: Room for one row: its actors, whose each successor is, sets of actors, and how
-            many successors each has.
+        here, disturbers, whose, sets, sizes: Room for one row: its actors, who may disturb each (0 where it was not
+            asked), whose each successor is, sets of actors, and how many successors each has.
     """
 
     trees_from: Ints
@@ -87,31 +87,29 @@ class Members(NamedTuple):
     seen: Ints
     answers: Any
     here: Ints
+    disturbers: Words
     whose: Ints
     sets: Words
     sizes: State
 
 
 @njit(cache=True)
-def disturbs(m: Members, count: int, one: int, other: int) -> bool:
-    """Tell whether one footprint disturbs another (see `checker.reduction.slots.Footprint`)."""
-    known = m.disturbed[one * count + other]
-    if known == 0:
-        words = len(m.footprints) // (PARTS * count)
-        a, b = one * PARTS * words, other * PARTS * words
-        known = np.uint8(1)
-        for k in range(words):
-            reads, writes = m.footprints[a + k], m.footprints[a + words + k]
-            merges = m.footprints[a + 2 * words + k]
-            its_reads, its_writes = m.footprints[b + k], m.footprints[b + words + k]
-            its_merges = m.footprints[b + 2 * words + k]
-            met = writes & (its_reads | its_writes | its_merges)
-            met |= its_writes & (reads | merges)
-            met |= (merges & its_reads) | (its_merges & reads)
-            if met != np.uint64(0):
-                known = np.uint8(2)
-        m.disturbed[one * count + other] = known
-    return bool(known == 2)
+def compare(footprints: Words, disturbed: Any, count: int, one: int, other: int) -> int:
+    """Note whether one footprint disturbs another (see `checker.reduction.slots.Footprint`): 1 no, 2 yes."""
+    words = len(footprints) // (PARTS * count)
+    a, b = one * PARTS * words, other * PARTS * words
+    found = 1
+    for k in range(words):
+        reads, writes, merges = footprints[a + k], footprints[a + words + k], footprints[a + 2 * words + k]
+        its_reads, its_writes = footprints[b + k], footprints[b + words + k]
+        its_merges = footprints[b + 2 * words + k]
+        met = writes & (its_reads | its_writes | its_merges)
+        met |= its_writes & (reads | merges)
+        met |= (merges & its_reads) | (its_merges & reads)
+        if met != np.uint64(0):
+            found = 2
+    disturbed[one * count + other] = found
+    return found
 
 
 @njit(cache=True)
@@ -134,30 +132,42 @@ def meet(m: Model, r: Members, words: Words, at: int, here: Ints, state: State) 
     return count
 
 
+@njit(cache=True, inline="always")
+def has(actors: np.uint64, actor: int) -> bool:
+    """Tell whether a set of the actors of a row has one."""
+    return bool((actors >> np.uint64(actor)) & np.uint64(1))
+
+
 @njit(cache=True)
-def persistent(r: Members, here: Ints, count: int, seed: int) -> np.uint64:
-    """Return the least set around an actor such that nothing outside ever disturbs what those inside may do now."""
-    footprints = np.int64(np.sqrt(len(r.disturbed)))
-    inside = np.uint64(1) << np.uint64(seed)
-    waiting = inside
-    while waiting != np.uint64(0):
-        k = np.int64(0)
-        while not (waiting >> np.uint64(k)) & np.uint64(1):
-            k += 1
-        waiting &= ~(np.uint64(1) << np.uint64(k))
-        actor = RECORD * here[k]
-        for j in range(count):
-            bit = np.uint64(1) << np.uint64(j)
-            if inside & bit:
+def persistent(r: Members, here: Ints, known: Words, actors: int, seed: int) -> np.uint64:
+    """Return the least set around an actor such that nothing outside ever disturbs what those inside may do now.
+
+    For each actor it is known who may disturb it, itself included, once that was asked.
+    """
+    disturbed = r.disturbed
+    count = np.int64(np.sqrt(len(disturbed)))
+    inside, done = np.uint64(1) << np.uint64(seed), np.uint64(0)
+    while inside != done:
+        waiting = inside & ~done
+        done = inside
+        for k in range(actors):
+            if not has(waiting, k):
                 continue
-            other = RECORD * here[j]
-            behind = (
-                r.actors[actor + FOLLOWER] >= 0 and r.actors[actor + FOLLOWER] == r.actors[other + MEMBER]
-            )
-            may = r.actors[other + (ASIDE if behind else EVER)]
-            if disturbs(r, footprints, r.actors[actor + NOW], may):
-                inside |= bit
-                waiting |= bit
+            if known[k] == np.uint64(0):
+                actor = RECORD * here[k]
+                now, follower = r.actors[actor + NOW], r.actors[actor + FOLLOWER]
+                found = np.uint64(1) << np.uint64(k)
+                for j in range(actors):
+                    other = RECORD * here[j]
+                    behind = follower >= 0 and follower == r.actors[other + MEMBER]
+                    may = r.actors[other + (ASIDE if behind else EVER)]
+                    known_to = np.int64(disturbed[now * count + may])
+                    if known_to == 0:
+                        known_to = compare(r.footprints, disturbed, count, now, may)
+                    if known_to == 2 and j != k:
+                        found |= np.uint64(1) << np.uint64(j)
+                known[k] = found
+            inside |= known[k]
     return inside
 
 
@@ -179,12 +189,6 @@ def is_seen(m: Model, r: Members, words: Words, at: int, target: Words, to: int,
     return False
 
 
-@njit(cache=True, inline="always")
-def has(actors: np.uint64, actor: int) -> bool:
-    """Tell whether a set of the actors of a row has one."""
-    return bool((actors >> np.uint64(actor)) & np.uint64(1))
-
-
 @njit(cache=True)
 def attribute(r: Members, batch: Batch, count: int) -> None:
     """Note whose each successor of a row is, as a number among its actors."""
@@ -197,18 +201,24 @@ def attribute(r: Members, batch: Batch, count: int) -> None:
 @njit(cache=True)
 def gather_sets(r: Members, batch: Batch, count: int, actors: int) -> int:
     """Note the persistent sets around those who can move, and how many successors each has; return how many sets."""
-    found = np.int64(0)
+    flags, steps, whose, sets, sizes, disturbers = (
+        r.step_flags, batch.steps, r.whose, r.sets, r.sizes, r.disturbers
+    )  # fmt: skip
+    for k in range(actors):
+        disturbers[k] = np.uint64(0)
+    found, tried = np.int64(0), np.uint64(0)
     for k in range(count):
-        if not r.step_flags[batch.steps[k]] & AGENTS_OWN:
+        if not flags[steps[k]] & AGENTS_OWN or has(tried, whose[k]):
             continue
-        inside = persistent(r, r.here, actors, r.whose[k])
+        tried |= np.uint64(1) << np.uint64(whose[k])
+        inside = persistent(r, r.here, disturbers, actors, whose[k])
         known = False
         for j in range(found):
-            known = known or r.sets[j] == inside
+            known = known or sets[j] == inside
         if not known:
-            r.sets[found], r.sizes[found] = inside, 0
+            sets[found], sizes[found] = inside, 0
             for j in range(count):
-                r.sizes[found] += has(inside, r.whose[j])
+                sizes[found] += has(inside, whose[j])
             found += 1
     return found
 

@@ -79,6 +79,7 @@ class Choosing:
             self.seen,
             self.seen_answers,
             np.zeros(MOST_HERE, np.int32),
+            np.zeros(MOST_HERE, np.uint64),
             np.zeros(successors, np.int32),
             np.zeros(MOST_HERE, np.uint64),
             np.zeros(MOST_HERE, np.int64),
