@@ -76,12 +76,12 @@ class Actors:
         bounds = Bounds(c)
         self.roles = Roles(bounds)
         self.footprints = Footprints(bounds, self.roles)
-        self.marks = Marks(bounds, self.roles, self.footprints)
         self._forget()
         self.footprints.settle(joined([*map(self.clause, self.setting.environment), *self._lives(c)]))
         self._forget()  # what was bounded before it was known what is settled
 
     def _forget(self) -> None:
+        self.marks = Marks(self.footprints)
         self._known_agent = lru_cache(maxsize=1 << 16)(self._agent)
         self._of_request = lru_cache(maxsize=1 << 16)(self._request)
         self._of_statement = lru_cache(maxsize=1 << 14)(self._statement)

@@ -9,9 +9,8 @@ other's marks are worked out from.
 from collections.abc import Iterable, Iterator
 from functools import cache
 
-from checker.reduction.bounds import Bounds, Names
+from checker.reduction.bounds import Names
 from checker.reduction.footprints import Footprints
-from checker.reduction.roles import Roles
 from checker.reduction.slots import NOTHING, Footprint, Slot, joined
 from checker.reduction.tellers import tellers
 from semantics.agents import Code, Watch, watch_cell
@@ -36,14 +35,15 @@ PARENT, LINKS, CHILDREN = (f"{SLOT}{kind}" for kind in ("parent", "links", "chil
 class Marks:
     """Footprints over marks; there are none where nothing is remembered."""
 
-    def __init__(self, bounds: Bounds, roles: Roles, footprints: Footprints) -> None:
-        self.bounds = bounds
-        self.roles = roles
+    def __init__(self, footprints: Footprints) -> None:
         self.footprints = footprints
-        self.program = bounds.setting.program
-        self.monitored = bounds.setting.monitored
-        self.tellers = tellers(bounds.initial, roles) if self.monitored else frozenset()
+        self.bounds, self.roles = footprints.bounds, footprints.roles
+        self.program = self.bounds.setting.program
+        self.monitored = self.bounds.setting.monitored
+        self.tellers = tellers(self.bounds.initial, self.roles) if self.monitored else frozenset()
         self.held = cache(self._held)
+        self.looking = cache(footprints.sense)
+        self._making = cache(self._make)
         self._reading = cache(self._of)
         self.resting = cache(self._resting)
 
@@ -51,9 +51,10 @@ class Marks:
 
     def made(self, author: Name, does: Footprint) -> Footprint:
         """Bound what a control marks in the memory of others, and what decides that, by what it does to P."""
-        if not self.monitored:
-            return NOTHING
-        moved, linked = self._changed("placement", does), self._changed("channels", does)
+        return self._making(author, does.writes) if self.monitored else NOTHING
+
+    def _make(self, author: Name, writes: int) -> Footprint:
+        moved, linked = self._changed("placement", writes), self._changed("channels", writes)
         if any(self.bounds.setting.signature[self.bounds.setting.kind(name)].holds for name in moved):
             moved = self.bounds.names
         touched = moved | linked
@@ -63,11 +64,11 @@ class Marks:
         for other in self.roles.agents:
             if other != author and self.held(other):
                 found |= slots.footprint(merges=self._of_slots(other, moved, linked))
-                found |= self._of_answers(other, does, touched)
+                found |= self._of_answers(other, writes, touched)
         return found
 
-    def _changed(self, what: str, does: Footprint) -> Names:
-        return frozenset(str(slot[1]) for slot in self.footprints.slots.named(does.writes) if slot[0] == what)
+    def _changed(self, what: str, writes: int) -> Names:
+        return frozenset(str(slot[1]) for slot in self.footprints.slots.named(writes) if slot[0] == what)
 
     def _of_slots(self, holder: Name, moved: Names, linked: Names) -> Iterator[Slot]:
         yield from ((PARENT, holder, name) for name in moved)
@@ -75,9 +76,9 @@ class Marks:
         if moved:
             yield (CHILDREN, holder)
 
-    def _of_answers(self, holder: Name, does: Footprint, touched: Names) -> Footprint:
+    def _of_answers(self, holder: Name, writes: int, touched: Names) -> Footprint:
         """Bound the marks on answers to what an agent has asked: of those queries that look at what is changed."""
-        looks = [each for each in self.held(holder) if does.writes & self.footprints.sense(each).reads]
+        looks = [each for each in self.held(holder) if writes & self.looking(each).reads]
         reads = 0
         for query in looks:
             reads |= self._deciding(query, touched).reads
@@ -89,8 +90,8 @@ class Marks:
         Of the children of a place each is there or not whoever else is.
         """
         if not isinstance(query, Of) or query.operator != "CHILDREN" or not is_local(query):
-            return self.footprints.sense(query)
-        return self.footprints.sense(query if touched.intersection(nodes_of(query)) else query.of)
+            return self.looking(query)
+        return self.looking(query if touched.intersection(nodes_of(query)) else query.of)
 
     def _held(self, agent: Name) -> tuple[Query, ...]:
         """Return the queries of all observations that an agent may rest on: where any are told of, all agents'."""
