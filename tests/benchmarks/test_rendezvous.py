@@ -3,7 +3,9 @@
 import pytest
 from scripts import BENCHMARKS, script
 
-from checker import explore
+from checker import Reduction, explore
+from checker.reduction import Reduced
+from semantics.monitor import monitored
 from specs.elaboration import load_mission
 
 rendezvous = script("rendezvous")
@@ -25,6 +27,13 @@ def test_the_full_search_has_the_counts_that_are_asserted(robots):
 def test_eight_robots_are_few_configurations_when_reduced():
     found = rendezvous.reduced(rendezvous.rendezvous(8))
     assert (len(found.configurations), found.transitions) == (218, 538)
+
+
+@pytest.mark.parametrize("robots", [2, 5, 8])
+def test_the_reduced_search_for_stale_observations_grows_by_as_many_for_each_robot(robots):
+    start = monitored(rendezvous.rendezvous(robots).initial)
+    found = explore(start, reduce=Reduced(start, [Reduction.POR]))
+    assert (len(found.configurations), found.transitions) == (14 * robots - 14, 14 * robots - 15)
 
 
 @pytest.mark.parametrize("write", [rendezvous.mission_text, rendezvous.promela_text])
