@@ -1,7 +1,8 @@
 """The compiled loop that follows ample sets only: `checker.reduction.ample`, over rows and footprints as words.
 
-Rows are expanded one after another, since whether a step may be put off depends on what was visited before. Which
-actors there are is told by trees of their own; what may disturb what is worked out where it is first asked for.
+Rows are gathered as for the full search. Which successors of a row are followed is chosen when they are stored, row by
+row, since whether a step may be put off depends on what was visited before. Which actors there are is told by trees of
+their own; what may disturb what is worked out where it is first asked for.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
@@ -14,10 +15,9 @@ from numba import njit
 
 from checker.fast.kernel import (
     ALPHA,
-    AT,
+    BLOCK,
     CUT,
     EXPANDED,
-    GATHERED,
     LIMIT,
     SIZE,
     TOUCHED,
@@ -28,13 +28,12 @@ from checker.fast.kernel import (
     Model,
     State,
     code_at,
-    gather,
     walk,
 )
-from checker.fast.table import Words, bits_for, entry_of, find, most_in, touch
+from checker.fast.table import Words, bits_for, entry_of, find, touch
 
-DONE, MISSED, FULL = 0, 1, 2
-"""How `advance_reduced` ends: all rows were expanded; something is not known; there is no room."""
+ALL_KNOWN = -1
+"""What `store_reduced` returns where nothing was unknown."""
 
 MOST_HERE = 64
 """A configuration with more actors than these is expanded in full."""
@@ -190,16 +189,16 @@ def is_seen(m: Model, r: Members, words: Words, at: int, target: Words, to: int,
 
 
 @njit(cache=True)
-def attribute(r: Members, batch: Batch, count: int) -> None:
+def attribute(r: Members, batch: Batch, begin: int, count: int) -> None:
     """Note whose each successor of a row is, as a number among its actors."""
     for k in range(count):
         r.whose[k] = 0
-        while r.actors[RECORD * r.here[r.whose[k]] + MEMBER] != r.step_actor[batch.steps[k]]:
+        while r.actors[RECORD * r.here[r.whose[k]] + MEMBER] != r.step_actor[batch.steps[begin + k]]:
             r.whose[k] += 1
 
 
 @njit(cache=True)
-def gather_sets(r: Members, batch: Batch, count: int, actors: int) -> int:
+def gather_sets(r: Members, batch: Batch, begin: int, count: int, actors: int) -> int:
     """Note the persistent sets around those who can move, and how many successors each has; return how many sets."""
     flags, steps, whose, sets, sizes, disturbers = (
         r.step_flags, batch.steps, r.whose, r.sets, r.sizes, r.disturbers
@@ -208,7 +207,7 @@ def gather_sets(r: Members, batch: Batch, count: int, actors: int) -> int:
         disturbers[k] = np.uint64(0)
     found, tried = np.int64(0), np.uint64(0)
     for k in range(count):
-        if not flags[steps[k]] & AGENTS_OWN or has(tried, whose[k]):
+        if not flags[steps[begin + k]] & AGENTS_OWN or has(tried, whose[k]):
             continue
         tried |= np.uint64(1) << np.uint64(whose[k])
         inside = persistent(r, r.here, disturbers, actors, whose[k])
@@ -230,40 +229,41 @@ def is_ample(
     words: Words,
     table: Any,
     batch: Batch,
-    row: int,
+    begin: int,
     count: int,
     inside: np.uint64,
     width: int,
 ) -> bool:
     """Tell whether no property sees a step, one must be taken some time, and one leads to what is expanded later."""
     bits = np.uint32(bits_for(len(table)))
+    row = batch.origins[begin]
     fair, later = False, False
     for k in range(count):
         if has(inside, r.whose[k]):
-            if is_seen(m, r, words, row * width, batch.words, k * width, width):
+            if is_seen(m, r, words, row * width, batch.words, (begin + k) * width, width):
                 return False
-            fair = fair or bool(r.step_flags[batch.steps[k]] & FAIR)
+            fair = fair or bool(r.step_flags[batch.steps[begin + k]] & FAIR)
             if not later:
-                number = find(words, table, batch.words, k, batch.hashes[k], width, bits)
+                number = find(words, table, batch.words, begin + k, batch.hashes[begin + k], width, bits)
                 later = number < 0 or number > row
     return fair and later
 
 
 @njit(cache=True)
 def choose(
-    m: Model, r: Members, words: Words, table: Any, batch: Batch, row: int, count: int, state: State
+    m: Model, r: Members, words: Words, table: Any, batch: Batch, begin: int, count: int, state: State
 ) -> tuple[bool, np.uint64]:
     """Return whether all is known, and whose steps are to be followed: everybody's where no set is ample."""
     if count < 2:
         return True, EVERYBODY
     width = state[WORDS]
-    actors = meet(m, r, words, row * width, r.here, state)
+    actors = meet(m, r, words, batch.origins[begin] * width, r.here, state)
     if actors < 0:
         return False, EVERYBODY
     if actors > MOST_HERE:
         return True, EVERYBODY
-    attribute(r, batch, count)
-    found = gather_sets(r, batch, count, actors)
+    attribute(r, batch, begin, count)
+    found = gather_sets(r, batch, begin, count, actors)
     for _ in range(found):
         least = np.int64(-1)
         for j in range(found):
@@ -272,50 +272,53 @@ def choose(
         if least < 0:
             break
         r.sizes[least] = TRIED
-        if is_ample(m, r, words, table, batch, row, count, r.sets[least], width):
+        if is_ample(m, r, words, table, batch, begin, count, r.sets[least], width):
             return True, r.sets[least]
     return True, EVERYBODY
 
 
-@njit(cache=True)
-def advance_reduced(
+@njit(cache=True, nogil=True)
+def store_reduced(
     m: Model,
     r: Members,
     words: Words,
     origins: Any,
     table: Any,
     batch: Batch,
+    gathered: int,
+    at: int,
     met: State,
     counts: State,
     state: State,
-    until: int,
+    walked: State,
 ) -> int:
-    """Expand rows up to a number, in their order, following ample sets where there are any.
+    """Look up what was gathered of the rows before `at`, as `kernel.store` does, but of ample sets where there are any.
 
-    It is counted how often each transition was met, and how often it was followed.
+    It is counted how often each transition was met, and how often it was followed. Where the actors of a row are not
+    known, the row is returned and nothing from there on is stored; what was not known is noted in `walked`, since
+    `gather` notes the same in `state` beside it.
     """
-    most = min(len(origins), len(words) // state[WORDS], most_in(len(table)))
-    width, limit = state[WORDS], state[LIMIT]
+    width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
+    walked[WORDS], walked[ALPHA] = width, state[ALPHA]
     bits = np.uint32(bits_for(len(table)))
-    while state[AT] < until:
-        if min(state[SIZE] + len(batch.hashes), limit) > most:
-            return FULL
-        row = state[AT]
-        state[GATHERED] = 0
-        known = gather(m, words, batch, state, row + 1)
-        count = state[GATHERED]
-        inside = EVERYBODY
-        if known:
-            state[TOUCHED] = touch(words, table, batch.hashes, 0, count, width)
-            known, inside = choose(m, r, words, table, batch, row, count, state)
-        state[GATHERED] = 0
+    begin, touched = np.int64(0), np.int64(0)
+    expanded, missed = at, np.int64(ALL_KNOWN)
+    while begin < gathered:
+        row = batch.origins[begin]
+        end = begin + 1
+        while end < gathered and batch.origins[end] == row:
+            end += 1
+        if end > touched:
+            until = max(end, min(touched + BLOCK, gathered))
+            state[TOUCHED] = touch(words, table, batch.hashes, touched, until, width)
+            touched = until
+        known, inside = choose(m, r, words, table, batch, begin, end - begin, walked)
         if not known:
-            state[AT] = row
-            return MISSED
-        size = state[SIZE]
-        for k in range(count):
+            expanded = missed = row
+            break
+        for k in range(begin, end):
             met[batch.steps[k]] += 1
-            if inside != EVERYBODY and not has(inside, r.whose[k]):
+            if inside != EVERYBODY and not has(inside, r.whose[k - begin]):
                 continue
             counts[batch.steps[k]] += 1
             found = find(words, table, batch.words, k, batch.hashes[k], width, bits)
@@ -329,6 +332,7 @@ def advance_reduced(
             origins[size] = row
             table[-found - 1] = entry_of(batch.hashes[k], size, bits)
             size += 1
-        state[SIZE] = size
-        state[EXPANDED] = row + 1
-    return DONE
+        begin = end
+    state[SIZE] = size
+    state[EXPANDED] = expanded
+    return missed

@@ -85,9 +85,10 @@ class Space:
         self.choosing = choosing
         self.compact = compact
         self.state = np.zeros(kernel.STATE, np.int64)
+        self.walked = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
         self.beside = ThreadPoolExecutor(1) if cores() > 1 else None
-        self.storing: Future[None] | None = None
+        self.storing: Future[int] | None = None
         self.batch: kernel.Batch
         self.full: kernel.Batch
         self.state[TURNS] = learner.setting.scheduler is Scheduler.FCFS
@@ -170,67 +171,57 @@ class Space:
 
     def advance(self, until: int) -> None:
         """Expand rows up to a number, learning what is not known on the way."""
-        if self.choosing is not None:
-            self._advance_reduced(self.choosing, until)
-            return
         self.state[AT], self.state[GATHERED] = self.expanded, 0
         try:
-            while self.state[AT] < until:
+            while self.state[AT] < until or not self._stored():
                 known = kernel.gather(self.model, self.words.room, self.batch, self.state, until)
-                self._hand_over()
-                if not known:
-                    self._stored()
-                    self._miss()
+                if self._stored():
+                    self._hand_over()
+                    if not known and self._stored():
+                        self._miss()
         finally:
-            self._stored()
-
-    def _advance_reduced(self, choosing: "Choosing", until: int) -> None:
-        from checker.fast import choosing as loops  # noqa: PLC0415  # compiled where something is reduced
-
-        self.state[AT] = self.expanded
-        while self.state[AT] < until:
-            ended = loops.advance_reduced(
-                self.model,
-                choosing.members,
-                self.words.room,
-                self.origins.room,
-                self.table.room,
-                self.batch,
-                self.met.room,
-                self.counts.room,
-                self.state,
-                until,
-            )
-            if ended == loops.FULL:
-                self._make_room(len(self.batch.hashes))
-            elif ended == loops.MISSED:
-                self._miss()
+            if self.storing is not None:  # something has stopped it
+                self.storing.result()
+                self.storing = None
 
     def _hand_over(self) -> None:
         """Let what was gathered be stored, and another batch take what comes next."""
-        self._stored()
         gathered, self.state[GATHERED] = int(self.state[GATHERED]), 0
         self._make_room(gathered)
         self.batch, self.full = self.full, self.batch
         if self.beside is not None and gathered >= WORTH:
             self.storing = self.beside.submit(self._store, gathered, int(self.state[AT]))
         else:
-            self._store(gathered, int(self.state[AT]))
+            self.storing = Future()
+            self.storing.set_result(self._store(gathered, int(self.state[AT])))
 
-    def _store(self, gathered: int, at: int) -> None:
-        arrays = (self.words.room, self.origins.room, self.table.room, self.full)
+    def _store(self, gathered: int, at: int) -> int:
+        """Store what was gathered of the rows before one; return a row whose actors are not known, -1 if all are."""
+        arrays = (self.words.room, self.origins.room, self.table.room, self.full, gathered, at)
+        if self.choosing is not None:
+            from checker.fast.choosing import store_reduced  # noqa: PLC0415  # compiled where something is reduced
+
+            counts = (self.met.room, self.counts.room, self.state, self.walked)
+            return int(store_reduced(self.model, self.choosing.members, *arrays, *counts))
         if self.compact is None:
-            kernel.store(*arrays, gathered, at, self.counts.room, self.state)
-            return
+            kernel.store(*arrays, self.counts.room, self.state)
+            return -1
         from checker.fast.compacting import store_tags  # noqa: PLC0415  # compiled where it is wanted
 
-        store_tags(*arrays, gathered, at, self.counts.room, self.state, self.compact)
+        store_tags(*arrays, self.counts.room, self.state, self.compact)
+        return -1
 
-    def _stored(self) -> None:
-        """Wait until what was handed over is stored."""
-        if self.storing is not None:
-            self.storing.result()
-            self.storing = None
+    def _stored(self) -> bool:
+        """Wait until what was handed over is stored; if not all was known, learn that, and go back to there."""
+        if self.storing is None:
+            return True
+        missed = self.storing.result()
+        self.storing = None
+        if missed < 0:
+            return True
+        self.state[AT], self.state[GATHERED] = missed, 0
+        self._learn(missed, self.walked)
+        return False
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the leaf that each row leads to in a tree, learning what is not known on the way."""
@@ -240,7 +231,7 @@ class Space:
             look()
             done += kernel.classify(self.model, self.words.room, rows[done:], tree, found[done:], self.state)
             if done < len(rows):
-                self._learn(int(rows[done]))
+                self._learn(int(rows[done]), self.state)
         return found
 
     def edges(self, rows: range) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int64]]]:
@@ -262,10 +253,11 @@ class Space:
             self._make_batches(2 * len(self.batch.hashes))
             self._see()
         else:
-            self._learn(int(self.state[AT]))
+            self._learn(int(self.state[AT]), self.state)
 
-    def _learn(self, row: int) -> None:
-        unknown = (row, int(self.state[TREE]), int(self.state[NODE]), int(self.state[CODE]))
+    def _learn(self, row: int, walked: NDArray[np.int64]) -> None:
+        """Learn what was not known of a row, as it was noted where a walk ended."""
+        unknown = (row, int(walked[TREE]), int(walked[NODE]), int(walked[CODE]))
         self.learned.append(unknown)
         self._learn_from(self.codes(row), *unknown[1:])
         self._see()

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from mission_texts import missions
 
 from checker import Engine, Limits, Outcome, Reduction, RefusedError, check, explore
+from checker.fast import engine
 from checker.reduction import Ample, Proviso, Reduced
 from checker.reduction.footprints import Footprints
 from checker.reduction.slots import NOTHING
@@ -127,6 +128,17 @@ def test_both_explorers_follow_the_same_steps_of_a_mission(name, variation):
     mission = load_mission(MISSIONS / f"{name}.mission", variation)
     formulas = [each.formula for each in mission.properties if each.kind in ("invariant", "reachable")]
     agreed(mission.initial, formulas)
+
+
+@pytest.mark.parametrize("batch", [2, 64])
+@pytest.mark.parametrize("name", ["takeover", "rendezvous", "surveillance", "nomad", "broken_deadlock"])
+def test_it_chooses_the_same_where_one_thread_gathers_and_another_stores(name, batch, monkeypatch):
+    monkeypatch.setattr(engine, "cores", lambda: 2)
+    monkeypatch.setattr(engine, "WORTH", 1)
+    monkeypatch.setattr(engine, "BATCH", batch)
+    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    agreed(initial)
+    agreed(monitored(initial))
 
 
 def test_the_fast_explorer_leaves_something_out():
