@@ -33,6 +33,9 @@ COUNTS = {
 } | {f"rendezvous, {robots} robots": counts for robots, counts in rendezvous.COUNTS.items()}
 """What the reference explorer found: configurations and transitions, unreduced."""
 
+ABOUT = 1.5
+"""How far a guess of what a search takes may be off."""
+
 Row = dict[str, object]
 
 
@@ -54,9 +57,9 @@ class Limits:
     peer_minutes: float = 0.0
 
     def have_room(self, wanted: float, before: Explored) -> bool:
-        """Tell whether so many configurations may find room and time, if each takes what it took before."""
+        """Tell whether so many configurations may find room and time, if each takes about what it took before."""
         memory = wanted * (before.bytes_per_configuration or 0)
-        return memory < self.gigabytes * 2**30 and wanted / before.rate < self.minutes * 60
+        return memory < ABOUT * self.gigabytes * 2**30 and wanted / before.rate < ABOUT * self.minutes * 60
 
     def options(self) -> tuple[str, ...]:
         """Return them as `ours.py` takes them."""

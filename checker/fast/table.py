@@ -84,7 +84,7 @@ def slots_within(left: float, rows: int, row: int, entry: int) -> float:
     >>> slots_within(1_000 * 6 + 500 * 20, 500, 20, 4)
     1500.0
     """
-    return (left + rows * row) / (entry + row * 2 / 3)
+    return 3 * (left + rows * row) / (3 * entry + 2 * row)
 
 
 @njit(cache=True, inline="always")
