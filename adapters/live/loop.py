@@ -277,7 +277,8 @@ class LiveRun:
         self._check_plugins()
         await asyncio.sleep(0)
         try:
-            await asyncio.wait_for(self.inbox.awake.wait(), patience)
+            async with asyncio.timeout(patience):  # wait_for may lose that the run is to end
+                await self.inbox.awake.wait()
         except TimeoutError:
             return
         await asyncio.sleep(GATHER)

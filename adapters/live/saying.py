@@ -36,7 +36,8 @@ async def listening(path: Path, listener: Listener) -> AsyncIterator[None]:
 
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         with suppress(OSError, ValueError, TimeoutError, asyncio.IncompleteReadError):
-            line = await asyncio.wait_for(reader.readuntil(), PATIENCE)
+            async with asyncio.timeout(PATIENCE):
+                line = await reader.readuntil()
             writer.write(json.dumps({"refusal": await _answer(line, listener)}).encode() + b"\n")
             await writer.drain()
         writer.close()
@@ -94,7 +95,8 @@ async def _exchange(path: Path, line: bytes) -> bytes:
     try:
         writer.write(line)
         await writer.drain()
-        return await asyncio.wait_for(reader.readuntil(), PATIENCE)
+        async with asyncio.timeout(PATIENCE):
+            return await reader.readuntil()
     except (TimeoutError, asyncio.IncompleteReadError, asyncio.LimitOverrunError, OSError) as error:
         raise NobodyListens(f"the run at {path} does not answer") from error
     finally:

@@ -76,7 +76,8 @@ class Bus:
         handler = self._zenoh.handlers.Callback(reply, done)
         key = self._key(station, "log")
         self._session.get(key, handler, payload=question, timeout=patience)
-        answer = await asyncio.wait_for(answered, patience + 1.0)
+        async with asyncio.timeout(patience + 1.0):
+            answer = await answered
         if answer is None:
             raise OSError(f"{station} does not answer")
         return answer

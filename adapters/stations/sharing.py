@@ -264,7 +264,8 @@ class Sharing:
             if not more:
                 other.awake.clear()
                 with suppress(TimeoutError):
-                    await asyncio.wait_for(other.awake.wait(), POLL)
+                    async with asyncio.timeout(POLL):
+                        await other.awake.wait()
 
     def _told(self, world: World, station: str, message: Message | None, asked: float) -> bool:
         """Take an answer; return whether there is more to ask for."""

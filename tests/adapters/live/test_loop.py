@@ -89,6 +89,21 @@ def test_a_mission_flies_to_its_end():
     assert [type(told) for told in vehicle.told] == [GoTo]
 
 
+def test_a_run_that_is_interrupted_ends_even_if_something_has_just_come_in():
+    async def interrupted():
+        plan = plan_of(TOUR + GO)
+        async with LiveRun(plan, started(plan), [Vehicle(pace=60.0)], []) as run:
+            await run.begin(1.0)
+            going = asyncio.create_task(run.go(lambda _: False))
+            await asyncio.sleep(0.1)
+            run.inbox.awake.set()
+            going.cancel()
+            await asyncio.wait([going], timeout=5.0)
+            return going.cancelled()
+
+    assert asyncio.run(interrupted())
+
+
 def test_what_is_refused_is_reported_and_stays_pending():
     ending, looker = fly(TOUR + GO, Vehicle(refuses="not armed"), seconds=0.3)
     assert ending.reason == "the time is over"
