@@ -198,10 +198,9 @@ class _Check:
         if INTERRUPTION in self.found.bounds:
             return None
         limits = replace(self.limits, spent=self.limits.spent + self.found.seconds)
-        start, by_order = monitored(self.initial), self.reducer is not None and self.reducer.putting_off
-        reduce = (
-            Reduced(start, [Reduction.POR]) if by_order else None
-        )  # symmetry would lose whose a memory is
+        start, reduce = monitored(self.initial), None
+        if self.reducer is not None and self.reducer.putting_off:  # symmetry would lose whose a memory is
+            reduce = Reduced(start, [Reduction.POR])
         remembered = self.explore(start, (self.stale,), limits, reduce)
         remembered.bounds = [f"{bound}, in the search for stale observations" for bound in remembered.bounds]
         return remembered

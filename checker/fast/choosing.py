@@ -14,6 +14,7 @@ import numpy as np
 from numba import njit
 
 from checker.fast.kernel import (
+    ALL_KNOWN,
     ALPHA,
     BLOCK,
     CUT,
@@ -31,9 +32,6 @@ from checker.fast.kernel import (
     walk,
 )
 from checker.fast.table import Words, bits_for, entry_of, find, touch
-
-ALL_KNOWN = -1
-"""What `store_reduced` returns where nothing was unknown."""
 
 MOST_HERE = 64
 """A configuration with more actors than these is expanded in full."""

@@ -196,7 +196,7 @@ class Space:
             self.storing.set_result(self._store(gathered, int(self.state[AT])))
 
     def _store(self, gathered: int, at: int) -> int:
-        """Store what was gathered of the rows before one; return a row whose actors are not known, -1 if all are."""
+        """Store what was gathered of the rows before one; return the first row whose actors are not known, if any."""
         arrays = (self.words.room, self.origins.room, self.table.room, self.full, gathered, at)
         if self.choosing is not None:
             from checker.fast.choosing import store_reduced  # noqa: PLC0415  # compiled where something is reduced
@@ -205,11 +205,11 @@ class Space:
             return int(store_reduced(self.model, self.choosing.members, *arrays, *counts))
         if self.compact is None:
             kernel.store(*arrays, self.counts.room, self.state)
-            return -1
+            return kernel.ALL_KNOWN
         from checker.fast.compacting import store_tags  # noqa: PLC0415  # compiled where it is wanted
 
         store_tags(*arrays, self.counts.room, self.state, self.compact)
-        return -1
+        return kernel.ALL_KNOWN
 
     def _stored(self) -> bool:
         """Wait until what was handed over is stored; if not all was known, learn that, and go back to there."""
@@ -217,7 +217,7 @@ class Space:
             return True
         missed = self.storing.result()
         self.storing = None
-        if missed < 0:
+        if missed == kernel.ALL_KNOWN:
             return True
         self.state[AT], self.state[GATHERED] = missed, 0
         self._learn(missed, self.walked)
