@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 
-.PHONY: demo live-demo test lint types fuzz bench bench-bigraphs bench-cluster docs clean
+.PHONY: demo live-demo test lint types fuzz bounds bench bench-bigraphs bench-cluster docs clean
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -30,6 +30,9 @@ types: $(STAMP)
 fuzz: $(STAMP)  ## 100,000 mutated missions, a million mutated packets and sentences (some 25 minutes on two cores)
 	BIGACTORS_FUZZ=100000 BIGACTORS_FUZZ_PACKETS=1000000 $(BIN)/python -m pytest -n 2 -q -m fuzz
 
+bounds: $(STAMP)  ## the compiled loops with checks of bounds over all missions, cut and gone on with at many sizes
+	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q -m bounds
+
 bench: $(STAMP)  ## the explorer beside SPIN, its growth, the largest missions; writes docs/performance.md (some 25 minutes)
 	$(BIN)/python benchmarks/run.py
 	$(BIN)/python benchmarks/growth.py
@@ -46,4 +49,4 @@ docs: $(STAMP)  ## write the generated pages of docs/
 	$(BIN)/python -m bigactors.docs
 
 clean:
-	rm -rf $(VENV) demo live-demo dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) .numba-bounds demo live-demo dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -94,8 +94,8 @@ def save(share: Share, folder: Path, number: int, digest: str) -> None:
     write_archive(
         path_of(folder, number, share.me),
         head,
-        rows=share.words.room[: share.size * share.packing.words],
-        origins=share.origins.room[: share.size],
+        rows=share.rows.words[: share.size * share.packing.words],
+        origins=share.rows.origins[: share.size],
         packing=share.packing.columns,
         places=np.frombuffer(b"".join(share.keys.places), np.uint8),
         sizes=np.diff(share.keys.begins),
@@ -213,7 +213,7 @@ class Loading:
         """Take in the rows, now that all their values are known."""
         share, size = self.share, len(self.arrays["origins"])
         codes = np.where(self.codes == UNKNOWN, 0, self.codes)
-        share.reserve(size)
+        share.rows.reserve(size)
         width, hashes = share.packing.words, np.zeros(BLOCK, np.uint64)
         for first in range(0, size, BLOCK):
             count = min(BLOCK, size - first)
@@ -228,10 +228,10 @@ class Loading:
                 self.numbers,
                 share.packing.columns,
                 width,
-                share.words.room[first * width : (first + count) * width],
+                share.rows.words[first * width : (first + count) * width],
                 hashes,
             )
-        share.origins.room[:size] = self.arrays["origins"]
+        share.rows.origins[:size] = self.arrays["origins"]
         share.state[list(KEPT)] = self.arrays["state"]
         *share.begins, share.end = self.head["layers"]
         share.rules_before = Counter(self.head["rules"])

@@ -19,7 +19,7 @@ from checker.fast.columns import WORD, Packing, shifts
 from checker.fast.engine import FIRST_ROWS, MOST_ROWS, Space
 from checker.fast.kernel import AT, CROWDS, CUT, EXPANDED, GATHERED, LIMIT, SIZE
 from checker.fast.learner import Learner
-from checker.fast.pages import Pages
+from checker.fast.rows import Rows
 from checker.limits import memory_taken
 from semantics.configuration import Configuration
 
@@ -119,6 +119,9 @@ class Share(Space):
         column_at: The column of each bit of a row, in the packing for which it was made.
     """
 
+    ORIGIN = np.uint64
+    """Rows of other workers have numbers, too: row · workers + worker."""
+
     def __init__(self, initial: Configuration, pending: int, me: int, workers: int) -> None:
         self.me = me
         self.workers = workers
@@ -136,7 +139,7 @@ class Share(Space):
         """Begin with the initial configuration alone, or with nothing where that is another's."""
         self.clear()
         first = self.packed(self.learner.columns.codes(self.learner.still))
-        self.words.room[: len(first)] = first
+        self.rows.words[: len(first)] = first
         self.end = int(self.owners_of(first, np.zeros(1, np.int64))[0] == self.me)
         self.state[SIZE] = self.end
         self._rebuild(2 * FIRST_ROWS)
@@ -150,8 +153,7 @@ class Share(Space):
         self.learner.forget()
         self.state[[AT, EXPANDED, SIZE, CUT, CROWDS, GATHERED]] = 0
         self.state[LIMIT] = MOST_ROWS
-        self.words = Pages(np.uint64, len(self.words.room))
-        self.origins = Pages(np.uint64, len(self.origins.room))
+        self.rows = Rows(self.packing.words, self.rows.room, self.ORIGIN)
         self.learner.columns.codes(self.learner.still)  # makes columns that only the first row needs
         self._see()
         self.counts.used[:] = 0
@@ -200,7 +202,7 @@ class Share(Space):
         self.state[AT] = self.expanded
         while self.expanded < until:
             self._make_room(len(self.batch.hashes))
-            known = loops.gather(self.model, self.words.room, self.batch, self.state, until)
+            known = loops.gather(self.model, self.rows.words, self.batch, self.state, until)
             self._deal()
             if not known:
                 self._miss()
@@ -229,7 +231,7 @@ class Share(Space):
         """Return the worker that each of some rows belongs to, which were reached from these of its own."""
         owners = np.zeros(len(origins), np.int32)
         kernel.owners_of(
-            self.words.room,
+            self.rows.words,
             origins,
             rows,
             self.packing.words,
@@ -245,8 +247,8 @@ class Share(Space):
     def _settle(self, rows: NDArray[np.int64], worker: int, owners: NDArray[np.int32]) -> None:
         """Take in those of the batch that are this worker's; they were reached from these rows of a worker."""
         kernel.settle(
-            self.words.room,
-            self.origins.room,
+            self.rows.words,
+            self.rows.origins,
             self.table.room,
             self.batch.words,
             self.batch.hashes,
@@ -333,18 +335,14 @@ class Share(Space):
 
     def learn_at(self, codes: list[int]) -> None:
         """Learn what follows from a row of codes, which takes the place of all rows."""
-        self.words.room[: self.packing.words] = self.packed(codes)
+        self.rows.words[: self.packing.words] = self.packed(codes)
         self.state[SIZE], self.state[AT] = 1, 0
         while not self.state[AT]:
-            known = loops.gather(self.model, self.words.room, self.batch, self.state, 1)
+            known = loops.gather(self.model, self.rows.words, self.batch, self.state, 1)
             self.state[GATHERED] = 0
             if not known:
                 self._miss()
         self.state[SIZE], self.state[AT] = 0, 0
-
-    def reserve(self, rows: int) -> None:
-        """Make room for so many rows."""
-        self._reserve_rows(rows)
 
     def look_around(self) -> None:
         """Find rows again that were put in their place."""

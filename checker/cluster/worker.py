@@ -111,7 +111,7 @@ class Worker:
 
     def origin(self, row: int) -> tuple[int, int]:
         """Return the worker and the row that a row was first reached from."""
-        row, worker = divmod(int(self.share.origins.room[row]), self.share.workers)
+        row, worker = divmod(int(self.share.rows.origins[row]), self.share.workers)
         return worker, row
 
     def inspect(self, inspections: tuple[Inspect, ...]) -> tuple[Inspect, ...]:
@@ -146,7 +146,7 @@ class Worker:
         until = min(first + most, share.expanded)
         share.state[AT], found = min(first, until), []
         while share.state[AT] < until:
-            known = loops.gather(share.model, share.words.room, share.batch, share.state, until)
+            known = loops.gather(share.model, share.rows.words, share.batch, share.state, until)
             found.append(self._point())
             if not known:
                 share.go_on()
@@ -167,7 +167,7 @@ class Worker:
     def _found(self, count: int) -> NDArray[np.int64]:
         """Return which of its rows each of the batch is, less than 0 where it is none."""
         share, found = self.share, np.zeros(count, np.int64)
-        loops.look_up(share.words.room, share.table.room, share.batch, found, share.state)
+        loops.look_up(share.rows.words, share.table.room, share.batch, found, share.state)
         return found
 
     def _edges(self, found: Sequence[tuple[NDArray[Any], ...]]) -> Edges:

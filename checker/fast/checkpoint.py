@@ -64,8 +64,8 @@ def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
     write_archive(
         path,
         head,
-        rows=space.words.room[: space.size * space.packing.words],
-        origins=space.origins.room[: space.size],
+        rows=space.rows.words[: space.size * space.packing.words],
+        origins=space.rows.origins[: space.size],
         counts=space.counts.used,
         packing=space.packing.columns[: 3 * len(columns)],
         learned=np.array(space.learned, np.int64).reshape(-1, 4),

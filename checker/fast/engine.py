@@ -36,7 +36,8 @@ from checker.fast.kernel import (
     WORDS,
 )
 from checker.fast.learner import Actor, CodedSource, Learner
-from checker.fast.pages import Pages, more
+from checker.fast.pages import Pages
+from checker.fast.rows import Rows
 from checker.fast.table import bits_for, most_in, rebuild, slots_for, slots_within, write_numbers
 from checker.fast.trees import RECORD
 from semantics.cells import AGENTS, Row
@@ -66,12 +67,14 @@ class Space:
     Attributes:
         learner: What is known of the rules.
         packing: Where each column stands in a row.
-        origins: For each row the one that it was first reached from; the first is its own.
+        rows: The configurations, packed, each with the one that it was first reached from; the first is its own.
         counts, met: How often each transition was followed, and how often met: the same where nothing is left out.
         learned: What was not known on the way: the row, and in which tree, at which node and for which code.
         compact: How many bits a tag has, where the table has tags instead of numbers (see `compacting`).
         left: Says how many bytes of memory may be taken besides: the table grows by less where they end.
     """
+
+    ORIGIN: type[np.generic] = np.uint32
 
     def __init__(
         self,
@@ -98,12 +101,8 @@ class Space:
         self.met = self.counts if choosing is None else Growing(np.int64)
         self.masks = Growing(np.uint64)
         self.located = 0
-        self.words = Pages(np.uint64, FIRST_ROWS)
-        self.origins = Pages(np.uint32, FIRST_ROWS)
-        self.packing = packing([len(column.values) for column in learner.columns.all])
-        self.state[WORDS] = self.packing.words
+        self.rows = Rows(1, FIRST_ROWS, self.ORIGIN)
         self.table = Pages(np.uint32, 1)
-        self._make_batches(BATCH)
         self._add_first()
         self._make_room(BATCH)
         self._see()
@@ -136,13 +135,12 @@ class Space:
     @property
     def spilled(self) -> bool:
         """Whether rows and origins are in files."""
-        return self.origins.spilled
+        return self.rows.spilled
 
     @property
     def bytes_used(self) -> int:
         """How many bytes rows, origins and the visited set take; of room that was never written, nothing."""
-        rows = self.words.held(self.size * self.packing.words) + self.origins.held(self.size)
-        return rows + self.table.room.nbytes
+        return self.rows.held(self.size) + self.table.room.nbytes
 
     def rules(self, *, followed: bool = True) -> Counter[str]:
         """Return how many transitions each rule has: those that were followed, or all."""
@@ -164,7 +162,7 @@ class Space:
     def codes(self, number: int) -> list[int]:
         """Return the code of each column in a row."""
         at, where = number * self.packing.words, self.packing
-        words = self.words.room[at : at + where.words]
+        words = self.rows.words[at : at + where.words]
         return [int(code) for code in (words[where.word] >> where.shift) & where.mask]
 
     # --- expanding ------------------------------------------------------------------------------------------------
@@ -174,7 +172,7 @@ class Space:
         self.state[AT], self.state[GATHERED] = self.expanded, 0
         try:
             while self.state[AT] < until or not self._stored():
-                known = kernel.gather(self.model, self.words.room, self.batch, self.state, until)
+                known = kernel.gather(self.model, self.rows.words, self.batch, self.state, until)
                 if self._stored():
                     self._hand_over()
                     if not known and self._stored():
@@ -192,12 +190,13 @@ class Space:
         if self.beside is not None and gathered >= WORTH:
             self.storing = self.beside.submit(self._store, gathered, int(self.state[AT]))
         else:
+            missed = self._store(gathered, int(self.state[AT]))
             self.storing = Future()
-            self.storing.set_result(self._store(gathered, int(self.state[AT])))
+            self.storing.set_result(missed)
 
     def _store(self, gathered: int, at: int) -> int:
         """Store what was gathered of the rows before one; return the first row whose actors are not known, if any."""
-        arrays = (self.words.room, self.origins.room, self.table.room, self.full, gathered, at)
+        arrays = (self.rows.words, self.rows.origins, self.table.room, self.full, gathered, at)
         if self.choosing is not None:
             from checker.fast.choosing import store_reduced  # noqa: PLC0415  # compiled where something is reduced
 
@@ -229,7 +228,7 @@ class Space:
         done = 0
         while done < len(rows):
             look()
-            done += kernel.classify(self.model, self.words.room, rows[done:], tree, found[done:], self.state)
+            done += kernel.classify(self.model, self.rows.words, rows[done:], tree, found[done:], self.state)
             if done < len(rows):
                 self._learn(int(rows[done]), self.state)
         return found
@@ -239,10 +238,10 @@ class Space:
         self.state[AT] = rows.start
         while self.state[AT] < rows.stop:
             look()
-            known = kernel.gather(self.model, self.words.room, self.batch, self.state, rows.stop)
+            known = kernel.gather(self.model, self.rows.words, self.batch, self.state, rows.stop)
             count, self.state[GATHERED] = int(self.state[GATHERED]), 0
             targets = np.zeros(count, np.int64)
-            kernel.look_up(self.words.room, self.table.room, self.batch, targets, self.state)
+            kernel.look_up(self.rows.words, self.table.room, self.batch, targets, self.state)
             yield self.batch.origins[:count].copy(), self.batch.steps[:count].copy(), targets
             if not known:
                 self._miss()
@@ -291,12 +290,11 @@ class Space:
             self._agents(self._groups())  # plants the trees of agents that are new, in the same order
         if len(where.mask) != len(self.learner.columns):
             raise ValueError("it has other columns")
-        self.packing, self.state[WORDS], self.state[SIZE] = where, where.words, len(origins)
-        self._reserve_rows(len(origins))
-        self.words.room[: len(words)] = words
-        self.origins.room[: len(origins)] = origins
-        self.masks.size = self.located = 0
-        self._make_batches(BATCH)
+        self._pack_as(where, BATCH)
+        self.rows.reserve(len(origins))
+        self.rows.words[: len(words)] = words
+        self.rows.origins[: len(origins)] = origins
+        self.state[SIZE] = len(origins)
         self._rebuild(slots_for(len(origins)))
         self._make_room(BATCH)
         self._see()
@@ -370,24 +368,30 @@ class Space:
         self.packing = self.packing.extended(sizes)
         if self.packing.holds(sizes):
             return
-        old, self.packing = self.packing, packing(sizes, self.packing.words)
-        self.state[WORDS] = self.packing.words
-        self._reserve_rows(len(self.origins.room))
-        new = self.packing
-        kernel.repack(self.words.room, self.size, shifts(old, new), old.words, new.words)
-        self.masks.size = self.located = 0
-        self._make_batches(len(self.batch.hashes))
+        old, new = self.packing, packing(sizes, self.packing.words)
+        self._pack_as(new, len(self.batch.hashes))
+        kernel.repack(self.rows.words, self.size, shifts(old, new), old.words, new.words)
         self._rebuild(len(self.table.room))
+
+    def _pack_as(self, where: Packing, successors: int) -> None:
+        """Let rows, and batches for so many successors, be of another packing; what stands in rows is not moved.
+
+        Raises:
+            OSError: There is no room for wider rows; nothing has changed.
+        """
+        self.rows.widen(where.words)
+        self.packing, self.state[WORDS] = where, where.words
+        self.masks.size = self.located = 0
+        self._make_batches(successors)
 
     # --- room -----------------------------------------------------------------------------------------------------
 
     def _add_first(self) -> None:
         codes = self.learner.columns.codes(self.learner.still)
-        where = self.packing = packing([len(column.values) for column in self.learner.columns.all])
-        self.state[WORDS] = where.words
-        self._reserve_rows(FIRST_ROWS)
+        where = packing([len(column.values) for column in self.learner.columns.all])
+        self._pack_as(where, BATCH)
         for word, shift, code in zip(where.word, where.shift, codes, strict=True):
-            self.words.room[word] |= np.uint64(code) << shift
+            self.rows.words[word] |= np.uint64(code) << shift
         self.state[SIZE] = 1
 
     def _make_batches(self, successors: int) -> None:
@@ -407,8 +411,7 @@ class Space:
     def _make_room(self, rows: int) -> None:
         """Make room for so many new rows."""
         wanted = min(self.size + rows, int(self.state[LIMIT]))
-        if wanted > len(self.origins.room):
-            self._reserve_rows(max(wanted, more(len(self.origins.room))))
+        self.rows.reserve(wanted)
         if most_in(len(self.table.room)) < wanted:
             self._rebuild(self._slots(wanted))
 
@@ -425,16 +428,11 @@ class Space:
         Raises:
             OSError: There is no such folder, or no room in it.
         """
-        self.words.spill(folder, self.size * self.packing.words)
-        self.origins.spill(folder, self.size)
-
-    def _reserve_rows(self, rows: int) -> None:
-        self.words.grow(rows * self.packing.words)
-        self.origins.grow(rows)
+        self.rows.spill(folder, self.size)
 
     def _rebuild(self, slots: int) -> None:
         self.table = Pages(np.uint32, 1)  # give the old one back before the next is taken
-        rows = (self.words.room, self.size, self.packing.words)
+        rows = (self.rows.words, self.size, self.packing.words)
         if self.compact is None:
             self.table = Pages(np.uint32, slots)
             rebuild(*rows, self.table.room, write_numbers, bits_for(len(self.table.room)))

@@ -57,7 +57,7 @@ class Origins(Sequence[int]):
     def __getitem__(self, number: int | slice) -> int | Sequence[int]:
         if isinstance(number, slice):
             return [self[each] for each in range(*number.indices(len(self)))]
-        return int(self.space.origins.room[range(len(self))[number]])
+        return int(self.space.rows.origins[range(len(self))[number]])
 
 
 class Configurations(Sequence[Configuration]):
@@ -174,7 +174,7 @@ class _Explorer:
         except BoundMet as bound:
             self.bounds.append(str(bound))
         except OSError as error:
-            self.bounds.append(f"the end of the room in {self.limits.spill}: {error.strerror}")
+            self.bounds.append(self.room_met(error))
         except KeyboardInterrupt:
             self.bounds.append(INTERRUPTION)
 
@@ -185,6 +185,12 @@ class _Explorer:
             inspect_fast(survey, inspect)
         except BoundMet as bound:
             self.bounds.append(f"{bound}, in looking at what was explored")
+        except OSError as error:
+            self.bounds.append(f"{self.room_met(error)}, in looking at what was explored")
+
+    def room_met(self, error: OSError) -> str:
+        """Return what the report says where there was no room for more rows."""
+        return f"the end of the room in {self.limits.spill or 'memory'}: {error.strerror}"
 
     def limits_of_looking(self) -> Limits:
         """Return the limits; memory that came to its end, with files or without, is enough to look at what is there."""
