@@ -11,14 +11,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from semantics.agents import Code, Store, code_cell, host_cell, mailbox_cell, store_cell
-from semantics.cells import QUEUE
 from semantics.computation import Passage, Process, compute, enter_case
 from semantics.configuration import Configuration
 from semantics.eta import line_cell
 from semantics.expressions import Fault, Scope
 from semantics.provenance import NOTHING
 from semantics.requests import READY
-from semantics.setting import Scheduler, Setting
+from semantics.setting import Setting
 from semantics.signature import Name
 from semantics.statements import React, at_internal
 from semantics.successors import Expansion
@@ -79,8 +78,7 @@ class Visited:
 
     def meet(self, c: Configuration, a: Name) -> None:
         """Note a moment of an agent, unless its cells were met before."""
-        queue = line_cell(a) if c.setting.scheduler is not Scheduler.FCFS else QUEUE
-        cells = (code_cell(a), store_cell(a), mailbox_cell(a), queue, host_cell(a))
+        cells = (code_cell(a), store_cell(a), mailbox_cell(a), line_cell(a), host_cell(a))
         key = (a, *map(c.state.read, cells))
         if key not in self.known:
             self.known.add(key)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from semantics.cells import AGENTS, MONITOR, QUEUE, Cell, Cells, Changes
 from semantics.provenance import NOTHING, Provenance
-from semantics.requests import READY, SND, Request, request_key
+from semantics.requests import FLY, READY, SND, Request, request_key
 from semantics.setting import Scheduler
 from semantics.signature import Name
 
@@ -35,7 +35,9 @@ class Pending(NamedTuple):
 class Eta:
     """η over the cells of a configuration.
 
-    Under `program_order` each agent has a line, under `unordered` a multiset, under `fcfs` all share one queue.
+    Under `program_order` each agent has a line, under `unordered` a multiset. Under `fcfs` all share one queue for what
+    waits for its turn; what takes none (READY and FLY) stands in its agent's own line, since its place among others'
+    requests is nothing that anybody could tell.
     """
 
     __slots__ = ("cells", "setting")
@@ -49,10 +51,11 @@ class Eta:
         return tuple(each for cell in self._cells(agent) for each in self._at(cell, agent))
 
     def all(self) -> tuple[Pending, ...]:
-        """Return every pending request: the agents' in order of their names, under `fcfs` as asked."""
+        """Return every pending request: the agents' in order of their names; the queue of `fcfs` comes last, as asked."""
+        agents: tuple[Name, ...] = self.cells.read(AGENTS)
         if self.setting.scheduler is Scheduler.FCFS:
-            return tuple(self._at(QUEUE))
-        return tuple(each for agent in self.cells.read(AGENTS) for each in self.of(agent))
+            return tuple(each for cell in (*map(line_cell, agents), QUEUE) for each in self._at(cell))
+        return tuple(each for agent in agents for each in self.of(agent))
 
     def in_line(self, agent: Name) -> tuple[Pending, ...]:
         """Return the requests of an agent that may be served next (under `fcfs` apart from others' turns)."""
@@ -69,7 +72,7 @@ class Eta:
 
     def adding(self, request: Request, rests_on: Provenance = NOTHING) -> Changes:
         """Write η + request."""
-        cell = self._cells(request.agent)[-1 if isinstance(request, SND) else 0]
+        cell = self._cell(request)
         return self._write(cell, [*self._at(cell), Pending(request, cell, -1, rests_on)])
 
     def removing(self, pending: Pending) -> Changes:
@@ -78,18 +81,24 @@ class Eta:
         return self._write(pending.cell, line[: pending.position] + line[pending.position + 1 :])
 
     def replacing(self, pending: Pending, request: Request, rests_on: Provenance | None = None) -> Changes:
-        """Write η with another request in the place of one."""
-        line = list(self._at(pending.cell))
+        """Write η with another request in the place of one, or behind it in the line that the other one stands in."""
         kept = pending.rests_on if rests_on is None else rests_on
+        if self._cell(request) != pending.cell:
+            return self.removing(pending) | self.adding(request, kept)
+        line = list(self._at(pending.cell))
         line[pending.position] = Pending(request, pending.cell, pending.position, kept)
         return self._write(pending.cell, line)
 
     def _cells(self, agent: Name) -> tuple[Cell, ...]:
-        if self.setting.scheduler is Scheduler.FCFS:
-            return (QUEUE,)
-        if self.setting.scheduler is Scheduler.UNORDERED:
-            return (line_cell(agent),)
-        return (line_cell(agent), sends_cell(agent))
+        more = {Scheduler.FCFS: (QUEUE,), Scheduler.PROGRAM_ORDER: (sends_cell(agent),)}
+        return (line_cell(agent), *more.get(self.setting.scheduler, ()))
+
+    def _cell(self, request: Request) -> Cell:
+        """Return where a request stands."""
+        if self.setting.scheduler is Scheduler.FCFS and not isinstance(request, READY | FLY):
+            return QUEUE
+        is_message = self.setting.scheduler is Scheduler.PROGRAM_ORDER and isinstance(request, SND)
+        return sends_cell(request.agent) if is_message else line_cell(request.agent)
 
     def _at(self, cell: Cell, agent: Name | None = None) -> Iterator[Pending]:
         """Yield what stands in a cell, everybody's or one agent's."""

@@ -44,7 +44,7 @@ def starting(setting: Setting, a: Name, host: Name, process: Process) -> Changes
     """Write the cells of a new agent, but for its name among the agents."""
     process.unroll()
     store, rests_on = process.variables()
-    lines = [] if setting.scheduler is Scheduler.FCFS else [line_cell(a)]
+    lines = [line_cell(a)]
     lines += [sends_cell(a)] if setting.scheduler is Scheduler.PROGRAM_ORDER else []
     changes: Changes = {
         host_cell(a): host,

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 
+from semantics.cells import QUEUE
 from semantics.configuration import Configuration, Transition
 from semantics.environment import Clause
 from semantics.expressions import Fault
@@ -15,9 +16,6 @@ from semantics.signature import Name
 
 SERVING: frozenset[Rule] = frozenset({sense, actuate, command, commit, snd, migrate})
 """The rules that serve a pending request; the others are an agent's own next step."""
-
-TURNLESS = frozenset({"commit"})
-"""What is served under `fcfs` without waiting for a turn."""
 
 
 @cache
@@ -111,15 +109,16 @@ def expansion_of(
 
 def _in_turn(found: tuple[Transition, ...]) -> tuple[tuple[Transition, ...], tuple[Transition, ...]]:
     """Divide transitions into those whose turn it is under `fcfs` (the enabled request asked first), and the others."""
-    turns = [_turn(transition) for transition in found]
+    turns = [turn_of(transition) for transition in found]
     first = min((turn for turn in turns if turn is not None), default=None)
     allowed = tuple(t for t, turn in zip(found, turns, strict=True) if turn in (None, first))
     return allowed, tuple(t for t, turn in zip(found, turns, strict=True) if turn not in (None, first))
 
 
-def _turn(transition: Transition) -> int | None:
+def turn_of(transition: Transition) -> int | None:
+    """Return the place in the queue of `fcfs` of what a transition serves, None where it takes no turn."""
     served = transition.served
-    return None if served is None or transition.label.rule in TURNLESS else served.position
+    return served.position if served is not None and served.cell == QUEUE else None
 
 
 def successors(c: Configuration) -> tuple[Transition, ...]:

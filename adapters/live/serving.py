@@ -55,9 +55,7 @@ def served(c: Configuration, pending: Pending) -> tuple[Transition, ...]:
     """Return the transitions that serve a request where it stands."""
     rules = SERVING.get(type(pending.request), ())
     found = (transition for rule in rules for transition in rule(c, pending.request.agent))
-    return tuple(
-        dict.fromkeys(t for t in found if t.served is not None and t.served.position == pending.position)
-    )
+    return tuple(dict.fromkeys(t for t in found if t.served == pending))
 
 
 def flights(c: Configuration) -> Iterator[FLY]:

@@ -24,10 +24,10 @@ from semantics.monitor import marked
 from semantics.physical_model import Carried
 from semantics.queries import Fact, agent_key
 from semantics.requests import Received
-from semantics.setting import Scheduler, Setting
+from semantics.setting import Setting
 from semantics.signature import Name
 from semantics.statements import Migrate, Spawn
-from semantics.successors import TURNLESS, served
+from semantics.successors import served, turn_of
 
 Found = list[Transition | Fault]
 
@@ -224,7 +224,7 @@ class Learner:
             Step(
                 each.effect,
                 self._rule(each.step),
-                self._turn(each.step),
+                _turn(each.step),
                 self._alike(actor, key, keys, number),
             )
             for number, (key, each) in enumerate(zip(keys, concluded, strict=True), len(self.leaves.rule))
@@ -234,10 +234,6 @@ class Learner:
     def _rule(self, step: Transition) -> int:
         return self.rules.setdefault(step.label.rule, len(self.rules))
 
-    def _turn(self, step: Transition) -> int:
-        waits = self.setting.scheduler is Scheduler.FCFS and step.label.rule not in TURNLESS
-        return step.served.position if waits and step.served is not None else NO_TURN
-
     def _alike(self, actor: Actor, key: Hashable, beside: list[Hashable], number: int) -> int:
         """Number a label that two transitions of one configuration may have: of one leaf, or of two clauses."""
         known = self.labels.setdefault(key, Known(len(self.labels), actor))
@@ -246,6 +242,11 @@ class Learner:
                 self.leaves.steps.room[STEP * other + ALIKE] = known.number
         known.steps.append(number)
         return known.number if known.first != actor or beside.count(key) > 1 else UNLIKE
+
+
+def _turn(step: Transition) -> int:
+    turn = turn_of(step)
+    return NO_TURN if turn is None else turn
 
 
 def _key(step: Transition) -> Hashable:

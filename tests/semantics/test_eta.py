@@ -58,6 +58,19 @@ def test_in_line_are_the_first_request_and_all_messages(asked):
         )
 
 
-def test_fcfs_keeps_all_requests_in_the_order_asked():
+def test_fcfs_keeps_all_that_wait_for_their_turn_in_the_order_asked():
     asked = [SND("b", "a", "x"), OBS("a", All()), MGR("b", "u0"), SND("a", "b", "y")]
     assert [each.request for each in pending(Scheduler.FCFS, asked).eta.all()] == asked
+
+
+def test_what_takes_no_turn_has_no_place_in_the_queue():
+    ready = READY("a", All(), Observation.of())
+    asked = [OBS("a", All()), OBS("b", All())]
+    c = pending(Scheduler.FCFS, asked)
+    orders = [
+        c.with_(c.eta.replacing(c.eta.in_line("a")[0], ready)),
+        pending(Scheduler.FCFS, [asked[1], ready]),
+    ]
+    assert orders[0] == orders[1]
+    assert orders[0].read(("queue",)) == (asked[1],)
+    assert [each.request for each in orders[0].eta.ready("a")] == [ready]

@@ -3,20 +3,22 @@
 import os
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from small_missions import explore, figure_2, mission, move_to
+from small_missions import explore, figure_2, is_in, mission, move_to, received
 
 from semantics import strategies
-from semantics.configuration import Configuration
-from semantics.expressions import Fault, Literal, QueryOf
+from semantics.cells import QUEUE
+from semantics.configuration import Configuration, Transition
+from semantics.expressions import Apply, Fault, Literal, QueryOf
 from semantics.patterns import Anything
-from semantics.requests import READY
+from semantics.requests import FLY, READY, Request
 from semantics.setting import Control, Scheduler
-from semantics.statements import Case, Migrate, Observe, React, Send
+from semantics.statements import Case, If, Migrate, Observe, React, Send
 from semantics.successors import successors
 
 
@@ -150,7 +152,7 @@ def transitions_of(c: Configuration, scheduler: Scheduler) -> set[tuple[object, 
 def under(c: Configuration, scheduler: Scheduler) -> Configuration:
     """Return a first configuration under another scheduler: its lines are empty."""
     cells = {cell: value for cell, value in c.state.items() if cell[0] not in ("line", "sends", "queue")}
-    for agent in c.alpha.names() if scheduler is not Scheduler.FCFS else ():
+    for agent in c.alpha.names():
         cells["line", agent] = ()
         cells |= {("sends", agent): ()} if scheduler is Scheduler.PROGRAM_ORDER else {}
     cells |= {("queue",): ()} if scheduler is Scheduler.FCFS else {}
@@ -180,6 +182,62 @@ def test_each_scheduler_refines_the_one_before(c, control):
     unordered, ordered, served_in_turn = (transitions_of(timed, scheduler) for scheduler in Scheduler)
     assert ordered <= unordered
     assert served_in_turn <= ordered
+
+
+def queued(c: Configuration) -> set[tuple[object, tuple[Request, ...]]]:
+    """Return what is reachable under fcfs by its definition: program_order, and a queue of what waits for its turn."""
+    first = (under(c, Scheduler.PROGRAM_ORDER), ())
+    seen, frontier = {first}, [first]
+    while frontier:
+        at, queue = frontier.pop()
+        allowed = successors(at)
+        turns = [queue.index(t.served.request) for t in allowed if t.served and t.label.rule != "commit"]
+        for t in allowed:
+            waits = t.served is not None and t.label.rule != "commit"
+            if waits and queue.index(t.served.request) != min(turns):
+                continue
+            after = (t.target, queue_after(queue, t))
+            if after not in seen:
+                seen.add(after)
+                frontier.append(after)
+    return {(projected(at), queue) for at, queue in seen}
+
+
+def queue_after(queue: tuple[Request, ...], t: Transition) -> tuple[Request, ...]:
+    if t.label.rule.startswith("req_"):
+        asked = Counter(each.request for each in t.target.eta.all())
+        asked.subtract(each for each in queue)
+        (fresh,) = (each for each, count in asked.items() if count > 0 and not isinstance(each, READY | FLY))
+        return (*queue, fresh)
+    if t.served is None or t.label.rule == "commit":
+        return queue
+    at = queue.index(t.served.request)
+    return queue[:at] + queue[at + 1 :]
+
+
+@settings(max_examples=25)
+@given(short_missions(), st.sampled_from(Control))
+def test_fcfs_tells_no_two_configurations_apart_but_by_the_order_of_what_waits(c, control):
+    timed = Configuration(c.setting.with_(control=control), c.state)
+    found = explore(under(timed, Scheduler.FCFS), 3_000).configurations
+    seen = {(projected(each), each.read(QUEUE)) for each in found}
+    assert seen == queued(timed)
+    assert len(seen) == len(found)
+
+
+@pytest.mark.parametrize(("control", "expected"), [(Control.ATOMIC, (59, 88)), (Control.TIMED, (74, 116))])
+def test_two_uavs_that_look_before_they_enter_have_the_known_counts_under_fcfs(control, expected):
+    statements = [Observe(QueryOf("CHILDREN", QueryOf(None, Literal("area"))))]
+    for other in ("u1", "u0"):
+        at = len(statements)
+        statements += [
+            received("o", at + 1),
+            If(Apply("not", (is_in(other, "o"),)), (at + 2,)),
+            move_to("area"),
+        ]
+    agents = {"a": ("u0", (0, 1)), "b": ("u1", (0, 4))}
+    names = ["area", "base", "sea", "u0", "u1"]
+    assert counts(mission(names, statements, agents, scheduler=Scheduler.FCFS, control=control)) == expected
 
 
 def test_program_order_serves_an_agents_requests_as_asked_and_unordered_does_not():
