@@ -59,6 +59,7 @@ def test_what_was_cut_off_is_no_success(bigactors, bound):
     assert "\n  stopped at the " in out
     assert "\n  ? deadlock_freedom  incomplete" in out
     assert "✓ deadlock_freedom" not in out
+    assert "\n  rules not used so far: req_ctr, " in out
 
 
 @pytest.mark.usefixtures("missions")

@@ -89,7 +89,16 @@ TRACES = ("--trace", "run.json", "--against", "run.json")
 @pytest.mark.parametrize(
     "line",
     [
-        ("check", "with_file.mission", "--verdict", "v.json", "--control", "timed", "--output", "sarif:x.sarif"),
+        (
+            "check",
+            "with_file.mission",
+            "--verdict",
+            "v.json",
+            "--control",
+            "timed",
+            "--output",
+            "sarif:x.sarif",
+        ),
         ("simulate", "with_file.mission"),
         ("replay", "run.json"),
         ("show", *TRACES),
