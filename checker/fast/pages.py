@@ -51,14 +51,16 @@ class Pages:
         """Make room for so many in all.
 
         Raises:
-            OSError: There is no room for them in the file.
+            OSError: There is no room for them in the file, or in memory; what there was stands.
         """
         if count > len(self.room):
             if self._file is not None:
                 reserve(self._file, self._bytes(count))
             self.room = np.zeros(0, self._kind)  # the pages can't move while an array stands on them
-            self._resize(count)
-            self.room = np.frombuffer(self._pages, self._kind)
+            try:
+                self._resize(count)
+            finally:
+                self.room = np.frombuffer(self._pages, self._kind)
 
     def _resize(self, count: int) -> None:
         if self._file is not None:
