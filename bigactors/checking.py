@@ -20,6 +20,7 @@ from checker import (
     EngineError,
     Keeping,
     Limits,
+    MachineError,
     Reduction,
     RefusedError,
     Report,
@@ -32,6 +33,16 @@ from specs.elaboration import ElaboratedMission, Variation
 
 FAILURE_SCHEMA = "bigactors.failure/1"
 REPORTS_SCHEMA = "bigactors.reports/1"
+
+REFUSALS = {
+    CheckpointError: (Exit.MISTAKE, "leave --resume out to begin anew"),
+    EngineError: (Exit.MISTAKE, "leave --engine out"),
+    ClusterError: (Exit.MISTAKE, "leave --engine ray out to check it in one process"),
+    RefusedError: (Exit.MISTAKE, "check it without, or with the other reduction alone"),
+    MachineError: (Exit.INCOMPLETE, "try again when less else runs here, or leave --engine out"),
+    MemoryError: (Exit.INCOMPLETE, "explore less: --max-memory SIZE, --max-configurations N"),
+}
+"""Why a mission is not explored as it was asked for: the exit code, and what to do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +75,7 @@ class Checked:
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """A mission that could not be checked: a mistake in it (2), our bug (4), or never begun (3)."""
+    """A mission that could not be checked: a mistake in it (2), our bug (4), or it was not begun (3)."""
 
     name: str
     exit: Exit
@@ -119,22 +130,11 @@ def check_mission(
                 cluster=how.cluster,
             )
         return Checked(name, mission, digest_of(mission), report, watch.interrupted)
-    except CheckpointError as refused:
-        mistake = Mistake(str(refused), "leave --resume out to begin anew", name)
+    except tuple(REFUSALS) as refused:
+        code, hint = next(said for kind, said in REFUSALS.items() if isinstance(refused, kind))
+        mistake = Mistake(str(refused) or "there is not enough memory", hint, name)
         tell(str(mistake))
-        return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
-    except EngineError as refused:
-        mistake = Mistake(str(refused), "leave --engine out", name)
-        tell(str(mistake))
-        return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
-    except ClusterError as refused:
-        mistake = Mistake(str(refused), "leave --engine ray out to check it in one process", name)
-        tell(str(mistake))
-        return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
-    except RefusedError as refused:
-        mistake = Mistake(str(refused), "check it without, or with the other reduction alone", name)
-        tell(str(mistake))
-        return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
+        return Failed(name, code, mistake.message, mistake.details)
     except Mistake as mistake:
         tell(str(mistake))
         return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)

@@ -2,6 +2,8 @@
 
 import hashlib
 from argparse import Namespace
+from collections.abc import Callable
+from functools import cache, partial
 from importlib.resources import files as resources
 from pathlib import Path
 
@@ -58,6 +60,11 @@ def open_mission(word: str, variation: Variation) -> ElaboratedMission:
         return load_mission(locate(word), variation)
     except MissionError as error:
         raise as_mistake(error) from error
+
+
+def opening(variation: Variation) -> Callable[[str], ElaboratedMission]:
+    """Return what opens missions as `open_mission` does, each of them once, however often it is asked for."""
+    return cache(partial(open_mission, variation=variation))
 
 
 def as_mistake(error: MissionError) -> Mistake:

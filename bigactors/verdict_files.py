@@ -11,12 +11,12 @@ from typing import Any
 from bigactors import __version__
 from bigactors.checking import Checked
 from bigactors.files import read_json
-from bigactors.missions import digest_of, open_mission
+from bigactors.missions import digest_of
 from bigactors.mistakes import Mistake
 from semantics.canonical import digest
 from semantics.physical_model import placement_cell
 from semantics.setting import Control, Scheduler
-from specs.elaboration import ElaboratedMission, Variation
+from specs.elaboration import ElaboratedMission
 
 SCHEMA = "bigactors.verdict/1"
 """The version of the schema of verdict files (docs/verdict.md)."""
@@ -112,12 +112,14 @@ def find_verdict(mission: str, given: str | None) -> str | None:
     return None
 
 
-def licence_for(name: str, path: str, variation: Variation) -> Licence:
-    """Return the verdict of a file as the right to run a mission; raises Mistake with what stands against it."""
+def licence_for(name: str, path: str, mission: ElaboratedMission) -> Licence:
+    """Return the verdict of a file as the right to run a mission; raises Mistake with what stands against it.
+
+    The mission is the one that is to be flown, as it was read: a file that was swapped since changes nothing.
+    """
     data = read_json(path)
     scheduler = _scheduler_of(data, path)
-    mission = open_mission(name, Variation(scheduler, Control.TIMED, variation.sources))
-    differing = _differing(data, mission)
+    differing = _differing(data, mission.under(scheduler, Control.TIMED))
     if differing:
         raise Mistake(f"the verdict is of another mission: {differing}", _hint(name, path), path)
     if data.get("holds") is not True or data.get("complete") is not True:

@@ -12,6 +12,7 @@ from checker.exploration import (
     EngineError,
     Exploration,
     Keeping,
+    MachineError,
     Progress,
     explore,
 )
@@ -31,6 +32,7 @@ __all__ = [
     "Exploration",
     "Keeping",
     "Limits",
+    "MachineError",
     "Outcome",
     "Progress",
     "Reduction",

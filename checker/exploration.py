@@ -27,6 +27,10 @@ class EngineError(Exception):
     """An engine that isn't installed, or that can't explore a mission."""
 
 
+class MachineError(Exception):
+    """What the machine does not give: workers that start in time and stay, room for an engine. Nothing is decided."""
+
+
 class CheckpointError(Exception):
     """A checkpoint that can't be read, or that is of something else."""
 

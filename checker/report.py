@@ -73,9 +73,11 @@ def _sizes(verdict: Verdict) -> Iterator[str]:
         if verdict.violations and verdict.property.kind not in OF_RUNS:
             yield _found(verdict)
     elif verdict.witness is not None and verdict.examined:
-        yield f"examined {verdict.examined:,}{_unit(verdict)}, a witness of {_steps(len(verdict.witness))}"
+        yield f"{_examined(verdict)}, a witness of {_steps(len(verdict.witness))}"
     elif verdict.outcome is Outcome.INCOMPLETE:
         yield "not found so far" if verdict.property.kind == "reachable" else "nothing against it so far"
+    elif verdict.examined and verdict.property.kind not in OF_RUNS:
+        yield _examined(verdict)  # no witness was looked for: that is not to say that nothing was examined
     elif verdict.property.kind in NOTHING_EXAMINED:
         yield NOTHING_EXAMINED[verdict.property.kind]
 
@@ -92,9 +94,9 @@ def _found(verdict: Verdict) -> str:
     return f"{times}, {verdict.different:,} different, of which {shown} are shown"
 
 
-def _unit(verdict: Verdict) -> str:
+def _examined(verdict: Verdict) -> str:
     one, many = UNITS.get(verdict.property.kind, ("", ""))
-    return one if verdict.examined == 1 else many
+    return f"examined {verdict.examined:,}{one if verdict.examined == 1 else many}"
 
 
 def _steps(count: int) -> str:

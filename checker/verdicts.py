@@ -46,7 +46,7 @@ class Verdict:
         violations: One for each kind and subject, the shortest trace first, as far as they are shown.
         count: How often a violation was met, in whichever configuration.
         examined: How many things the property was about were found good; 0 makes a verdict vacuous.
-        witness: A trace to one of them, where something holds.
+        witness: A trace to one of them, where something holds; None also where none was looked for.
         note: How it was decided, or what else is to be known.
         different: How many kinds and subjects of violations there were, shown or not.
         remarks: What makes a verdict that holds say less than it seems to.

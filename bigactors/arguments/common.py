@@ -10,7 +10,7 @@ exit codes:
   0  every property holds
   1  a property is violated; a trace does not replay; a file would be formatted
   2  a mistake in the input
-  3  incomplete: a bound was reached, nothing is decided beyond it
+  3  incomplete: a bound was reached or the machine failed, nothing is decided beyond it
   4  a bug of bigactors
 
 Of several missions the gravest counts: 4, then 2, 1, 3, 0."""

@@ -68,7 +68,8 @@ def full(options: Namespace) -> Exit:
         for predicate, holds in zip(found.system.predicates, found.labels, strict=True):
             say(f"  {predicate.label} occurs in {sum(holds):,}")
         if idle := found.rules_never_used():
-            say(f"  rules never used: {', '.join(idle)}")
+            when = "never used" if found.complete else "not used so far"
+            say(f"  rules {when}: {', '.join(idle)}")
     for path in write_outputs(options, found):
         tell(f"  written: {path}")
     return Exit.HOLDS if found.complete else Exit.INCOMPLETE

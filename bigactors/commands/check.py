@@ -139,7 +139,8 @@ def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
         if rule.__name__ not in report.rules
     ]
     if silent:
-        yield f"  rules never used: {', '.join(silent)}"
+        when = "never used" if report.complete and not report.reduced else "not used so far"
+        yield f"  rules {when}: {', '.join(silent)}"
     if report.coverage is not None:
         yield from coverage_text(result.name, report.coverage, result.mission.source.text)
 

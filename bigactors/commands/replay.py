@@ -3,7 +3,8 @@
 import sys
 import time
 from argparse import Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from textwrap import indent
 from typing import Any
@@ -12,7 +13,7 @@ from adapters.recording.reading import Recording, is_recording
 from bigactors.exits import Exit
 from bigactors.files import read_bytes, read_json
 from bigactors.foreign import TELEMETRY, Shown, watched
-from bigactors.missions import digest_of, open_mission, shipped_missions, variation_of
+from bigactors.missions import digest_of, opening, shipped_missions, variation_of
 from bigactors.mistakes import Mistake
 from bigactors.recordings import mission_of, open_recording, trace_of
 from bigactors.routes import write_route
@@ -22,7 +23,19 @@ from checker import ReplayError, Trace, print_loop, print_trace, replay
 from semantics.abstraction import as_it_is
 from semantics.monitor import monitored
 from semantics.printing import print_configuration
-from specs.elaboration import ElaboratedMission, Variation
+from specs.elaboration import ElaboratedMission
+
+Open = Callable[[str], ElaboratedMission]
+"""Returns a mission by its path or name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Replayed:
+    """A trace, replayed, with the mission that it is of and the recording that it was read from, if it was one."""
+
+    mission: ElaboratedMission
+    trace: Trace
+    recording: Recording | None = None
 
 
 def run(options: Namespace) -> Exit:
@@ -30,11 +43,11 @@ def run(options: Namespace) -> Exit:
     if is_foreign(options.trace):
         return show_foreign(options)
     try:
-        mission, trace = read_trace(options.trace, options.mission, variation_of(options))
+        found = read_trace(options.trace, options.mission, opening(variation_of(options)))
     except ReplayError as error:
         tell(f"{options.trace}: {error}")
         return Exit.VIOLATED
-    recording = open_recording(options.trace) if is_recording(options.trace) else None
+    trace, recording = found.trace, found.recording
     if recording is not None:
         _introduce(recording)
     times = () if recording is None else tuple(message.time for message in recording.of("steps"))
@@ -42,7 +55,7 @@ def run(options: Namespace) -> Exit:
         say(line)
     say(f"c{len(trace)} = {print_configuration(trace.configurations[-1])}")
     again = f", and {print_loop(trace)}" if trace.loop is not None else ""
-    say(f"{options.trace}: {len(trace)} steps replayed on {mission.name}{again}")
+    say(f"{options.trace}: {len(trace)} steps replayed on {found.mission.name}{again}")
     for vehicle, path in options.waypoints:
         tell(f"{write_route(trace, vehicle, path)} waypoints of {vehicle} written to {path}")
     return Exit.HOLDS
@@ -60,7 +73,7 @@ def show_foreign(options: Namespace) -> Exit:
         raise Mistake(
             "nothing is sent anywhere in a recording of others", "leave out --waypoints", options.trace
         )
-    _, shown = _watched(options.trace, options.mission, variation_of(options), dict(options.name))
+    _, shown = _watched(options.trace, options.mission, opening(variation_of(options)), dict(options.name))
     for line in paced(shown.trace, shown.times, options.speed, stepwise=options.step):
         say(line)
     for finding in shown.findings:
@@ -72,19 +85,19 @@ def show_foreign(options: Namespace) -> Exit:
 
 
 def _watched(
-    path: str, mission_file: str | None, variation: Variation, names: dict[str, str]
+    path: str, mission_file: str | None, open_mission: Open, names: dict[str, str]
 ) -> tuple[ElaboratedMission, Shown]:
     if mission_file is None:
         hint = "say in which mission's places it is to be seen: replay --mission FILE, show FILE"
         raise Mistake("this is no trace of ours", hint, path)
-    mission = open_mission(mission_file, variation)
+    mission = open_mission(mission_file)
     return mission, watched(path, mission, names)
 
 
 def read_trace(
-    path: str, mission_file: str | None, variation: Variation, names: dict[str, str] | None = None
-) -> tuple[ElaboratedMission, Trace]:
-    """Return the mission of a trace or recording and the trace, replayed; warn where it was written of another mission.
+    path: str, mission_file: str | None, open_mission: Open, names: dict[str, str] | None = None
+) -> Replayed:
+    """Return the trace in a file, replayed on its mission; warn where it was written of another mission.
 
     Of a recording of others it is what it shows of the mission's world; `names` is what the mission calls whom in it.
 
@@ -93,30 +106,28 @@ def read_trace(
         ReplayError: The mission does not allow it.
     """
     if is_recording(path):
-        return _read_recording(path, mission_file, variation)
+        return _read_recording(path, mission_file, open_mission)
     if is_foreign(path):
-        mission, shown = _watched(path, mission_file, variation, names or {})
-        return mission, shown.trace
+        mission, shown = _watched(path, mission_file, open_mission, names or {})
+        return Replayed(mission, shown.trace)
     data = read_json(path)
     named = data.get("mission") if isinstance(data, dict) else None
     if mission_file is None and not isinstance(named, str):
         raise Mistake("the file says no mission: it is no trace", "give the mission with --mission", path)
-    mission = open_mission(mission_file or _beside(path, str(named)), variation)
+    mission = open_mission(mission_file or _beside(path, str(named)))
     _warn_of_another(path, data, mission, mission_file or str(named))
     try:
         start = monitored(mission.initial) if data.get("monitored") is True else mission.initial
-        return mission, replay(start, data)
+        return Replayed(mission, replay(start, data))
     except ValueError as error:
         raise Mistake(str(error), place=path) from error
 
 
-def _read_recording(
-    path: str, mission_file: str | None, variation: Variation
-) -> tuple[ElaboratedMission, Trace]:
+def _read_recording(path: str, mission_file: str | None, open_mission: Open) -> Replayed:
     recording = open_recording(path)
-    mission = mission_of(recording) if mission_file is None else open_mission(mission_file, variation)
+    mission = mission_of(recording) if mission_file is None else open_mission(mission_file)
     _warn_of_another(path, recording.run, mission, mission_file or str(recording.run["mission"]))
-    return mission, trace_of(recording, mission)
+    return Replayed(mission, trace_of(recording, mission), recording)
 
 
 def _introduce(recording: Recording) -> None:

@@ -91,7 +91,7 @@ def prepare(options: Namespace) -> Flight:
     sources = {name: Path(file) for name, file in options.source}
     live = Variation(Scheduler.FCFS, Control.TIMED, sources)
     mission = open_mission(options.file, live)
-    licence = _licence(options, live)
+    licence = _licence(options, mission)
     log = None if options.record is None else Log(Path(options.record).with_suffix(".tlog"))
     plugins, owners = plugins_of(options, mission, log)
     check_flyable(mission)
@@ -107,7 +107,7 @@ def prepare(options: Namespace) -> Flight:
     return Flight(options, mission, licence, plan, state, plugins, before, log, company)
 
 
-def _licence(options: Namespace, live: Variation) -> Licence | None:
+def _licence(options: Namespace, mission: ElaboratedMission) -> Licence | None:
     name = options.file
     path = find_verdict(str(locate(name)), options.verdict)
     if options.unverified:
@@ -117,7 +117,7 @@ def _licence(options: Namespace, live: Variation) -> Licence | None:
     if path is None:
         hint = f"bigactors check --control timed --verdict {Path(name).stem}.verdict.json {name}, or --unverified"
         raise Mistake("there is no verdict that this mission holds", hint, name)
-    return licence_for(name, path, live)
+    return licence_for(name, path, mission)
 
 
 @contextmanager

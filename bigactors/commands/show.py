@@ -8,7 +8,7 @@ from bigactors.commands.replay import read_trace
 from bigactors.drawings import draw, draw_lanes, write_page
 from bigactors.exits import Exit
 from bigactors.files import file_stem
-from bigactors.missions import open_mission, variation_of
+from bigactors.missions import open_mission, opening, variation_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
 from checker import ReplayError, Trace, print_loop
@@ -42,9 +42,9 @@ def _compare(options: Namespace) -> Exit:
     """Print where two traces part, and what differs after that."""
     if options.trace is None:
         raise Mistake("--against is for two traces", "give the other one with --trace")
-    variation, names = variation_of(options), dict(options.name)
+    opened, names = opening(variation_of(options)), dict(options.name)
     both = (options.trace, options.against)
-    one, other = (read_trace(path, options.file, variation, names)[1] for path in both)
+    one, other = (read_trace(path, options.file, opened, names).trace for path in both)
     for line in comparison_text(one, other, (options.trace, options.against)):
         say(line)
     return Exit.HOLDS
@@ -96,7 +96,8 @@ def _chosen(options: Namespace) -> tuple[str, Trace, int]:
             raise Mistake(f"{word} a trace", "give the trace with --trace")
         mission = open_mission(options.file, variation_of(options))
         return mission.name, Trace(mission.initial), 0
-    mission, trace = read_trace(options.trace, options.file, variation_of(options), dict(options.name))
+    found = read_trace(options.trace, options.file, opening(variation_of(options)), dict(options.name))
+    trace = found.trace
     step = len(trace) if options.step is None else options.step
     if step > len(trace):
         raise Mistake(
@@ -104,4 +105,4 @@ def _chosen(options: Namespace) -> tuple[str, Trace, int]:
             f"give --step 0 to {len(trace)}",
             options.trace,
         )
-    return mission.name, trace, step
+    return found.mission.name, trace, step

@@ -8,7 +8,7 @@ class LostError(Exception):
 
 
 class ClusterError(Exception):
-    """Workers can't be had, or are lost again and again."""
+    """A cluster that can't be worked with as it is asked for: not installed, not there, of another version."""
 
 
 class Crew(Protocol):
@@ -34,5 +34,6 @@ class Crew(Protocol):
         """Start anew those who died.
 
         Raises:
-            ClusterError: It can't be done, or was done too often.
+            ClusterError: They run something else.
+            MachineError: They can't be started.
         """

@@ -10,13 +10,21 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
-from checker.cluster.crew import ClusterError, Crew, LostError
+from checker.cluster.crew import Crew, LostError
 from checker.cluster.found import Configurations, Found, Origins, Survey, look_at_each
 from checker.cluster.keeping import Latest, read_latest, write_latest
 from checker.cluster.merging import is_mergeable, merge
 from checker.cluster.placing import Places
 from checker.cluster.share import Standing
-from checker.exploration import CheckpointError, Exploration, Inspect, Keeping, Progress, Report
+from checker.exploration import (
+    CheckpointError,
+    Exploration,
+    Inspect,
+    Keeping,
+    MachineError,
+    Progress,
+    Report,
+)
 from checker.limits import INTERRUPTION, Limits, crowd_met, limit_met, memory_met, time_met
 from semantics.configuration import Configuration
 
@@ -128,7 +136,7 @@ class Expedition:
                 self.losses += 1
                 if self.losses > MOST_LOSSES:
                     often = f"workers were lost {self.losses} times without a checkpoint between"
-                    raise ClusterError(f"{often}: {lost}") from lost
+                    raise MachineError(f"{often}: {lost}") from lost
 
     def met(self) -> list[str]:
         """Return the bounds that left something out."""
@@ -161,7 +169,7 @@ class Expedition:
     def begin(self) -> None:
         """Begin, or go back to the last checkpoint."""
         if self.bounds and not self.is_kept:
-            raise ClusterError("a worker was lost when a bound was met, and where they were was not kept")
+            raise MachineError("a worker was lost when a bound was met, and where they were was not kept")
         self.crew.revive()
         if self.latest is None:
             self.layer, self.standings = 0, self.crew.every("start")

@@ -22,7 +22,15 @@ from checker.cluster.crew import ClusterError, LostError
 from checker.cluster.explorer import Expedition
 from checker.cluster.parcels import WORKERS_AT_MOST
 from checker.cluster.worker import Worker
-from checker.exploration import CheckpointError, Cluster, Exploration, Inspect, Keeping, Report
+from checker.exploration import (
+    CheckpointError,
+    Cluster,
+    Exploration,
+    Inspect,
+    Keeping,
+    MachineError,
+    Report,
+)
 from checker.limits import Limits
 from semantics.configuration import Configuration
 
@@ -140,7 +148,8 @@ class RayCrew:
         """Wait until all actors are there, and let them join anew.
 
         Raises:
-            ClusterError: Some are not, or run something else.
+            ClusterError: Some run something else.
+            MachineError: Some are not there in time.
         """
         self.revived += 1
         deadline = time.monotonic() + PATIENCE
@@ -160,10 +169,10 @@ class RayCrew:
                 joined: str = self.ray.get(reference, timeout=max(0.0, deadline - time.monotonic()))
                 return joined
             except errors.ActorUnschedulableError as error:
-                raise ClusterError(f"worker {worker} can't be placed: {error}") from error
+                raise MachineError(f"worker {worker} can't be placed: {error}") from error
             except (errors.RayActorError, errors.GetTimeoutError) as error:
                 if isinstance(error, errors.GetTimeoutError) or time.monotonic() > deadline:
-                    raise ClusterError(
+                    raise MachineError(
                         f"worker {worker} could not be started within {PATIENCE:g} s: {error}"
                     ) from error
                 time.sleep(0.1)
@@ -194,6 +203,7 @@ def connect(cluster: Cluster) -> None:
 
     Raises:
         ClusterError: There is none at the address, or Ray is not installed.
+        MachineError: None could be started here.
     """
     if _is_here(cluster.address):
         os.environ["RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER"] = "0"  # so it listens on the loopback address alone
@@ -208,9 +218,10 @@ def connect(cluster: Cluster) -> None:
             ray.init(num_cpus=cluster.workers, object_store_memory=STORE, **quiet)
         else:
             ray.init(address=cluster.address, log_to_driver=False, logging_level="error")
-    except (ConnectionError, ValueError, RuntimeError, OSError, TimeoutError) as error:
-        where = cluster.address or "here"
-        raise ClusterError(f"there is no Ray cluster at {where}: {error}") from error
+    except Exception as error:  # Ray raises plain ones where it is not up in time
+        if cluster.address is None:
+            raise MachineError(f"no Ray cluster could be started here: {error}") from error
+        raise ClusterError(f"there is no Ray cluster at {cluster.address}: {error}") from error
     if cluster.address is None and not ray.util.get_node_ip_address().startswith("127."):
         ray.shutdown()
         raise ClusterError("Ray was loaded before and would listen to others: let the checker load it")
@@ -245,7 +256,8 @@ def explore_with_ray(  # noqa: PLR0913, PLR0917  # as `explore`
     Where no folder is named for checkpoints, a cluster of one's own keeps them in a temporary one.
 
     Raises:
-        ClusterError: There is no cluster, or workers are lost again and again.
+        ClusterError: There is no cluster, or it can't be worked with as it is asked for.
+        MachineError: It does not start, or workers are lost again and again.
         CheckpointError: There is none to go on from, or it is of something else.
     """
     if not 2 <= cluster.workers <= WORKERS_AT_MOST:

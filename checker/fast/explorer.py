@@ -1,5 +1,6 @@
 """Explore with learned trees, up to the same bounds as the reference explorer."""
 
+import errno
 import math
 import time
 from collections.abc import Sequence
@@ -173,8 +174,8 @@ class _Explorer:
             self.visit_all(began)
         except BoundMet as bound:
             self.bounds.append(str(bound))
-        except OSError as error:
-            self.bounds.append(self.room_met(error))
+        except (OSError, MemoryError) as error:
+            self.bounds.append(self.end_of_room(error))
         except KeyboardInterrupt:
             self.bounds.append(INTERRUPTION)
 
@@ -185,11 +186,13 @@ class _Explorer:
             inspect_fast(survey, inspect)
         except BoundMet as bound:
             self.bounds.append(f"{bound}, in looking at what was explored")
-        except OSError as error:
-            self.bounds.append(f"{self.room_met(error)}, in looking at what was explored")
+        except (OSError, MemoryError) as error:
+            self.bounds.append(f"{self.end_of_room(error)}, in looking at what was explored")
 
-    def room_met(self, error: OSError) -> str:
-        """Return what the report says where there was no room for more rows."""
+    def end_of_room(self, error: OSError | MemoryError) -> str:
+        """Return which room has come to its end: the memory that the system gives, or that in files."""
+        if isinstance(error, MemoryError) or error.errno == errno.ENOMEM:
+            return "the end of the memory that there is"
         return f"the end of the room in {self.limits.spill or 'memory'}: {error.strerror}"
 
     def limits_of_looking(self) -> Limits:

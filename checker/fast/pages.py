@@ -51,7 +51,7 @@ class Pages:
         """Make room for so many in all.
 
         Raises:
-            OSError: There is no room for them in the file.
+            OSError: There is no room for them in the file, or in memory; what there was stands.
         """
         if count > len(self.room):
             if self._file is not None:

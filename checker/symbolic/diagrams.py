@@ -3,17 +3,21 @@
 Bits come in pairs: one for what a configuration holds, and one, its *next*, for what it holds after a step.
 """
 
+import mmap
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from checker.exploration import EngineError
+from checker.exploration import EngineError, MachineError
 
 CACHE = 1 << 21
 """Results that are remembered; 20 bytes each, taken at once."""
 
 NODES, NODE = 1 << 28, 32
 """The most nodes of a diagram, unless memory is limited; the bytes that are reckoned for one."""
+
+ROOM = 16
+"""Bytes of address space that are taken for each of them at once."""
 
 LITTER = 1 << 21
 """Nodes that are met before any are thrown away."""
@@ -51,6 +55,7 @@ class Diagrams:
         except ImportError as error:
             raise EngineError("the symbolic engine needs oxidd: pip install 'bigactors[symbolic]'") from error
         nodes = NODES if memory is None else max(LITTER, min(NODES, memory // NODE))
+        _check_room(ROOM * nodes)
         self._manager = bcdd.BCDDManager(nodes, CACHE, 1)
         self._renaming = bcdd.BCDDFunction.make_substitution
         self._and = BooleanOperator.AND
@@ -116,3 +121,14 @@ class Diagrams:
         if self._manager.approx_num_inner_nodes() > self._litter:
             self._manager.gc()
             self._litter = max(LITTER, 2 * int(self._manager.approx_num_inner_nodes()))
+
+
+def _check_room(size: int) -> None:
+    """Refuse where there is no such address space: oxidd would end the process."""
+    try:
+        mmap.mmap(-1, size, mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS).close()
+    except OSError as error:
+        raise MachineError(
+            f"decision diagrams take {size / 1e9:.1f} GB of address space at once, and there is not so much: give them "
+            f"less by --max-memory ({error.strerror})"
+        ) from error

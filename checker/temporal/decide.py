@@ -141,7 +141,8 @@ class Decider:
         violations = sorted(map(self.violation, starved), key=lambda violation: len(violation.trace))
         outcome = Outcome.VIOLATED if violations else self.unless_violated()
         witness = progress.served() if outcome is Outcome.HOLDS else None
-        empty = () if pending else ("vacuous: nothing is ever requested",)
+        nothing = self.found.complete and not pending
+        empty = ("vacuous: nothing is ever requested",) if nothing else ()
         return Verdict(
             asked,
             outcome,
@@ -180,8 +181,8 @@ class Decider:
         return f"under {' and '.join(assumed)}" if assumed else ""
 
     def empty(self, declared: tuple[Fairness, ...]) -> Iterator[str]:
-        """Yield what of it is about nothing."""
-        for each in declared:
+        """Yield what of it is about nothing; what was not explored may have it."""
+        for each in declared if self.found.complete else ():
             if not any(True for _ in classes(each, self.graph.labels, self.setting.arriving)):
                 yield f"{each} is about no step that ever is"
 

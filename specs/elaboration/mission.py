@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -11,7 +12,7 @@ from semantics.configuration import Configuration
 from semantics.initial import initial
 from semantics.precautions import Precautions
 from semantics.propositions import Property
-from semantics.setting import Setting
+from semantics.setting import Control, Scheduler, Setting
 from semantics.signature import Name
 from specs import syntax as s
 from specs.codes import Code
@@ -48,6 +49,7 @@ class ElaboratedMission:
         fixed: Entities whose place neither agents nor the environment can ever change.
         spans: Where each name is declared, by sort (entity, kind, channel, agent, rule, behaviour) and name.
         precautions: What is done when a live run goes otherwise.
+        begin: Makes the first configuration under a setting, of the world as it was read.
     """
 
     name: str
@@ -58,7 +60,13 @@ class ElaboratedMission:
     notes: tuple[str, ...]
     fixed: frozenset[Name]
     spans: Mapping[tuple[str, str], s.Span]
-    precautions: Precautions = field(default_factory=Precautions)
+    precautions: Precautions
+    begin: Callable[[Setting], Configuration] = field(repr=False)
+
+    def under(self, scheduler: Scheduler, control: Control) -> ElaboratedMission:
+        """Return the same mission under another scheduler and kind of control; no file is read again."""
+        setting = self.setting.with_(scheduler=scheduler, control=control)
+        return replace(self, setting=setting, initial=self.begin(setting))
 
     def line(self, sort: str, name: str) -> int:
         """Return the line in which a name is declared, from 1; 0 where none is."""
@@ -105,14 +113,25 @@ def elaborate(
         clause_lines=clause_lines,
     )
     there = {name: world.channels[name] for name in world.placements}
-    first = initial(setting, world.placements, there, agents)
+    begin = partial(initial, placements=world.placements, channels=there, agents=agents)
+    first = begin(setting)
     if beliefs.parents or beliefs.links:
-        first = initial(setting, world.placements, there, agents, settled(beliefs, first))
+        begin = partial(begin, beliefs=settled(beliefs, first))
+        first = begin(setting)
         check_forest(mission, first, names)
     _stop(names.findings)
     called = mission.name.text if mission.name is not None else Path(source.name).stem
     return ElaboratedMission(
-        called, source, setting, first, properties, tuple(world.notes), fixed, dict(names.spans), precautions
+        called,
+        source,
+        setting,
+        first,
+        properties,
+        tuple(world.notes),
+        fixed,
+        dict(names.spans),
+        precautions,
+        begin,
     )
 
 

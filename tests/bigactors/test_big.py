@@ -61,6 +61,7 @@ class TestBig:
         code, out, _ = bigactors("big", "full", "--max-states", "2", "walk.big")
         assert code == 3
         assert "incomplete: the limit of 2 states was reached" in out
+        assert "\n  rules not used so far: burn\n" in out
         assert bigactors("big", "check", "--never", "crowd", "--max-states", "2", "walk.big")[0] == 3
 
     def test_full_writes_what_is_asked_for(self, bigactors, walk):

@@ -1,8 +1,13 @@
+from collections import Counter
+from itertools import product
+from pathlib import Path
+
 import pytest
 
 from bigactors.missions import canonical, digest_of, locate, open_mission, shipped_missions
 from bigactors.mistakes import Mistake
 from physical import circle
+from semantics.setting import Control, Scheduler
 from specs.elaboration import Variation
 
 
@@ -55,3 +60,66 @@ def test_what_a_mission_takes_for_a_path_may_not_be_readable(missions, bigactors
     code, _, err = bigactors("check", "big.mission")
     assert code == 2
     assert "LS001" in err
+
+
+BELIEVING = """
+signature { kind Location contains Location, UAV  kind UAV driven }
+world {
+  sea0: Location = box (37.2, -8.5) (36.9, -8.9)
+  bay0: Location = box (37.1, -8.6) (37.0, -8.8)
+  uav0: UAV = point (37.05, -8.7)
+}
+believes { bay0 unknown }
+BigActor a hosted_at uav0 with_behavior { observe(ALL) react { case obs => skip } }
+"""
+
+
+@pytest.mark.parametrize("name", [*shipped_missions(), "believing.mission"])
+def test_a_mission_read_once_is_under_another_scheduler_what_it_would_be_read_again(missions, name):
+    (missions / "believing.mission").write_text(BELIEVING, encoding="utf-8")
+    read = open_mission(name, Variation())
+    for scheduler, control in product(Scheduler, Control):
+        again = open_mission(name, Variation(scheduler, control))
+        assert digest_of(read.under(scheduler, control)) == digest_of(again)
+
+
+TRACES = ("--trace", "run.json", "--against", "run.json")
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        (
+            "check",
+            "with_file.mission",
+            "--verdict",
+            "v.json",
+            "--control",
+            "timed",
+            "--output",
+            "sarif:x.sarif",
+        ),
+        ("simulate", "with_file.mission"),
+        ("replay", "run.json"),
+        ("show", *TRACES),
+        ("show", "with_file.mission", *TRACES),
+        ("show", "with_file.mission"),
+    ],
+    ids=" ".join,
+)
+def test_every_command_reads_a_mission_and_its_files_once(missions, bigactors, monkeypatch, line):
+    (missions / "a.geojson").write_text(FEATURES % 1)
+    (missions / "with_file.mission").write_text(
+        'signature { kind Boat driven }\nworld { from "a.geojson" }\n'
+        "BigActor a hosted_at boat0 with_behavior { skip }\n"
+    )
+    assert bigactors("simulate", "with_file.mission", "--json", "run.json")[0] == 0
+    opened, really_open = Counter(), Path.open
+
+    def counting(path, *more, **options):
+        opened[path.name] += 1
+        return really_open(path, *more, **options)
+
+    monkeypatch.setattr(Path, "open", counting)
+    assert bigactors(*line)[0] == 0
+    assert (opened["with_file.mission"], opened["a.geojson"]) == (1, 1)

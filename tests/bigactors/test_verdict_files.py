@@ -4,13 +4,15 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
+from bigactors.arguments import parse_arguments
 from bigactors.cli import main
+from bigactors.commands import run
+from bigactors.missions import open_mission
 from bigactors.mistakes import Mistake
 from bigactors.verdict_files import find_verdict, licence_for
-from specs.elaboration import Variation
+from specs.elaboration.variation import AS_WRITTEN
 
 SCHEMA = Path(__file__).parents[2] / "docs" / "verdict.schema.json"
-ANY = Variation(None, None, {})
 
 
 @pytest.fixture
@@ -24,6 +26,10 @@ def verdict(tmp_path, monkeypatch):
         return str(path)
 
     return check
+
+
+def licence(name, path):
+    return licence_for(name, path, open_mission(name, AS_WRITTEN))
 
 
 def changed(path, **members):
@@ -43,31 +49,31 @@ def test_a_verdict_is_as_its_schema_says(verdict):
 
 
 def test_a_verdict_under_timed_control_that_everything_holds_is_a_licence(verdict):
-    licence = licence_for("oil_spill", verdict("oil_spill", "--control", "timed"), ANY)
-    assert "local_consistency" in licence.resting
-    assert "race_freedom" not in licence.resting
+    found = licence("oil_spill", verdict("oil_spill", "--control", "timed"))
+    assert "local_consistency" in found.resting
+    assert "race_freedom" not in found.resting
 
 
 def test_a_verdict_under_atomic_control_is_none(verdict):
     with pytest.raises(Mistake, match="control atomic"):
-        licence_for("oil_spill", verdict("oil_spill"), ANY)
+        licence("oil_spill", verdict("oil_spill"))
 
 
 def test_a_verdict_that_something_is_violated_is_none(verdict):
     path = verdict("broken_inconsistent", "--control", "timed")
     with pytest.raises(Mistake, match="not that everything holds"):
-        licence_for("broken_inconsistent", path, ANY)
+        licence("broken_inconsistent", path)
 
 
 def test_a_verdict_of_a_search_that_was_cut_off_is_none(verdict):
     path = verdict("oil_spill", "--control", "timed", "--max-configurations", "5")
     with pytest.raises(Mistake, match="not that everything holds"):
-        licence_for("oil_spill", path, ANY)
+        licence("oil_spill", path)
 
 
 def test_a_verdict_of_another_mission_says_what_differs(verdict):
     with pytest.raises(Mistake, match="text, the places that never move, the entities"):
-        licence_for("spill_watch", verdict("oil_spill", "--control", "timed"), ANY)
+        licence("spill_watch", verdict("oil_spill", "--control", "timed"))
 
 
 @pytest.mark.parametrize(
@@ -87,7 +93,7 @@ def test_a_verdict_of_another_mission_says_what_differs(verdict):
 def test_a_verdict_that_was_tampered_with_is_none(verdict, members, says):
     path = changed(verdict("oil_spill", "--control", "timed"), **members)
     with pytest.raises(Mistake, match=says):
-        licence_for("oil_spill", path, ANY)
+        licence("oil_spill", path)
 
 
 def test_the_verdict_beside_the_mission_is_found(tmp_path, monkeypatch):
@@ -105,3 +111,42 @@ def test_the_verdict_beside_the_mission_is_found(tmp_path, monkeypatch):
 def test_one_verdict_is_written_of_one_mission(tmp_path, capsys):
     assert main(["check", "--verdict", str(tmp_path / "v"), "oil_spill", "handover"]) == 2
     assert "one mission" in capsys.readouterr().err
+
+
+# --- a mission that is swapped while it is read -------------------------------------------------------------------
+
+WORLD = """{"type": "FeatureCollection", "features": [
+  {"type": "Feature", "properties": {"name": "hole0", "kind": "Location"},
+   "geometry": {"type": "Polygon", "coordinates": [[[%s, 37.0], [-8.5, 37.0], [-8.5, 37.1], [%s, 37.1], [%s, 37.0]]]}}
+]}"""
+
+FLOWN = """
+signature { kind Location contains UAV  kind UAV driven }
+world { from "world.geojson"  uav0: UAV = point (37.05, -8.7) }
+BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO hole0) }
+check { invariant "never in the hole": not actually uav0 in hole0 or %s }
+"""
+HARMLESS, FATAL = FLOWN % "true", FLOWN % "false"
+NARROW, BROAD = WORLD % ((-8.6,) * 3), WORLD % ((-8.65,) * 3)
+
+
+@pytest.mark.parametrize(
+    ("name", "read", "left"), [("m.mission", FATAL, HARMLESS), ("world.geojson", BROAD, NARROW)]
+)
+def test_a_mission_swapped_between_reading_and_licensing_does_not_fly(
+    tmp_path, monkeypatch, verdict, name, read, left
+):
+    (tmp_path / "m.mission").write_text(HARMLESS, encoding="utf-8")
+    (tmp_path / "world.geojson").write_text(NARROW, encoding="utf-8")
+    path = verdict("m.mission", "--control", "timed")
+    options = parse_arguments(["run", "m.mission", "--verdict", path, "--vehicle=uav0=udp:127.0.0.1:0"])
+    assert run.prepare(options).licence is not None
+    (tmp_path / name).write_text(read, encoding="utf-8")
+
+    def swapping(*asked):
+        (tmp_path / name).write_text(left, encoding="utf-8")
+        return find_verdict(*asked)
+
+    monkeypatch.setattr(run, "find_verdict", swapping)
+    with pytest.raises(Mistake, match="the verdict is of another mission"):
+        run.prepare(options)

@@ -24,6 +24,14 @@ def test_pages_on_which_somebody_still_holds_an_array_grow_all_the_same():
     assert (pages.room[999], pages.room[0], pages.room[999_999]) == (7, 5, 0)
 
 
+def test_pages_that_cannot_grow_stay_as_they_were():
+    pages = Pages(np.uint64, 1000)
+    pages.room[999] = 7
+    with pytest.raises(OSError, match="Cannot allocate memory"):
+        pages.grow(1 << 43)
+    assert pages.room[999] == 7
+
+
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is told of by /proc")
 def test_room_that_was_never_written_takes_no_memory():
     before = memory_taken()

@@ -122,3 +122,55 @@ def test_doubt_finds_what_was_learned_wrong():
     space.masks.room[2 * width * wrong + width] ^= ~np.uint64(0)  # it sets what it should not
     with pytest.raises(Disagreement):
         doubt(space, space.size)
+
+
+ROOMY = """
+import resource
+from checker import Engine, Limits, check, report_text
+from specs.elaboration import elaborate
+from specs.parser import parse_bytes
+from pathlib import Path
+
+def loop(name, host):
+    body = "n = n + 1  control(MOVE_HOST_TO there0)  control(MOVE_HOST_TO here0)"
+    return f"BigActor {name} hosted_at {host} with_behavior {{ let n = 0  loop {{ {body} }} }}"
+
+text = f'''
+signature {{ kind Location contains UAV  kind UAV driven }}
+world {{
+  here0: Location = box (37.1, -8.6) (37.0, -8.7)
+  there0: Location = box (37.1, -8.4) (37.0, -8.5)
+  uav0: UAV = point (37.05, -8.65)
+  uav1: UAV = point (37.05, -8.65)
+}}
+{loop("a", "uav0")}
+{loop("b", "uav1")}
+check {{ local_consistency }}
+'''
+source, tree = parse_bytes("m", text.encode())
+mission = elaborate(tree, source, Path())
+
+def checked(limits):
+    return check(mission.initial, mission.properties, limits, engine=Engine.FAST)
+
+checked(Limits(configurations=50_000))  # compiled and loaded
+taken = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (taken + 40_000_000, resource.RLIM_INFINITY))
+print(*report_text("m", checked(Limits(configurations=None, seconds=100.0)), traces=False), sep="\\n")
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is told of by /proc")
+def test_where_the_system_gives_no_more_memory_the_search_is_incomplete_and_says_so():
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    ran = subprocess.run(
+        [sys.executable, "-c", ROOMY],
+        check=False,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert ran.returncode == 0, ran.stderr
+    assert "stopped at the end of the memory that there is: what lies beyond" in ran.stdout
+    assert "? local_consistency  incomplete" in ran.stdout

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from local_crew import LocalCrew
 
-from checker import CheckpointError, ClusterError, Engine, Keeping, Limits, explore
+from checker import CheckpointError, Engine, Keeping, Limits, MachineError, explore
 from checker.cluster import explorer, share
 from checker.cluster.explorer import Expedition
 from checker.coverage import Visited
@@ -227,7 +227,7 @@ def test_a_crew_that_was_lost_altogether_is_followed_by_another(tmp_path, monkey
         folder = str(tmp_path / str(call))
         crew = LocalCrew(initial, 2, dies=((call, 0),))
         monkeypatch.setattr(crew, "revive", lambda: None)  # it stays dead
-        with pytest.raises(ClusterError, match="lost 6 times without a checkpoint between"):
+        with pytest.raises(MachineError, match="lost 6 times without a checkpoint between"):
             Expedition(crew, initial, LIMITS, keeping=Keeping(folder, every=0.0)).run(())
         crew = LocalCrew(initial, 2)
         resumed = Expedition(crew, initial, LIMITS, keeping=Keeping(folder, resumed=True)).run(())
@@ -240,7 +240,7 @@ def test_what_was_found_under_a_limit_of_time_is_not_explored_otherwise(tmp_path
     crew = LocalCrew(initial, 2)
     found = Expedition(crew, initial, limits).run(())
     crew.lost = {0, 1}
-    with pytest.raises(ClusterError, match="where they were was not kept"):
+    with pytest.raises(MachineError, match="where they were was not kept"):
         list(found.configurations)
     crew = LocalCrew(initial, 2)
     found = Expedition(crew, initial, limits, keeping=Keeping(str(tmp_path))).run(())

@@ -2,13 +2,15 @@
 
 import os
 import signal
+import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from bigactors.cli import main
-from checker import Cluster, ClusterError, Engine, Keeping, Limits, check, explore
+from checker import Cluster, ClusterError, Engine, Keeping, Limits, MachineError, check, explore
 from checker.cluster import explorer, ray_crew
 from specs.elaboration import load_mission
 
@@ -196,6 +198,32 @@ def test_without_ray_it_is_said_how_to_have_it(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "ray", None)
     assert main(["check", "--engine", "ray", str(MISSIONS / "oil_spill.mission")]) == 2
     assert "pip install 'bigactors[cluster]'" in capsys.readouterr().err
+
+
+def test_a_cluster_that_does_not_start_is_the_machines_fault(tmp_path):
+    file = tmp_path / "no_folder"
+    file.touch()
+    ran = subprocess.run(
+        [sys.executable, "-m", "bigactors", "check", "--engine", "ray", str(MISSIONS / "oil_spill.mission")],
+        check=False,
+        env={**os.environ, "RAY_TMPDIR": str(file)},
+        capture_output=True,
+        text=True,
+    )
+    assert ran.returncode == 3
+    assert "no Ray cluster could be started here: " in ran.stderr
+    assert "hint: try again when less else runs here, or leave --engine out" in ran.stderr
+
+
+def test_a_cluster_that_is_not_up_in_time_is_the_machines_fault(monkeypatch):
+    def late(**_):  # as Ray does, half a minute after it has begun
+        raise Exception("The current node timed out during startup.")
+
+    monkeypatch.setattr(ray_crew, "load_ray", lambda: SimpleNamespace(is_initialized=bool, init=late))
+    with pytest.raises(
+        MachineError, match="no Ray cluster could be started here: The current node timed out"
+    ):
+        ray_crew.connect(TWO)
 
 
 def test_machines_with_another_checker_are_refused(monkeypatch):

@@ -1,5 +1,6 @@
 """The symbolic engine beside the fast one: the same configurations, transitions, verdicts, and lengths of traces."""
 
+import re
 import sys
 from pathlib import Path
 
@@ -8,7 +9,7 @@ from checked_missions import load
 from hypothesis import assume, given, settings
 
 import checker.symbolic.explorer
-from checker import Engine, EngineError, Limits, Outcome, check, explore, replay, to_json
+from checker import Engine, EngineError, Limits, Outcome, check, explore, replay, report_text, to_json
 from semantics import strategies
 from semantics.propositions import Property
 from semantics.setting import Control, Scheduler
@@ -34,7 +35,13 @@ def learning_in_sets(monkeypatch):
 def told(report):
     """Return what both engines say of a mission: all but depth, time and witnesses of what holds everywhere."""
     sizes = (report.configurations, report.transitions, report.rules, report.bounds, report.coverage)
-    return (*sizes, [verdict_told(each) for each in report.verdicts])
+    return (*sizes, [verdict_told(each) for each in report.verdicts], explained(report))
+
+
+def explained(report):
+    """Return how what holds is explained, in the words of the report."""
+    lines = (line for line in report_text("m", report, traces=False) if line.startswith("  ✓"))
+    return [re.sub(", a witness of .*", "", line) for line in lines]
 
 
 def verdict_told(verdict):

@@ -225,3 +225,13 @@ def test_the_verdict_of_each_engine_is_the_same():
     ]
     assert reports[0].verdicts == reports[1].verdicts
     assert verdict_of(reports[0], "q").outcome is Outcome.VIOLATED
+
+
+@pytest.mark.parametrize(
+    "claim",
+    ["progress", "progress under strong fairness of actuate", 'ltl "q" under weak fairness of a: true'],
+)
+def test_nothing_is_said_never_to_be_where_not_everything_was_explored(claim):
+    slow = ONCE.replace("{ ", "{ let n = 1  n = n + 1  observe(HOST)  ")
+    found = verdict(slow, claim, Limits(configurations=1))
+    assert (found.outcome, found.remarks) == (Outcome.INCOMPLETE, ())
