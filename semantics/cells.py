@@ -25,7 +25,7 @@ MONITOR = "watch"
 
 
 Question = Callable[..., bool]
-"""What may be asked of a cell's value, and some constants."""
+"""What may be asked of a cell's value, and some constants; of None too, where there is no such cell (yet)."""
 
 
 def is_(value: object, constant: object) -> bool:

@@ -155,8 +155,8 @@ class Marks:
                 yield from ((kind, holder, name) for name in (self.bounds.names if ANY in names else names))
 
 
-def _is_blank(watch: Watch) -> bool:
-    return not any((*watch.code, *watch.store, *watch.mailbox))
+def _is_blank(watch: Watch | None) -> bool:
+    return watch is None or not any((*watch.code, *watch.store, *watch.mailbox))
 
 
 def _rests(kept: tuple[Provenance, ...] | None) -> bool:

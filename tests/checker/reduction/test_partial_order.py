@@ -177,6 +177,7 @@ def test_both_explorers_report_the_same(name):
 @settings(max_examples=60)
 def test_both_explorers_follow_the_same_steps_of_generated_programs(initial, data):
     agreed(initial, data.draw(st.lists(atoms_of(initial), max_size=2)), most=120)
+    agreed(monitored(initial), most=120)
 
 
 @given(missions(), st.sampled_from(["", "scheduler unordered\n"]))
@@ -289,6 +290,20 @@ def test_that_there_are_none_is_said_of_the_reduced_search():
 @pytest.mark.parametrize("name", ["rendezvous", "takeover", "look_before_entry_racy"])
 def test_both_explorers_follow_the_same_steps_where_what_is_observed_is_remembered(name):
     agreed(monitored(load_mission(MISSIONS / f"{name}.mission").initial))
+
+
+SPAWNED = """
+def enter() = {
+  observe(CHILDREN(gate0))
+  react { case o if not (uav1 in o) => control(MOVE_HOST_TO gate0) case o => skip }
+}
+BigActor a hosted_at gcs0 with_behavior { spawn b hosted_at uav0 with_behavior enter() }
+BigActor c hosted_at uav1 with_behavior { enter() }
+"""
+
+
+def test_both_explorers_follow_the_same_steps_where_an_agent_is_yet_to_be_spawned():
+    assert agreed(monitored(start(SPAWNED)))
 
 
 CHANGED = """
