@@ -18,7 +18,7 @@ from adapters.naming import NamingService
 from adapters.plugin import Aged, Command, Gone, Refused, World
 from adapters.troubles import Troubles
 from adapters.web import MAX_BODY, Listen, serve
-from physical import PhysicalError, PhysicalProperty, read_geojson
+from physical import PhysicalError, PhysicalProperty, legible, read_geojson
 
 EVERY: Final = 1.0
 MAX_FILES: Final = 1_000
@@ -99,7 +99,7 @@ class Detections:
             count = self._take(body)
         except PhysicalError as problem:
             self._troubles.note("detection refused", str(problem))
-            return 400, str(problem)
+            return 400, legible(str(problem))
         return 200, f"{count} taken"
 
     def _withdrawn(self, entity: str) -> tuple[int, str]:

@@ -10,18 +10,16 @@ It is asked again and again for a document like this, in which altitude (metres 
 from __future__ import annotations
 
 import asyncio
-import json
 from collections.abc import Mapping
 from typing import Any, Final
 
 from adapters.naming import NamingService
 from adapters.plugin import Aged, Command, Refused, World
 from adapters.troubles import Troubles
-from adapters.web import fetching
-from physical import Band, PhysicalError, PhysicalProperty, Velocity, point
+from adapters.web import MAX_BODY, fetching
+from physical import Band, PhysicalError, PhysicalProperty, Velocity, is_word, point, read_json
 
 MAX_ENTITIES: Final = 10_000
-MAX_WORD: Final = 200
 LARGEST: Final = 1e12
 """No number here is larger: a time in seconds is a thousandth of it."""
 
@@ -103,10 +101,7 @@ class LocationService:
 
 
 def _entries(body: bytes) -> list[Any]:
-    try:
-        document = json.loads(body)
-    except (ValueError, RecursionError) as problem:
-        raise PhysicalError("json", f"the answer is not JSON: {problem}") from None
+    document = read_json(body, MAX_BODY)
     entries = document.get("entities") if isinstance(document, dict) else None
     if not isinstance(entries, list) or len(entries) > MAX_ENTITIES:
         raise PhysicalError(
@@ -153,8 +148,8 @@ def _optional(entry: Mapping[str, Any], name: str) -> float | None:
 
 def _word(entry: Mapping[str, Any], name: str) -> str:
     value = entry.get(name)
-    if not isinstance(value, str) or not value.strip() or len(value) > MAX_WORD or not value.isprintable():
-        raise PhysicalError(name, f"the {name} {value!r:.60} is no word", f"write 1 to {MAX_WORD} characters")
+    if not is_word(value):
+        raise PhysicalError(name, f"the {name} {value!r:.60} is no word", "write 1 to 200 characters")
     return value
 
 

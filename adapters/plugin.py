@@ -261,10 +261,32 @@ class Broken:
     assumption: str
 
 
+@dataclass(frozen=True, slots=True)
+class Failed:
+    """Something that a run needs can't go on: its recording, a log, a plugin.
+
+    Attributes:
+        source: What failed: a file, or a plugin's name.
+        reason: Why, such as `No space left on device`.
+        time: When.
+    """
+
+    source: str
+    reason: str
+    time: float
+
+    @classmethod
+    def by(cls, error: OSError | ValueError, source: str, time: float) -> Failed:
+        """Say that something fails by an error; a file that the error names is what failed."""
+        if isinstance(error, OSError):
+            return cls(str(error.filename or source), error.strerror or str(error), time)
+        return cls(source, str(error), time)
+
+
 Elsewhere = Delivered | Underway | Hosts | Believes | Broken
 """What is reported of other stations."""
 
-Report = Accepted | Arrived | Rejected | LinkLost | LinkRestored | Trouble | Elsewhere
+Report = Accepted | Arrived | Rejected | LinkLost | LinkRestored | Trouble | Failed | Elsewhere
 
 # --- who talks to whom ------------------------------------------------------------------------------
 
@@ -323,6 +345,7 @@ __all__ = [
     "Command",
     "Delivered",
     "Elsewhere",
+    "Failed",
     "Follow",
     "GoTo",
     "Gone",

@@ -45,9 +45,9 @@ def say(line: str = "") -> None:
     _write(sys.stdout, f"{line}\n")
 
 
-def say_text(text: str) -> None:
+def say_text(text: str, *, flush: bool = False) -> None:
     """Print a text as it is."""
-    _write(sys.stdout, text)
+    _write(sys.stdout, text, flush=flush)
 
 
 def tell(text: str, mark: str = "") -> None:

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
 
+from adapters.disk import writing
 from adapters.live.state import Finding, Heard, Turn
 from adapters.mavlink.tlog import entry
 from adapters.plugin import Report
 from adapters.recording.writing import Recorder
-from bigactors.terminal import paint, say, tell
+from bigactors.mistakes import Mistake
+from bigactors.terminal import paint, say_text, tell
 
 TOLD = frozenset({"env", "say", "command", "commit", "actuate", "migrate", "spawn"})
 """The rules whose steps an operator is shown; the others are in the recording."""
@@ -27,7 +32,7 @@ class Terminal:
 
     Attributes:
         resting: Which verdicts rest on what broke.
-        broken: Whether an assumption broke.
+        broken: Whether an assumption broke, or the recording or a plugin failed.
     """
 
     resting: Resting
@@ -45,18 +50,30 @@ class Terminal:
         self.began = now if self.began is None else self.began
         for step in turn.steps:
             label = step.transition.label
-            if label.rule in TOLD:
-                say(f"{step.time - self.began:8.1f} s  {label}")
-            for text in step.transition.shown:
-                say(f"{step.time - self.began:8.1f} s  {label.agent}: {text}")
+            at = f"{step.time - self.began:8.1f} s "
+            lines = [f"{at} {label}"] if label.rule in TOLD else []
+            with _flying_on():
+                say_text(
+                    "".join(
+                        f"{line}\n"
+                        for line in (
+                            *lines,
+                            *(f"{at} {label.agent}: {text}" for text in step.transition.shown),
+                        )
+                    )
+                )
         for finding in turn.findings:
-            self._tell(finding)
-        sys.stdout.flush()
+            self.broken |= finding.kind == "broken assumption" or (
+                finding.kind == "failed" and bool(finding.fallback)
+            )
+            with _flying_on():
+                self._tell(finding)
+        with _flying_on():
+            say_text("", flush=True)
 
     def _tell(self, finding: Finding) -> None:
         tell(finding.message, f"{finding.kind}:")
         if finding.kind == "broken assumption":
-            self.broken = True
             verdicts = self.resting(finding)
             if verdicts:
                 tell(f"  these verdicts rest on it: {', '.join(verdicts)}")
@@ -65,6 +82,16 @@ class Terminal:
                 finding.fallback, "the mission goes on"
             )
             tell(f"  {paint(done, 'yellow', sys.stderr)}, as the mission says")
+
+
+@contextmanager
+def _flying_on() -> Iterator[None]:
+    """Say that the output can't be written, where that is so: it ends no flight."""
+    try:
+        yield
+    except Mistake as mistake:
+        with suppress(Mistake):
+            tell(str(mistake))
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +125,10 @@ class Log:
         """Write a frame at once: what was written survives the process."""
         if self._file is None:
             self._file = self._path.open("ab", buffering=0)
-        self._file.write(entry(time, frame))
+        said = entry(time, frame)
+        with writing(self._path):
+            if self._file.write(said) < len(said):
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     def close(self) -> None:
         """End the log."""

@@ -17,6 +17,7 @@ from physical.plan import read_plan, write_plan
 from physical.property import PhysicalProperty, Velocity
 from physical.shape import Geometry, box, circle, contains, equal, overlaps, point, polygon
 from physical.waypoints import MissionItem, read_waypoints, visited, waypoint_places, write_waypoints
+from physical.words import is_text, is_word, legible, read_json
 
 __all__ = [
     "Band",
@@ -49,11 +50,15 @@ __all__ = [
     "go_to",
     "holds",
     "interior_point",
+    "is_text",
+    "is_word",
+    "legible",
     "nearest_placement",
     "overlaps",
     "point",
     "polygon",
     "read_geojson",
+    "read_json",
     "read_places",
     "read_plan",
     "read_waypoints",

@@ -22,11 +22,11 @@ from physical.errors import PhysicalError
 from physical.frame import E7, TURN, PositionE7
 from physical.property import PhysicalProperty
 from physical.shape import Geometry, canonical, circle, planar, point, polygon
+from physical.words import is_word, legible, read_json
 
 MAX_BYTES: Final = 10_000_000
 MAX_FEATURES: Final = 10_000
 MAX_VERTICES: Final = 100_000
-MAX_WORD: Final = 200
 
 Json = Mapping[str, object]
 
@@ -80,25 +80,10 @@ def _fail(code: str, message: str, hint: str = "") -> NoReturn:
 
 
 def _parsed(text: str | bytes) -> object:
-    if len(text) > MAX_BYTES:
-        raise GeoJSONError(
-            [PhysicalError("too-large", f"the text is over {MAX_BYTES:,} bytes", "simplify it")]
-        )
     try:
-        return json.loads(
-            text if isinstance(text, str) else text.decode("utf-8-sig"), parse_constant=_constant
-        )
-    except UnicodeDecodeError as problem:
-        message = f"the text is not UTF-8: byte {problem.start} is not valid"
-        raise GeoJSONError([PhysicalError("encoding", message, "save it as UTF-8")]) from None
-    except RecursionError:
-        raise GeoJSONError([PhysicalError("json", "the text is nested too deeply")]) from None
-    except ValueError as problem:
-        raise GeoJSONError([PhysicalError("json", f"the text is not JSON: {problem}")]) from None
-
-
-def _constant(name: str) -> NoReturn:
-    raise ValueError(f"{name} is no number")
+        return read_json(text, MAX_BYTES)
+    except PhysicalError as problem:
+        raise GeoJSONError([problem]) from None
 
 
 def _features(collection: object) -> Sequence[object]:
@@ -149,7 +134,7 @@ def _count(feature: object) -> int:
 def _label(feature: object) -> str:
     properties = feature.get("properties") if isinstance(feature, dict) else None
     name = properties.get("name") if isinstance(properties, dict) else None
-    return f" ({name:.60})" if isinstance(name, str) else ""
+    return f" ({legible(name, 60)})" if isinstance(name, str) else ""
 
 
 def _repeated(found: Sequence[PhysicalProperty]) -> list[PhysicalError]:
@@ -183,8 +168,8 @@ def _word(properties: Json, member: str) -> str:
     value = properties.get(member)
     if value is None:
         _fail(member, f"the feature has no {member}", f'write "{member}" into its properties')
-    if not isinstance(value, str) or not value.strip() or len(value) > MAX_WORD or not value.isprintable():
-        _fail(member, f"the {member} {value!r:.60} is no word", f"write a text of 1 to {MAX_WORD} characters")
+    if not is_word(value):
+        _fail(member, f"the {member} {value!r:.60} is no word", "write a text of 1 to 200 characters")
     return value
 
 

@@ -1,5 +1,9 @@
 """The loop: plugins publish into it, `advance` moves the configuration, commands go out, and nothing blocks it.
 
+What comes in is looked at where it enters (`admission`). Nothing behind that ends a run: if the recording or a plugin
+fails, the mission does what its `live` section says of broken assumptions.
+
+
 Of positions that come in between two turns the newest of each entity counts; reports and sayings are all kept.
 """
 
@@ -10,11 +14,25 @@ import gc
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
 
+from adapters.live.admission import flaw_of, legible_report
 from adapters.live.core import advance, is_over, watch
 from adapters.live.state import Answer, Batch, Finding, Heard, LiveState, Plan, Saying, Turn
-from adapters.plugin import Aged, Command, Plugin, Published, Refused, Rejected, Report
+from adapters.live.watchers import Watcher, Watchers
+from adapters.plugin import (
+    Aged,
+    Command,
+    Failed,
+    Hold,
+    Plugin,
+    Published,
+    Refused,
+    Rejected,
+    Report,
+    Return,
+    Trouble,
+)
+from physical import is_text
 
 GATHER = 0.002
 """Seconds for which arrivals are gathered before the next turn."""
@@ -27,19 +45,6 @@ IDLE = 0.5
 
 MOST_SAYINGS = 1_000
 """How many sayings may wait; more are refused, and whoever says them is told."""
-
-
-class Watcher(Protocol):
-    """Who looks on: a terminal, a recording, a test. Called in the loop's thread, in this order for each turn."""
-
-    def arrived(self, heard: Heard, now: float) -> None:
-        """See something come in."""
-
-    def reported(self, report: Report, now: float) -> None:
-        """See what a plugin reports."""
-
-    def turned(self, turn: Turn, now: float) -> None:
-        """See what a turn came to, before its commands are sent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,14 +80,14 @@ class NotHeard(Exception):
 
 
 class PluginFailed(Exception):
-    """A plugin ended with an error; the message says which, and why."""
+    """A plugin or the recording failed before the run began; the message says which, and why."""
 
 
 @dataclass(slots=True)
 class Inbox:
     """What has come in since the last turn, newest positions only."""
 
-    watchers: Sequence[Watcher]
+    watchers: Watchers
     now: Callable[[], float]
     awake: asyncio.Event = field(default_factory=asyncio.Event)
     heard: dict[tuple[str, str], Heard] = field(default_factory=dict)
@@ -91,9 +96,12 @@ class Inbox:
 
     def publish(self, plugin: str, published: Published) -> None:
         """Take what a plugin publishes; what it said before of the same entity is not needed any more."""
-        heard, now = Heard(plugin, published), self.now()
-        for watcher in self.watchers:
-            watcher.arrived(heard, now)
+        flaw = flaw_of(published)
+        if flaw:
+            self.report(Trouble(plugin, self.now(), "unusable property", flaw))
+            return
+        heard = Heard(plugin, published)
+        self.watchers.arrived(heard, self.now())
         self.heard.pop(
             (plugin, _entity(published)), None
         )  # in the order said: of two of one time the later counts
@@ -101,10 +109,9 @@ class Inbox:
         self.awake.set()
 
     def report(self, report: Report) -> None:
-        """Take what a plugin reports."""
-        now = self.now()
-        for watcher in self.watchers:
-            watcher.reported(report, now)
+        """Take what a plugin reports, in words that can be printed and recorded."""
+        report = legible_report(report)
+        self.watchers.reported(report, self.now())
         self.reports.append(report)
         self.awake.set()
 
@@ -112,7 +119,9 @@ class Inbox:
         """Take what someone says; the answer comes with the next turn."""
         saying = Saying(agent, message, len(self.sayings))
         answer: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
-        if len(self.sayings) >= MOST_SAYINGS:
+        if not (is_text(agent) and is_text(message)):
+            answer.set_result(Answer(saying, "this is no text in valid Unicode"))
+        elif len(self.sayings) >= MOST_SAYINGS:
             answer.set_result(Answer(saying, "too much is being said at once; say it again"))
         else:
             self.sayings.append((saying, answer))
@@ -184,11 +193,12 @@ class LiveRun:
         self.plan = plan
         self.state = state
         self.clock = Clock()
-        self.inbox = Inbox(tuple(watchers), self.clock)
-        self._watchers = tuple(watchers)
+        self._watchers = Watchers(watchers)
+        self.inbox = Inbox(self._watchers, self.clock)
         self._plugins = tuple(plugins)
         self._orders: asyncio.Queue[Command] = asyncio.Queue()
         self._tasks: list[asyncio.Task[None]] = []
+        self._begun = False
 
     async def __aenter__(self) -> LiveRun:
         for plugin in self._plugins:
@@ -223,6 +233,9 @@ class LiveRun:
             if broken and not forced:
                 raise NotAsAssumed(broken)
             self._take(turn)
+            for failed in self._watchers.failures():
+                raise PluginFailed(f"{failed.source}: {failed.reason}")
+        self._begun = True
         if forced:
             self.state = self.state.with_(
                 suspended=False
@@ -234,7 +247,8 @@ class LiveRun:
 
     def _refuse(self, answers: list[asyncio.Future[Answer]]) -> None:
         for answer in answers:
-            answer.set_result(Answer(Saying("", ""), "the mission has not begun"))
+            if not answer.done():
+                answer.set_result(Answer(Saying("", ""), "the mission has not begun"))
 
     # --- going
 
@@ -256,21 +270,31 @@ class LiveRun:
         return max(0.0, min([IDLE, *(at - self.clock() for at in due)]))
 
     def _turn(self) -> Turn:
+        for failed in self._watchers.failures():
+            self.inbox.report(failed)
         batch, answers = self.inbox.take()
         turn = advance(self.plan, self.state, batch, self.clock(), SLICE)
         self._take(turn)
         for answer, said in zip(turn.answers, answers, strict=True):
             if not said.done():  # who asked may have gone
                 said.set_result(answer)
-        for command in turn.commands:
-            self._orders.put_nowait(command)
+        for command in (*turn.commands, *self._unrecorded()):
+            if not self.state.suspended or isinstance(command, Hold | Return):
+                self._orders.put_nowait(command)
         return turn
+
+    def _unrecorded(self) -> tuple[Command, ...]:
+        """Take in at once that a turn could not be recorded: what it commands is sent only if the mission goes on."""
+        failures = self._watchers.failures()
+        if not failures:
+            return ()
+        turn = advance(self.plan, self.state, Batch(reports=failures), self.clock(), 0)
+        self._take(turn)
+        return turn.commands
 
     def _take(self, turn: Turn) -> None:
         self.state = turn.state
-        now = self.clock()
-        for watcher in self._watchers:
-            watcher.turned(turn, now)
+        self._watchers.turned(turn, self.clock())
 
     async def _next(self, patience: float) -> None:
         """Wait until something comes in, and a moment longer for what comes with it."""
@@ -284,11 +308,15 @@ class LiveRun:
         await asyncio.sleep(GATHER)
 
     def _check_plugins(self) -> None:
-        for task in self._tasks:
+        """Report plugins that have failed; a run that has not begun ends with the first."""
+        for task in tuple(self._tasks):
             if task.done() and not task.cancelled() and (error := task.exception()) is not None:
-                if isinstance(error, OSError | ValueError):
+                if not isinstance(error, OSError | ValueError):
+                    raise error
+                if not self._begun:
                     raise PluginFailed(f"{task.get_name()}: {error}") from error
-                raise error
+                self._tasks.remove(task)
+                self.inbox.report(Failed(task.get_name(), str(error), self.clock()))
 
     # --- commands
 

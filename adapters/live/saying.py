@@ -12,6 +12,8 @@ from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 from typing import Final
 
+from physical import PhysicalError, is_text, read_json
+
 MOST_BYTES: Final = 16_384
 PATIENCE: Final = 5.0
 
@@ -63,13 +65,11 @@ async def _is_taken(path: Path) -> bool:
 
 
 async def _answer(line: bytes, listener: Listener) -> str:
-    try:
-        match json.loads(line):
-            case {"agent": str(agent), "message": str(message)}:
+    with suppress(PhysicalError):
+        match read_json(line, MOST_BYTES):
+            case {"agent": str(agent), "message": str(message)} if is_text(agent) and is_text(message):
                 return await listener(agent, message)
-    except (ValueError, RecursionError):
-        pass
-    return "this is no saying: an object with 'agent' and 'message' was expected"
+    return "this is no saying: an object with 'agent' and 'message', in valid Unicode, was expected"
 
 
 async def say(path: Path, agent: str, message: str) -> str:

@@ -183,7 +183,8 @@ class Finding:
     """Something that the operator has to know.
 
     Attributes:
-        kind: `broken assumption`, `refused`, `lost link`, `link restored`, `late`, `blocked`, `failed`, `trouble`.
+        kind: `broken assumption`, `refused`, `lost link`, `link restored`, `late`, `blocked`, `failed` (a computation,
+            the recording, a plugin), `trouble`.
         about: The entity or agent.
         message: One line.
         time: When.

@@ -339,12 +339,12 @@ class Turning:
         authority = set(filter(is_authority, physical.channels(entity)))
         return not authority or not authority.isdisjoint(physical.channels(self.c.read(HERE)))
 
-    def breaks(self, assumption: str, about: Name) -> None:
-        """Say that an assumption broke, and do what the mission says is done then."""
+    def breaks(self, assumption: str, about: Name, kind: str = "broken assumption") -> None:
+        """Say that an assumption broke, or what else ends a flight, and do what the mission says is done then."""
         if not self.answers_for(about):
             return
         fallback = self.plan.precautions.on_broken
-        found = self.find("broken assumption", about, assumption, fallback.value, once=True)
+        found = self.find(kind, about, assumption, fallback.value, once=True)
         if found and not self.suspended:
             self.suspended = fallback is not Fallback.CONTINUE
             self.fall_back(fallback, tuple(sorted(self.plan.vehicles)))

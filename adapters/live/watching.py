@@ -19,6 +19,7 @@ from adapters.plugin import (
     Believes,
     Broken,
     Delivered,
+    Failed,
     Hosts,
     LinkLost,
     LinkRestored,
@@ -239,6 +240,8 @@ def note(turning: Turning, report: Report) -> None:
             _lose(turning, entity, since)
         case LinkRestored(entity, _, rebooted):
             _restore(turning, entity, rebooted=rebooted)
+        case Failed(source, reason):
+            turning.breaks(f"{source} fails: {reason}", source, "failed")
         case Trouble(source, _, what, detail, count):
             often = f" ({count:,} times)" if count > 1 else ""
             turning.find("trouble", source, f"{source}: {what}{often}{': ' if detail else ''}{detail}")

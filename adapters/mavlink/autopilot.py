@@ -20,7 +20,7 @@ from adapters.mavlink.objections import impassable, unfit
 from adapters.mavlink.pilot import Outcome, Pilot
 from adapters.mavlink.roster import Roster
 from adapters.mavlink.signing import Verdict
-from adapters.plugin import Command, GoTo, Refused, World
+from adapters.plugin import Command, Failed, GoTo, Refused, World
 from adapters.transport import Port, Remote, open_port
 from adapters.troubles import Troubles
 from physical import Geometry, PhysicalError
@@ -148,8 +148,7 @@ class Autopilot:
     def _hear(self, remote: Remote, message: Message) -> None:
         assert self._world is not None
         now = self._world.now()
-        if self._tap:
-            self._tap(now, message.raw)
+        self._log(now, message.raw)
         if message.system in self._stations.ids.values() or message.fields.get("type") == GROUND_STATION:
             self._overheard(message)
             return
@@ -201,8 +200,17 @@ class Autopilot:
         timestamp = self._keeper.stamp(now) if self._keeper else 0
         frame = self._encoder(message.system).pack(message, timestamp)
         self._port.send(frame, remote)
-        if self._tap:
+        self._log(now, frame)
+
+    def _log(self, now: float, frame: bytes) -> None:
+        if self._tap is None:
+            return
+        try:
             self._tap(now, frame)
+        except OSError as error:
+            self._tap = None
+            assert self._world is not None
+            self._world.report(Failed.by(error, "the telemetry log", now))
 
     def _encoder(self, system: int) -> Encoder:
         if system not in self._encoders:

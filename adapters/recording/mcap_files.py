@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from adapters.disk import writing
+
 MOST_BYTES = 8 * 2**20
 """The longest record that is read; missions hold a megabyte."""
 
@@ -33,6 +35,7 @@ class McapWriter:
 
     def __init__(self, path: Path, schemas: Mapping[str, tuple[str, dict[str, Any]]]) -> None:
         """Begin a file; `schemas` gives each topic the name of its schema, and the schema."""
+        self._path = path
         self._file: BinaryIO = path.open("xb")
         self._writer = _writer()(self._file, use_chunking=False, use_statistics=True)
         self._writer.start(profile="", library="bigactors")
@@ -44,20 +47,23 @@ class McapWriter:
         self.flush()
 
     def write(self, topic: str, time: float, data: Any) -> None:
-        """Write a message; `flush` makes it last."""
-        encoded = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False).encode()
+        """Write a message; `flush` makes it last. Bytes of a path that are no UTF-8 are written as JSON's escapes."""
+        said = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+        encoded = said.encode(errors="backslashreplace")
         at = round(time * NANOSECONDS)
-        self._writer.add_message(self._channels[topic], at, encoded, at)
+        with writing(self._path):
+            self._writer.add_message(self._channels[topic], at, encoded, at)
 
     def flush(self) -> None:
         """Hand what was written to the system: a killed process loses none of it."""
-        self._file.flush()
+        with writing(self._path):
+            self._file.flush()
 
     def close(self) -> None:
-        """End the file with its index."""
+        """End the file with its index; what can't be written any more is left out, and the file is closed."""
         if not self._file.closed:
-            self._writer.finish()
-            self._file.close()
+            with writing(self._path), self._file:
+                self._writer.finish()
 
 
 @dataclass(slots=True)

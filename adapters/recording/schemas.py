@@ -113,7 +113,7 @@ COMMAND: Final = _object(
 )
 
 REPORTS: Final = (
-    *("Accepted", "Arrived", "Rejected", "LinkLost", "LinkRestored", "Trouble"),
+    *("Accepted", "Arrived", "Rejected", "LinkLost", "LinkRestored", "Trouble", "Failed"),
     *("Delivered", "Underway", "Hosts", "Believes", "Broken"),
 )
 """Those of a vehicle or a feed, then those of other stations."""

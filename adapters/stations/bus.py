@@ -12,11 +12,9 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, Final
 
+from adapters.stations.messages import MOST_BYTES
 from adapters.stations.peers import Peers
 from physical import PhysicalError
-
-MOST_BYTES: Final = 2 * 2**20
-"""The longest message that is taken."""
 
 MOST_WAITING: Final = 1_000
 """How many messages may wait to be looked at; what is beyond is lost, and asked for again."""

@@ -8,13 +8,12 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from adapters.plugin import Aged, Gone, Published
-from physical import PhysicalProperty, Velocity
+from physical import PhysicalProperty, Velocity, is_word
 from semantics.plain import band_of, geometry_json, geometry_of
 
 MOST_BYTES: Final = 256 * 1024
 """The longest entry, as text."""
 
-LONGEST: Final = 200
 MOST_CHANNELS: Final = 100
 MOST_WORDS: Final = 2_000
 LARGEST: Final = 10**15
@@ -312,8 +311,8 @@ def _velocity(data: Any) -> Velocity | None:
 
 def _word(data: dict[str, Any], name: str) -> str:
     value = data.get(name)
-    if not isinstance(value, str) or not 0 < len(value) <= LONGEST or not value.isprintable():
-        raise ValueError(f"'{name}' should be a word of 1 to {LONGEST} characters, not {value!r:.60}")
+    if not is_word(value):
+        raise ValueError(f"'{name}' should be a word of 1 to 200 characters, not {value!r:.60}")
     return value
 
 

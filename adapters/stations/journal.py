@@ -7,10 +7,12 @@ import json
 import os
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from itertools import takewhile
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
+from adapters.disk import writing
 from adapters.stations.entries import MOST_BYTES, Content, Entry, Posted, Took, entry_of, entry_text
 
 SCHEMA: Final = "bigactors.station/1"
@@ -101,7 +103,8 @@ class Journal:
 
     def close(self) -> None:
         """Give the file free."""
-        self._file.close()
+        with suppress(OSError):  # what could not be written has been reported
+            self._file.close()
 
     # --- the file
 
@@ -150,8 +153,9 @@ class Journal:
                 raise JournalError(f"{self.path} is the log of {what}: move it away, or name another file")
 
     def _append(self, lines: list[str]) -> None:
-        self._file.write("".join(f"{line}\n" for line in lines).encode())
-        self._file.flush()
+        with writing(self.path):
+            self._file.write("".join(f"{line}\n" for line in lines).encode())
+            self._file.flush()
 
     def _rewrite(self) -> None:
         """Write the file anew with what is still true; the old one stands until the new one does."""

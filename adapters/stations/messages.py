@@ -8,9 +8,12 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from adapters.stations.entries import Entry, entry_text
+from physical import read_json
 
 MOST_ENTRIES: Final = 500
 MOST_TEXT: Final = 2**20
+MOST_BYTES: Final = 2 * MOST_TEXT
+"""The longest message that is read."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,17 +68,14 @@ def read(said: bytes) -> Message:
     Raises:
         ValueError: It is none.
     """
-    try:
-        match json.loads(said):
-            case {
-                "mission": str(mission),
-                "time": int() | float() as time,
-                "after": int(after),
-                "upto": int(upto),
-                "last": int(last),
-                "entries": [*entries],
-            } if len(entries) <= 2 * MOST_ENTRIES:
-                return Message(mission, float(time), after, upto, last, entries)
-    except RecursionError:
-        pass
+    match read_json(said, MOST_BYTES):
+        case {
+            "mission": str(mission),
+            "time": int() | float() as time,
+            "after": int(after),
+            "upto": int(upto),
+            "last": int(last),
+            "entries": [*entries],
+        } if len(entries) <= 2 * MOST_ENTRIES:
+            return Message(mission, float(time), after, upto, last, entries)
     raise ValueError("this is no message of a station")

@@ -20,6 +20,7 @@ from adapters.plugin import (
     Broken,
     Command,
     Delivered,
+    Failed,
     HandOver,
     Hosts,
     Plugin,
@@ -109,6 +110,7 @@ class Sharing:
         self._said = journal.last
         self._world: World | None = None
         self._introduced = False
+        self._mute = False
 
     # --- a plugin
 
@@ -185,9 +187,13 @@ class Sharing:
                 return  # nobody knows whom it obeys: another's link may be the one that it answers
             channels, since = self._authority.channels(entity, published, known, world.now())
             said = Said(on(published, channels), since, owned)
-        for entry in self._add([said]):
+        entries = self._add([said])
+        for entry in entries:
             self._join(entry)
-        self._show(world, entity)
+        if entries:
+            self._show(world, entity)
+        else:
+            world.publish(published)  # it can't be said to the others any more; our own run sees it
 
     def lags(self, entity: str) -> bool:
         """Tell whether a vehicle obeys us, and our link does not know it yet."""
@@ -200,7 +206,16 @@ class Sharing:
             self._authority.handing[command.entity] = command
 
     def _add(self, contents: Sequence[Content]) -> list[Entry]:
-        entries = self._journal.add(list(contents)) if contents else []
+        """Say something; a log that can't be written ends that: nobody is told what would be forgotten."""
+        if not contents or self._mute:
+            return []
+        try:
+            entries = self._journal.add(list(contents))
+        except OSError as error:
+            self._mute = True
+            assert self._world is not None
+            self._world.report(Failed.by(error, str(self._journal.path), self._world.now()))
+            return []
         for entry in entries:
             self._unsaid.pop(entry.content.key, None)
             self._unsaid[entry.content.key] = entry

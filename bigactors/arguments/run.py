@@ -16,7 +16,7 @@ mission's environment section has it. What breaks an assumption, is refused or t
 
 exit codes:
   0  the mission came to its end
-  1  an assumption broke, or the world was otherwise at the beginning
+  1  an assumption broke, the recording or a plugin failed, or the world was otherwise at the beginning
   2  a mistake in the input, no verdict, a vehicle that is not heard
   3  it was stopped before its end"""
 

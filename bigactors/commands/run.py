@@ -13,9 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from adapters.live.core import resumed, started
-from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, Watcher, settle
+from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, settle
 from adapters.live.saying import listening
 from adapters.live.state import Finding, LiveState, Plan
+from adapters.live.watchers import Watcher
 from adapters.plugin import Plugin
 from adapters.recording.mcap_files import RecordingError
 from adapters.recording.writing import Recorder
@@ -132,7 +133,10 @@ def record(flight: Flight) -> Iterator[Tape | None]:
         raise
     finally:
         if tape is not None:
-            tape.recorder.close(reason, time.time())
+            try:
+                tape.recorder.close(reason, time.time())
+            except OSError as error:
+                tell(f"the recording has no end: {error.strerror}", f"{error.filename}:")
         if flight.log is not None:
             flight.log.close()
 

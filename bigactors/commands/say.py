@@ -9,10 +9,13 @@ from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.sockets import only_socket
 from bigactors.terminal import say
+from physical import is_text
 
 
 def run(options: Namespace) -> Exit:
     """Say it, and print what came of it."""
+    if not (is_text(options.agent) and is_text(options.message)):
+        raise Mistake("what is said has to be text in valid Unicode, of at most 2,000 characters")
     path = only_socket(options.socket)
     try:
         refusal = asyncio.run(send(path, options.agent, options.message))

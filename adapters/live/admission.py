@@ -1,0 +1,32 @@
+"""What plugins say is looked at once more where it enters a run: all of it can be printed, encoded and recorded."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields, replace
+from typing import Any
+
+from adapters.plugin import Aged, Gone, Published, Report
+from physical import is_word, legible
+
+
+def flaw_of(published: Published) -> str:
+    """Return what is wrong with something published, nothing if it can be used."""
+    said = published.property if isinstance(published, Aged) else published
+    words, numbers = [said.entity], [said.time or 0.0]
+    if isinstance(published, Aged):
+        numbers.append(published.time_to_live)
+    if not isinstance(said, Gone):
+        words += [said.kind, *said.channels, *([] if said.carried_by is None else [said.carried_by])]
+        numbers += [] if said.velocity is None else [said.velocity.speed, said.velocity.course]
+    spoilt = next((word for word in words if not is_word(word)), None)
+    if spoilt is not None:
+        return f"{spoilt!r:.60} is no word of 1 to 200 characters"
+    return "" if all(map(math.isfinite, numbers)) else f"a time or velocity of {said.entity} is no number"
+
+
+def legible_report(report: Report) -> Report:
+    """Return a report whose texts can be quoted: file names and answers of servers may hold anything."""
+    texts: list[tuple[str, Any]] = [(each.name, getattr(report, each.name)) for each in fields(report)]
+    spoilt = {name: legible(text) for name, text in texts if isinstance(text, str) and legible(text) != text}
+    return replace(report, **spoilt) if spoilt else report  # type: ignore[arg-type]  # texts for texts

@@ -1,0 +1,87 @@
+"""Text from outside: words that name something, JSON, and what is quoted of either. It is checked where it enters.
+
+What passes here can be printed, encoded and recorded, so that nobody behind has to look again.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from typing import Final, NoReturn, TypeGuard
+
+from physical.errors import PhysicalError
+
+MAX_WORD: Final = 200
+MAX_TEXT: Final = 2_000
+"""Characters of a message or of a reason."""
+
+_SURROGATE: Final = re.compile(rb"\\u[dD][89a-fA-F]|\xed[\xa0-\xbf]")
+"""How JSON writes half of a surrogate pair: with an escape, or in bytes that are no UTF-8."""
+
+
+def is_word(value: object) -> TypeGuard[str]:
+    """Tell whether a value may name something: 1 to 200 characters that can be printed, and not only spaces.
+
+    >>> is_word("oilSpill0"), is_word(" "), is_word("a" * 201), is_word(chr(0xD800)), is_word(7)
+    (True, False, False, False, False)
+    """
+    return (
+        isinstance(value, str) and 0 < len(value) <= MAX_WORD and value.isprintable() and bool(value.strip())
+    )
+
+
+def is_text(value: object) -> TypeGuard[str]:
+    """Tell whether a value is a message: valid Unicode of at most 2,000 characters."""
+    if not isinstance(value, str) or len(value) > MAX_TEXT:
+        return False
+    return not any("\ud800" <= sign <= "\udfff" for sign in value)
+
+
+def legible(text: str, most: int = MAX_TEXT) -> str:
+    r"""Return a foreign text as it can be quoted: what has no sign of its own gets one, what is too long is cut.
+
+    >>> legible("a\ud800b"), legible("abcdefgh", 6)
+    ('a�b', 'abc...')
+    """
+    cut = text if len(text) <= most else f"{text[: most - 3]}..."
+    if cut.isprintable():
+        return cut
+    return "".join(
+        sign if sign.isprintable() or sign in "\n\t" else "\N{REPLACEMENT CHARACTER}" for sign in cut
+    )
+
+
+def read_json(text: str | bytes, most: int) -> object:
+    """Return what a JSON text says; all of it can be written again.
+
+    Raises PhysicalError where it is longer than `most` bytes or characters, is no UTF-8 or no JSON, is nested too
+    deeply, or has a number that is infinite or none, or half of a surrogate pair.
+    """
+    if len(text) > most:
+        raise PhysicalError("too-large", f"the text is over {most:,} bytes", "simplify it")
+    try:
+        said = text if isinstance(text, str) else text.decode("utf-8-sig")
+        value: object = json.loads(said, parse_constant=_no_number, parse_float=_finite)
+        if _SURROGATE.search(said.encode("utf-8", "surrogatepass")):
+            json.dumps(value, ensure_ascii=False).encode()
+    except UnicodeDecodeError as problem:
+        message = f"the text is not UTF-8: byte {problem.start} is not valid"
+        raise PhysicalError("encoding", message, "save it as UTF-8") from None
+    except UnicodeEncodeError:
+        message = "the text has half of a surrogate pair, which is no character"
+        raise PhysicalError("encoding", message, "save it as UTF-8") from None
+    except RecursionError:
+        raise PhysicalError("json", "the text is nested too deeply") from None
+    except ValueError as problem:
+        raise PhysicalError("json", f"the text is not JSON: {problem}") from None
+    return value
+
+
+def _no_number(name: str) -> NoReturn:
+    raise ValueError(f"{name} is no number")
+
+
+def _finite(digits: str) -> float:
+    value = float(digits)
+    return value if math.isfinite(value) else _no_number(f"{digits:.40}")
