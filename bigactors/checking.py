@@ -34,7 +34,7 @@ from specs.elaboration import ElaboratedMission, Variation
 FAILURE_SCHEMA = "bigactors.failure/1"
 REPORTS_SCHEMA = "bigactors.reports/1"
 
-REFUSALS = {
+REFUSALS: dict[type[Exception], tuple[Exit, str]] = {
     CheckpointError: (Exit.MISTAKE, "leave --resume out to begin anew"),
     EngineError: (Exit.MISTAKE, "leave --engine out"),
     ClusterError: (Exit.MISTAKE, "leave --engine ray out to check it in one process"),

@@ -19,13 +19,13 @@ from semantics.requests import READY
 MOST_STEPS = 400
 """How many steps one turn takes at the most."""
 
+LONG = 5.0
+"""Seconds without listening that are said."""
+
 
 def advance(plan: Plan, state: LiveState, batch: Batch, now: float, most: int = MOST_STEPS) -> Turn:
     """Return what one turn comes to: the world is taken in, then agents go on until nothing more can be done now."""
-    turning = Turning(plan, state, now)
-    hear(turning, batch.heard)
-    for report in batch.reports:
-        note(turning, report)
+    turning = _taken_in(plan, state, batch, now)
     for saying in batch.sayings:
         say_to(turning, saying)
     turning.go_on(most)
@@ -35,11 +35,20 @@ def advance(plan: Plan, state: LiveState, batch: Batch, now: float, most: int = 
 
 def watch(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turn:
     """Return what a turn comes to in which the world is taken in, and nobody goes on: before a run begins."""
-    turning = Turning(plan, state, now)
+    return _taken_in(plan, state, batch, now).turn()
+
+
+def _taken_in(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turning:
+    turning = Turning(plan, state.later(batch.missed) if batch.missed else state, now)
+    if batch.missed >= LONG:
+        missed = (
+            f"nothing was listened to for {batch.missed:.0f} s: nobody is taken to have been silent meanwhile"
+        )
+        turning.find("trouble", "", missed)
     hear(turning, batch.heard)
     for report in batch.reports:
         note(turning, report)
-    return turning.turn()
+    return turning
 
 
 def is_over(state: LiveState) -> bool:

@@ -15,6 +15,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+from adapters.listening import Listening
 from adapters.live.admission import flaw_of, legible_report
 from adapters.live.core import advance, is_over, watch
 from adapters.live.state import Answer, Batch, Finding, Heard, LiveState, Plan, Saying, Turn
@@ -42,6 +43,9 @@ SLICE = 2
 
 IDLE = 0.5
 """Seconds after which there is a turn though nothing has come in: what is too old leaves P."""
+
+AHEAD = 1.0
+"""Seconds by which the system's clock may be ahead of the loop's: less is how they are set right."""
 
 MOST_SAYINGS = 1_000
 """How many sayings may wait; more are refused, and whoever says them is told."""
@@ -128,10 +132,10 @@ class Inbox:
             self.awake.set()
         return answer
 
-    def take(self) -> tuple[Batch, list[asyncio.Future[Answer]]]:
-        """Return what has come in, and forget it."""
+    def take(self, missed: float = 0.0) -> tuple[Batch, list[asyncio.Future[Answer]]]:
+        """Return what has come in, and forget it; `missed` are the seconds for which nobody listened."""
         said = tuple(saying for saying, _ in self.sayings)
-        batch = Batch(tuple(self.heard.values()), tuple(self.reports), said)
+        batch = Batch(tuple(self.heard.values()), tuple(self.reports), said, missed)
         answers = [answer for _, answer in self.sayings]
         self.heard, self.reports, self.sayings = {}, [], []
         self.awake.clear()
@@ -163,14 +167,24 @@ class Ear:
 
 
 class Clock:
-    """The time in seconds since 1970 UTC that never goes back: the event loop's, begun at the system's."""
+    """The time in seconds since 1970 UTC that never goes back: the event loop's, begun at the system's.
+
+    A loop's clock may stand still while the machine is suspended: where the system's is ahead, it is followed.
+    """
 
     def __init__(self) -> None:
-        self._offset = time.time() - asyncio.get_running_loop().time()
+        loop = asyncio.get_running_loop().time()
+        self._offset = time.time() - loop
+        self._follows = abs(time.monotonic() - loop) < AHEAD  # not in loops whose time is their own
 
     def __call__(self) -> float:
         """Return the time."""
-        return self._offset + asyncio.get_running_loop().time()
+        now = self._offset + asyncio.get_running_loop().time()
+        ahead = time.time() - now if self._follows else 0.0
+        if ahead > AHEAD:
+            self._offset += ahead
+            return now + ahead
+        return now
 
 
 def settle() -> None:
@@ -195,6 +209,8 @@ class LiveRun:
         self.clock = Clock()
         self._watchers = Watchers(watchers)
         self.inbox = Inbox(self._watchers, self.clock)
+        self._listening = Listening(self.clock())
+        self._told = 0.0
         self._plugins = tuple(plugins)
         self._orders: asyncio.Queue[Command] = asyncio.Queue()
         self._tasks: list[asyncio.Task[None]] = []
@@ -221,12 +237,12 @@ class LiveRun:
             NotHeard: A vehicle was not heard in time.
             NotAsAssumed: The world is otherwise, and the run is not forced.
         """
-        until = self.clock() + patience
+        until = self._listening.look(self.clock()) + patience
         while missing := sorted(set(self.plan.vehicles) - set(self.state.seen)):
-            if self.clock() >= until:
+            if self._listening.look(self.clock()) >= until:
                 raise NotHeard(missing)
             await self._next(0.1)
-            batch, answers = self.inbox.take()
+            batch, answers = self.inbox.take(self._missed())
             turn = watch(self.plan, self.state, batch, self.clock())
             self._refuse(answers)
             broken = [finding for finding in turn.findings if finding.kind == "broken assumption"]
@@ -272,7 +288,7 @@ class LiveRun:
     def _turn(self) -> Turn:
         for failed in self._watchers.failures():
             self.inbox.report(failed)
-        batch, answers = self.inbox.take()
+        batch, answers = self.inbox.take(self._missed())
         turn = advance(self.plan, self.state, batch, self.clock(), SLICE)
         self._take(turn)
         for answer, said in zip(turn.answers, answers, strict=True):
@@ -300,12 +316,21 @@ class LiveRun:
         """Wait until something comes in, and a moment longer for what comes with it."""
         self._check_plugins()
         await asyncio.sleep(0)
+        missed = self._listening.missed
         try:
             async with asyncio.timeout(patience):  # wait_for may lose that the run is to end
                 await self.inbox.awake.wait()
         except TimeoutError:
-            return
-        await asyncio.sleep(GATHER)
+            self._listening.look(self.clock())
+            if self._listening.missed == missed:
+                return
+        await asyncio.sleep(GATHER)  # what waited in sockets while nobody listened comes first, too
+
+    def _missed(self) -> float:
+        """Return the seconds for which nobody listened since this was asked last."""
+        self._listening.look(self.clock())
+        before, self._told = self._told, self._listening.missed
+        return self._told - before
 
     def _check_plugins(self) -> None:
         """Report plugins that have failed; a run that has not begun ends with the first."""

@@ -124,6 +124,12 @@ class LiveState:
         """Return the state with some of its attributes changed."""
         return replace(self, **changes)  # type: ignore[arg-type]  # names are checked by replace itself
 
+    def later(self, seconds: float) -> LiveState:
+        """Return the state in which all that grows old, or waits, has as much longer: nobody has listened meanwhile."""
+        seen = {name: replace(each, until=each.until + seconds) for name, each in self.seen.items()}
+        heads = {name: replace(each, since=each.since + seconds) for name, each in self.heads.items()}
+        return self.with_(seen=seen, expires=self.expires + seconds, heads=heads)
+
 
 # --- what comes in ------------------------------------------------------------------------------------
 
@@ -147,11 +153,12 @@ class Saying:
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """All that came in since the last turn, in its order."""
+    """All that came in since the last turn, in its order; `missed` are the seconds for which nobody listened."""
 
     heard: tuple[Heard, ...] = ()
     reports: tuple[Report, ...] = ()
     sayings: tuple[Saying, ...] = ()
+    missed: float = 0.0
 
 
 # --- what comes out -----------------------------------------------------------------------------------

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Final
 
 from adapters.addresses import parse_address
+from adapters.listening import Listening
 from adapters.mavlink import pilot as piloting
 from adapters.mavlink import roster as rosters
 from adapters.mavlink.codec import Decoder, Encoder, Garbage
@@ -20,7 +21,7 @@ from adapters.mavlink.objections import impassable, unfit
 from adapters.mavlink.pilot import Outcome, Pilot
 from adapters.mavlink.roster import Roster
 from adapters.mavlink.signing import Verdict
-from adapters.plugin import Command, Failed, GoTo, Refused, World
+from adapters.plugin import Aged, Command, Failed, GoTo, LinkLost, Refused, Report, World
 from adapters.transport import Port, Remote, open_port
 from adapters.troubles import Troubles
 from physical import Geometry, PhysicalError
@@ -73,6 +74,7 @@ class Autopilot:
         self._routes: dict[int, Remote] = {}
         self._troubles = Troubles(name)
         self._world: World | None = None
+        self._listening = Listening(0.0)
         self._port: Port | None = None
 
     @property
@@ -106,11 +108,11 @@ class Autopilot:
         """Take on a command; raises Refused."""
         if self._world is None or not self.owns(command.entity):
             raise Refused(f"{command.entity} takes no commands from {self._name}", "start the plugin first")
-        self._take(command.entity, piloting.command(self._pilots[command.entity], command, self._world.now()))
+        self._take(command.entity, piloting.command(self._pilots[command.entity], command, self._listened()))
 
     async def run(self, world: World) -> None:
         """Serve the link until cancelled."""
-        self._world = world
+        self._world, self._listening = world, Listening(world.now())
         try:
             async with open_port(self._address, self._receive) as self._port:
                 await asyncio.gather(self._ticking(world), self._beating(), self._saving())
@@ -147,11 +149,11 @@ class Autopilot:
 
     def _hear(self, remote: Remote, message: Message) -> None:
         assert self._world is not None
-        now = self._world.now()
-        self._log(now, message.raw)
+        self._log(self._world.now(), message.raw)
         if message.system in self._stations.ids.values() or message.fields.get("type") == GROUND_STATION:
             self._overheard(message)
             return
+        now = self._listened()
         pilot = self._pilot_of(message, remote, now)
         if pilot is None or not self._is_for_us(message):
             return
@@ -182,13 +184,19 @@ class Autopilot:
 
     # --- what is said -----------------------------------------------------------------------------
 
-    def _take(self, entity: str, outcome: Outcome) -> None:
+    def _listened(self) -> float:
+        """Return the time by which pilots go: silence and patience don't run while nobody listens."""
         assert self._world is not None
-        self._pilots[entity] = outcome.pilot
+        return self._listening.look(self._world.now())
+
+    def _take(self, entity: str, outcome: Outcome) -> None:
+        """Do what an input led to; the world's own time is said to it."""
+        assert self._world is not None
+        self._pilots[entity], missed = outcome.pilot, self._listening.missed
         for published in outcome.published:
-            self._world.publish(published)
+            self._world.publish(_later(published, missed))
         for report in outcome.reports:
-            self._world.report(report)
+            self._world.report(_reported_later(report, missed))
         for message in outcome.sent:
             self._send(message, self._routes.get(outcome.pilot.system))
 
@@ -222,7 +230,7 @@ class Autopilot:
         while True:
             await asyncio.sleep(TICK)
             for entity, pilot in self._pilots.items():
-                self._take(entity, piloting.tick(pilot, world.now()))
+                self._take(entity, piloting.tick(pilot, self._listened()))
             self._troubles.report(world)
 
     async def _beating(self) -> None:
@@ -254,6 +262,19 @@ def _heartbeat() -> Message:
         system_status=4,
         mavlink_version=3,
     )
+
+
+def _later(published: Aged, seconds: float) -> Aged:
+    """Return what is published with its time as much later."""
+    said = published.property
+    assert said.time is not None, "a position is stamped when it is heard"
+    return replace(published, property=replace(said, time=said.time + seconds)) if seconds else published
+
+
+def _reported_later(report: Report, seconds: float) -> Report:
+    if isinstance(report, LinkLost):
+        report = replace(report, since=report.since + seconds)
+    return replace(report, time=report.time + seconds)
 
 
 def _bound(craft: Craft) -> int:

@@ -27,7 +27,6 @@ from adapters.plugin import (
     Follow,
     GoTo,
     HandOver,
-    Published,
     Refused,
     Report,
     Trouble,
@@ -94,7 +93,7 @@ class Outcome:
     pilot: Pilot
     sent: tuple[Message, ...] = ()
     reports: tuple[Report, ...] = ()
-    published: tuple[Published, ...] = ()
+    published: tuple[Aged, ...] = ()
 
 
 def command(pilot: Pilot, told: Command, now: float) -> Outcome:
@@ -244,7 +243,7 @@ def _with_height(pilot: Pilot, task: Task) -> Task:
     return replace(task, height=plan.height_of(band, profile, position, pilot.craft.height_of(profile)))
 
 
-def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Published, ...], tuple[Report, ...]]:
+def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Aged, ...], tuple[Report, ...]]:
     """Publish the vehicle where anything that is shown of it has changed."""
     position, authority = pilot.known.position, pilot.known.authority
     if position is None or pilot.known.profile is None:  # a run begins when it is known what flies

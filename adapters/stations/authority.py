@@ -42,8 +42,13 @@ class Authority:
     shown: dict[str, tuple[str, ...]] = field(default_factory=dict)
     doubts: dict[str, tuple[float, float]] = field(default_factory=dict)
 
-    def channels(self, entity: str, published: Published, known: Said | None, now: float) -> Channels:
-        """Return what counts of a vehicle's channels where its link shows some, and others are known."""
+    def channels(
+        self, entity: str, published: Published, known: Said | None, now: float, missed: float = 0.0
+    ) -> Channels:
+        """Return what counts of a vehicle's channels where its link shows some, and others are known.
+
+        A doubt lasts only while it is listened: `missed` are the seconds so far for which nobody did.
+        """
         shown, before = channels_of(published), self.shown.get(entity)
         self.shown[entity] = shown
         if known is None:
@@ -53,9 +58,9 @@ class Authority:
             self.doubts.pop(entity, None)
             return believed
         if shown != before or (is_silent(shown) and not self._doubts(entity, known.since)):
-            self.doubts[entity] = (now, known.since)
+            self.doubts[entity] = (now - missed, known.since)
         lost = is_silent(shown) and not is_silent(before or ())
-        if self._counts(entity, shown, believed, now, lost=lost):
+        if self._counts(entity, shown, believed, now - missed, lost=lost):
             return shown, max(now, known.since + A_MOMENT)
         return believed
 
@@ -68,7 +73,7 @@ class Authority:
         )
 
     def _counts(
-        self, entity: str, shown: tuple[str, ...], believed: Channels, now: float, *, lost: bool
+        self, entity: str, shown: tuple[str, ...], believed: Channels, listened: float, *, lost: bool
     ) -> bool:
         told = self.handing.get(entity)
         if told is not None and is_done(told, shown):
@@ -76,8 +81,8 @@ class Authority:
             return True
         if is_silent(shown) and f"{CONTROL_AUTHORITY}:{self.station}" not in believed[0]:
             return False
-        since = self.doubts[entity][0] if self._doubts(entity, believed[1]) else now
-        return lost or now - since >= LASTING
+        since = self.doubts[entity][0] if self._doubts(entity, believed[1]) else listened
+        return lost or listened - since >= LASTING
 
     def _doubts(self, entity: str, since: float) -> bool:
         """Tell whether what has been known of a vehicle since then is in doubt."""

@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Any, Final
 
+from adapters.listening import Listening
 from adapters.live.sightings import MOST_AHEAD
 from adapters.live.state import Heard, Turn
 from adapters.plugin import (
@@ -109,6 +110,7 @@ class Sharing:
         self._unsaid: dict[tuple[str, ...], Entry] = {}
         self._said = journal.last
         self._world: World | None = None
+        self._listening = Listening(0.0)
         self._introduced = False
         self._mute = False
 
@@ -126,9 +128,9 @@ class Sharing:
         """Share until cancelled."""
         self._world = world
         bus = Bus(self._peers, self._topic, self._hear, self._answer)
-        began = world.now()
+        self._listening = Listening(world.now())
         for other in self.others.values():
-            other.answered = began
+            other.answered = self._listening.looked
         for entry in self._journal.entries():
             self._take(entry)
         try:
@@ -185,7 +187,9 @@ class Sharing:
             known = self.merge.holds(entity, world.now())
             if known is None and self._vehicles.get(entity) and is_silent(channels_of(published)):
                 return  # nobody knows whom it obeys: another's link may be the one that it answers
-            channels, since = self._authority.channels(entity, published, known, world.now())
+            now = world.now()
+            missed = now - self._listening.look(now)
+            channels, since = self._authority.channels(entity, published, known, now, missed)
             said = Said(on(published, channels), since, owned)
         entries = self._add([said])
         for entry in entries:
@@ -390,6 +394,7 @@ class Sharing:
         world = self._world
         while True:
             await asyncio.sleep(POLL)
+            self._listening.look(world.now())
             early = (
                 {entry.content.key[1] for entry in self.merge.ahead(world.now())} if self._ahead else set()
             )
@@ -399,19 +404,20 @@ class Sharing:
             self._troubles.report(world)
 
     def _silent(self, world: World, station: str, other: Other) -> None:
-        if other.reached is not False and world.now() - other.answered > SILENCE:
+        silent = self._listening.look(world.now()) - other.answered
+        if other.reached is not False and silent > SILENCE:
             other.reached = False
             where = ", ".join(self._peers.others[station].connect)
             waiting = self._journal.waiting(station)
             kept = f"; {waiting:,} parcels wait for it" if waiting else ""
-            detail = f"nothing of {station} at {where} for {world.now() - other.answered:.0f} s; it is tried on{kept}"
+            detail = f"nothing of {station} at {where} for {silent:.0f} s; it is tried on{kept}"
             world.report(Trouble(NAME, world.now(), f"{station} is not reached", detail))
 
     def _found(self, world: World, station: str, other: Other, theirs: float, asked: float) -> None:
         now = world.now()
         if other.reached is False:
             world.report(Trouble(NAME, now, f"{station} is reached again"))
-        other.reached, other.answered = True, now
+        other.reached, other.answered = True, self._listening.look(now)
         other.skew.add(measured(asked, theirs, now))
         best = other.skew.best
         skewed = best is not None and best.exceeds(MOST_SKEW)

@@ -60,8 +60,9 @@ class Run:
         self.steps, self.commands, self.findings, self.answers = [], [], [], []
         self.again = None
 
-    def turn(self, now, *heard, reports=(), sayings=()):
-        turn = advance(self.plan, self.state, Batch(heard, tuple(reports), tuple(sayings)), now)
+    def turn(self, now, *heard, reports=(), sayings=(), missed=0.0):
+        batch = Batch(heard, tuple(reports), tuple(sayings), missed)
+        turn = advance(self.plan, self.state, batch, now)
         self.state, self.again = turn.state, turn.again
         self.steps += turn.steps
         self.commands += turn.commands

@@ -333,6 +333,20 @@ def test_what_is_too_old_leaves_p_and_so_does_what_is_said_to_be_gone():
     assert run.labels[2:] == ["⟨env : boat0 vanishes⟩"]
 
 
+def test_what_grows_old_and_what_waits_has_longer_while_nobody_listens():
+    late = Precautions(limits=(TimeLimit("FLY", "a", 60.0, Fallback.RETURN),))
+    run = Run(plan_of(TOUR + GO + "environment { boat0 vanishes }", late))
+    run.turn(0.0, seen("uav0", WEST, 0.0), Heard("ais", Aged(boat((37.03, -8.63), 0.0).published, 60.0)))
+    run.turn(150.0, missed=100.0)
+    assert run.kinds() == ["trouble"]
+    assert run.findings[0].message.startswith("nothing was listened to for 100 s")
+    assert "⟨env : boat0 vanishes⟩" not in run.labels
+    assert run.again == 160.0
+    run.turn(161.0)
+    assert run.kinds() == ["trouble", "late"]
+    assert "⟨env : boat0 vanishes⟩" in run.labels
+
+
 def test_a_vehicle_in_flight_that_is_not_heard_stays_in_transit():
     run = Run(plan_of(TOUR + GO))
     heard = seen("uav0", WEST, 0.0)

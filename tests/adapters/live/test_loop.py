@@ -1,5 +1,6 @@
 import asyncio
 import stat
+import time
 
 import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, plan_of
@@ -87,6 +88,26 @@ def test_a_mission_flies_to_its_end():
     assert looker.shown() == ["{east0, uav0}"]
     assert vehicle.at == pytest.approx(EAST, abs=1e-4)
     assert [type(told) for told in vehicle.told] == [GoTo]
+
+
+def test_a_machine_that_was_suspended_has_the_systems_time_and_finds_nobody_silent(monkeypatch):
+    class Suspended(Vehicle):
+        """Moves the system's clock on by an hour, which the loop's does not notice."""
+
+        async def run(self, world):
+            told = asyncio.create_task(super().run(world))
+            await asyncio.sleep(0.1)
+            told.cancel()
+            began, system = world.now(), time.time
+            monkeypatch.setattr(time, "time", lambda: system() + 3_600)
+            assert 3_600 <= world.now() - began < 3_601
+            await asyncio.sleep(0.2)
+            await super().run(world)
+
+    ending, looker = fly(TOUR + GO, Suspended(pace=0.1), seconds=4_000.0)
+    assert ending.reason == "the mission has ended"
+    (finding,) = looker.findings
+    assert finding.message.startswith("nothing was listened to for 359")
 
 
 def test_a_run_that_is_interrupted_ends_even_if_something_has_just_come_in():

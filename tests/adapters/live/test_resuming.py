@@ -45,11 +45,12 @@ def free_port():
 
 
 @contextmanager
-def started(*line):
+def started(*line, stderr=None):
     process = subprocess.Popen(
         [sys.executable, *line],
         env={**os.environ, "PYTHONPATH": os.getcwd()},
         stdout=subprocess.PIPE,
+        stderr=stderr,
         text=True,
     )
     try:
