@@ -19,7 +19,7 @@ from checker.verdicts import Outcome, Report, Verdict, Violation
 from checker.visited import Visited
 from semantics.configuration import Configuration
 from semantics.monitor import monitored
-from semantics.propositions import Property
+from semantics.propositions import Property, watching
 from semantics.temporal import TEMPORAL
 
 if TYPE_CHECKING:
@@ -73,6 +73,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
             unsound for are not decided, unless something was found against them.
     """
     asked, limits = tuple(properties), limits or Limits()
+    initial = watching(initial, asked)
     formulas = [each.formula for each in asked if each.kind in ("invariant", "reachable")]
     reducer = reducing(initial, reduce, formulas)
     if reducer is not None and engine in (Engine.SYMBOLIC, Engine.RAY):

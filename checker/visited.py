@@ -14,12 +14,13 @@ from semantics.agents import Code, Store, code_cell, host_cell, mailbox_cell, st
 from semantics.computation import Passage, Process, compute, enter_case
 from semantics.configuration import Configuration
 from semantics.eta import line_cell
-from semantics.expressions import Fault, Scope
+from semantics.expressions import Fault
 from semantics.provenance import NOTHING
 from semantics.requests import READY
 from semantics.setting import Setting
 from semantics.signature import Name
 from semantics.statements import React, at_internal
+from semantics.stepping import scope_of
 from semantics.successors import Expansion
 from semantics.values import Value
 
@@ -120,5 +121,5 @@ def passages(setting: Setting, moment: Moment) -> Iterator[Passage]:
 
 def _process(setting: Setting, moment: Moment) -> Process:
     store = dict(moment.store)
-    scope = Scope(moment.agent, moment.host, store, dict.fromkeys(store, NOTHING), setting.kinds)
+    scope = scope_of(setting, moment.agent, moment.host, store, dict.fromkeys(store, NOTHING))
     return Process(setting.program, moment.code, (NOTHING,) * len(moment.code), scope)

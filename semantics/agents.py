@@ -11,7 +11,16 @@ Code = tuple[int, ...]
 """What is left to run: statements by number in the program, the next one first."""
 
 Store = tuple[tuple[str, Value], ...]
-"""The variables that what is left to run may read, sorted."""
+"""The variables that what is left to run may read, or that properties name, sorted."""
+
+
+def written(variable: str) -> str:
+    """Return a variable as the programmer wrote it; nothing of one that no programmer wrote.
+
+    >>> written("obs#2"), written("#1")
+    ('obs', '')
+    """
+    return variable.partition("#")[0]
 
 
 @dataclass(frozen=True, slots=True)

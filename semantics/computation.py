@@ -123,15 +123,21 @@ class Process:
         return members_of(value), asking(rests_on, (EVERYTHING,))
 
     def variables(self) -> tuple[Store, tuple[Provenance, ...]]:
-        """Return the variables that what is left may read, sorted, with what each rests on."""
-        alive = sorted(self.program.live(self.code).intersection(self.scope.store))
-        store = tuple((name, self.scope.store[name]) for name in alive)
-        return store, tuple(self.scope.rests_on.get(name, NOTHING) for name in alive)
+        """Return the variables that what is left may read or that are watched, sorted, with what each rests on.
+
+        Nothing rests on what is only watched.
+        """
+        live, scope = self.program.live(self.code), self.scope
+        alive = sorted(live.union(*scope.kept.values()).intersection(scope.store))
+        store = tuple((name, scope.store[name]) for name in alive)
+        return store, tuple(scope.rests_on.get(name, NOTHING) if name in live else NOTHING for name in alive)
 
     def fork(self) -> "Process":
         """Return an independent copy."""
         scope = self.scope
-        copy = Scope(scope.agent, scope.host, dict(scope.store), dict(scope.rests_on), scope.kinds)
+        copy = Scope(
+            scope.agent, scope.host, dict(scope.store), dict(scope.rests_on), scope.kinds, scope.kept
+        )
         return Process(self.program, self.code, self.rests_on, copy, list(self.shown), self.passed, self.left)
 
 

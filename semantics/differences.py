@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from semantics.agents import written
 from semantics.cells import AGENTS, MONITOR, NAMES, QUEUE, Cell
 from semantics.configuration import Configuration
 from semantics.physical_model import Carried, InTransit, PhysicalModel
@@ -61,9 +62,8 @@ def _of_cell(before: Configuration, after: Configuration, cell: Cell) -> Iterato
     elif what == "host":
         yield Difference("α", whose, f"{whose} hosted_at {new}" if new else f"{whose} is gone")
     elif what == "store":
-        yield from (
-            Difference("α", whose, f"{whose}.{text}") for text in _variables(after, old or (), new or ())
-        )
+        texts = dict.fromkeys(_variables(after, old or (), new or ()))
+        yield from (Difference("α", whose, f"{whose}.{text}") for text in texts)
     elif what == "mailbox":
         yield from (Difference("α", whose, f"mail of {whose}: {text}") for text in _shown(after, old, new))
     elif what in ("line", "sends") or cell == QUEUE:
@@ -96,8 +96,8 @@ def _variables(
     """Yield the variables that are new or have another value; what is merely forgotten is no news."""
     before, names = dict(old), frozenset((*c.setting.kinds, *c.alpha.names()))
     for name, value in new:
-        if before.get(name) != value and "rest#" not in name:
-            yield f"{name.split('#')[0]} = {show(value, names)}"  # type: ignore[arg-type]  # stores hold values
+        if before.get(name) != value and written(name):
+            yield f"{written(name)} = {show(value, names)}"  # type: ignore[arg-type]  # stores hold values
 
 
 def _shown(c: Configuration, old: Iterable[object] | None, new: Iterable[object] | None) -> Iterator[str]:

@@ -98,6 +98,7 @@ class Scope:
         store: Variables.
         rests_on: What each variable was computed from; empty where nobody monitors.
         kinds: The kind of each entity.
+        kept: Under which names what a variable is given is kept to the end of the run (`Program.kept`).
         used: Grows with each variable read and each observation tested.
     """
 
@@ -106,12 +107,15 @@ class Scope:
     store: dict[str, Value]
     rests_on: dict[str, Provenance]
     kinds: Mapping[Name, str]
+    kept: Mapping[str, frozenset[str]]
     used: Provenance = field(default=NOTHING)
 
     def binding(self, names: Mapping[str, Value], provenance: Provenance) -> None:
         """Give variables values that rest on something."""
-        self.store.update(names)
         self.rests_on.update(dict.fromkeys(names, provenance))
+        for name, value in names.items():
+            self.store[name] = value
+            self.store.update(dict.fromkeys(self.kept.get(name, ()), value))
 
 
 def evaluate(expression: Expression, scope: Scope) -> Value:

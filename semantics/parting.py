@@ -165,7 +165,7 @@ def parcel_of(c: Configuration, a: Name) -> Parcel | None:
     code, store, mail = c.alpha.code(a), c.alpha.store(a), c.alpha.mailbox(a)
     requests = tuple(pending.request for pending in c.eta.of(a))
     says = tuple(c.read(counter) for counter in _counters(c, a))
-    running = Running(c.alpha.host(a), code, store, requests, says) if code or requests else None
+    running = Running(c.alpha.host(a), code, store, requests, says) if code or store or requests else None
     return Parcel(a, mail, running) if mail or running else None
 
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from textwrap import indent
 
 from bigraphs import draw_text
+from semantics.agents import written
 from semantics.cells import AGENTS, MONITOR, NAMES, QUEUE, Cell
 from semantics.configuration import Configuration
 from semantics.physical_model import Carried, InTransit, PhysicalModel, Placement
@@ -19,11 +20,8 @@ def print_agent(c: Configuration, a: Name) -> str:
     code = agents.code(a)
     line = c.setting.program.lines[code[0]] if code and c.setting.program.lines else None
     at = word_of(c.setting.program.statements[code[0]]) if code else "ended"
-    variables = ", ".join(
-        f"{name.split('#')[0]} = {show(value, names)}"
-        for name, value in agents.store(a)
-        if "rest#" not in name
-    )
+    held = (f"{written(name)} = {show(value, names)}" for name, value in agents.store(a) if written(name))
+    variables = ", ".join(dict.fromkeys(held))
     mail = ", ".join(show(message, names) for message in agents.mailbox(a))
     parts = [f"{a}@{agents.host(a)}", f"at {at}" + (f" (line {line})" if line else "") if code else at]
     return " ".join(

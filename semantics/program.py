@@ -1,12 +1,14 @@
-"""A program: the numbered statements of a mission, and the variables that each may still read."""
+"""A program: the numbered statements of a mission, and the variables that are kept: still read, or watched."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 
+from semantics.agents import written
 from semantics.expressions import Expression, QueryOf, free
 from semantics.patterns import variables
+from semantics.signature import Name
 from semantics.statements import (
     Assign,
     Block,
@@ -47,6 +49,27 @@ class Behaviour:
     body: Block
 
 
+@dataclass(frozen=True, slots=True)
+class VariableOf:
+    """`a.x`: what bigActor a last gave to a variable that is written x.
+
+    Attributes:
+        agent: The bigActor.
+        variables: All of that name in what it may run, sorted; each binding is one by itself.
+    """
+
+    agent: Name
+    variables: tuple[str, ...]
+
+    @property
+    def key(self) -> str:
+        """Under which name it is kept: its own, or one more where several variables share what is written."""
+        return self.variables[0] if len(self.variables) == 1 else f"{written(self.variables[0])}#"
+
+    def __str__(self) -> str:
+        return f"{self.agent}.{written(self.variables[0])}"
+
+
 @dataclass(frozen=True, eq=False)
 class Program:
     """All statements of a mission, by number.
@@ -58,6 +81,7 @@ class Program:
         lines: The line of the mission's text that each statement stands in (from 1), as far as there is one.
         branch_lines: The same of cases and alternatives, by statement and rank.
         declared: The line in which each rule and behaviour is declared, by sort (`rule`, `behaviour`) and name.
+        watched: The variables that properties name: they are kept to the end of the run.
     """
 
     statements: tuple[Statement, ...] = ()
@@ -66,6 +90,7 @@ class Program:
     lines: tuple[int, ...] = ()
     branch_lines: Mapping[tuple[int, int], int] = field(default_factory=dict)
     declared: Mapping[tuple[str, str], int] = field(default_factory=dict)
+    watched: frozenset[VariableOf] = frozenset()
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the attributes alone: functions that remember can't be sent to another process."""
@@ -95,6 +120,20 @@ class Program:
     def live(self) -> Callable[[Block], Names]:
         """Return the function from what is left to run to the variables that it may read: others are forgotten."""
         return lru_cache(maxsize=1 << 14)(lambda code: _live(code, self._reads, self.statements))
+
+    def watching(self, variables: frozenset[VariableOf]) -> "Program":
+        """Return the program with more variables kept to the end of the run."""
+        return self if variables <= self.watched else replace(self, watched=self.watched | variables)
+
+    @cached_property
+    def kept(self) -> Mapping[Name, Mapping[str, Names]]:
+        """For each bigActor, under which names what a variable is given is kept to the end of the run."""
+        found: dict[Name, dict[str, Names]] = {}
+        for each in self.watched:
+            keys = found.setdefault(each.agent, {})
+            for variable in each.variables:
+                keys[variable] = keys.get(variable, NONE) | {each.key}
+        return found
 
 
 def _live(block: Block, reads: list[Names], statements: tuple[Statement, ...]) -> Names:

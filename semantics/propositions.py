@@ -1,10 +1,12 @@
 """What can be said of one configuration, and the properties that a mission asks to be checked."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+import operator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, fields, is_dataclass
 from typing import TYPE_CHECKING, Any
 
 from semantics.configuration import Configuration
+from semantics.program import VariableOf
 from semantics.signature import REGION, Name
 from semantics.statements import React
 from semantics.stepping import next_statement
@@ -105,15 +107,33 @@ class HostedAt:
 
 @dataclass(frozen=True, slots=True)
 class VariableIs:
-    """`a.x == v`: a's variable x, which a may still read, has this value; `shown` is x as the programmer wrote it."""
+    """`a.x == v`, `a.x < v` and so on: how a's variable x compares with a value.
 
-    agent: Name
-    variables: tuple[str, ...]
+    Attributes:
+        variable: Which.
+        value: With what it is compared.
+        operator: How.
+        unbound: Whether it is true where the variable has no value, or none that can be compared so. What has no value
+            neither violates nor fulfils a property, so that depends on where the comparison stands in it.
+    """
+
+    variable: VariableOf
     value: Value
-    shown: str
+    operator: str = "=="
+    unbound: bool = False
 
     def __str__(self) -> str:
-        return f"{self.agent}.{self.shown} == {show(self.value, frozenset())}"
+        return f"{self.variable} {self.operator} {show(self.value, frozenset())}"
+
+
+@dataclass(frozen=True, slots=True)
+class IsBound:
+    """`bound a.x`: a has given its variable x a value."""
+
+    variable: VariableOf
+
+    def __str__(self) -> str:
+        return f"bound {self.variable}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,7 +179,19 @@ class Or:
         return " or ".join(map(_nested, self.formulas)) or "false"
 
 
-Atom = Inside | LinkedWith | Present | Known | HasPending | Ended | Waiting | HostedAt | VariableIs | Always
+Atom = (
+    Inside
+    | LinkedWith
+    | Present
+    | Known
+    | HasPending
+    | Ended
+    | Waiting
+    | HostedAt
+    | VariableIs
+    | IsBound
+    | Always
+)
 Proposition = Atom | Not | And | Or
 
 
@@ -170,6 +202,14 @@ def _mode(actually: bool) -> str:
 def _nested(formula: Proposition) -> str:
     return f"({formula})" if isinstance(formula, And | Or) else str(formula)
 
+
+ORDERS: Mapping[str, Callable[[int, int], bool]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+"""The comparisons of numbers, and of nothing else."""
 
 # --- truth ----------------------------------------------------------------------------------------------------
 
@@ -221,10 +261,29 @@ def _is_agent(c: Configuration, agent: Name) -> bool:
     return agent in c.alpha
 
 
+def _held(variable: VariableOf, c: Configuration) -> Value | None:
+    """Return the value of a variable, None where it has none.
+
+    Raises:
+        ValueError: The configuration is one of a setting that forgets the variable.
+    """
+    if variable not in c.setting.program.watched:
+        raise ValueError(
+            f"'{variable}' is forgotten once nobody reads it any more: begin with watching(initial, properties)"
+        )
+    store = dict(c.alpha.store(variable.agent)) if _is_agent(c, variable.agent) else {}
+    return store.get(variable.key)
+
+
 def _variable_is(atom: VariableIs, c: Configuration) -> bool:
-    store = dict(c.alpha.store(atom.agent)) if _is_agent(c, atom.agent) else {}
-    values = [store[name] for name in atom.variables if name in store]
-    return any(type(value) is type(atom.value) and value == atom.value for value in values)
+    held = _held(atom.variable, c)
+    if held is None:
+        return atom.unbound
+    if atom.operator == "==":
+        return type(held) is type(atom.value) and held == atom.value
+    if isinstance(held, int) and isinstance(atom.value, int):
+        return ORDERS[atom.operator](held, atom.value)
+    return atom.unbound
 
 
 _TRUTH: dict[type, Callable[[Any, Configuration], bool]] = {
@@ -232,6 +291,7 @@ _TRUTH: dict[type, Callable[[Any, Configuration], bool]] = {
     LinkedWith: _linked,
     HasPending: lambda atom, c: _is_agent(c, atom.agent) and _pending(atom, c),
     VariableIs: _variable_is,
+    IsBound: lambda atom, c: _held(atom.variable, c) is not None,
     Present: lambda atom, c: atom.entity in c.structure.physical,
     Known: lambda atom, c: atom.node in c.structure.logical,
     Ended: lambda atom, c: _is_agent(c, atom.agent) and not c.alpha.code(atom.agent),
@@ -264,3 +324,24 @@ class Property:
     line: int = 0
     temporal: "Temporal | None" = None
     fairness: tuple["Fairness", ...] = ()
+
+
+def watched(properties: Iterable[Property]) -> frozenset[VariableOf]:
+    """Return the variables that properties name, wherever it is."""
+    found: set[VariableOf] = set()
+    waiting: list[Any] = list(properties)
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, VariableOf):
+            found.add(part)
+        elif isinstance(part, tuple):
+            waiting.extend(part)
+        elif is_dataclass(part):
+            waiting.extend(getattr(part, each.name) for each in fields(part))
+    return frozenset(found)
+
+
+def watching(c: Configuration, properties: Iterable[Property]) -> Configuration:
+    """Return a configuration from which on what properties name is kept to the end of the run."""
+    program = c.setting.program.watching(watched(properties))
+    return c if program is c.setting.program else Configuration(c.setting.with_(program=program), c.state)

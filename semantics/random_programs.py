@@ -217,7 +217,7 @@ class _Writer:
 
     def write_for(self, scope: Variables, depth: int) -> Statement:
         variable = self.fresh()
-        rest = f"{variable}rest#"
+        rest = f"#{variable}"
         each = self.add(ForEach(variable, rest, self.block((*scope, variable), depth)))
         return For(self.members(scope), rest, each)
 

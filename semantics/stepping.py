@@ -10,6 +10,7 @@ from semantics.provenance import NOTHING, Provenance
 from semantics.setting import Scheduler, Setting
 from semantics.signature import Name
 from semantics.statements import Statement
+from semantics.values import Value
 
 
 def next_statement(c: Configuration, a: Name) -> Statement | None:
@@ -24,7 +25,7 @@ def process_of(c: Configuration, a: Name) -> Process:
     code, store = agents.code(a), agents.store(a)
     rests_on = watch.store if watch else (NOTHING,) * len(store)
     kept = {name: each for (name, _), each in zip(store, rests_on, strict=True)}
-    scope = Scope(a, agents.host(a), dict(store), kept, c.setting.kinds)
+    scope = scope_of(c.setting, a, agents.host(a), dict(store), kept)
     return Process(c.setting.program, code, watch.code if watch else (NOTHING,) * len(code), scope)
 
 
@@ -62,7 +63,14 @@ def starting(setting: Setting, a: Name, host: Name, process: Process) -> Changes
 
 def new_process(setting: Setting, a: Name, host: Name, code: tuple[int, ...]) -> Process:
     """Return a process that has not begun."""
-    return Process(setting.program, code, (NOTHING,) * len(code), Scope(a, host, {}, {}, setting.kinds))
+    return Process(setting.program, code, (NOTHING,) * len(code), scope_of(setting, a, host, {}, {}))
+
+
+def scope_of(
+    setting: Setting, a: Name, host: Name, store: dict[str, Value], rests_on: dict[str, Provenance]
+) -> Scope:
+    """Return what an agent may read, in a mission."""
+    return Scope(a, host, store, rests_on, setting.kinds, setting.program.kept.get(a, {}))
 
 
 def joining(c: Configuration, a: Name) -> Changes:

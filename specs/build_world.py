@@ -285,7 +285,11 @@ class BuildWorld(Transformer[Token, s.Mission]):
         return _equal(c[1], s.SameName(name(c[0]), name(c[2]), span=cover(c)))
 
     def stored(self, c: Children) -> s.Formula:
-        return _equal(c[3], s.Stored(name(c[0]), name(c[2]), c[4], span=cover(c)))
+        operator = "==" if c[3] == "!=" else str(c[3])
+        return _equal(c[3], s.Stored(name(c[0]), name(c[2]), c[4], operator, span=cover(c)))
+
+    def has_value(self, c: Children) -> s.HasValue:
+        return s.HasValue(name(c[1]), name(c[3]), span=cover(c))
 
 
 def option(owner: str, token: Token, options: tuple[str, ...]) -> str:
@@ -298,4 +302,4 @@ def option(owner: str, token: Token, options: tuple[str, ...]) -> str:
 
 
 def _equal(operator: Token, claim: s.SameName | s.Stored) -> s.Formula:
-    return claim if operator == "==" else s.Negation(claim, span=claim.span)
+    return s.Negation(claim, span=claim.span) if operator == "!=" else claim

@@ -457,6 +457,13 @@ class Code(Enum):
         paths stands directly behind A or E. `env` and `say` are nobody's rules.""",
     )
 
+    NOT_COMPARABLE = (
+        "LS613",
+        "comparison that says nothing",
+        """`<`, `<=`, `>` and `>=` compare numbers. A variable that only ever has values of one type is compared with
+        a value of that type.""",
+    )
+
     BAD_TIME_LIMIT = (
         "LS612",
         "time limit out of bounds",

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from specs import syntax as s
-from specs.writing import decimal, inner, listed, placed, shape, write
+from specs.writing import constant, decimal, listed, placed, shape, write
 
 WIDTH: Final = 100
 _STEP: Final = "  "
@@ -252,7 +252,7 @@ def _rule(node: s.Rule) -> list[str]:
 def _says(node: s.Says) -> list[str]:
     to = f" to {write(node.recipient)}" if node.recipient else ""
     times = "once" if node.times == 1 else f"{node.times} times"
-    return [f"says {inner(node.message, 8)}{to} at most {times}"]
+    return [f"says {constant(node.message)}{to} at most {times}"]
 
 
 def _appears(node: s.Appears) -> list[str]:

@@ -122,6 +122,7 @@ NODES: Final[dict[str, tuple[type[s.Node], ...]]] = {
         s.HostedAt,
         s.SameName,
         s.Stored,
+        s.HasValue,
         s.Negation,
         s.Connective,
         s.Quantified,

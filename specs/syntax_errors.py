@@ -23,6 +23,7 @@ _FORMULA: Final = frozenset(
         "actually",
         "present",
         "known",
+        "bound",
         "pending",
         "ended",
         "waiting",

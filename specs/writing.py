@@ -47,7 +47,7 @@ def binding(node: s.Node) -> int:
         case s.Connective():
             return _CONNECTIVE[node.operator][0]
         case s.Negation():
-            return 8 if isinstance(node.operand, s.SameName | s.Stored) else 6
+            return 8 if _is_unlike(node) else 6
         case s.PathOperation():
             return _PATH[0]
         case s.PathPrefix():
@@ -57,6 +57,14 @@ def binding(node: s.Node) -> int:
         case s.Quantified() | s.LeadsTo():
             return 0
     return _ATOM
+
+
+def constant(node: s.Expression) -> str:
+    """Return the text of a fixed value: an atom, or a negative number."""
+    match node:
+        case s.UnaryOperation("-", s.IntegerLiteral()):
+            return write(node)
+    return inner(node, _ATOM)
 
 
 # --- expressions and queries
@@ -227,12 +235,15 @@ def _(node: s.TuplePattern) -> str:
 
 @write.register
 def _(node: s.Negation) -> str:
+    if _is_unlike(node):
+        return write(node.operand).replace("==", "!=", 1)
+    return f"not {inner(node.operand, 6)}"
+
+
+def _is_unlike(node: s.Negation) -> bool:
+    """Tell whether a negation is written with `!=`."""
     claim = node.operand
-    if isinstance(claim, s.SameName):
-        return f"{write(claim.left)} != {write(claim.right)}"
-    if isinstance(claim, s.Stored):
-        return f"{write(claim.agent)}.{write(claim.variable)} != {inner(claim.value, _ATOM)}"
-    return f"not {inner(claim, 6)}"
+    return isinstance(claim, s.SameName) or (isinstance(claim, s.Stored) and claim.operator == "==")
 
 
 @write.register
@@ -298,7 +309,12 @@ def _(node: s.SameName) -> str:
 
 @write.register
 def _(node: s.Stored) -> str:
-    return f"{write(node.agent)}.{write(node.variable)} == {inner(node.value, _ATOM)}"
+    return f"{write(node.agent)}.{write(node.variable)} {node.operator} {constant(node.value)}"
+
+
+@write.register
+def _(node: s.HasValue) -> str:
+    return f"bound {write(node.agent)}.{write(node.variable)}"
 
 
 # --- what is claimed of runs

@@ -12,7 +12,7 @@ from semantics.environment import Says
 from semantics.expressions import Fault, Literal, Variable
 from semantics.patterns import Anything, Exactly
 from semantics.program import Behaviour
-from semantics.propositions import And, Or, Proposition, VariableIs
+from semantics.propositions import And, Or, Proposition
 from semantics.reactions import COMMANDS
 from semantics.signature import Name
 from semantics.statements import Assign, ChooseFrom, ControlBy, For, ForEach, Spawn
@@ -193,6 +193,9 @@ def _check_program(c: Configuration, renaming: Renaming) -> None:
         if restated(renaming, statement) != program.statements[renaming.numbers.get(number, number)]:
             line = program.lines[number] if number < len(program.lines) else 0
             raise Unlike(f"the text tells them apart{f' (line {line})' if line else ''}")
+    for variable in sorted(program.watched, key=str):
+        if renaming.value(variable) not in program.watched:
+            raise Unlike(f"a property tells them apart: it names {variable}")
     for each in program.behaviours.values():
         if Behaviour(each.name, restated(renaming, each.parameters), restated(renaming, each.body)) != each:
             raise Unlike(f"the behaviour '{each.name}' tells them apart")
@@ -257,29 +260,13 @@ def _check_world(c: Configuration, renaming: Renaming) -> None:
 
 def is_invariant(renaming: Renaming, formula: Proposition) -> bool:
     """Tell whether a proposition says the same of everyone that is exchanged."""
-    return bool(_normal(formula) == _normal(_renamed(renaming, formula)))
-
-
-def _renamed(renaming: Renaming, formula: Any) -> Any:
-    if isinstance(formula, tuple):
-        return tuple(_renamed(renaming, each) for each in formula)
-    if isinstance(formula, VariableIs):
-        variables = tuple(renaming.variables.get(each, each) for each in formula.variables)
-        return VariableIs(
-            renaming.name(formula.agent), variables, renaming.value(formula.value), formula.shown
-        )
-    if isinstance(formula, And | Or):
-        return type(formula)(_renamed(renaming, formula.formulas))
-    inner = getattr(formula, "formula", None)
-    return renaming.value(formula) if inner is None else type(formula)(_renamed(renaming, inner))
+    return bool(_normal(formula) == _normal(renaming.value(formula)))
 
 
 def _normal(formula: Any) -> Any:
     if isinstance(formula, And | Or):
         return (type(formula).__name__, frozenset(map(_normal, _flat(type(formula), formula.formulas))))
     inner = getattr(formula, "formula", None)
-    if isinstance(formula, VariableIs):
-        return (formula.agent, frozenset(formula.variables), formula.value)
     return formula if inner is None else ("not", _normal(inner))
 
 

@@ -14,6 +14,7 @@ from physical import Geometry
 from semantics.cells import AGENTS, NAMES, Cell, Changes, Row
 from semantics.configuration import Configuration
 from semantics.physical_model import Carried, InTransit, Placed
+from semantics.program import VariableOf
 from semantics.queries import All, Nodes, Observation, Of, Swept
 from semantics.reactions import LinkVariable, Match, NodeVariable, Pattern, PlaceVariable, Reaction
 from semantics.requests import request_key
@@ -149,6 +150,9 @@ SPECIAL: Mapping[type, Callable[[Renaming, Any], Any]] = {
         renaming.value(each.via),
     ),
     Pattern: _each_field,
+    VariableOf: lambda renaming, each: VariableOf(
+        renaming.name(each.agent), tuple(sorted(renaming.variables.get(one, one) for one in each.variables))
+    ),
 }
 """What is not renamed field by field."""
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from checker.reduction.bounds import Bounds
-from semantics.agents import code_cell, host_cell, store_cell
+from semantics.agents import Store, code_cell, host_cell, store_cell
 from semantics.cells import AGENTS, Cell
 from semantics.configuration import Configuration
 from semantics.eta import line_cell, sends_cell
@@ -18,6 +18,7 @@ from semantics.propositions import (
     HasPending,
     HostedAt,
     Inside,
+    IsBound,
     Known,
     LinkedWith,
     Not,
@@ -29,6 +30,7 @@ from semantics.propositions import (
 )
 from semantics.signature import REGION, Name
 from semantics.statements import React
+from semantics.values import Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +81,8 @@ class Eyes:
                 yield from (Seen(AGENTS), Seen(host_cell(agent)))
             case HasPending(agent):
                 yield from (Seen(AGENTS), Seen(line_cell(agent)), Seen(sends_cell(agent)))
-            case VariableIs(agent):
-                yield from (Seen(AGENTS), Seen(store_cell(agent)))
+            case VariableIs(variable) | IsBound(variable):
+                yield from (Seen(AGENTS), Seen(store_cell(variable.agent), _Holds(variable.key)))
 
     def _places(self, node: Name, actually: bool) -> Iterator[Seen]:
         if node not in self.bounds.names or node == REGION:
@@ -102,6 +104,16 @@ class Eyes:
 
 def _is_there(value: Any) -> bool:
     return value is not None
+
+
+@dataclass(frozen=True)
+class _Holds:
+    """What a store has under a name."""
+
+    key: str
+
+    def __call__(self, store: Store | None) -> Value | None:
+        return dict(store or ()).get(self.key)
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final, TypeVar
 
+from semantics.program import Program
 from semantics.propositions import Property
 from semantics.setting import Control, Scheduler
 from specs import syntax as s
@@ -42,10 +43,12 @@ def _only(named: tuple[D, ...], word: str, names: Names) -> D | None:
     return named[0] if named else None
 
 
-def elaborate_checks(mission: s.Mission, names: Names, bodies: Bodies) -> tuple[Property, ...]:
+def elaborate_checks(
+    mission: s.Mission, names: Names, bodies: Bodies, program: Program
+) -> tuple[Property, ...]:
     """Return the properties in the order written, or those that go without saying, and `computation`."""
     written = [item for section in mission.each(s.Check) for item in section.properties]
-    formulas, seen, found = Formulas(names, bodies), set[str](), list[Property]()
+    formulas, seen, found = Formulas(names, bodies, program), set[str](), list[Property]()
     temporal = TemporalFormulas(formulas)
     for item in written:
         line = names.findings.source.line(item.span.start)
@@ -55,7 +58,8 @@ def elaborate_checks(mission: s.Mission, names: Names, bodies: Bodies) -> tuple[
             prop = temporal.property(item, line)
         else:
             kind = "invariant" if isinstance(item, s.Invariant) else "reachable"
-            prop = Property(kind, item.label.value, formulas.elaborate(item.formula), line)
+            formula = formulas.elaborate(item.formula, invariant=kind == "invariant")
+            prop = Property(kind, item.label.value, formula, line)
         if prop.name in seen:
             names.findings.add(
                 Code.REPEATED_SETTING, item, f"a property '{prop.name}' is asked for twice", "rename one"

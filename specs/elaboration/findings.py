@@ -24,8 +24,8 @@ class Findings:
         self._found: dict[Diagnostic, None] = {}
         self._suggested = 0
 
-    def __bool__(self) -> bool:
-        return bool(self._found)
+    def __len__(self) -> int:
+        return len(self._found)
 
     def add(self, code: Code, where: Node | Span, message: str, hint: str = "") -> None:
         """Note a mistake, once."""

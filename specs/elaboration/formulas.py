@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Final
 
+from semantics.program import Program, VariableOf
 from semantics.propositions import (
+    ORDERS,
     Always,
     And,
     Ended,
     HasPending,
     HostedAt,
     Inside,
+    IsBound,
     Known,
     LinkedWith,
     Not,
@@ -22,16 +26,45 @@ from semantics.propositions import (
     Waiting,
 )
 from semantics.signature import REGION
+from semantics.values import Value, show
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.bodies import Bodies
 from specs.elaboration.constants import elaborate_constant
 from specs.elaboration.names import Names
+from specs.elaboration.value_types import ANY, WORDS, types_of
 
 MOST_ATOMS: Final = 50_000
 
-Bound = Mapping[str, str]
-"""What each quantified name stands for."""
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """What there is around a part of a formula.
+
+    What has no value neither violates nor fulfils: below `always`, a comparison is true where its variable has no
+    value, below `eventually` false, and the other way round below a negation. So `not always F` is `eventually not F`.
+
+    Attributes:
+        unbound: The truth of a comparison here whose variable has no value.
+        names: What each quantified name stands for.
+        depth: How many operators of paths are around.
+    """
+
+    unbound: bool
+    names: Mapping[str, str] = field(default_factory=dict)
+    depth: int = 0
+
+    def naming(self, variable: str, name: str) -> Context:
+        """Return the context in which a quantified name stands for another."""
+        return replace(self, names={**self.names, variable: name})
+
+    def denied(self) -> Context:
+        """Return the context below a negation."""
+        return replace(self, unbound=not self.unbound)
+
+    def on_paths(self, *, unbound: bool) -> Context:
+        """Return the context below one more operator of paths."""
+        return replace(self, unbound=unbound, depth=self.depth + 1)
 
 
 class TooLarge(Exception):
@@ -41,17 +74,18 @@ class TooLarge(Exception):
 class Formulas:
     """Elaborates the formulas of a mission; `atoms` counts those of all of them."""
 
-    def __init__(self, names: Names, bodies: Bodies) -> None:
+    def __init__(self, names: Names, bodies: Bodies, program: Program) -> None:
         self.names = names
         self.bodies = bodies
+        self.types = types_of(program)
         self.atoms = 0
 
-    def elaborate(self, formula: s.Formula) -> Proposition:
+    def elaborate(self, formula: s.Formula, *, invariant: bool) -> Proposition:
         """Return a formula as a proposition; reports what is wrong with it, and where the bound is passed."""
         if self.full:
             return Always(True)
         try:
-            return self.proposition(formula, {})
+            return self.proposition(formula, Context(unbound=invariant))
         except TooLarge as error:
             self.report(formula, error)
             return Always(True)
@@ -66,18 +100,18 @@ class Formulas:
         message, hint = error.args
         self.names.findings.add(Code.FORMULA_TOO_LARGE, formula, message, hint)
 
-    def proposition(self, node: s.Formula, bound: Bound) -> Proposition:
+    def proposition(self, node: s.Formula, around: Context) -> Proposition:
         """Return a formula with what is quantified around it replaced."""
         match node:
             case s.Negation(operand):
-                return Not(self.proposition(operand, bound))
+                return Not(self.proposition(operand, around.denied()))
             case s.Connective():
-                return self._connective(node, bound)
+                return self._connective(node, around)
             case s.Quantified():
-                return self._quantified(node, bound)
+                return self._quantified(node, around)
             case _:
                 self.count(1)
-                return self._atom(node, bound)
+                return self._atom(node, around)
 
     def count(self, atoms: int) -> None:
         """Count atoms; raises TooLarge where they are too many."""
@@ -86,43 +120,44 @@ class Formulas:
             message = f"written out, the properties have more than {MOST_ATOMS:,} atoms"
             raise TooLarge(message, "quantify over fewer names, or split it")
 
-    def _connective(self, node: s.Connective, bound: Bound) -> Proposition:
-        before = self.atoms
-        left, right = self.proposition(node.left, bound), self.proposition(node.right, bound)
-        if node.operator == "<->":
-            self.count(self.atoms - before)
-            return And((_implies(left, right), _implies(right, left)))
-        if node.operator == "->":
-            return _implies(left, right)
+    def _connective(self, node: s.Connective, around: Context) -> Proposition:
+        if node.operator in IMPLICATIONS:
+            ways = [
+                Or((Not(self.proposition(condition, around.denied())), self.proposition(then, around)))
+                for condition, then in implications(node)
+            ]
+            return ways[0] if len(ways) == 1 else And(tuple(ways))
+        left, right = self.proposition(node.left, around), self.proposition(node.right, around)
         make = And if node.operator == "and" else Or
         return make((*_parts(left, make), *_parts(right, make)))
 
-    def _quantified(self, node: s.Quantified, bound: Bound) -> Proposition:
+    def _quantified(self, node: s.Quantified, around: Context) -> Proposition:
         found = []
-        for each in self.bindings(node, bound, self.proposition):
+        for each in self.instances(node, around, self.proposition):
             found.append(self.proposition(node.body, each))  # noqa: PERF401 - a frame less
         return And(tuple(found)) if node.quantifier == "forall" else Or(tuple(found))
 
-    def bindings(
-        self, node: s.Quantified, bound: Bound, elaborate: Callable[[s.Formula, Bound], object]
-    ) -> list[Bound]:
-        """Return what names stand for in each instance of what is quantified."""
+    def instances(
+        self, node: s.Quantified, around: Context, elaborate: Callable[[s.Formula, Context], object]
+    ) -> list[Context]:
+        """Return the context of each instance of what is quantified."""
         if not self.names.kind(node.kind):
             return []
         members = [name for name, kind in sorted(self.names.kinds.items()) if kind == node.kind.text]
         if not members:
-            elaborate(node.body, {**bound, node.variable.text: REGION})  # for the mistakes in it
-        return [{**bound, node.variable.text: name} for name in members]
+            elaborate(node.body, around.naming(node.variable.text, REGION))  # for the mistakes in it
+        return [around.naming(node.variable.text, name) for name in members]
 
     # --- atoms
 
-    def _atom(self, node: s.Formula, bound: Bound) -> Proposition:
+    def _atom(self, node: s.Formula, around: Context) -> Proposition:
+        bound = around.names
         match node:
             case s.TruthLiteral(value):
                 return Always(value)
             case s.Inside(entity, place, directly, actually):
-                around = REGION if place.text == REGION else self._entity(place, bound)
-                return Inside(self._entity(entity, bound), around, actually, directly)
+                within = REGION if place.text == REGION else self._entity(place, bound)
+                return Inside(self._entity(entity, bound), within, actually, directly)
             case s.LinkedTo(entity, other, actually):
                 return LinkedWith(self._entity(entity, bound), self._node_or_channel(other, bound), actually)
             case s.Present(entity):
@@ -140,12 +175,14 @@ class Formulas:
             case s.SameName():
                 return self._same(node, bound)
             case s.Stored():
-                return self._stored(node, bound)
+                return self._stored(node, around)
+            case s.HasValue(agent, variable):
+                return IsBound(self._variable(agent, variable))
         message = "this is about runs, and here single configurations are looked at"
         self.names.findings.add(Code.WRONG_LOGIC, node, message, "write it in ltl or ctl")
         return Always(True)
 
-    def _entity(self, name: s.Name, bound: Bound) -> str:
+    def _entity(self, name: s.Name, bound: Mapping[str, str]) -> str:
         if name.text not in bound:
             self.names.entity(name)
         return bound.get(name.text, name.text)
@@ -154,28 +191,49 @@ class Formulas:
         self.names.agent(name)
         return name.text
 
-    def _node_or_channel(self, name: s.Name, bound: Bound) -> str:
+    def _node_or_channel(self, name: s.Name, bound: Mapping[str, str]) -> str:
         if name.text in bound or name.text in self.names.channels:
             return bound.get(name.text, name.text)
         return self._entity(name, bound)
 
-    def _same(self, node: s.SameName, bound: Bound) -> Proposition:
+    def _same(self, node: s.SameName, bound: Mapping[str, str]) -> Proposition:
         if node.left.text not in bound and node.right.text not in bound:
             hint = "quantify one of them; a bigActor's variable is written a.x"
             message = f"'{node.left.text}' and '{node.right.text}' are two fixed names"
             self.names.findings.add(Code.NOT_QUANTIFIED, node, message, hint)
         return Always(self._entity(node.left, bound) == self._entity(node.right, bound))
 
-    def _stored(self, node: s.Stored, bound: Bound) -> Proposition:
-        agent, shown = self._agent(node.agent), node.variable.text
-        value = elaborate_constant(node.value, self.names, bound)
-        known = list(self._variables(agent))
-        renamed = tuple(sorted({unique for name, unique in known if name == shown}))
-        if not renamed and agent in self.names.agents:
+    def _stored(self, node: s.Stored, around: Context) -> Proposition:
+        mistakes = len(self.names.findings)
+        variable = self._variable(node.agent, node.variable)
+        value = elaborate_constant(node.value, self.names, around.names)
+        if len(self.names.findings) == mistakes:
+            self._check_comparable(node, variable, value)
+        return VariableIs(variable, value, node.operator, around.unbound)
+
+    def _check_comparable(self, node: s.Stored, variable: VariableOf, value: Value) -> None:
+        """Report a comparison that no value of the variable can meet."""
+        if node.operator in ORDERS and not isinstance(value, int):
+            message = f"'{node.operator}' compares numbers, and {show(value)} is none"
+            hint = "write a whole number, or compare with == or !="
+            self.names.findings.add(Code.NOT_COMPARABLE, node, message, hint)
+            return
+        types = frozenset[type]().union(*(self.types.get(each, ANY) for each in variable.variables))
+        if type(value) not in types:
+            has = " or ".join(WORDS[each] for each in WORDS if each in types)
+            message = f"'{variable}' never has a value of that type, only {has}"
+            hint = f"whether it has a value at all is asked with: bound {variable}"
+            self.names.findings.add(Code.NOT_COMPARABLE, node, message, hint)
+
+    def _variable(self, agent: s.Name, variable: s.Name) -> VariableOf:
+        whose, shown = self._agent(agent), variable.text
+        known = list(self._variables(whose))
+        unique = tuple(sorted({each for name, each in known if name == shown}))
+        if not unique and whose in self.names.agents:
             among = {name for name, _ in known}
-            otherwise = f"'{agent}' has {', '.join(sorted(among)[:8]) or 'none'}"
-            self.names.findings.unknown(node.variable, among, sort="variable", otherwise=otherwise)
-        return VariableIs(agent, renamed, value, shown)
+            otherwise = f"'{whose}' has {', '.join(sorted(among)[:8]) or 'none'}"
+            self.names.findings.unknown(variable, among, sort="variable", otherwise=otherwise)
+        return VariableOf(whose, unique or (shown,))
 
     def _variables(self, agent: str) -> Iterator[tuple[str, str]]:
         """Yield the variables of what a bigActor may run: as written, and their unique names."""
@@ -184,8 +242,14 @@ class Formulas:
                 yield from ((name, unique) for unique in renamed)
 
 
-def _implies(left: Proposition, right: Proposition) -> Proposition:
-    return Or((Not(left), right))
+IMPLICATIONS: Final = ("->", "<->")
+
+
+def implications(node: s.Connective) -> Iterator[tuple[s.Formula, s.Formula]]:
+    """Yield the condition and the conclusion of an implication; of `<->` both ways."""
+    yield node.left, node.right
+    if node.operator == "<->":
+        yield node.right, node.left
 
 
 def _parts(formula: Proposition, make: type[And | Or]) -> tuple[Proposition, ...]:

@@ -11,7 +11,7 @@ from typing import Final
 from semantics.configuration import Configuration
 from semantics.initial import initial
 from semantics.precautions import Precautions
-from semantics.propositions import Property
+from semantics.propositions import Property, watched
 from semantics.setting import Control, Scheduler, Setting
 from semantics.signature import Name
 from specs import syntax as s
@@ -99,13 +99,13 @@ def elaborate(
     check_controls(bodies, Ground(names, world, mobility, fixed))
     scheduler, control = elaborate_scheduler(mission, names), elaborate_control(mission, names)
     scheduler, control = variation.scheduler or scheduler, variation.control or control
-    properties = elaborate_checks(mission, names, bodies)
+    properties = elaborate_checks(mission, names, bodies, program)
     precautions = elaborate_live(mission, names)
     _stop(names.findings)
     setting = Setting(
         names.signature,
         dict(names.kinds),
-        program,
+        program.watching(watched(properties)),
         clauses,
         scheduler,
         control,

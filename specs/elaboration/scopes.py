@@ -27,7 +27,7 @@ class Variables:
     def rest(self) -> str:
         """Return a name for what is left of a collection that a `for` goes through."""
         self.hidden += 1
-        return f"rest#{self.hidden}"
+        return f"#{self.hidden}"
 
 
 @dataclass(slots=True)

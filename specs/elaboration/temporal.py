@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from functools import partial
 from typing import Final
 
 from semantics import temporal as t
@@ -12,7 +11,7 @@ from semantics.setting import Control
 from semantics.successors import rules_of
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.formulas import Bound, Formulas, TooLarge
+from specs.elaboration.formulas import IMPLICATIONS, Context, Formulas, TooLarge, implications
 from specs.elaboration.names import Names
 
 MOST_NESTED: Final = 32
@@ -37,6 +36,15 @@ _PREFIXES: Final[dict[str, Callable[[t.Temporal], t.Temporal]]] = {
     "next": t.Next,
     "infinitely often": lambda inner: t.Globally(t.Eventually(inner)),
 }
+_UNBOUND: Final = {
+    "[]": True,
+    "always": True,
+    "<>": False,
+    "eventually": False,
+    "infinitely often": False,
+}
+"""The truth of a comparison below an operator where its variable has no value; below `X` it is as around it."""
+
 _OPERATIONS: Final[dict[str, Callable[[t.Temporal, t.Temporal], t.Temporal]]] = {
     "U": t.Until,
     "until": t.Until,
@@ -75,22 +83,22 @@ class TemporalFormulas:
             if isinstance(node, _OF_RUNS) or any(id(part) in self.of_runs for part in s.parts(node)):
                 self.of_runs.add(id(node))
         try:
-            return self._claim(item.formula, {}, 0)
+            return self._claim(item.formula, Context(unbound=False))
         except TooLarge as error:
             self.formulas.report(item.formula, error)
         return t.Now(Always(True))
 
-    def _claim(self, node: s.Formula, bound: Bound, depth: int) -> t.Temporal:
-        """Return a formula with what is quantified around it replaced; `depth` counts the operators of paths around."""
+    def _claim(self, node: s.Formula, around: Context) -> t.Temporal:
+        """Return a formula with what is quantified around it replaced."""
         if id(node) not in self.of_runs:
-            return t.Now(self.formulas.proposition(node, bound))
+            return t.Now(self.formulas.proposition(node, around))
         match node:
             case s.Negation(operand):
-                return t.Denied(self._claim(operand, bound, depth))
+                return t.Denied(self._claim(operand, around.denied()))
             case s.Connective():
-                return self._connective(node, bound, depth)
+                return self._connective(node, around)
             case s.Quantified():
-                return self._quantified(node, bound, depth)
+                return self._quantified(node, around)
             case s.Taken(steps):
                 if self.logic == "ctl":
                     message = "in ctl no step is taken: all that may follow are looked at"
@@ -100,24 +108,24 @@ class TemporalFormulas:
             case s.Enabled(steps):
                 self.formulas.count(1)
                 return t.Enabled(self.steps(steps)[0])
-        if depth >= MOST_NESTED:
+        if around.depth >= MOST_NESTED:
             raise TooLarge(f"more than {MOST_NESTED} operators of paths inside each other", "split it")
-        return self._of_paths(node, bound, depth + 1)
+        return self._of_paths(node, around)
 
-    def _connective(self, node: s.Connective, bound: Bound, depth: int) -> t.Temporal:
-        before = self.formulas.atoms
-        left, right = self._claim(node.left, bound, depth), self._claim(node.right, bound, depth)
-        if node.operator == "<->":
-            self.formulas.count(self.formulas.atoms - before)
-            return t.Both(t.Either(t.Denied(left), right), t.Either(t.Denied(right), left))
-        if node.operator == "->":
-            return t.Either(t.Denied(left), right)
+    def _connective(self, node: s.Connective, around: Context) -> t.Temporal:
+        if node.operator in IMPLICATIONS:
+            ways = [
+                t.Either(t.Denied(self._claim(condition, around.denied())), self._claim(then, around))
+                for condition, then in implications(node)
+            ]
+            return ways[0] if len(ways) == 1 else t.Both(*ways)
+        left, right = self._claim(node.left, around), self._claim(node.right, around)
         return (t.Both if node.operator == "and" else t.Either)(left, right)
 
-    def _quantified(self, node: s.Quantified, bound: Bound, depth: int) -> t.Temporal:
+    def _quantified(self, node: s.Quantified, around: Context) -> t.Temporal:
         claims = []
-        for each in self.formulas.bindings(node, bound, partial(self._claim, depth=depth)):
-            claims.append(self._claim(node.body, each, depth))  # noqa: PERF401 - a frame less
+        for each in self.formulas.instances(node, around, self._claim):
+            claims.append(self._claim(node.body, each))  # noqa: PERF401 - a frame less
         join = t.Both if node.quantifier == "forall" else t.Either
         while len(claims) > 1:  # in pairs: a tree that is not deep
             odd = claims[-1:] if len(claims) % 2 else []
@@ -127,43 +135,53 @@ class TemporalFormulas:
 
     # --- operators of paths
 
-    def _of_paths(self, node: s.Formula, bound: Bound, depth: int) -> t.Temporal:
+    def _of_paths(self, node: s.Formula, around: Context) -> t.Temporal:
         match node:
             case s.LeadsTo(left, right):
-                return self._leads_to(self._claim(left, bound, depth), self._claim(right, bound, depth))
+                below = around.on_paths(unbound=True)
+                condition, then = (
+                    self._claim(left, below.denied()),
+                    self._claim(right, below.on_paths(unbound=False)),
+                )
+                return self._leads_to(condition, then)
             case s.PathQuantifier():
-                return self._on_paths(node, bound, depth)
+                return self._on_paths(node, around)
             case s.PathPrefix() | s.PathOperation():
                 if self.logic == "ctl":
                     message = "in ctl an operator of paths stands directly behind A or E"
                     self._refuse(node, message, "write AG, EF, AX or A (F U G)")
-                return self._path(node, bound, depth)
+                return self._path(node, around)
         raise AssertionError(node)
 
-    def _on_paths(self, node: s.PathQuantifier, bound: Bound, depth: int) -> t.Temporal:
+    def _on_paths(self, node: s.PathQuantifier, around: Context) -> t.Temporal:
         path = node.operand
         if self.logic == "ltl":
             message = f"ltl is about every run, and doesn't say '{node.quantifier}'"
             self._refuse(node, message, "leave it out, or write it in ctl")
         if isinstance(path, s.PathPrefix | s.PathOperation):
             make = t.OnAllPaths if node.quantifier == "A" else t.OnSomePath
-            return make(self._path(path, bound, depth))
+            return make(self._path(path, around))
         self._refuse(path, f"'{node.quantifier}' needs an operator of paths", "write AG, EF, AX or A (F U G)")
         return t.Now(Always(True))
 
-    def _path(self, node: s.PathPrefix | s.PathOperation, bound: Bound, depth: int) -> t.Temporal:
+    def _path(self, node: s.PathPrefix | s.PathOperation, around: Context) -> t.Temporal:
         if isinstance(node, s.PathOperation):
-            left, right = self._claim(node.left, bound, depth), self._claim(node.right, bound, depth)
+            kept, come = around.on_paths(unbound=True), around.on_paths(unbound=False)
+            sides = (come, kept) if node.operator == "R" else (kept, come)
+            left, right = (
+                self._claim(each, side) for each, side in zip((node.left, node.right), sides, strict=True)
+            )
             return _OPERATIONS[node.operator](left, right)
         if node.operator == "infinitely often" and self.logic == "ctl":
             self._refuse(node, "'infinitely often' is two operators of paths", "write AG AF F")
-        return _PREFIXES[node.operator](self._claim(node.operand, bound, depth))
+        unbound = _UNBOUND.get(node.operator, around.unbound)
+        return _PREFIXES[node.operator](self._claim(node.operand, around.on_paths(unbound=unbound)))
 
-    def _leads_to(self, left: t.Temporal, right: t.Temporal) -> t.Temporal:
+    def _leads_to(self, condition: t.Temporal, then: t.Temporal) -> t.Temporal:
         if self.logic == "ctl":
-            then = t.OnAllPaths(t.Eventually(right))
-            return t.OnAllPaths(t.Globally(t.Either(t.Denied(left), then)))
-        return t.Globally(t.Either(t.Denied(left), t.Eventually(right)))
+            comes = t.OnAllPaths(t.Eventually(then))
+            return t.OnAllPaths(t.Globally(t.Either(t.Denied(condition), comes)))
+        return t.Globally(t.Either(t.Denied(condition), t.Eventually(then)))
 
     def _refuse(self, node: s.Node, message: str, hint: str) -> None:
         self.names.findings.add(Code.WRONG_LOGIC, node, message, hint)

@@ -118,11 +118,24 @@ class SameName(Node):
 
 @dataclass(frozen=True, slots=True)
 class Stored(Node):
-    """`a.x == 3`: agent a's variable x has that value."""
+    """`a.x == 3`, `a.x < 3`, `a.x <= 3`, `a.x > 3`, `a.x >= 3`: how agent a's variable x compares with that value.
+
+    It keeps its last value to the end of the run. Before it has one, the comparison neither violates nor fulfils
+    (temporal.md). What is no number has no value for `<`, `<=`, `>` and `>=`.
+    """
 
     agent: Name
     variable: Name
     value: Expression
+    operator: str = "=="
+
+
+@dataclass(frozen=True, slots=True)
+class HasValue(Node):
+    """`bound a.x`: agent a has given its variable x a value."""
+
+    agent: Name
+    variable: Name
 
 
 Formula: TypeAlias = (
@@ -140,6 +153,7 @@ Formula: TypeAlias = (
     | HostedAt
     | SameName
     | Stored
+    | HasValue
     | PathPrefix
     | PathOperation
     | LeadsTo

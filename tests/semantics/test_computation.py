@@ -23,7 +23,7 @@ def shown(*statements, code=(0,), behaviours=None):
 
 def test_for_goes_through_a_set_in_canonical_order():
     members = SetOf((Literal("b"), Literal(2), Literal(-1), Literal("a")))
-    t = shown(For(members, "xrest#", 1), ForEach("x", "xrest#", (2,)), Display(Variable("x")))
+    t = shown(For(members, "#x", 1), ForEach("x", "#x", (2,)), Display(Variable("x")))
     assert t.shown == ("-1", "2", "a", "b")
 
 

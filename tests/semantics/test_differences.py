@@ -52,7 +52,7 @@ ALL = All()
 CHANGES = {
     "what an agent is at": ({code_cell("a"): ()}, ["α  a ended"]),
     "where it is hosted": ({host_cell("a"): "vessel0"}, ["α  a hosted_at vessel0"]),
-    "a new value": ({store_cell("a"): (("n#1", 3), ("rest#2", ()))}, ["α  a.n = 3"]),
+    "a new value": ({store_cell("a"): (("n#1", 3), ("#2", ()))}, ["α  a.n = 3"]),
     "mail": ({mailbox_cell("a"): ("go", "go")}, ['α  mail of a: + "go"', 'α  mail of a: + "go"']),
     "a request": ({("line", "a"): (OBS("a", ALL),)}, ["η  + OBS(a, ALL)"]),
     "a place believed": ({("parent", "uav0"): "sea0"}, ["L  uav0 : shore0 ↦ sea0"]),

@@ -24,7 +24,7 @@ SEEN = Observation.of(("base", "u0"), ("a",), (Parent("u0", "base"), Linked("w",
 
 
 def value(expression, **store):
-    return evaluate(expression, Scope("me", "u0", store, {}, {"u0": "Uav", "base": "Place"}))
+    return evaluate(expression, Scope("me", "u0", store, {}, {"u0": "Uav", "base": "Place"}, {}))
 
 
 def of(operator, *values):

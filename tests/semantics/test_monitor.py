@@ -121,7 +121,7 @@ def test_an_argument_computed_from_an_observation_carries_it():
 
 def test_going_through_an_observation_carries_it():
     ways = (
-        (For(Variable("o"), "xrest#", 3), ForEach("x", "xrest#", (4,))),
+        (For(Variable("o"), "#x", 3), ForEach("x", "#x", (4,))),
         (ChooseFrom("x", Variable("o"), (4,)), Assign("unused", Literal(1))),
     )
     for way in ways:

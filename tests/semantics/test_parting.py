@@ -218,6 +218,18 @@ def test_a_vehicle_goes_round_the_stations_as_in_the_whole(data):
         assert part.structure.logical.links("uav0") == together.whole.structure.logical.links("uav0")
 
 
+@given(st.data())
+def test_what_is_kept_of_an_agent_that_has_ended_goes_where_it_went(data):
+    last = "BigActor last hosted_at gcs0 with_behavior { let n = 1 migrate(gcs1) n = n + 1 migrate(gcs2) }"
+    asked = 'check { reachable "r": last.n == 2 }'
+    together = Together(mission(f"{TEXT.partition('def visit')[0]} {last} {asked}"))
+    while ways := together.ways():
+        together.go(data.draw(st.sampled_from(ways)))
+    assert together.whole.alpha.store("last") == (("n", 2),)
+    stores = {name: part.alpha.store("last") for name, part in together.parts.items()}
+    assert stores == {"gcs0": (), "gcs1": (), "gcs2": (("n", 2),)}
+
+
 def test_a_part_has_of_agents_elsewhere_their_hosts_alone():
     part = parted(FIRST, parting("gcs1"))
     assert part.alpha.names() == ("nomad", "op0", "op1")

@@ -7,6 +7,7 @@ from small_missions import aboard, figure_2, mission, run
 
 from semantics import strategies
 from semantics.initial import Beliefs
+from semantics.program import VariableOf
 from semantics.propositions import (
     Always,
     And,
@@ -19,9 +20,11 @@ from semantics.propositions import (
     Not,
     Or,
     Present,
+    Property,
     VariableIs,
     Waiting,
     holds,
+    watching,
 )
 from semantics.signature import REGION
 from semantics.structure import Linked, Parent
@@ -111,13 +114,13 @@ def test_a_configuration_is_compared_by_value():
         (Ended("a"), False, False),
         (Waiting("a"), False, False),
         (HostedAt("a", "u0"), True, True),
-        (VariableIs("a", ("obs",), 1, "obs"), False, False),
+        (VariableIs(VariableOf("a", ("obs",)), 1), False, False),
         (And((Present("u0"), Not(Inside("u0", "area")))), True, False),
         (Or((Always(False), Inside("u0", "area"))), False, True),
     ],
 )
 def test_propositions_of_figure_2_before_and_after_its_first_move(formula, first, moved):
-    c = figure_2()
+    c = watching(figure_2(), [Property("invariant", "i", formula)])
     assert (holds(formula, c), holds(formula, run(c, "req_ctr", "actuate"))) == (first, moved)
 
 

@@ -14,6 +14,7 @@ from semantics import statements as k
 from semantics.environment import Appears, Drifts, Leaves, Says
 from semantics.expressions import Fault, Host, Literal, QueryOf, Variable
 from semantics.physical_model import Carried, Placed
+from semantics.program import VariableOf
 from semantics.propositions import And, Inside, Not, Or, VariableIs, holds
 from semantics.setting import Control, Scheduler
 from semantics.statements import (
@@ -298,8 +299,21 @@ def test_a_guard_in_a_match_is_not():
 
 def test_for_goes_through_what_is_left_under_a_hidden_name():
     found = statements("for x in {1, 2} { display(x) }")
-    assert found[0] == For(found[0].members, "rest#1", 1)
-    assert found[1] == ForEach("x", "rest#1", (2,))
+    assert found[0] == For(found[0].members, "#1", 1)
+    assert found[1] == ForEach("x", "#1", (2,))
+
+
+def test_what_is_left_of_a_for_meets_no_variable_of_the_mission():
+    found = statements(
+        "let rest = 1 for x in {1, 2} { let rest = 2 for y in {x} { display(rest) } } if true { let rest = 3 }"
+    )
+    bound = [
+        name
+        for each in found
+        for field in ("variable", "rest")
+        if not isinstance(each, For) and (name := getattr(each, field, None))
+    ]
+    assert sorted(bound) == ["#1", "#2", "rest", "rest#2", "rest#3", "x", "y"]
 
 
 def test_a_loop_at_the_top_is_outermost_and_others_are_not():
@@ -454,7 +468,7 @@ def test_a_variable_of_a_bigactor_is_any_of_that_name_in_what_it_may_run():
         'reachable "r": a.x == 1',
         "let x = 1 if true { let x = 2 display(x) } b(3)\n} def b(x) = { display(x)",
     )
-    assert first.formula == VariableIs("a", ("x", "x#2", "x#b"), 1, "x")
+    assert first.formula == VariableIs(VariableOf("a", ("x", "x#2", "x#b")), 1)
 
 
 def test_computation_is_always_checked():

@@ -174,7 +174,8 @@ claims = st.one_of(
     st.builds(s.Waiting, names),
     st.builds(s.HostedAt, names, names),
     st.builds(s.SameName, names, names),
-    st.builds(s.Stored, names, names, expressions),
+    st.builds(s.Stored, names, names, expressions, st.sampled_from(["==", "<", "<=", ">", ">="])),
+    st.builds(s.HasValue, names, names),
 )
 formulas = st.recursive(
     claims,
