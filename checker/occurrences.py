@@ -18,6 +18,8 @@ Operand = tuple[Path, Formula]
 
 MOST_REMARKS: Final = 3
 
+STILL: Final = "vacuous: nothing that it speaks of ever changes"
+
 
 @dataclass(frozen=True, slots=True)
 class Part:

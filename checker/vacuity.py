@@ -10,7 +10,7 @@ from functools import reduce
 from operator import and_, or_
 from typing import Any, Final
 
-from checker.occurrences import Part, few, never_needed, unneeded
+from checker.occurrences import STILL, Part, few, never_needed, unneeded
 from semantics import cells
 from semantics.cells import Cell, Cells, Changes, Question, State, Written, is_, merged
 from semantics.configuration import Configuration
@@ -78,7 +78,7 @@ class Valuations:
     def remarks(self, kinds: Mapping[Name, str]) -> tuple[str, ...]:
         """Return what makes the invariant vacuous, if it holds: at most a few sentences."""
         if self.still is not None and self.begun:
-            return ("vacuous: nothing that it speaks of ever changes",)
+            return (STILL,)
         if not self.atoms:
             return ()
         return few(tuple(remarks_on(self.formula, self.columns, len(self.met), kinds)))

@@ -11,7 +11,7 @@ from typing import Final, cast
 
 from checker.bounding import BoundMet
 from checker.graph import Graph
-from checker.occurrences import Formula, Part, at, few, never_needed, unneeded
+from checker.occurrences import STILL, Formula, Part, at, few, never_needed, unneeded
 from checker.temporal.arrows import shortest
 from checker.temporal.automaton import TooLargeError
 from checker.temporal.branching import Branching
@@ -22,9 +22,10 @@ from checker.temporal.linear import conjuncts, counterexample
 from checker.temporal.shortest import shortest_false
 from checker.temporal.truth import Truth
 from checker.temporal.words import is_true_on
+from checker.vacuity import atoms_of
 from semantics.propositions import Always, Not, Or
 from semantics.signature import Name
-from semantics.temporal import Denied, Either, Globally, Now, OnAllPaths, Temporal
+from semantics.temporal import Denied, Either, Globally, Now, OnAllPaths, State, Temporal, atoms
 
 MOST_EDGES: Final = 1_000_000
 """A formula is decided again as often as a graph's edges go into so many, and not at all where they don't."""
@@ -101,6 +102,8 @@ def judge_branching(tree: Branching, formula: Temporal, kinds: Mapping[Name, str
 
 def _remarks(truth: Truth, formula: Temporal, kinds: Mapping[Name, str], trials: _Trials) -> tuple[str, ...]:
     """Return what is said of parts, as far as bounds let it be known."""
+    if not any(_speaks(atom) for atom in atoms(formula)):
+        return (STILL,)
     found = list(_never_begun(truth, formula))
     if found:
         return tuple(found)
@@ -109,6 +112,11 @@ def _remarks(truth: Truth, formula: Temporal, kinds: Mapping[Name, str], trials:
     except (Exhausted, TooLargeError, BoundMet):
         trials.left = 0
     return few(found)
+
+
+def _speaks(atom: State) -> bool:
+    """Tell whether an atom is about anything: what is quantified over a kind without entities is not."""
+    return not isinstance(atom, Now) or any(True for _ in atoms_of(atom.proposition))
 
 
 def _never_begun(truth: Truth, formula: Temporal) -> Iterator[str]:

@@ -203,3 +203,23 @@ def test_where_the_time_ends_what_holds_still_does(monkeypatch):
     monkeypatch.setattr(vacuity, "counterexample", late)
     found = verdict(ONCE, 'ltl "q": uav0 in north0 or uav0 in vessel0')
     assert (found.outcome, found.remarks, found.witness) == (Outcome.HOLDS, (), None)
+
+
+NOTHING = {
+    'ltl "q": [] forall v: OilTank . present v': True,
+    'ltl "q": forall v: OilTank . [] present v': True,
+    'ltl "q": (exists v: OilTank . present v) leads to false': True,
+    'ctl "q": AG forall v: OilTank . EF present v': True,
+    'ctl "q": not EF exists v: OilTank . present v': True,
+    'ltl "q": [] forall v: OilTank . taken a': True,
+    'ltl "q": [] ((forall v: OilTank . present v) and present uav0)': False,
+    'ctl "q": AG forall v: UAV . present v': False,
+}
+
+
+@pytest.mark.parametrize("claim", NOTHING)
+def test_a_formula_over_a_kind_without_entities_is_vacuous(claim):
+    text = f"signature {{ kind OilTank }} {ONCE}"
+    found = verdict(text, claim)
+    assert found.outcome is Outcome.HOLDS
+    assert (found.remarks == ("vacuous: nothing that it speaks of ever changes",)) is NOTHING[claim]
