@@ -340,6 +340,38 @@ def test_what_a_property_names_is_kept_to_the_end_of_the_run(engine):
         assert outcomes(check(mission.initial, mission.properties, engine=engine))["it"] is holds, claim
 
 
+EVERY_WAY = """
+def visit(p) = { control(MOVE_HOST_TO p) }
+BigActor a hosted_at uav0 with_behavior {
+  observe(CHILDREN(PARENT(HOST)))
+  react { case o => skip }
+  for f in {1, 2} { control(MOVE_HOST_TO gate0) }
+  choose c in {3, 4} { control(MOVE_HOST_TO south0) }
+  match (5, 6) { case (x, y) => control(MOVE_HOST_TO gate0) }
+  spawn b hosted_at uav1 with_behavior visit(gate0)
+  react { case ("go", m) => skip }
+}
+environment { says ("go", -7) to a }
+"""
+LAST = ("bound a.o", "a.f == 2", "a.c >= 3", "a.x == 5", "a.y == 6", "b.p == gate0", "a.m == -7")
+
+
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+@pytest.mark.parametrize("claim", LAST)
+def test_a_variable_is_kept_however_it_is_bound(engine, claim):
+    claims = f"""
+      reachable "at the end": {claim} and ended a and ended b
+      ltl "from then on": [] ({claim} -> [] {claim})
+    """
+    report = check(*_asked(f"{EVERY_WAY} check {{ {claims} }}"), engine=engine)
+    assert outcomes(report) == {"at the end": True, "from then on": True, "computation": True}
+
+
+def _asked(text):
+    mission = load(text)
+    return mission.initial, mission.properties
+
+
 FOUND = VariableIs(VariableOf("scout", ("found",)), Truth.TRUE)
 SEARCH = MISSIONS / "search_and_deploy.mission"
 
