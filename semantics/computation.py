@@ -13,7 +13,7 @@ from semantics.agents import Code, Store
 from semantics.expressions import Expression, Fault, Scope, evaluated, truth
 from semantics.patterns import bind
 from semantics.program import Behaviour, Program
-from semantics.provenance import EVERYTHING, NOTHING, Provenance, asking
+from semantics.provenance import EVERYTHING, NOTHING, Provenance, asking, deciding
 from semantics.queries import Observation
 from semantics.statements import (
     Assign,
@@ -178,7 +178,7 @@ def _choose(process: Process, statement: Choice) -> Iterator[Process]:
     for member in members:
         chosen = process.fork()
         chosen.scope.binding({statement.variable: member}, rests_on)
-        chosen.enter(statement.body, chosen.leave() | rests_on)
+        chosen.enter(statement.body, chosen.leave() | deciding(rests_on))
         chosen.took(0)
         yield chosen
 
@@ -210,20 +210,20 @@ def _step(process: Process, statement: Internal) -> None:
         case If(test, then, otherwise):
             value, rests_on = process.evaluate(test)
             chosen = truth(value)
-            process.enter(then if chosen else otherwise, process.leave() | tested(rests_on))
+            process.enter(then if chosen else otherwise, process.leave() | deciding(rests_on))
             process.took(0 if chosen else 1)
         case While(test, body):
             _step_while(process, test, body)
         case For(members, rest, each):
             found, rests_on = process.members(members)
-            here = process.leave() | rests_on
-            process.scope.binding({rest: found}, here)
-            process.enter((each,), here)
+            here = process.leave()
+            process.scope.binding({rest: found}, here | rests_on)
+            process.enter((each,), here | deciding(rests_on))
         case ForEach(variable, rest, body):
             _step_for(process, variable, rest, body)
         case Match(expression, cases):
             value, rests_on = process.evaluate(expression)
-            here = process.leave() | tested(rests_on)
+            here = process.leave() | deciding(rests_on)
             if not enter_case(process, cases, value, rests_on, here):
                 raise Fault(f"no case of 'match' takes {show(value)}")
         case Call(behaviour, arguments):
@@ -238,10 +238,10 @@ def _step_while(process: Process, test: Expression, body: Block) -> None:
     here = process.rests_on[0]
     if truth(value):
         process.passed.append((process.code[0], 0))
-        process.enter(body, here | tested(rests_on))
+        process.enter(body, here | deciding(rests_on))
         return
     process.leave()
-    process.passing(tested(rests_on))  # what follows runs only because the test failed
+    process.passing(deciding(rests_on))  # what follows runs only because the test failed
 
 
 def _step_for(process: Process, variable: str, rest: str, body: Block) -> None:
@@ -250,7 +250,9 @@ def _step_for(process: Process, variable: str, rest: str, body: Block) -> None:
     if not isinstance(members, tuple) or not members:
         process.leave()
         return
-    process.scope.binding({variable: members[0], rest: members[1:]}, here)
+    process.scope.binding(
+        {variable: members[0], rest: members[1:]}, here | process.scope.rests_on.get(rest, NOTHING)
+    )
     process.passed.append((process.code[0], 0))
     process.enter(body, here)
 
@@ -271,7 +273,7 @@ def enter_case(
         trial.scope.binding(binding, rests_on)
         if case.guard is not None:
             verdict, guard = trial.evaluate(case.guard)
-            here |= tested(guard)
+            here |= deciding(guard)
             if not truth(verdict):
                 continue
         process.scope.binding(binding, rests_on)
@@ -281,11 +283,6 @@ def enter_case(
         process.took(rank)
         return True
     return False
-
-
-def tested(provenance: Provenance) -> Provenance:
-    """Return what a decision rests on: only answers, since an observation that is merely held decides nothing."""
-    return frozenset(each for each in provenance if each.asked is not None)
 
 
 def bind_parameters(

@@ -51,7 +51,7 @@ class Eta:
         return tuple(each for cell in self._cells(agent) for each in self._at(cell, agent))
 
     def all(self) -> tuple[Pending, ...]:
-        """Return every pending request: the agents' in order of their names; the queue of `fcfs` comes last, as asked."""
+        """Return every pending request: the agents' in order of their names, then the queue of `fcfs` as asked."""
         agents: tuple[Name, ...] = self.cells.read(AGENTS)
         if self.setting.scheduler is Scheduler.FCFS:
             return tuple(each for cell in (*map(line_cell, agents), QUEUE) for each in self._at(cell))

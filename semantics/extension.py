@@ -6,11 +6,12 @@ Written like the seven rules.
 from collections.abc import Iterator
 
 from semantics.cells import Changes
-from semantics.computation import bind_parameters, enter_case, tested
+from semantics.computation import bind_parameters, enter_case
 from semantics.configuration import Configuration, Label, Transition
 from semantics.environment import Clause, Says
 from semantics.expressions import Fault, evaluated, name_in
-from semantics.provenance import NOTHING
+from semantics.patterns import looks_into
+from semantics.provenance import NOTHING, deciding, handed, told_because
 from semantics.requests import MGR, SND
 from semantics.rules import Rule
 from semantics.signature import Name
@@ -53,7 +54,8 @@ def req_snd(c: Configuration, a: Name) -> Iterator[Transition]:
     message, carried = evaluated(statement.message, process.scope)
     to, chosen = evaluated(statement.to, process.scope)
     send = SND(a, name_in(to), message)
-    rests_on = resting_on(process, carried, chosen)
+    told = carried if send.to == a else handed(carried)
+    rests_on = resting_on(process, told, deciding(chosen))
     process.leave()
     label = Label("req_snd", a, f"send({show(message, frozenset())}, {send.to})")
     yield Transition(label, c.with_(continuing(c, process), c.eta.adding(send, rests_on)))
@@ -87,11 +89,13 @@ def rcv_msg(c: Configuration, a: Name) -> Iterator[Transition]:
     if not isinstance(statement, React):  # premise: a is at a react
         return
     watch = c.alpha.watch(a)
+    looked_into = any(looks_into(case.pattern) for case in statement.cases)
     for position, message in enumerate(c.alpha.mailbox(a)):  # premise: m ∈ mailbox(a)
         rests_on = watch.mailbox[position] if watch else NOTHING
         process = process_of(c, a)
-        here = process.leave() | rests_on
-        process.passing(tested(rests_on))  # what follows waits for the message
+        passed = deciding(rests_on if looked_into else told_because(rests_on))
+        here = process.leave() | passed
+        process.passing(passed)  # what follows waits for the message
         if not enter_case(process, statement.cases, message, rests_on, here):  # premise: a case for it
             continue
         taken = c.with_(c.alpha.taking(a, position))
@@ -150,14 +154,14 @@ def spawn(c: Configuration, a: Name) -> Iterator[Transition]:
     if len(c.alpha.names()) >= MOST_AGENTS:
         raise Fault(f"more than {MOST_AGENTS} agents")
     parent = process_of(c, a)
-    host, _ = evaluated(statement.host, parent.scope)
+    host, placed = evaluated(statement.host, parent.scope)
     behaviour = c.setting.program.behaviours[statement.behaviour]
     bound = parent.fork()  # the parent may be running this very behaviour: its own parameters stay
     bind_parameters(bound, behaviour, statement.arguments, parent.rests_on[0])
     child = new_process(c.setting, statement.name, node_named(c, host), behaviour.body)
     for name in behaviour.parameters:
-        child.scope.binding({name: bound.scope.store[name]}, bound.scope.rests_on[name])
-    child.rests_on = (parent.rests_on[0],) * len(child.code)
+        child.scope.binding({name: bound.scope.store[name]}, handed(bound.scope.rests_on[name]))
+    child.rests_on = (resting_on(parent, deciding(placed)),) * len(child.code)
     parent.leave()
     begun = starting(c.setting, statement.name, child.scope.host, child)
     label = Label("spawn", a, statement.name)

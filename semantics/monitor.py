@@ -6,14 +6,15 @@ Rules only carry along what values rest on; here it is marked what has changed i
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial
+from typing import NamedTuple
 
 from semantics.agents import Watch, watch_cell
 from semantics.cells import MONITOR, QUEUE, Cell, Changes, merged
 from semantics.configuration import Configuration, Transition
 from semantics.eta import line_cell, sends_cell
 from semantics.provenance import EVERYTHING, NOTHING, SLOT, Dependency, Key, Provenance, differences
-from semantics.queries import Nodes, Of, Query, evaluate
-from semantics.relevance import ANY, Questions, anybodys, meet, questions_of, relevant, slots_of
+from semantics.queries import Step, Steps, answers, denoted
+from semantics.relevance import ANY, Questions, anybodys, may_tell, meet, questions_of, relevant, slots_of
 from semantics.requests import CTR, FLY, SND, Request
 from semantics.signature import Name
 from semantics.structure import Parent, Relation
@@ -23,10 +24,11 @@ CONTROLS = frozenset({"actuate", "command", "commit"})
 
 
 def marked(c: Configuration, transition: Transition) -> Transition:
-    """Return the transition with what it changed marked in what others rest on, where that is monitored.
+    """Return the transition with what it changed marked in what agents rest on, where that is monitored.
 
-    What an agent changes itself it knows: it makes nothing stale that the agent holds, nor what it sends afterwards. A
-    message on its way is its receiver's, so what the sender changes after sending is another's doing.
+    What an agent changes itself it knows: it makes nothing stale that the agent does. Of values that it may tell others
+    it is remembered apart, since who is told doesn't know it. A message on its way is its receiver's, so what the
+    sender changes after sending is another's doing.
     """
     if not c.setting.monitored or transition.label.rule not in CONTROLS:
         return transition
@@ -34,10 +36,10 @@ def marked(c: Configuration, transition: Transition) -> Transition:
 
     def marking(holder: Name) -> Changes:
         """Return the marks in the memory of one agent and in its requests; nobody's are those of the common queue."""
-        answer = cache(partial(_changed, c, after))
-        mine = {} if holder in (author, NOBODY) else _mark_memory(after, holder, answer)
-        return mine | merged(
-            _mark_requests(after, cell, author, answer) for cell in _request_cells(after, holder)
+        again = cache(partial(_asked_again, c, after))
+        memory = {} if holder == NOBODY else _mark_memory(after, holder, author, again)
+        return memory | merged(
+            _mark_requests(after, cell, author, again) for cell in _request_cells(after, holder)
         )
 
     return replace(transition, target=after.with_each(after.each((NOBODY, *after.alpha.names()), marking)))
@@ -47,21 +49,69 @@ NOBODY: Name = ""
 """Whose requests are those of the queue that all agents share under `fcfs`."""
 
 
-def _changed(before: Configuration, after: Configuration, query: Query, asked: Questions) -> frozenset[Key]:
-    """Return which of some questions two configurations answer differently: slots of A(P), and answers to a query."""
+class Again(NamedTuple):
+    """What comes of asking again.
+
+    Attributes:
+        changed: Which of some questions have another answer: slots of A(P), and answers to a query.
+        steps: The steps of the query, resolved anew where another set is denoted.
+    """
+
+    changed: frozenset[Key]
+    steps: Steps
+
+
+def _asked_again(before: Configuration, after: Configuration, steps: Steps, asked: Questions) -> Again:
+    """Ask the slots that a query looked at again, after a transition."""
     names = touched(before, after)
     slots = changed_slots(before, after, names, asked)
-    if not meet(asked, _answers_about(query, names)):
-        return slots
-    old, new = (evaluate(query, c.structure.physical, c.alpha) for c in (before, after))
-    return slots | relevant(differences(old, new, names if is_local(query) else None), asked)
+    anew = resolved_anew(before, after, steps, names)
+    is_local = anew == steps and not _turns_on(steps, names)
+    if not meet(asked, _answers_about(names if is_local else (ANY,))):
+        return Again(slots, anew)
+    old = answers(steps, before.structure.physical, before.alpha)
+    new = answers(anew, after.structure.physical, after.alpha)
+    return Again(slots | relevant(differences(old, new, names if is_local else None), asked), anew)
 
 
-def _answers_about(query: Query, names: tuple[Name, ...]) -> Questions:
-    """Return the answers to a query that may differ where only these entities' places and links do."""
-    about = names if is_local(query) and not set(names).intersection(nodes_of(query)) else (ANY,)
-    answers = {(kind, name) for kind in ("in", "parent", "links") for name in about}
-    return frozenset(answers | {("children", ANY), EVERYTHING})
+def resolved_anew(
+    before: Configuration, after: Configuration, steps: Steps, names: tuple[Name, ...]
+) -> Steps:
+    """Return the steps of a query, resolved anew behind one that a transition of these entities lets denote others.
+
+    Where its holder has gone itself since the `sense` doesn't matter: each step asks of what it was applied to.
+    """
+    anew = steps[:1]
+    for step in steps[1:]:
+        passed = steps[: len(anew)]
+        if anew == passed and _denotes_the_same(before, after, passed, names):
+            anew += (step,)
+        else:
+            anew += (Step(step.operator, denoted(anew, after.structure.physical, after.alpha)),)
+    return anew
+
+
+def _denotes_the_same(
+    before: Configuration, after: Configuration, steps: Steps, names: tuple[Name, ...]
+) -> bool:
+    if steps[-1].operator in ("", "ALL") or (steps[-1].operator == "PARENT" and not _turns_on(steps, names)):
+        return True
+    old, new = (denoted(steps, c.structure.physical, c.alpha) for c in (before, after))
+    return old == new
+
+
+def _turns_on(steps: Steps, names: tuple[Name, ...]) -> bool:
+    """Tell whether what a query says of all the others may turn on the places and links of some entities."""
+    return any(
+        step.operator in ("ALL", "PARENT", "LINKED_TO") and set(names).intersection(step.names)
+        for step in steps
+    )
+
+
+def _answers_about(names: tuple[Name, ...]) -> Questions:
+    """Return the answers to a query that may differ where only what it says of these entities does."""
+    answers_to = {(kind, name) for kind in ("in", "parent", "links") for name in names}
+    return frozenset(answers_to | {("children", ANY), EVERYTHING})
 
 
 def touched(before: Configuration, after: Configuration) -> tuple[Name, ...]:
@@ -75,23 +125,6 @@ def touched(before: Configuration, after: Configuration) -> tuple[Name, ...]:
         if cell[0] in ("placement", "channels"):
             names.add(cell[-1])
     return tuple(sorted(names))
-
-
-def is_local(query: Query) -> bool:
-    """Tell whether, as long as the places and links are the same that were swept, each answer is about one entity."""
-    if not isinstance(query, Of) or query.operator not in ("CHILDREN", "LINKED_TO"):
-        return False
-    inner = query.of
-    while isinstance(inner, Of) and inner.operator == "PARENT":
-        inner = inner.of
-    return isinstance(inner, Nodes)
-
-
-def nodes_of(query: Query) -> tuple[Name, ...]:
-    """Return the nodes that a query begins with; none for ALL."""
-    while isinstance(query, Of):
-        query = query.of
-    return query.names if isinstance(query, Nodes) else ()
 
 
 def changed_slots(
@@ -130,33 +163,49 @@ def stale_tests(request: Request, rests_on: Provenance, used: frozenset[Key]) ->
     return tuple(sorted(stale, key=repr))
 
 
-Answer = Callable[[Query, Questions], frozenset[Key]]
-"""Which of some questions about an observation a transition has given another answer."""
+Asking = Callable[[Steps, Questions], Again]
+"""Asks again, after a transition, some questions about an observation."""
 
 
-def _mark(provenance: Provenance, asked: Questions, answer: Answer) -> Provenance:
-    return frozenset(_mark_one(each, asked, answer) for each in provenance)
+def _mark(provenance: Provenance, asked: Questions, again: Asking) -> Provenance:
+    """Return what others rest on than the one who changed something, with that marked."""
+    return frozenset(each if each.stale else _mark_one(each, asked, again) for each in provenance)
 
 
-def _mark_one(each: Dependency, asked: Questions, answer: Answer) -> Dependency:
-    if each.stale:
-        return each
+def _mark_one(each: Dependency, asked: Questions, again: Asking) -> Dependency:
     if each.asked is not None:
         asked = frozenset(key for key in asked if key[0].startswith(SLOT)) | {each.asked}
-    changed = answer(each.query, asked).difference(each.changed)
-    return each.having(changed.union(each.changed)) if changed else each
+    changed, steps = again(each.steps, asked)
+    if changed.issubset(each.changed) and steps == each.steps:
+        return each
+    return replace(each, steps=steps).having(changed.union(each.changed), each.own)
 
 
-def _mark_memory(c: Configuration, agent: Name, answer: Answer) -> Changes:
-    watch = c.alpha.watch(agent)
+def _mark_own(provenance: Provenance, asked: Questions, again: Asking) -> Provenance:
+    """Return what the one who changed something rests on itself: what others are told of it will be stale."""
+    return frozenset(
+        each if each.own is None or each.stale else _mark_one_own(each, each.own, asked, again)
+        for each in provenance
+    )
+
+
+def _mark_one_own(each: Dependency, own: tuple[Key, ...], asked: Questions, again: Asking) -> Dependency:
+    answers_asked = frozenset(key for key in asked if not key[0].startswith(SLOT))
+    changed = again(each.steps, answers_asked if each.asked is None else frozenset({each.asked})).changed
+    return each if changed.issubset(own) else each.having(each.changed, changed.union(own))
+
+
+def _mark_memory(c: Configuration, holder: Name, author: Name, again: Asking) -> Changes:
+    watch, own = c.alpha.watch(holder), holder == author
     if watch is None or not any((*watch.code, *watch.store, *watch.mailbox)):
         return {}
-    asked = questions_of(c, agent)
+    if own and not may_tell(c.setting.program, c.alpha.code(holder)):
+        return {}
+    asked, mark = questions_of(c, holder), _mark_own if own else _mark
     parts = (
-        tuple(_mark(each, asked, answer) for each in part)
-        for part in (watch.code, watch.store, watch.mailbox)
+        tuple(mark(each, asked, again) for each in part) for part in (watch.code, watch.store, watch.mailbox)
     )
-    return {watch_cell(agent): Watch(*parts)}
+    return {watch_cell(holder): Watch(*parts)}
 
 
 def _request_cells(c: Configuration, holder: Name) -> list[Cell]:
@@ -164,13 +213,18 @@ def _request_cells(c: Configuration, holder: Name) -> list[Cell]:
     return [cell for cell in cells if c.read(cell)]
 
 
-def _mark_requests(c: Configuration, cell: Cell, author: Name, answer: Answer) -> Changes:
+def _mark_requests(c: Configuration, cell: Cell, author: Name, again: Asking) -> Changes:
     kept = zip(c.read(cell), c.read((MONITOR, *cell)), strict=True)
-    marked = tuple(
-        each if not each or _holder(request) == author else _mark(each, _asked_by(c, request), answer)
-        for request, each in kept
-    )
-    return {(MONITOR, *cell): marked}
+    return {(MONITOR, *cell): tuple(_mark_request(c, *each, author, again) for each in kept)}
+
+
+def _mark_request(
+    c: Configuration, request: Request, rests_on: Provenance, author: Name, again: Asking
+) -> Provenance:
+    holder = _holder(request)
+    if not rests_on or (holder == author and not may_tell(c.setting.program, c.alpha.code(author))):
+        return rests_on
+    return (_mark_own if holder == author else _mark)(rests_on, _asked_by(c, request), again)
 
 
 def _holder(request: Request) -> Name:

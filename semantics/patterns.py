@@ -62,6 +62,11 @@ def _bind_all(items: tuple[Pattern, ...], value: Value) -> Binding | None:
     return binding
 
 
+def looks_into(pattern: Pattern) -> bool:
+    """Tell whether it depends on what a value is, beyond being an observation or a message, if a pattern takes it."""
+    return not isinstance(pattern, Anything)
+
+
 def variables(pattern: Pattern) -> frozenset[str]:
     """Return the variables that a pattern binds."""
     match pattern:

@@ -6,7 +6,7 @@ The race monitor's memory. A stored observation is a dependency with no question
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from semantics.queries import AGENT, Observation, Query
+from semantics.queries import AGENT, Observation, Query, Steps
 from semantics.signature import Name
 
 Key = tuple[str, ...]
@@ -25,13 +25,18 @@ class Dependency:
 
     Attributes:
         query: What was asked of A(P).
+        steps: The query as it was resolved at the `sense`: `PARENT(HOST)` is the place where the host was then.
         changed: Which answers and slots of A(P) others than its holder have changed since the `sense`; sorted.
         asked: What was tested of it; None for the observation as it is stored.
+        own: Of what a value was computed from, which answers its holder has changed itself; sorted. None for what only
+            decided what was done: that its holder knows.
     """
 
     query: Query
+    steps: Steps
     changed: tuple[Key, ...] = ()
     asked: Key | None = None
+    own: tuple[Key, ...] | None = None
 
     @property
     def stale(self) -> bool:
@@ -40,19 +45,28 @@ class Dependency:
 
     def testing(self, key: Key) -> "Dependency":
         """Return the dependency on one answer of this observation."""
-        return replace(self, asked=key).having(self.changed)
+        return replace(self, asked=key).having(self.changed, self.own)
 
-    def having(self, changed: Iterable[Key]) -> "Dependency":
-        """Return the dependency with what others have changed, forgetting what nobody asks any more.
+    def having(self, changed: Iterable[Key], own: Iterable[Key] | None) -> "Dependency":
+        """Return the dependency with what others, and its holder, have changed, forgetting what nobody asks any more.
 
         Of what was tested that is all but the answer itself and the slots, which a redex may use; once the answer has
         been changed the slots don't matter either.
         """
-        kept = frozenset(changed)
+        kept, known = frozenset(changed), None if own is None else frozenset(own)
         if self.asked is not None:
             slots = (key for key in kept if key[0].startswith(SLOT))
             kept = frozenset({self.asked} if self.asked in kept else slots)
-        return replace(self, changed=tuple(sorted(kept)))
+            known = known and known.intersection({self.asked}).difference(kept)
+        return replace(self, changed=tuple(sorted(kept)), own=None if known is None else tuple(sorted(known)))
+
+    def deciding(self) -> "Dependency":
+        """Return the dependency of what was only done because of it."""
+        return replace(self, own=None)
+
+    def handed(self) -> "Dependency":
+        """Return the dependency as another agent gets it, to whom all that was changed is others' doing."""
+        return self if self.own is None else self.having({*self.changed, *self.own}, ())
 
 
 Provenance = frozenset[Dependency]
@@ -63,6 +77,21 @@ def asking(provenance: Provenance, keys: tuple[Key, ...]) -> Provenance:
     """Return what a test rests on: of stored observations the answers asked, of computed values all they came from."""
     stored = [each for each in provenance if each.asked is None]
     return provenance.difference(stored) | {each.testing(key) for each in stored for key in keys}
+
+
+def deciding(provenance: Provenance) -> Provenance:
+    """Return what a decision rests on: only answers, since an observation that is merely held decides nothing."""
+    return frozenset(each.deciding() for each in provenance if each.asked is not None)
+
+
+def told_because(provenance: Provenance) -> Provenance:
+    """Return what it rests on that a message was sent, whatever it says."""
+    return frozenset(each for each in provenance if each.own is None)
+
+
+def handed(provenance: Provenance) -> Provenance:
+    """Return what a value rests on in the hands of another agent than the one that computed it."""
+    return frozenset(each.handed() for each in provenance)
 
 
 def differences(

@@ -6,7 +6,7 @@ was got on the way: a yes is a pair, a no follows from a place or link that was 
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from semantics.cells import NAMES, Changes
 from semantics.logical_model import LogicalModel
@@ -199,52 +199,75 @@ def agent_key(agent: Name) -> Name:
 # --- q(A(P)) ----------------------------------------------------------------------------------------------------
 
 
+class Step(NamedTuple):
+    """One operator of a query, with what it is applied to.
+
+    Attributes:
+        operator: Its name; `ALL`, or empty for the nodes that a query begins with.
+        names: The nodes, sorted.
+    """
+
+    operator: str
+    names: tuple[Name, ...]
+
+
+Steps = tuple[Step, ...]
+"""A query as it was resolved when it was evaluated: its operators, innermost first, hence the slots it looked at."""
+
+
 def evaluate(query: Query, physical: PhysicalModel, alpha: "Agents") -> Observation:
     """Return q(A(P)): what is asked within the query as sets, its answers name by name.
 
     An absent host gives the empty observation.
     """
-    looking = _Looking(query, physical, alpha)
-    names = (*looking.names, *map(agent_key, looking.agents))
+    return answers(resolve(query, physical, alpha), physical, alpha)
+
+
+def resolve(query: Query, physical: PhysicalModel, alpha: "Agents") -> Steps:
+    """Return the steps of a query, as they are resolved in A(P)."""
+    match query:
+        case Of(operator, inner):
+            steps = resolve(inner, physical, alpha)
+            return (*steps, Step(operator, denoted(steps, physical, alpha)))
+        case All():
+            return (Step("ALL", tuple(sorted((REGION, *physical.entities())))),)
+        case Nodes(names):
+            return (Step("", tuple(sorted({name for name in names if name in physical}))),)
+
+
+def denoted(steps: Steps, physical: PhysicalModel, alpha: "Agents") -> tuple[Name, ...]:
+    """Return what resolved steps denote, sorted."""
+    operator, names = steps[-1]
+    if operator in ("", "ALL"):
+        return names
+    if operator == "PARENT":
+        return tuple(sorted({REGION if n == REGION else physical.abstract_parent(n) for n in names}))
+    looking = _Looking(steps, physical, alpha)
+    return tuple(sorted(n for n in (REGION, *looking.names) if looking.shows(n, looking.parent(n))))
+
+
+def answers(steps: Steps, physical: PhysicalModel, alpha: "Agents") -> Observation:
+    """Return what the slots that a resolved query looks at say in A(P), name by name."""
+    looking = _Looking(steps, physical, alpha)
+    agents = alpha.names() if any(step.operator == "HOSTED_AT" for step in steps) else ()
+    names = (*looking.names, *map(agent_key, agents))
     return Observation(physical.cells.each(names, looking.fact), looking.swept())
 
 
 class _Looking:
-    """One evaluation: the operators of a query, innermost first, each with the set that it is applied to."""
+    """One evaluation of resolved steps."""
 
-    def __init__(self, query: Query, physical: PhysicalModel, alpha: "Agents") -> None:
+    def __init__(self, steps: Steps, physical: PhysicalModel, alpha: "Agents") -> None:
         self.physical = physical
         self.alpha = alpha
         self.names: tuple[Name, ...] = physical.cells.read(NAMES)
-        self.applied: list[tuple[str, frozenset[Name]]] = []
-        self.leaf: frozenset[Name] = frozenset()
-        self.enter(query)
-        self.agents = alpha.names() if "HOSTED_AT" in dict(self.applied) else ()
+        self.applied = [(operator, frozenset(names)) for operator, names in steps]
         self.links = frozenset(link for name in self.to("LINKED_TO") for link in self.links_of(name))
-
-    def enter(self, query: Query) -> None:
-        match query:
-            case Of(operator, inner):
-                self.enter(inner)
-                self.applied.append((operator, self.denoted()))
-            case All():
-                everything = frozenset({REGION, *self.physical.entities()})
-                self.applied += [("CHILDREN", everything), ("LINKED_TO", everything)]
-            case Nodes(names):
-                self.leaf = frozenset(name for name in names if name in self.physical)
-
-    def denoted(self) -> frozenset[Name]:
-        """Return what the outermost operator so far denotes."""
-        if not self.applied:
-            return self.leaf
-        operator, inner = self.applied[-1]
-        if operator == "PARENT":
-            return frozenset(REGION if n == REGION else self.physical.abstract_parent(n) for n in inner)
-        return frozenset(n for n in (REGION, *self.names) if self.shows(n, self.parent(n)))
 
     def to(self, operator: str) -> frozenset[Name]:
         """Return all that an operator is applied to."""
-        return frozenset[Name]().union(*(names for applied, names in self.applied if applied == operator))
+        both = (operator, "ALL") if operator in ("CHILDREN", "LINKED_TO") else (operator,)
+        return frozenset[Name]().union(*(names for applied, names in self.applied if applied in both))
 
     def swept(self) -> Swept:
         nodes = self.to("LINKED_TO") - {REGION}
@@ -260,10 +283,10 @@ class _Looking:
 
     def shows(self, name: Name, parent: Name | None) -> bool:
         """Tell whether the outermost operator denotes a node or the region; `parent` as far as that was asked."""
-        if not self.applied:
-            return name in self.leaf
         operator, inner = self.applied[-1]
         match operator:
+            case "" | "ALL":
+                return name in inner
             case "PARENT":
                 return any(self.physical.is_in(n, name) if n != REGION else name == n for n in sorted(inner))
             case "CHILDREN":

@@ -10,6 +10,7 @@ from functools import lru_cache
 from itertools import product
 from math import prod
 
+from semantics.agents import Code
 from semantics.configuration import Configuration
 from semantics.expressions import (
     OPERATORS,
@@ -68,6 +69,11 @@ def anybodys(c: Configuration) -> Questions:
     """Return what any agent may ever come to ask."""
     every = frozenset(range(len(c.setting.program.statements)))
     return questions_in(c.setting, every, frozenset[Name]().union(*(hosts_of(c, a) for a in c.alpha.names())))
+
+
+def may_tell(program: Program, code: Code) -> bool:
+    """Tell whether somebody with so much left to run may let others know what was observed."""
+    return tells(program, reachable(program, code))
 
 
 def tells(program: Program, reach: Iterable[int]) -> bool:

@@ -12,8 +12,8 @@ from semantics.control import Realisation, commits, realisations
 from semantics.drive import Reach
 from semantics.environment import Clause, Observed, Says
 from semantics.expressions import evaluated, name_in, query_of
-from semantics.provenance import NOTHING, Dependency
-from semantics.queries import evaluate, overlay
+from semantics.provenance import NOTHING, Dependency, deciding
+from semantics.queries import answers, overlay, resolve
 from semantics.reactions import Reaction
 from semantics.requests import CTR, FLY, OBS, READY, Received
 from semantics.setting import Control
@@ -67,8 +67,9 @@ def sense(c: Configuration, a: Name) -> Iterator[Transition]:
         if not isinstance(pending.request, OBS):  # premise: OBS(a, q) ∈ η, in line
             continue
         query = pending.request.query
-        seen = evaluate(query, c.structure.physical, c.alpha)  # premise: L_q = q(A(P))
-        rests_on = pending.rests_on | {Dependency(query)} if c.setting.monitored else NOTHING
+        steps = resolve(query, c.structure.physical, c.alpha)
+        seen = answers(steps, c.structure.physical, c.alpha)  # premise: L_q = q(A(P))
+        rests_on = pending.rests_on | {Dependency(query, steps, own=())} if c.setting.monitored else NOTHING
         ready = c.eta.replacing(pending, READY(a, query, seen), rests_on)
         target = c.with_(ready).with_each(overlay(c.structure.logical, seen))
         yield Transition(Label("sense", a, pending.request), target, served=pending)
@@ -111,10 +112,11 @@ def req_ctr(c: Configuration, a: Name) -> Iterator[Transition]:
     reaction = make(process.scope.host, *(name_in(value) for value, _ in arguments))
     assert isinstance(reaction, Reaction)
     rests_on = resting_on(process, *(kept for _, kept in arguments))
-    tests = frozenset(each for each in rests_on if each.asked is not None)
     process.leave()
     label = Label("req_ctr", a, f"control({reaction})")
-    yield Transition(label, c.with_(continuing(c, process), c.eta.adding(CTR(a, reaction), tests)))
+    yield Transition(
+        label, c.with_(continuing(c, process), c.eta.adding(CTR(a, reaction), deciding(rests_on)))
+    )
 
 
 def actuate(c: Configuration, a: Name) -> Iterator[Transition]:

@@ -1,12 +1,13 @@
 """Between a configuration and a process: how an agent starts to compute, and how it is written back."""
 
-from semantics.agents import Watch, code_cell, host_cell, mailbox_cell, store_cell, watch_cell
+from semantics.agents import Store, Watch, code_cell, host_cell, mailbox_cell, store_cell, watch_cell
 from semantics.cells import AGENTS, Changes
 from semantics.computation import Process
 from semantics.configuration import Configuration
 from semantics.eta import line_cell, sends_cell
 from semantics.expressions import Scope
 from semantics.provenance import NOTHING, Provenance
+from semantics.relevance import may_tell
 from semantics.setting import Scheduler, Setting
 from semantics.signature import Name
 from semantics.statements import Statement
@@ -33,7 +34,7 @@ def continuing(c: Configuration, process: Process) -> Changes:
     """Write α[a ↦ a']: what is left to run after the jumps before it, and the variables that it may read."""
     process.unroll()
     a = process.scope.agent
-    store, rests_on = process.variables()
+    store, rests_on = _variables(process)
     changes: Changes = {code_cell(a): process.code, store_cell(a): store}
     watch = c.alpha.watch(a)
     if watch is not None:
@@ -41,10 +42,18 @@ def continuing(c: Configuration, process: Process) -> Changes:
     return changes
 
 
+def _variables(process: Process) -> tuple[Store, tuple[Provenance, ...]]:
+    """Return the variables, with what each rests on: who tells nobody of them knows what it has changed itself."""
+    store, rests_on = process.variables()
+    if may_tell(process.program, process.code):
+        return store, rests_on
+    return store, tuple(frozenset(each.deciding() for each in part) for part in rests_on)
+
+
 def starting(setting: Setting, a: Name, host: Name, process: Process) -> Changes:
     """Write the cells of a new agent, but for its name among the agents."""
     process.unroll()
-    store, rests_on = process.variables()
+    store, rests_on = _variables(process)
     lines = [line_cell(a)]
     lines += [sends_cell(a)] if setting.scheduler is Scheduler.PROGRAM_ORDER else []
     changes: Changes = {

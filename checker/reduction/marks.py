@@ -1,9 +1,9 @@
 """What the race monitor's memory adds to footprints: who marks what others rest on, and who passes it on.
 
-A control marks what it changes in all that others rest on (`semantics.monitor.marked`). Whatever an agent does with
-that (test it, pass it on, forget it, ask for more) ends otherwise before a mark than after it, so it reads the marks
-that may be made there. Marks of two controls are put into sets, so they commute, if neither control changes what the
-other's marks are worked out from.
+A control marks what it changes in all that others rest on (`semantics.monitor.marked`), and in what its own agent may
+tell of. Whatever an agent does with that (test it, pass it on, forget it, ask for more) ends otherwise before a mark
+than after it, so it reads the marks that may be made there. Marks of two controls are put into sets, so they commute,
+if neither control changes what the other's marks are worked out from.
 """
 
 from collections.abc import Iterable, Iterator
@@ -17,10 +17,9 @@ from semantics.agents import Code, Watch, watch_cell
 from semantics.cells import MONITOR
 from semantics.configuration import Configuration
 from semantics.eta import line_cell, sends_cell
-from semantics.monitor import is_local, nodes_of
 from semantics.program import reachable
 from semantics.provenance import SLOT, Provenance
-from semantics.queries import Of, Query
+from semantics.queries import Nodes, Of, Query
 from semantics.relevance import ANY, Questions, anybodys, hosts_of, questions_in, slots_of, tells
 from semantics.requests import CTR, FLY, OBS, SND, Request
 from semantics.signature import Name
@@ -61,10 +60,13 @@ class Marks:
         slots = self.footprints.slots
         found = slots.footprint((*self.footprints.where(touched), *self.footprints.there(touched)))
         found |= slots.footprint(self.footprints.connected(linked))
-        for other in self.roles.agents:
-            if other != author and self.held(other):
-                found |= slots.footprint(merges=self._of_slots(other, moved, linked))
-                found |= self._of_answers(other, writes, touched)
+        for holder in self.roles.agents:
+            if holder != author and self.held(holder):
+                found |= slots.footprint(merges=self._of_slots(holder, moved, linked))
+            if (
+                holder != author or holder in self.tellers
+            ):  # what it may tell of, its own doing makes stale too
+                found |= self._of_answers(holder, writes, touched)
         return found
 
     def _changed(self, what: str, writes: int) -> Names:
@@ -161,3 +163,18 @@ def _is_blank(watch: Watch | None) -> bool:
 
 def _rests(kept: tuple[Provenance, ...] | None) -> bool:
     return any(kept or ())
+
+
+def is_local(query: Of) -> bool:
+    """Tell whether a query begins with nodes and goes up from them before its last step."""
+    inner = query.of
+    while isinstance(inner, Of) and inner.operator == "PARENT":
+        inner = inner.of
+    return isinstance(inner, Nodes)
+
+
+def nodes_of(query: Query) -> tuple[Name, ...]:
+    """Return the nodes that a query begins with; none for ALL."""
+    while isinstance(query, Of):
+        query = query.of
+    return query.names if isinstance(query, Nodes) else ()

@@ -48,7 +48,7 @@ rule swap(u: UAV) { HOST || gate0 || north0.(u | $0) -> HOST || gate0.u || north
 """
 
 
-WAYS = ("bare", "bare", "tested", "looked", "told", "heard")
+WAYS = ("bare", "bare", "tested", "looked", "told", "heard", "reports", "trusts")
 """How a control comes about."""
 
 
@@ -63,6 +63,14 @@ def bodies(draw, host, other, ways):
             lines.append(control)
         elif way == "heard":
             lines.append(f'react {{ case "go" => {control} case x: Observation => skip case m => skip }}')
+        elif way == "trusts":
+            lines.append(
+                f'react {{ case ("seen", x) if x => {control} case x: Observation => skip case m => skip }}'
+            )
+        elif way == "reports":
+            seen = f'("seen", {draw(st.sampled_from(TESTS))})'
+            lines.append(f"observe({draw(st.sampled_from(QUERIES))})")
+            lines.append(f"react {{ case o: Observation => {control} send({seen}, {other}) case m => skip }}")
         else:
             test = draw(st.sampled_from(TESTS))
             then = {"tested": control, "looked": "skip", "told": f'send("go", {other})'}[way]

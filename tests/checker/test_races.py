@@ -1,20 +1,24 @@
 """Control races and stale-observation races (semantics.md, check 2), each of their clauses."""
 
 from pathlib import Path
+from random import Random
 
 import pytest
-from checked_missions import kinds, load, moves, rules_of, start, verdict, violation
+from checked_missions import WORLD, kinds, load, moves, rules_of, start, verdict, violation
 from hypothesis import event, given, reject, settings
+from hypothesis import strategies as st
 from mission_texts import missions
+from stale_by_definition import Judge, companies, text_of
 
 from checker import Limits, explore
 from checker.findings import Collected
-from checker.races import ControlRaces, StaleObservationRaces
+from checker.races import ControlRaces, StaleObservationRaces, is_stale
 from checker.verdicts import Outcome
-from semantics import monitor
+from semantics import monitor, stepping
 from semantics.monitor import monitored
 from semantics.provenance import EVERYTHING
 from semantics.relevance import ANY, SLOTS
+from semantics.successors import expand
 from specs import MissionError
 from specs.elaboration import load_mission
 
@@ -413,6 +417,133 @@ def test_what_a_third_changes_between_the_test_and_the_message_does():
     assert stale(text + third) == {"op2"}
 
 
+# --- what was resolved at sense -------------------------------------------------------------------------------
+
+COMES_BACK = """
+BigActor a hosted_at uav0 with_behavior { react { case "go" => control(MOVE_HOST_TO south0) } }
+BigActor b hosted_at uav1 with_behavior {
+  observe(CHILDREN(PARENT(HOST)))
+  react {
+    case o if not (uav0 in o) =>
+      control(MOVE_HOST_TO gate0)
+      observe(PARENT(HOST))
+      react { case there => send("go", a) control(MOVE_HOST_TO south0) }
+    case o => skip
+  }
+}
+"""
+
+
+@pytest.mark.parametrize("control", ["atomic", "timed"])
+@pytest.mark.parametrize("query", ["CHILDREN(south0)", "CHILDREN(PARENT(HOST))"])
+def test_a_place_that_an_agent_has_left_itself_is_still_the_one_that_it_looked_at(query, control):
+    assert "b" in stale(COMES_BACK.replace("CHILDREN(PARENT(HOST))", query) + f"control {control}\n")
+
+
+def test_what_others_do_elsewhere_is_no_race_though_the_agent_is_on_its_own_way():
+    text = """
+    BigActor b hosted_at uav1 with_behavior {
+      observe(CHILDREN(PARENT(HOST)))
+      react { case o if not (uav0 in o) => control(MOVE_HOST_TO gate0) case o => skip }
+    }
+    """
+    assert stale(moves("gate0", "a", "uav0") + text + "control timed\n") == set()
+    assert stale(moves("south0", "a", "uav0") + text + "control timed\n") == {"b"}
+
+
+def test_a_query_is_resolved_anew_where_others_have_changed_what_it_begins_with():
+    text = """
+    BigActor b hosted_at uav0 with_behavior {
+      observe(CHILDREN(PARENT(uav1)))
+      react { case o if vessel0 in o => control(MOVE_HOST_TO gate0) case o => skip }
+    }
+    """
+    assert stale(text + moves("north0", "a", "uav1")) == {"b"}
+    own = text.replace(
+        "control(MOVE_HOST_TO gate0)", "control(MOVE uav1 TO north0) control(CONNECT_HOST_TO gcs0)"
+    )
+    own = own.replace("b hosted_at uav0", "b hosted_at gcs1")
+    assert stale(own + moves("gate0", "a", "uav0")) == set()
+
+
+# --- what is computed, and what is only done ------------------------------------------------------------------
+
+FREE = """
+BigActor a hosted_at uav0 with_behavior {
+  observe(CHILDREN(gate0))
+  react {
+    case o =>
+      control(MOVE_HOST_TO gate0)
+      observe(PARENT(HOST))
+      react { case there => send(("free", size(o of UAV)), b) }
+  }
+}
+BigActor b hosted_at uav1 with_behavior {
+  react { case (word, n) if n == 0 => control(MOVE_HOST_TO gate0) case m: Message => skip }
+}
+"""
+TELLING = {
+    "a value that is computed after it": FREE,
+    "a value that was computed before it": FREE.replace(
+        "case o =>\n", "case o =>\n      let n = size(o of UAV)\n"
+    ).replace('"free", size(o of UAV)', '"free", n'),
+    "a value that goes through others' hands": FREE.replace("UAV)), b)", "UAV)), c)")
+    + 'BigActor c hosted_at uav1 with_behavior { react { case m: Message => send(m, b) } }\n',
+    "the observation": FREE.replace("size(o of UAV)", "o").replace("n == 0", "not (uav0 in n)"),
+    "an argument of who is spawned": """
+    def enter(n) = { if n == 0 { control(MOVE_HOST_TO gate0) } }
+    """ + FREE[: FREE.index("BigActor b")].replace(
+        'send(("free", size(o of UAV)), b)', "spawn b hosted_at uav1 with_behavior enter(size(o of UAV))"
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("control", ["atomic", "timed"])
+@pytest.mark.parametrize("text", TELLING.values(), ids=TELLING)
+def test_what_its_sender_has_made_stale_is_stale_for_who_is_told(text, control):
+    assert stale(text + f"control {control}\n") == {"b"}
+
+
+TOLD_RIGHTLY = {
+    "that something is done": FREE.replace("size(o of UAV)", "0"),
+    "what is seen after it": FREE.replace("observe(PARENT(HOST))", "observe(CHILDREN(gate0))").replace(
+        "case there => ", "case o => "
+    ),
+    "that a message has come, whatever it says": FREE.replace(
+        "case (word, n) if n == 0 => control(MOVE_HOST_TO gate0) case m: Message => skip",
+        "case m: Message => control(MOVE_HOST_TO gate0)",
+    ),
+    "another answer": FREE.replace("size(o of UAV)", "uav1 in o").replace("n == 0", "not n"),
+    "a word under a test": FREE.replace("size(o of UAV)", "0").replace(
+        "case o =>\n", "case o if not (uav1 in o) =>\n"
+    ),
+    "a word that a variable holds under a test": FREE.replace("size(o of UAV)", "n").replace(
+        "case o =>\n", "case o if size(o) == 1 =>\n      let n = 0\n"
+    ),
+}
+
+
+@pytest.mark.parametrize("text", TOLD_RIGHTLY.values(), ids=TOLD_RIGHTLY)
+def test_who_is_told_may_rely_on(text):
+    assert stale(text) == set()
+
+
+def test_an_agent_knows_what_it_has_made_of_what_it_has_computed():
+    text = """
+    BigActor a hosted_at uav0 with_behavior {
+      observe(CHILDREN(gate0))
+      react { case o => control(MOVE_HOST_TO gate0) send(size(o), b) if size(o) == 1 { control(MOVE_HOST_TO north0) } }
+    }
+    BigActor b hosted_at uav1 with_behavior { react { case n => skip } }
+    """
+    assert stale(text) == set()
+
+
+def test_no_race_of_told_values_is_hidden_by_ownership():
+    for text in (FREE, COMES_BACK):
+        assert STALE in kinds(verdict(text, "race_freedom"))
+
+
 # --- what had to be passed ------------------------------------------------------------------------------------
 
 PASSED = {
@@ -462,6 +593,8 @@ def remembering_everything(c):
     with pytest.MonkeyPatch.context() as patch:
         for name in ("questions_of", "anybodys", "slots_of"):
             patch.setattr(monitor, name, lambda *_: EVERY)
+        for module in (monitor, stepping):
+            patch.setattr(module, "may_tell", lambda *_: True)
         return first_races(c)
 
 
@@ -472,7 +605,7 @@ def test_what_a_mission_lets_the_monitor_forget_would_have_made_no_race(path):
 
 
 @settings(max_examples=100)
-@given(missions(("bare", "tested", "looked")))
+@given(st.one_of(missions(("bare", "tested", "looked")), missions(("bare", "reports", "trusts"))))
 def test_what_the_monitor_forgets_would_have_made_no_race(text):
     try:
         c = start(text)
@@ -481,3 +614,25 @@ def test_what_the_monitor_forgets_would_have_made_no_race(text):
     found = first_races(c)
     event("races" if found else "none")
     assert remembering_everything(c) in (None, found)
+
+
+# --- by definition --------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=300)
+@given(companies(), st.sampled_from(["atomic", "timed"]), st.integers(0, 1 << 32))
+def test_in_a_run_each_control_is_stale_that_is_so_by_definition_and_no_other(company, control, seed):
+    first = WORLD.count("\n") + 1
+    try:
+        c = monitored(start(text_of(company, first) + f"control {control}\n"))
+    except MissionError:
+        reject()
+    judge, choose = Judge(company, first), Random(seed).choice
+    while allowed := expand(c).by_agents:
+        taken = choose(allowed)
+        if taken.label.rule in monitor.CONTROLS:
+            race = judge.is_race(taken)
+            event("race" if race else "no race")
+            assert bool(is_stale(c, taken.served)) == race
+        judge.take(c, taken)
+        c = taken.target
