@@ -74,13 +74,13 @@ class LogicalModel:
         return {links_cell(node): tuple(sorted(links))}
 
     def bigraph(self) -> Bigraph:
-        """Return L as a concrete bigraph whose support is names."""
-        nodes = self.nodes()
+        """Return L as a concrete bigraph whose support is names; its signature is the mission's, whatever is there."""
+        nodes, kinds = self.nodes(), self.setting.kinds
         links = sorted({link for node in nodes for link in self.links(node)})
         parents = {node: self.parent(node) for node in nodes}
         return from_relations(
-            {node: self.setting.kind(node) for node in nodes},
+            {node: kinds[node] for node in nodes},
             {node: None if parent == REGION else parent for node, parent in parents.items()},
             {link: [node for node in nodes if link in self.links(node)] for link in links},
-            open_signature(self.setting.kinds.values()),
+            open_signature({*self.setting.signature.kinds, *kinds.values()}),
         )

@@ -8,8 +8,12 @@ from pathlib import Path
 import pytest
 
 from bigactors.cli import main
+from bigactors.foreign import watched
+from bigactors.missions import open_mission
 from bigactors.mistakes import Mistake
+from bigactors.pictures.scene import palette_of
 from bigactors.sockets import folder, only_socket, socket_of
+from specs.elaboration import Variation
 
 UAV = "--vehicle=uav0=udp:127.0.0.1:0"
 
@@ -118,3 +122,29 @@ def test_a_recording_of_others_is_shown_step_by_step_as_traces_are(there, capsys
     assert all((there / name).exists() for name in ("watch.svg", "watch.html", "c2.svg"))
     assert main(["replay", path, "--mission", "harbour_watch", "--waypoints", "uav0=x.plan"]) == 2
     assert "nothing is sent anywhere" in capsys.readouterr().err
+
+
+WATCH = """
+signature { kind Location contains Location, Vessel, UAV  kind Vessel  kind UAV driven }
+world { quay0: Location = box (52.9, 5.72) (52.8, 5.6)  uav0: UAV = point (52.85, 5.65) }
+BigActor a hosted_at uav0 with_behavior { observe(ALL) }
+"""
+
+
+@pytest.mark.parametrize("output", ["x.html", "x.svg", "x.png"])
+def test_a_trace_in_which_the_first_of_a_kind_appears_is_shown(there, capsys, output):
+    path = str(Path(__file__).parents[2] / "specs/missions/harbour_watch.nmea")
+    (there / "watch.mission").write_text(WATCH, encoding="utf-8")
+    assert main(["show", "watch.mission", "--trace", path, "--output", output]) == 0
+    assert main(["show", "watch.mission", "--trace", path, "--lanes", "--output", output]) == 0
+    assert main(["show", "watch.mission", "--trace", path, "--against", path]) == 0
+    assert "mmsi244999008" in capsys.readouterr().out
+
+
+def test_kinds_keep_their_colours_when_the_first_of_one_appears(there):
+    (there / "watch.mission").write_text(WATCH, encoding="utf-8")
+    mission = open_mission("watch.mission", Variation())
+    shown = watched(str(Path(__file__).parents[2] / "specs/missions/harbour_watch.nmea"), mission, {})
+    first, last = (palette_of(shown.trace.configurations[step]).kinds for step in (0, -1))
+    assert first == last
+    assert sorted(first) == ["Location", "UAV", "Vessel"]
