@@ -1,7 +1,7 @@
 """Archives: plain data and arrays in one file, with a digest of all that it holds.
 
-The digest detects accidents and alterations by hand. It is no seal: who can write there can work out another. So whoever
-reads an archive still holds each number to what it may be.
+The digest detects accidents and alterations by hand. It is no seal: who can write there can work out another. So
+whoever reads an archive still holds each number to what it may be.
 """
 
 import json
@@ -37,14 +37,14 @@ def write_archive(path: Path, head: dict[str, Any], kinds: Kinds, arrays: Sequen
     about = json.dumps({"head": head, "lengths": [len(each) for each in rows]}).encode()
     found = sha256(about)
     for each in rows:
-        found.update(each.view(np.uint8))
+        found.update(each.view(np.uint8).data)
     partial = path.with_suffix(".partial")
     path.parent.mkdir(parents=True, exist_ok=True)
     with partial.open("wb") as file:
         file.write(b"bigactors archive 1 %s %d\n" % (found.hexdigest().encode(), len(about)))
         file.write(about)
         for each in rows:
-            file.write(each.view(np.uint8))
+            file.write(each.view(np.uint8).data)
         file.flush()
         os.fsync(file.fileno())
     partial.replace(path)
@@ -83,8 +83,8 @@ def _read(file: BinaryIO, schema: str, kinds: Kinds) -> tuple[dict[str, Any], di
     found, arrays = sha256(about), {}
     for (name, kind), count in zip(kinds.items(), lengths, strict=True):
         arrays[name] = np.empty(count, kind)
-        file.readinto(arrays[name].view(np.uint8))  # type: ignore[attr-defined]  # a file that was opened has it
-        found.update(arrays[name].view(np.uint8))
+        file.readinto(arrays[name].view(np.uint8).data)  # type: ignore[attr-defined]  # a file that was opened has it
+        found.update(arrays[name].view(np.uint8).data)
     if found.hexdigest().encode() != first[1]:
         raise ValueError("its digest is not that of what it holds: it was altered")
     return head, arrays

