@@ -37,6 +37,8 @@ LIBRARIES = {
     "serial_asyncio_fast": ("adapters/transport.py",),
     "zenoh": ("adapters/stations/bus.py",),
     "mcap": ("adapters/recording/mcap_files.py",),
+    "zstandard": ("adapters/recording/decompression.py",),
+    "lz4": ("adapters/recording/decompression.py",),
     "nicegui": ("adapters/",),
     "hypothesis": ("semantics/strategies.py",),
     "matplotlib": ("bigraphs/drawing.py", "physical/drawing.py", "physical/map_", "bigactors/pictures/"),
@@ -52,6 +54,8 @@ LAZY = {
     "serial_asyncio_fast",
     "zenoh",
     "mcap",
+    "zstandard",
+    "lz4",
     "nicegui",
     "ray",
 }

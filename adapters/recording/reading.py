@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from adapters.recording.mcap_files import Message, Reading, RecordingError
+from adapters.recording.mcap_files import MAGIC, Message, Reading, RecordingError
 from adapters.recording.schemas import VERSION
 
 MOST_MESSAGES = 20_000_000
-MAGIC = b"\x89MCAP0\r\n"
 
 
 @dataclass(frozen=True, slots=True)

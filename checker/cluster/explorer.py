@@ -174,7 +174,8 @@ class Expedition:
         if self.latest is None:
             self.layer, self.standings = 0, self.crew.every("start")
         else:
-            self.layer, self.standings = self.latest.layer, self.load(self.latest.number)
+            self.layer = self.latest.layer
+            self.standings = self.load(self.latest.number)
         self.is_lost, self.is_whole = False, True
 
     def go_round(self) -> None:
@@ -246,7 +247,13 @@ class Expedition:
         while True:
             recalled = self.crew.exchange("recall", "hear")
             if not any(missing for missing, _ in recalled):
-                return self.crew.every("go_on")
+                standings = self.crew.every("go_on")
+                boundaries = tuple(each for each, _ in self.crew.every("summary"))
+                if not all(self.crew.every("fits", self.layer, boundaries)):
+                    raise CheckpointError(
+                        f"{self.folder}: the workers' parts of this checkpoint don't fit together"
+                    )
+                return standings
             if recalled == known:
                 raise CheckpointError(
                     f"{self.folder}: what is learned from this checkpoint is not what was learned"

@@ -5,10 +5,10 @@ checkpoint is ever evaluated. A worker that has been started anew learns them ag
 them. What it had been told by others is told once more: worker by worker, until all know all values of their rows.
 """
 
-import json
 from collections import Counter
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -16,24 +16,37 @@ from checker.cluster import kernel
 from checker.cluster.keys import DIGEST
 from checker.cluster.share import Share
 from checker.exploration import CheckpointError
-from checker.fast.checkpoint import read_archive, write_archive
+from checker.fast import kernel as loops
+from checker.fast.archive import Kinds, read_archive, write_archive
+from checker.fast.checkpoint import is_time
 from checker.fast.columns import Packing
+from checker.fast.engine import MOST_ROWS
 from checker.fast.kernel import CROWDS, CUT, EXPANDED, LIMIT, SIZE
 
-SCHEMA = "bigactors.share/1"
+SCHEMA = "bigactors.share/2"
 UNKNOWN = -1
 KEPT = (EXPANDED, SIZE, CUT, CROWDS, LIMIT)
 """What of the loops' state goes on."""
 
+KINDS: Final[Kinds] = {
+    "rows": np.uint64,
+    "origins": np.uint64,
+    "packing": np.uint64,
+    "places": np.uint8,
+    "sizes": np.int64,
+    "digests": np.uint8,
+    "learned": np.int64,
+    "state": np.int64,
+}
+
 BLOCK = 1 << 18
-LATEST = "latest.json"
-MOST_BYTES = 1 << 16
+LATEST = "latest.checkpoint"
 ANOTHER = "this checkpoint is of another mission, variation, limit, version or number of workers"
 
 
 def path_of(folder: Path, number: int, worker: int) -> Path:
     """Return where a worker's checkpoint of that number is."""
-    return folder / f"share-{number}-{worker}.npz"
+    return folder / f"share-{number}-{worker}.checkpoint"
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,13 +63,18 @@ class Latest:
     layer: int
     seconds: float
 
+    @property
+    def is_sound(self) -> bool:
+        """Tell whether its numbers may be those of a checkpoint."""
+        return all(type(each) is int and each >= 0 for each in (self.number, self.layer)) and is_time(
+            self.seconds
+        )
+
 
 def write_latest(folder: Path, latest: Latest, digest: str, workers: int) -> None:
     """Note which checkpoint is to be gone back to."""
-    about = {"schema": SCHEMA, "digest": digest, "workers": workers}
-    partial = folder / "latest.partial"
-    partial.write_text(json.dumps(about | asdict(latest)), "utf-8")
-    partial.replace(folder / LATEST)
+    head = {"schema": SCHEMA, "digest": digest, "workers": workers, **asdict(latest)}
+    write_archive(folder / LATEST, head, {}, ())
 
 
 def read_latest(folder: Path, digest: str, workers: int) -> Latest | None:
@@ -66,17 +84,14 @@ def read_latest(folder: Path, digest: str, workers: int) -> Latest | None:
         CheckpointError: It is damaged, or of something else.
     """
     path = folder / LATEST
-    try:
-        with path.open("rb") as file:
-            found = json.loads(file.read(MOST_BYTES))
-        latest = Latest(int(found["number"]), int(found["layer"]), float(found["seconds"]))
-        about = (found["schema"], found["digest"], found["workers"])
-    except FileNotFoundError:
+    if not path.exists():
         return None
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise CheckpointError(f"{path}: this is no checkpoint: {error}") from error
-    if about != (SCHEMA, digest, workers):
+    head, _ = read_archive(path, SCHEMA, {})
+    if (head.get("digest"), head.get("workers")) != (digest, workers):
         raise CheckpointError(f"{path}: {ANOTHER}")
+    latest = Latest(head.get("number", -1), head.get("layer", -1), head.get("seconds", -1))
+    if not latest.is_sound:
+        raise CheckpointError(f"{path}: this checkpoint is damaged: its numbers are none of a checkpoint")
     return latest
 
 
@@ -91,18 +106,17 @@ def save(share: Share, folder: Path, number: int, digest: str) -> None:
         "rules": dict(share.rules()),
         "happened": sorted(share.happened_before | happened(share)),
     }
-    write_archive(
-        path_of(folder, number, share.me),
-        head,
-        rows=share.rows.words[: share.size * share.packing.words],
-        origins=share.rows.origins[: share.size],
-        packing=share.packing.columns,
-        places=np.frombuffer(b"".join(share.keys.places), np.uint8),
-        sizes=np.diff(share.keys.begins),
-        digests=share.keys.digests(),
-        learned=np.array(sorted({row for row, *_ in share.learned}), np.int64),
-        state=share.state[list(KEPT)],
+    arrays = (
+        share.rows.words[: share.size * share.packing.words],
+        share.rows.origins[: share.size],
+        share.packing.columns,
+        np.frombuffer(b"".join(share.keys.places), np.uint8),
+        np.diff(share.keys.begins),
+        share.keys.digests(),
+        np.array(sorted({row for row, *_ in share.learned}), np.int64),
+        share.state[list(KEPT)],
     )
+    write_archive(path_of(folder, number, share.me), head, KINDS, arrays)
 
 
 def happened(share: Share) -> set[str]:
@@ -127,7 +141,8 @@ class Loading:
     def __init__(self, share: Share, folder: Path, number: int, digest: str) -> None:
         path = path_of(folder, number, share.me)
         self.share = share
-        self.head, self.arrays = read_archive(path, SCHEMA)
+        self.path = path
+        self.head, self.arrays = read_archive(path, SCHEMA, KINDS)
         if self.head.get("digest") != digest or self.head.get("worker") != [share.me, share.workers]:
             raise CheckpointError(f"{path}: {ANOTHER}")
         try:
@@ -137,8 +152,8 @@ class Loading:
 
     def _begin(self) -> None:
         arrays = self.arrays
-        self.packing = Packing(int(self.head["words"]), arrays["packing"].astype(np.uint64))
-        self.rows = arrays["rows"].astype(np.uint64)
+        self.packing = Packing(self.head["words"], arrays["packing"])
+        self.rows = arrays["rows"]
         self.learned = arrays["learned"].tolist()
         self.places = [each.tobytes() for each in arrays["places"].reshape(-1, DIGEST)]
         self.digests = [each.tobytes() for each in arrays["digests"].reshape(-1, DIGEST)]
@@ -155,18 +170,31 @@ class Loading:
     def _is_sound(self) -> bool:
         """Tell whether rows, columns and values belong together, and mark the values that rows have."""
         where, sizes, count = self.packing, self.arrays["sizes"], len(self.arrays["origins"])
-        fits = where.words > 0 and len(where.mask) == len(sizes) == len(self.places)
-        fits = fits and bool(np.all(sizes > 0)) and int(self.begins[-1]) == len(self.digests)
+        fits = where.is_sound and len(where.mask) == len(sizes) == len(self.places)
+        fits = fits and bool(np.all((sizes > 0) & (sizes <= len(self.digests))))
+        fits = fits and int(self.begins[-1]) == len(self.digests)
         fits = fits and len(self.rows) == count * where.words
         fits = fits and all(0 <= row < count for row in self.learned)
-        if (
-            not fits
-            or np.any(where.word < 0)
-            or np.any(where.word >= where.words)
-            or np.any(where.shift > 63)
-        ):
+        if not fits or not self._has_come_so_far(count):
             return False
-        return kernel.mark_used(self.rows, where.words, where.columns, self.begins, self.used)
+        return loops.mark_used(self.rows, where.words, where.columns, self.begins, self.used)
+
+    def _has_come_so_far(self, count: int) -> bool:
+        """Tell whether state, layers and what was counted are those of some search."""
+        expanded, size, cut, crowded, limit = map(int, self.arrays["state"])
+        layers, rules, happened = (self.head[key] for key in ("layers", "rules", "happened"))
+        if not (isinstance(layers, list) and isinstance(rules, dict) and isinstance(happened, list)):
+            return False
+        return (
+            all(type(each) is int for each in (*layers, *rules.values()))
+            and len(layers) > 1
+            and layers == sorted(layers)
+            and 0 == layers[0] <= layers[-2] <= expanded <= layers[-1] <= size == count <= limit <= MOST_ROWS
+            and 0 <= crowded <= expanded
+            and cut >= 0
+            and min(rules.values(), default=0) >= 0
+            and all(isinstance(word, str) for word in happened)
+        )
 
     def missing(self) -> int:
         """Return how many values of the rows are not known yet."""
@@ -206,7 +234,10 @@ class Loading:
         own = np.zeros(len(share.learner.columns), np.int64)
         known = self.numbers != UNKNOWN
         own[self.numbers[known]] = codes[known]
-        share.learn_at(own.tolist())
+        try:
+            share.learn_at(own.tolist())
+        except Exception as error:  # rules may do anything where a row is no configuration
+            raise CheckpointError(f"{self.path}: this checkpoint is damaged: {error}") from error
         return True
 
     def finish(self) -> None:

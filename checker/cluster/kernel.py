@@ -169,19 +169,3 @@ def translate(
                 mine = PLACE * numbers[column]
                 rows[to + np.int64(columns[mine])] |= np.uint64(code) << columns[mine + 1]
         hashes[k] = hashed(rows, to, width)
-
-
-@njit(cache=True)
-def mark_used(words: Words, width: int, columns: Words, begins: State, used: Any) -> bool:
-    """Mark the values that some row has, column by column; False where a code is none of its column."""
-    for row in range(len(words) // width):
-        for column in range(len(begins) - 1):
-            mask = columns[PLACE * column + 2]
-            code = np.int64(0)
-            if mask != 0:
-                word = words[row * width + np.int64(columns[PLACE * column])]
-                code = np.int64((word >> columns[PLACE * column + 1]) & mask)
-            if code < 0 or code >= begins[column + 1] - begins[column]:
-                return False
-            used[begins[column] + code] = True
-    return True

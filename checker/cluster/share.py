@@ -7,6 +7,7 @@ new ones become rows. It knows nothing of how parcels travel.
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -348,6 +349,15 @@ class Share(Space):
         """Find rows again that were put in their place."""
         self._rebuild(2 * max(self.size, FIRST_ROWS))
         self._make_room(len(self.batch.hashes))
+
+    def has_origins_in(self, boundaries: Sequence[tuple[int, ...]]) -> bool:
+        """Tell whether each row was reached from one of the layer before, given where all workers' layers begin."""
+        for layer, (begin, end) in enumerate(pairwise(self.boundaries[1:])):
+            rows, workers = np.divmod(self.rows.origins[begin:end], np.uint64(self.workers))
+            first, last = (np.array([each[k] for each in boundaries], np.uint64) for k in (layer, layer + 1))
+            if not np.all((first[workers] <= rows) & (rows < last[workers])):
+                return False
+        return True
 
     # --- limits, counts -------------------------------------------------------------------------------------------
 

@@ -99,6 +99,13 @@ class Worker:
         self.loading = None
         return self.share.standing()
 
+    def fits(self, layer: int, boundaries: tuple[tuple[int, ...], ...]) -> bool:
+        """Tell whether what it went back to fits to a layer, and to where all workers' layers begin."""
+        whole = all(
+            len(each) == layer + 3 for each in boundaries
+        )  # layers as far as that, its end, and the next's
+        return whole and self.share.has_origins_in(boundaries)
+
     # --- what was found -------------------------------------------------------------------------------------------
 
     def summary(self) -> tuple[tuple[int, ...], dict[str, int]]:

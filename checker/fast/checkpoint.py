@@ -5,29 +5,35 @@ was learned, in the same order, so that nothing in a checkpoint is ever evaluate
 that came to the same.
 """
 
-import json
-import os
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
-from zipfile import BadZipFile
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from checker.exploration import CheckpointError
+from checker.fast.archive import Kinds, read_archive, write_archive
 from checker.fast.columns import Packing
 from checker.fast.engine import Space
 from checker.fast.kernel import CROWDS, CUT, EXPANDED, LIMIT, SIZE
 from semantics.canonical import canonical
 
-SCHEMA = "bigactors.checkpoint/1"
+SCHEMA = "bigactors.checkpoint/2"
 KEPT = (EXPANDED, SIZE, CUT, CROWDS)
 """What of the loops' state goes on; the rest follows from the mission."""
 
-MOST_BYTES = 1 << 40
+KINDS: Final[Kinds] = {
+    "rows": np.uint64,
+    "origins": np.uint32,
+    "counts": np.int64,
+    "packing": np.uint64,
+    "learned": np.int64,
+    "state": np.int64,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,9 +52,25 @@ class Journey:
     seconds: float
     layers: tuple[int, ...] = (1,)
 
+    @property
+    def is_sound(self) -> bool:
+        """Tell whether its numbers fit together."""
+        sizes = (*self.layers, self.depth, self.layer_end)
+        whole = all(type(each) is int and each >= 0 for each in sizes) and is_time(self.seconds)
+        return whole and len(self.layers) == self.depth + 1 and sum(self.layers) == self.layer_end
+
+
+def is_time(seconds: object) -> bool:
+    """Tell whether something is a number of seconds."""
+    return type(seconds) in {int, float} and 0 <= seconds < math.inf  # type: ignore[operator]  # a number
+
 
 def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
-    """Write a checkpoint in the place of the one before: what is there is always whole."""
+    """Write a checkpoint in the place of the one before: what is there is always whole.
+
+    Raises:
+        OSError: It can't be written there.
+    """
     columns = space.learner.columns.all
     head = {
         "schema": SCHEMA,
@@ -61,28 +83,15 @@ def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
         "layers": journey.layers,
         "columns": _digest_of_columns(space),
     }
-    write_archive(
-        path,
-        head,
-        rows=space.rows.words[: space.size * space.packing.words],
-        origins=space.rows.origins[: space.size],
-        counts=space.counts.used,
-        packing=space.packing.columns[: 3 * len(columns)],
-        learned=np.array(space.learned, np.int64).reshape(-1, 4),
-        state=space.state[list(KEPT)],
+    arrays = (
+        space.rows.words[: space.size * space.packing.words],
+        space.rows.origins[: space.size],
+        space.counts.used,
+        space.packing.columns[: 3 * len(columns)],
+        np.array(space.learned, np.int64),
+        space.state[list(KEPT)],
     )
-
-
-def write_archive(path: Path, head: dict[str, Any], **arrays: NDArray[Any]) -> None:
-    """Write arrays and plain data in the place of those before: what is there is always whole."""
-    partial = path.with_suffix(".partial")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with partial.open("wb") as file:
-        kept = {"head": np.frombuffer(json.dumps(head).encode(), np.uint8), **arrays}
-        np.savez(file, allow_pickle=False, **kept)
-        file.flush()
-        os.fsync(file.fileno())
-    partial.replace(path)
+    write_archive(path, head, KINDS, arrays)
 
 
 def resume(space: Space, digest: str, path: Path) -> Journey:
@@ -91,22 +100,17 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
     Raises:
         CheckpointError: It is damaged, or of another mission, variation, limit or version.
     """
-    head, arrays = read_archive(path, SCHEMA)
+    head, arrays = read_archive(path, SCHEMA, KINDS)
     if head.get("digest") != digest or head.get("limit") != int(space.state[LIMIT]):
         raise CheckpointError(f"{path}: this checkpoint is of another mission, variation, limit or version")
     try:
-        space.restore(
-            Packing(int(head["words"]), arrays["packing"].astype(np.uint64)),
-            arrays["rows"].astype(np.uint64),
-            arrays["origins"].astype(np.uint32),
-            arrays["learned"].astype(np.int64).tolist(),
-        )
-        space.counts.size = 0
-        space.counts.extend(len(space.learner.leaves.rule))
-        space.counts.used[: len(arrays["counts"])] = arrays["counts"]
+        journey = Journey(head["depth"], head["layer_end"], head["seconds"], tuple(head["layers"]))
+        _check(arrays, journey, int(space.state[LIMIT]))
+        learned = arrays["learned"].reshape(-1, 4).tolist()
+        space.restore(Packing(head["words"], arrays["packing"]), arrays["rows"], arrays["origins"], learned)
+        _check_counts(space, arrays["counts"], arrays["state"])
+        space.counts.used[:] = arrays["counts"]
         space.state[list(KEPT)] = arrays["state"]
-        layers = tuple(int(size) for size in head["layers"])
-        journey = Journey(int(head["depth"]), int(head["layer_end"]), float(head["seconds"]), layers)
     except (ValueError, IndexError, KeyError, TypeError) as error:
         raise CheckpointError(f"{path}: this checkpoint is damaged: {error}") from error
     if _digest_of_columns(space) != head["columns"]:
@@ -114,34 +118,29 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
     return journey
 
 
-def read_archive(path: Path, schema: str) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the plain data and the arrays of a file that `write_archive` wrote.
-
-    Raises:
-        CheckpointError: It is none, or of another schema.
-    """
-    arrays = _read(path)
-    return _head(arrays, path, schema), arrays
-
-
-def _read(path: Path) -> dict[str, Any]:
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            raise CheckpointError(f"{path}: a checkpoint is no larger than {MOST_BYTES:,} bytes")
-        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
-            return {name: file[name] for name in file.files}
-    except (OSError, ValueError, EOFError, BadZipFile) as error:
-        raise CheckpointError(f"{path}: this is no checkpoint: {error}") from error
+def _check(arrays: dict[str, NDArray[Any]], journey: Journey, limit: int) -> None:
+    """Hold what is read of a search to what any search keeps; raises ValueError."""
+    origins = arrays["origins"]
+    expanded, size, cut, crowded = map(int, arrays["state"])
+    if not journey.is_sound or size != len(origins):
+        raise ValueError("its layers and rows do not fit together")
+    begin = journey.layer_end - journey.layers[-1]
+    if not begin <= expanded <= journey.layer_end <= size <= limit:
+        raise ValueError("it has come to no row of its last layer")
+    if cut < 0 or (cut and size != limit) or not 0 <= crowded <= expanded:
+        raise ValueError("it left out what it can't have left out")
+    before = origins[1:] < np.arange(1, size, dtype=np.uint32)
+    if origins[0] or np.any(origins[1:] < origins[:-1]) or not np.all(before) or origins[-1] > expanded:
+        raise ValueError("some row was reached from a later one")
 
 
-def _head(arrays: dict[str, Any], path: Path, schema: str) -> dict[str, Any]:
-    try:
-        head = json.loads(arrays["head"].tobytes())
-    except (KeyError, ValueError) as error:
-        raise CheckpointError(f"{path}: this is no checkpoint: {error}") from error
-    if not isinstance(head, dict) or head.get("schema") != schema:
-        raise CheckpointError(f"{path}: this is no checkpoint of the schema {schema}")
-    return head
+def _check_counts(space: Space, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:
+    """Hold counts to what they may be: each row takes a transition once at the most; raises ValueError."""
+    expanded, size = int(state[0]), int(state[1])
+    if len(counts) != len(space.learner.leaves.rule) or np.any(counts < 0) or np.any(counts > expanded):
+        raise ValueError("its transitions were not taken so often")
+    if int(counts.sum()) < size - 1:
+        raise ValueError("it has more rows than transitions")
 
 
 def _digest_of_columns(space: Space) -> str:

@@ -189,6 +189,21 @@ class Packing:
         """Tell whether every column has bits for as many values."""
         return bool(np.all(np.array(sizes, np.uint64) - np.uint64(1) <= self.mask))
 
+    @property
+    def is_sound(self) -> bool:
+        """Tell whether columns stand within words, and no two in each other's bits."""
+        if type(self.words) is not int or self.words < 1 or len(self.columns) % 3:
+            return False
+        taken = [0] * min(self.words, len(self.mask) or 1)
+        for word, shift, mask in self.columns.reshape(-1, 3).tolist():
+            if word >= len(taken) or shift >= WORD or mask & (mask + 1):
+                return False
+            bits = mask << shift
+            if bits >> WORD or taken[word] & bits:
+                return False
+            taken[word] |= bits
+        return len(taken) == self.words
+
     def extended(self, sizes: Sequence[int]) -> "Packing":
         """Return the packing with the columns that are new: as long as they have one value, they take no bits."""
         missing = len(sizes) - len(self.mask)

@@ -55,6 +55,8 @@ WORTH = 1 << 12
 FIRST_ROWS = 1 << 15
 MOST_ACTORS = 512
 MOST_ROWS = (1 << 31) - 1
+UNPLANTED = -1
+"""What stands for a node where a tree had none."""
 
 
 if TYPE_CHECKING:
@@ -283,22 +285,44 @@ class Space:
         Raises:
             ValueError, IndexError: They are not rows of such a space.
         """
-        rows = words.reshape(len(origins), where.words)
+        if not where.is_sound or len(words) != len(origins) * where.words:
+            raise ValueError("its columns stand nowhere in its rows")
+        first, rows = self.codes(0), words.reshape(len(origins), where.words)
         for row, tree, node, code in learned:
-            found = (rows[row][where.word] >> where.shift) & where.mask
+            if not 0 <= row < len(rows):
+                raise ValueError("it learned from no row")
             self.learned.append((row, tree, node, code))
-            self._learn_from([int(each) for each in found], tree, node, code)
+            self._learn_again(
+                ((rows[row][where.word] >> where.shift) & where.mask).tolist(), tree, node, code
+            )
             self._agents(self._groups())  # plants the trees of agents that are new, in the same order
-        if len(where.mask) != len(self.learner.columns):
-            raise ValueError("it has other columns")
+        sizes = np.array([len(column.values) for column in self.learner.columns.all], np.int64)
+        begins = np.concatenate(([0], np.cumsum(sizes)))
+        if len(where.mask) != len(sizes) or not kernel.mark_used(
+            words, where.words, where.columns, begins, np.zeros(begins[-1], np.bool_)
+        ):
+            raise ValueError("it has other columns, or values that they do not take")
         self._pack_as(where, BATCH)
         self.rows.reserve(len(origins))
         self.rows.words[: len(words)] = words
         self.rows.origins[: len(origins)] = origins
         self.state[SIZE] = len(origins)
+        begun = self.codes(0)
+        if begun[: len(first)] != first or any(begun[len(first) :]):
+            raise ValueError("it begins elsewhere")
         self._rebuild(slots_for(len(origins)))
         self._make_room(BATCH)
         self._see()
+
+    def _learn_again(self, codes: list[int], tree: int, node: int, code: int) -> None:
+        """Learn from a row of another space what that had learned there; raises ValueError where it can't have."""
+        trees = self.learner.trees
+        if not (0 <= tree < len(trees.root) and UNPLANTED <= node < len(trees.asks)):
+            raise ValueError("it learned of what no rule asks")
+        try:
+            self._learn_from(codes, tree, node, code)
+        except Exception as error:  # rules may do anything where a row is no configuration
+            raise ValueError(f"a rule does not run on its rows: {type(error).__name__}: {error}") from error
 
     def _see(self) -> None:
         """Let the loops see what is known now."""

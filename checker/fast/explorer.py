@@ -134,7 +134,7 @@ class _Explorer:
     @property
     def checkpoint(self) -> Path | None:
         """Where the checkpoint is, if one is kept: the search for stale observations has one of its own."""
-        name = "monitored.npz" if self.learner.setting.monitored else "exploration.npz"
+        name = "monitored.checkpoint" if self.learner.setting.monitored else "exploration.checkpoint"
         return None if self.keeping.folder is None else Path(self.keeping.folder) / name
 
     def run(self, inspect: tuple[Inspect, ...]) -> Exploration:
@@ -201,11 +201,16 @@ class _Explorer:
         return replace(self.limits, memory=None) if full else self.limits
 
     def keep(self, seconds: float) -> None:
-        """Write a checkpoint, if one is wanted."""
+        """Write a checkpoint, if one is wanted; where it can't be written, the exploration ends with what it has."""
         path = self.checkpoint
-        if path is not None:
-            journey = replace(self.journey, seconds=seconds, layers=tuple(self.layers))
+        if path is None:
+            return
+        journey = replace(self.journey, seconds=seconds, layers=tuple(self.layers))
+        try:
             save(self.space, journey, self.keeping.digest, path)
+        except OSError as error:
+            unkept = f"a checkpoint that can't be written to {path}: {error.strerror}"
+            self.bounds += [] if unkept in self.bounds else [unkept]
 
     def met(self) -> list[str]:
         most = self.limits.configurations

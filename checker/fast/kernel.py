@@ -354,3 +354,19 @@ def make_masks(masks: Words, steps: Ints, writes: Ints, columns: Words, width: i
             masks[at + word] &= ~(mask << shift)
             masks[at + width + word] &= ~(mask << shift)
             masks[at + width + word] |= np.uint64(writes[PAIR * k + 1]) << shift
+
+
+@njit(cache=True)
+def mark_used(words: Words, width: int, columns: Words, begins: State, used: Any) -> bool:
+    """Mark the values that some row has, column by column; False where a code is none of its column."""
+    for row in range(len(words) // width):
+        for column in range(len(begins) - 1):
+            mask = columns[PLACE * column + 2]
+            code = np.int64(0)
+            if mask != 0:
+                word = words[row * width + np.int64(columns[PLACE * column])]
+                code = np.int64((word >> columns[PLACE * column + 1]) & mask)
+            if code < 0 or code >= begins[column + 1] - begins[column]:
+                return False
+            used[begins[column] + code] = True
+    return True

@@ -214,6 +214,8 @@ def test_a_small_mission_goes_on_from_every_size_within_bounds(tmp_path):
         "-k",
         chosen,
     ]
-    ran = subprocess.run(line, env=environment, cwd=ROOT, capture_output=True, text=True, timeout=600)
+    ran = subprocess.run(
+        line, check=False, env=environment, cwd=ROOT, capture_output=True, text=True, timeout=600
+    )
     assert ran.returncode == 0, ran.stdout
     assert "2 passed" in ran.stdout

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from local_crew import LocalCrew
@@ -10,7 +9,9 @@ from local_crew import LocalCrew
 from checker import CheckpointError, Engine, Keeping, Limits, MachineError, explore
 from checker.cluster import explorer, share
 from checker.cluster.explorer import Expedition
+from checker.cluster.keeping import KINDS, SCHEMA
 from checker.coverage import Visited
+from checker.fast.archive import read_archive, write_archive
 from checker.inspections import Computation, DeadlockFreedom, LocalConsistency
 from checker.races import ControlRaces
 from checker.temporal.decide import kept_graph
@@ -173,7 +174,7 @@ def test_what_is_interrupted_while_rows_are_on_their_way_is_not_kept(tmp_path):
     found = Expedition(Interrupted(initial, 2), initial, LIMITS, keeping=Keeping(str(tmp_path))).run(())
     assert found.bounds == ["an interruption"]
     assert 1 < len(found.configurations) < 153
-    assert not list(tmp_path.rglob("latest.json"))
+    assert not list(tmp_path.rglob("latest.checkpoint"))
 
 
 # --- who is lost ----------------------------------------------------------------------------------------------
@@ -285,10 +286,9 @@ def test_a_damaged_checkpoint_is_refused(tmp_path, damage):
 @pytest.mark.parametrize("part", ["rows", "origins", "packing", "places", "sizes", "digests", "learned"])
 def test_a_checkpoint_whose_parts_do_not_fit_together_is_refused(tmp_path, part):
     kept(tmp_path, resumed=False)
-    [path] = (tmp_path / "exploration-ray").glob("share-*-0.npz")
-    with np.load(path) as file:
-        arrays = dict(file)
+    [path] = (tmp_path / "exploration-ray").glob("share-*-0.checkpoint")
+    head, arrays = read_archive(path, SCHEMA, KINDS)
     arrays[part] = arrays[part][:-1] if part != "learned" else arrays[part] + 1000
-    np.savez(path, **arrays)
+    write_archive(path, head, KINDS, list(arrays.values()))
     with pytest.raises(CheckpointError, match="damaged"):
         kept(tmp_path)

@@ -93,7 +93,7 @@ def test_a_worker_that_is_killed_in_the_middle_goes_on_from_its_checkpoint(ray, 
     def kill_one(progress):
         reports.append(progress.configurations)
         if len(reports) == 40:
-            assert list(tmp_path.rglob("latest.json"))
+            assert list(tmp_path.rglob("latest.checkpoint"))
             actor = actors(ray)[1]
             if kill == "the actor":
                 ray.kill(actor, no_restart=False)
@@ -172,7 +172,7 @@ def test_a_damaged_checkpoint_is_a_mistake(tmp_path, capsys):
         str(MISSIONS / "oil_spill.mission"),
     ]
     main(line)
-    [path] = tmp_path.rglob("share-*-1.npz")
+    [path] = tmp_path.rglob("share-*-1.checkpoint")
     path.write_bytes(b"no archive")
     assert main([*line, "--resume"]) == 2
     told = capsys.readouterr().err

@@ -1,0 +1,54 @@
+"""Compressed data of recordings: opened up to what it declares, and no further."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from io import BytesIO
+from typing import Final
+
+MOST_WINDOW: Final = 1 << 24
+"""Bytes that a decompressor may look back over, which it keeps in memory."""
+
+
+def opened(compression: str, data: bytes, size: int) -> bytes:
+    """Return what compressed data yields, one byte more than its declared size at the most.
+
+    Raises:
+        ValueError: It is not compressed so, or nothing here opens it.
+    """
+    find = OPENERS.get(compression)
+    if find is None:
+        known = " or ".join(sorted(filter(None, OPENERS)))
+        raise ValueError(f"it is compressed by '{compression:.20}', not by {known}")
+    try:
+        return find(data, size + 1)
+    except ImportError as error:
+        raise ValueError(
+            "compressed recordings need the extra 'live': pip install 'bigactors[live]'"
+        ) from error
+    except (RuntimeError, EOFError, MemoryError) as error:
+        raise ValueError(f"its {compression} is damaged: {error!s:.100}") from error
+
+
+def _plain(data: bytes, most: int) -> bytes:
+    return data[:most]
+
+
+def _zstd(data: bytes, most: int) -> bytes:
+    import zstandard  # noqa: PLC0415 - an extra
+
+    try:
+        with zstandard.ZstdDecompressor(max_window_size=MOST_WINDOW).stream_reader(BytesIO(data)) as reader:
+            return reader.read(most)
+    except zstandard.ZstdError as error:
+        raise RuntimeError(str(error)) from error
+
+
+def _lz4(data: bytes, most: int) -> bytes:
+    import lz4.frame  # noqa: PLC0415 - an extra
+
+    found: bytes = lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=most)
+    return found
+
+
+OPENERS: Final[dict[str, Callable[[bytes, int], bytes]]] = {"": _plain, "zstd": _zstd, "lz4": _lz4}
