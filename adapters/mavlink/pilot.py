@@ -5,19 +5,20 @@ A pure state machine: no socket, no clock, no randomness.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
 from adapters.mavlink import plan, streams
 from adapters.mavlink import task as tasks
-from adapters.mavlink.command import read_parameter
+from adapters.mavlink.command import long, read_parameter
 from adapters.mavlink.fleet import CONTROL, Craft, Stations
 from adapters.mavlink.items import Items
 from adapters.mavlink.link import Link, watch
 from adapters.mavlink.message import Message
-from adapters.mavlink.numbers import AUTHORITY_PARAMETER, MissionType
+from adapters.mavlink.numbers import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, Cmd, MissionType
 from adapters.mavlink.objections import objection
+from adapters.mavlink.room import circle, home_circle
 from adapters.mavlink.streams import Streams
 from adapters.mavlink.task import Progress, Task
 from adapters.mavlink.telemetry import Position, Telemetry, absorb, property_of
@@ -37,6 +38,9 @@ AUTHORITY_UNKNOWN: Final = 10.0
 
 ASK_AUTHORITY: Final = 1.0
 CHECK_AUTHORITY: Final = 5.0
+
+MOST_QUESTIONS: Final = 10
+"""How often a vehicle is asked, once a second, what it may do: a parameter that it does not have it does not answer."""
 
 _ANSWERS: Final = frozenset(
     {
@@ -68,6 +72,7 @@ class Pilot:
         moving: The command that it carries out.
         handing: The hand-over under way.
         asked: When its authority was asked for.
+        questions: How often it was asked what it may do since it booted.
         since: Since when it has a position.
         shown: What was published last.
     """
@@ -82,6 +87,7 @@ class Pilot:
     moving: Task | None = None
     handing: Task | None = None
     asked: float | None = None
+    questions: int = 0
     since: float | None = None
     shown: Shown = (None, None, False)
 
@@ -136,8 +142,9 @@ def _continued(before: Task | None, task: Task) -> Task:
 def hear(pilot: Pilot, message: Message, now: float) -> Outcome:
     """Take a message of the vehicle that is meant for us, or for everybody."""
     known = absorb(pilot.known, message, now)
-    on_board = pilot.on_board if known.boots == pilot.known.boots else {}
-    pilot = replace(pilot, known=known, on_board=on_board, streams=streams.hear(pilot.streams, message, now))
+    if known.boots != pilot.known.boots:
+        pilot = replace(pilot, on_board={}, questions=0)
+    pilot = replace(pilot, known=known, streams=streams.hear(pilot.streams, message, now))
     if message.name not in _ANSWERS or pilot.moving is None or pilot.moving.over:
         pilot, published, trouble = _publication(pilot, now)
         return Outcome(pilot, reports=trouble, published=published)  # tasks go on at the next tick
@@ -159,20 +166,44 @@ def tick(pilot: Pilot, now: float) -> Outcome:
 
 
 def _asked(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
-    """Ask for the messages that are missing, and whom the vehicle obeys."""
+    """Ask for the messages that are missing, whom the vehicle obeys, and what it may do."""
     flow, missing = streams.tick(pilot.streams, pilot.system, now)
     pilot = replace(pilot, streams=flow)
     unsure = pilot.known.authority is None or (pilot.handing is not None and not pilot.handing.over)
-    every = ASK_AUTHORITY if unsure else CHECK_AUTHORITY
+    more = () if pilot.known.authority is None else tuple(_untold(pilot))
+    every = ASK_AUTHORITY if unsure or more else CHECK_AUTHORITY
     if pilot.asked is not None and now - pilot.asked < every:
         return pilot, missing
-    return replace(pilot, asked=now), (*missing, *_who_commands(pilot))
+    pilot = replace(pilot, asked=now, questions=pilot.questions + bool(more))
+    return pilot, (*missing, *_who_commands(pilot), *more)
 
 
 def _who_commands(pilot: Pilot) -> tuple[Message, ...]:
     """Ask as each station: a vehicle may answer only the one that it obeys, and its last answer may be lost."""
-    question = read_parameter(pilot.system, AUTHORITY_PARAMETER)
-    return tuple(replace(question, system=pilot.stations.ids[name]) for name in pilot.stations.own)
+    known = pilot.known.authority_parameter
+    names = AUTHORITY_PARAMETERS if known is None else (known,)
+    asked = (read_parameter(pilot.system, name) for name in names)
+    return tuple(
+        replace(each, system=pilot.stations.ids[name]) for each in asked for name in pilot.stations.own
+    )
+
+
+def _untold(pilot: Pilot) -> Iterator[Message]:
+    """Yield the questions for what a vehicle has not told of what it may do, as long as it may answer."""
+    known = pilot.known
+    if known.profile is None or pilot.questions >= MOST_QUESTIONS:
+        return
+    for name in known.profile.parameters:
+        if name not in known.parameters:
+            yield read_parameter(pilot.system, name)
+    if known.version is None:
+        yield long(Cmd.REQUEST_MESSAGE, pilot.system, AUTOPILOT_VERSION)
+
+
+def is_known(pilot: Pilot) -> bool:
+    """Tell whether a vehicle has told all that is asked of what it may do, or was asked for long enough."""
+    known = pilot.known.profile is not None and pilot.known.home is not None
+    return known and not any(_untold(pilot))
 
 
 def _spoken(pilot: Pilot, sent: tuple[Message, ...]) -> tuple[Message, ...]:
@@ -219,7 +250,8 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
         profile=profile,
         on_board=pilot.on_board,
         fence=pilot.craft.fence,
-        circle=pilot.craft.circle_of(profile),
+        circle=circle(pilot.craft, profile, pilot.known),
+        home_circle=home_circle(pilot.craft, profile, pilot.known),
         height=task.height or 0.0,
         begun=task.begun,
         resumes=task.resumes,
