@@ -23,7 +23,9 @@ def objection(command: Command, craft: Craft, stations: Stations, known: Telemet
 
 
 def _objections(command: Command, craft: Craft, stations: Stations, known: Telemetry) -> Iterator[str]:
-    yield from _of_authority(stations, known)
+    foreign = not_ours(stations, known)
+    if foreign:
+        yield foreign
     if isinstance(command, HandOver):
         yield from _of_hand_over(command, stations, known)
     if isinstance(command, Follow) and not 0 < len(command.path) <= MAX_PATH:
@@ -65,10 +67,12 @@ def _of_place(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]
         yield from _of_own_fences(command, craft, known.profile, known)
 
 
-def _of_authority(stations: Stations, known: Telemetry) -> Iterator[str]:
+def not_ours(stations: Stations, known: Telemetry) -> str | None:
+    """Return whom a vehicle obeys, if that is certainly none of our stations."""
     name = stations.name_of(known.authority)
-    if known.authority is not None and name not in stations.own:
-        yield f"it obeys {name or f'system {known.authority}'}, not {' or '.join(stations.own)}"
+    if known.authority is None or name in stations.own:
+        return None
+    return f"it obeys {name or f'system {known.authority}'}, not {' or '.join(stations.own)}"
 
 
 def _of_hand_over(command: HandOver, stations: Stations, known: Telemetry) -> Iterator[str]:

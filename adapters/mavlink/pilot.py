@@ -17,9 +17,10 @@ from adapters.mavlink.items import Items
 from adapters.mavlink.link import Link, watch
 from adapters.mavlink.message import Message
 from adapters.mavlink.numbers import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, Cmd, MissionType
-from adapters.mavlink.objections import objection
+from adapters.mavlink.objections import not_ours, objection
 from adapters.mavlink.room import circle, home_circle
 from adapters.mavlink.streams import Streams
+from adapters.mavlink.sync import Sync
 from adapters.mavlink.task import Progress, Task
 from adapters.mavlink.telemetry import Position, Telemetry, absorb, property_of
 from adapters.plugin import (
@@ -243,6 +244,9 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
         if reason:
             return tasks.rejected(task, reason, now)
         task = replace(task, checked=True)
+    foreign = not_ours(pilot.stations, pilot.known)
+    if foreign and isinstance(task.doing, Sync):  # nobody here can end what was begun
+        return tasks.rejected(task, foreign, now)
     task = _with_height(pilot, task)
     vehicle = plan.Vehicle(
         system=pilot.system,
@@ -255,6 +259,7 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
         height=task.height or 0.0,
         begun=task.begun,
         resumes=task.resumes,
+        speaker=pilot.stations.speaker(pilot.known.authority),
     )
     step = plan.next_step(task.command, task.station, vehicle)
     return tasks.advance(task, step, vehicle, lost=pilot.link.lost, now=now)

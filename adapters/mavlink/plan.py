@@ -77,6 +77,7 @@ class Vehicle:
         begun: Whether its mission was seen to begin since the command.
         resumes: Whether that goes on with the item that it is at.
         home_circle: The radius in metres at which it circles its home when it returns.
+        speaker: The system id by which it is spoken to: of who has the authority.
     """
 
     system: int
@@ -89,6 +90,7 @@ class Vehicle:
     begun: bool
     resumes: bool = False
     home_circle: float = 0.0
+    speaker: int = 0
 
 
 def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:

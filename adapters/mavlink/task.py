@@ -103,6 +103,9 @@ def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float)
             doing=_exchange(step, vehicle),
             complained=False,
         )
+    if isinstance(task.doing, syncing.Sync) and task.doing.speaker != vehicle.speaker:
+        # Handed over: of what one station has begun the vehicle takes nothing from another.
+        task = replace(task, since=now, reached=(0, 0, 0), doing=_exchange(step, vehicle))
     if isinstance(task.doing, syncing.Sync) and task.doing.reached > task.reached:
         task = replace(task, since=now, reached=task.doing.reached)
     if lost:
@@ -189,7 +192,7 @@ def _exchange(step: Step, vehicle: Vehicle) -> telling.Telling | syncing.Sync | 
         case Tell():
             return telling.Telling(step.message)
         case Load():
-            return syncing.begin(step.items, step.kind, vehicle.system)
+            return syncing.begin(step.items, step.kind, vehicle.system, vehicle.speaker)
     return None
 
 
