@@ -65,8 +65,12 @@ class Autopilot:
         _check_crafts(crafts, self._stations)
         self._name = name
         self._address = parse_address(address)
-        self._pilots = {craft.entity: Pilot(craft, self._stations, _bound(craft)) for craft in crafts}
+        self._pilots = {
+            craft.entity: Pilot(craft, self._stations, _bound(craft), signs=keeper is not None)
+            for craft in crafts
+        }
         self._roster = Roster()
+        self._strangers: set[int] = set()
         self._keeper = keeper
         self._tap = tap
         self._decoders: OrderedDict[Remote, Decoder] = OrderedDict()
@@ -186,7 +190,8 @@ class Autopilot:
         if found.question is not None:
             for name in self._stations.own:  # it may obey any of them, and only that
                 self._send(replace(found.question, system=self._stations.ids[name]), remote)
-        if found.stranger:
+        if found.stranger and message.system not in self._strangers:
+            self._strangers.add(message.system)
             serial = self._roster.serials.get(message.system)
             called = f"system {message.system}" + (f" with serial number {serial}" if serial else "")
             detail = f"{called} is no vehicle of the mission; add it, or keep it off this link"

@@ -40,6 +40,9 @@ AUTHORITY_UNKNOWN: Final = 10.0
 ASK_AUTHORITY: Final = 1.0
 CHECK_AUTHORITY: Final = 5.0
 
+UNANSWERED: Final = 8
+"""Questions after which it is said that a vehicle does not tell whom it obeys: a link that loses a third answers one."""
+
 MOST_QUESTIONS: Final = 10
 """How often a vehicle is asked, once a second, what it may do: a parameter that it does not have it does not answer."""
 
@@ -66,6 +69,7 @@ class Pilot:
         craft: What the mission says of it.
         stations: Who may command it.
         system: Its MAVLink system id.
+        signs: Whether what it is told is signed.
         known: What its messages show.
         link: Whether it is heard.
         streams: What it was asked to send.
@@ -73,6 +77,7 @@ class Pilot:
         moving: The command that it carries out.
         handing: The hand-over under way.
         asked: When its authority was asked for.
+        unanswered: How often it was asked for since it was told.
         questions: How often it was asked what it may do since it booted.
         since: Since when it has a position.
         shown: What was published last.
@@ -81,6 +86,7 @@ class Pilot:
     craft: Craft
     stations: Stations
     system: int
+    signs: bool = False
     known: Telemetry = field(default_factory=Telemetry)
     link: Link = field(default_factory=Link)
     streams: Streams = field(default_factory=Streams)
@@ -88,6 +94,7 @@ class Pilot:
     moving: Task | None = None
     handing: Task | None = None
     asked: float | None = None
+    unanswered: int = 0
     questions: int = 0
     since: float | None = None
     shown: Shown = (None, None, False)
@@ -159,10 +166,13 @@ def tick(pilot: Pilot, now: float) -> Outcome:
     link, change = watch(pilot.link, pilot.craft.entity, pilot.known, now)
     pilot = replace(pilot, link=link)
     questions: tuple[Message, ...] = ()
+    before = pilot.unanswered
     if pilot.known.heard is not None and not link.lost:
         pilot, questions = _asked(pilot, now)
     outcome = _advance(pilot, now)
     reports = outcome.reports if change is None else (change, *outcome.reports)
+    if before < UNANSWERED <= pilot.unanswered:
+        reports = (*reports, Trouble(pilot.craft.entity, now, "authority not told", _deaf(pilot)))
     return replace(outcome, sent=_spoken(pilot, (*questions, *outcome.sent)), reports=reports)
 
 
@@ -175,7 +185,8 @@ def _asked(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
     every = ASK_AUTHORITY if unsure or more else CHECK_AUTHORITY
     if pilot.asked is not None and now - pilot.asked < every:
         return pilot, missing
-    pilot = replace(pilot, asked=now, questions=pilot.questions + bool(more))
+    unanswered = pilot.unanswered + 1 if pilot.known.authority is None else 0
+    pilot = replace(pilot, asked=now, unanswered=unanswered, questions=pilot.questions + bool(more))
     return pilot, (*missing, *_who_commands(pilot), *more)
 
 
@@ -260,9 +271,19 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
         begun=task.begun,
         resumes=task.resumes,
         speaker=pilot.stations.speaker(pilot.known.authority),
+        deaf=_deaf(pilot),
     )
     step = plan.next_step(task.command, task.station, vehicle)
     return tasks.advance(task, step, vehicle, lost=pilot.link.lost, now=now)
+
+
+def _deaf(pilot: Pilot) -> str:
+    """Return why a vehicle seems not to hear us, if it does."""
+    if pilot.known.authority is not None:
+        return ""
+    if pilot.known.signs and not pilot.signs:
+        return "it asks for signed packets: give its key, --key FILE"
+    return "it does not tell which station it obeys: it may obey another"
 
 
 def _unknown(pilot: Pilot, task: Task, now: float) -> Progress:
@@ -308,10 +329,8 @@ def _channels(pilot: Pilot) -> tuple[str, ...]:
 
 def _authority_trouble(pilot: Pilot, now: float) -> tuple[Report, ...]:
     authority = pilot.known.authority
-    if pilot.stations.name_of(authority) is not None:
+    if authority is None or pilot.stations.name_of(authority) is not None:
         return ()
     entity = pilot.craft.entity
-    if authority is None:
-        return (Trouble(entity, now, "authority not told", f"{entity} does not tell which station it obeys"),)
     detail = f"{entity} obeys system {authority}, which is no station of the mission; add it to the stations"
     return (Trouble(entity, now, "unknown authority", detail),)

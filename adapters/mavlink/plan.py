@@ -78,6 +78,7 @@ class Vehicle:
         resumes: Whether that goes on with the item that it is at.
         home_circle: The radius in metres at which it circles its home when it returns.
         speaker: The system id by which it is spoken to: of who has the authority.
+        deaf: Why it seems not to hear us, if it does.
     """
 
     system: int
@@ -91,6 +92,7 @@ class Vehicle:
     resumes: bool = False
     home_circle: float = 0.0
     speaker: int = 0
+    deaf: str = ""
 
 
 def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:

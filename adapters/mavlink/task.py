@@ -216,8 +216,7 @@ def _pursued(task: Task, now: float) -> Progress:
 
 def _failure(step: Step, task: Task, vehicle: Vehicle) -> str:
     said = f"; its last words: {vehicle.known.said!r:.80}" if vehicle.known.said else ""
-    if vehicle.known.authority is None:
-        said += "; it does not tell which station it obeys: it may obey another"
+    said += f"; {vehicle.deaf}" if vehicle.deaf else ""
     match step:
         case Wait():
             return f"{step.why}, for {_patience(step):.0f} s{said}"

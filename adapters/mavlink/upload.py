@@ -4,8 +4,8 @@ The vehicle asks for item after item, again after a second, and gives up after e
 timer. ArduPlane asks with MISSION_REQUEST, others with MISSION_REQUEST_INT: both get MISSION_ITEM_INT. What an ACK
 says is not believed: `adapters.mavlink.sync` reads back what is on board.
 
-A vehicle takes one upload at a time, from one system id. To whoever else counts it says DENIED, until the other's is over;
-so that is a last no only once it has lasted longer than a vehicle waits.
+A vehicle takes one upload at a time, from one system id. To whoever else counts it says DENIED, until that one is over;
+so this is a last no only once it has lasted longer than a vehicle waits.
 """
 
 from __future__ import annotations
