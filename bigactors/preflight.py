@@ -6,6 +6,7 @@ one is aboard another, that a load was put down, or that a channel was joined, n
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from itertools import islice, product
@@ -24,6 +25,9 @@ from semantics.signature import Name
 from semantics.statements import ControlBy
 from specs.elaboration import ElaboratedMission
 
+PATIENCE = 15.0
+"""Seconds in which a vehicle should have told what it may do."""
+
 MOST_INSTANCES = 5_000
 """Of a control that may be about more than these, the first are looked at."""
 
@@ -37,11 +41,13 @@ def check_flyable(mission: ElaboratedMission) -> None:
 
 
 def check_places(mission: ElaboratedMission, plugins: tuple[Plugin, ...]) -> None:
-    """Refuse places that are too small for a vehicle, now that its kind is known, or outside its fence.
+    """Refuse places that are too small for a vehicle, now that it has told what it is, or outside a fence of it.
 
     Raises Mistake.
     """
-    pilots = [plugin for plugin in plugins if isinstance(plugin, Autopilot)]
+    pilots = _pilots(plugins)
+    for remark in (remark for plugin in pilots for remark in plugin.remarks()):
+        tell(f"warning: {remark}")
 
     def objection(reaction: Reaction) -> str:
         reasons = (
@@ -56,6 +62,18 @@ def check_places(mission: ElaboratedMission, plugins: tuple[Plugin, ...]) -> Non
         return next((f"it cannot: {reason}" for reason in reasons if reason), "")
 
     _judge(mission, objection)
+
+
+async def get_to_know(plugins: tuple[Plugin, ...]) -> None:
+    """Wait until the vehicles have told how they circle, and which fences they have; not for one that does not tell."""
+    with suppress(TimeoutError):
+        async with asyncio.timeout(PATIENCE):
+            while not all(plugin.is_known() for plugin in _pilots(plugins)):
+                await asyncio.sleep(0.1)
+
+
+def _pilots(plugins: tuple[Plugin, ...]) -> list[Autopilot]:
+    return [plugin for plugin in plugins if isinstance(plugin, Autopilot)]
 
 
 def _judge(mission: ElaboratedMission, objection: Objection) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from adapters.plugin import Command, Follow, GoTo, HandOver, Published, Report
 from physical import PhysicalProperty
+from semantics.cells import Cell
 from semantics.configuration import Configuration, Transition
 from semantics.observed import Sight
 from semantics.parting import Elsewhere, Parcel
@@ -95,6 +96,7 @@ class LiveState:
         paces: How fast each agent may go on.
         suspended: Whether controls are served no more: an assumption broke.
         grounded: Agents of which no control is served any more: a request of theirs took too long.
+        missing: What P had in cells where its going broke an assumption: that it comes back breaks no other.
         failed: Agents whose computation failed.
         reported: What was reported already, and is not again.
         last: The agent that went on last: the next turn begins with the one after it.
@@ -114,6 +116,7 @@ class LiveState:
     paces: Mapping[Name, Pace] = field(default_factory=dict)
     suspended: bool = False
     grounded: frozenset[Name] = frozenset()
+    missing: Mapping[Cell, object] = field(default_factory=dict)
     failed: frozenset[Name] = frozenset()
     reported: frozenset[str] = frozenset()
     last: Name = ""

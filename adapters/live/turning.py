@@ -55,6 +55,7 @@ class Turning:
         self.paces = dict(state.paces)
         self.suspended = state.suspended
         self.grounded = set(state.grounded)
+        self.missing = dict(state.missing)
         self.failed = set(state.failed)
         self.reported = set(state.reported)
         self.told = state.told
@@ -85,6 +86,7 @@ class Turning:
             self.paces,
             self.suspended,
             frozenset(self.grounded),
+            self.missing,
             frozenset(self.failed),
             frozenset(self.reported),
             self.last,

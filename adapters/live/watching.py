@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from adapters.live.assumptions import broken_by_place, clause_of_leaving
+from adapters.live.assumptions import broken_by_place, clause_of_leaving, relations
 from adapters.live.elsewhere import hear_of
 from adapters.live.flying import arrive, come_through, renew
 from adapters.live.orders import is_authority
@@ -29,6 +29,7 @@ from adapters.plugin import (
     Underway,
 )
 from semantics.cells import Cell
+from semantics.configuration import Configuration
 from semantics.environment import Appears, Leaves, Says
 from semantics.extension import say
 from semantics.observed import Sight, admitting, happening
@@ -122,6 +123,8 @@ def _move(turning: Turning, entity: Name, here: Placement | None, seen: Placemen
     admits = {} if entity in turning.c.setting.kinds else {entity: said.kind}
     there = admitting(turning.c, admits)
     broken = broken_by_place(turning.plan, there, entity, seen)
+    if here is None and _is_back(turning, there, entity, seen):
+        broken = ""
     writes: dict[Cell, object] = {placement_cell(entity): seen}
     if here is None:
         writes[channels_cell(entity)] = _channels_of_newcomer(turning, entity)
@@ -133,6 +136,14 @@ def _move(turning: Turning, entity: Name, here: Placement | None, seen: Placemen
             turning.breaks(broken, entity)
         if not (isinstance(seen, Placed) and seen.geometry.is_point):
             renew(turning, entity)
+
+
+def _is_back(turning: Turning, there: Configuration, entity: Name, seen: Placement) -> bool:
+    """Tell whether an entity stands as it did before its vanishing broke an assumption: once is enough."""
+    before = turning.missing.pop(placement_cell(entity), None)
+    return isinstance(before, Placed | Carried) and relations(there, entity, before) == relations(
+        there, entity, seen
+    )
 
 
 def _channels_of_newcomer(turning: Turning, entity: Name) -> tuple[Name, ...]:
@@ -160,8 +171,10 @@ def _vanish(turning: Turning, entity: Name) -> None:
     gone = sorted({entity, *turning.c.structure.physical.cargo(entity)})
     writes: dict[Cell, object] = {placement_cell(name): None for name in gone}
     writes |= {channels_cell(name): () for name in gone}
+    before = turning.c.structure.physical.placement(entity)
     sight = Sight(f"{entity} vanishes", writes)
     if turning.observe(sight, happening(turning.c, sight)) and broken:
+        turning.missing[placement_cell(entity)] = before
         turning.breaks(broken, entity)
 
 
@@ -194,9 +207,11 @@ def off_channel(turning: Turning, entity: Name, channel: Name, what: str) -> Non
         if found:
             turning.take(found[0], tuple(found))
         return
-    kept = tuple(each for each in physical.channels(entity) if each != channel)
+    before = physical.channels(entity)
+    kept = tuple(each for each in before if each != channel)
     sight = Sight(f"{entity} is off {channel}", {channels_cell(entity): kept})
     if turning.observe(sight, happening(turning.c, sight)):
+        turning.missing.setdefault(channels_cell(entity), before)
         turning.breaks(f"{what}; the mission does not say that it leaves it, or that it drops", entity)
 
 
@@ -214,7 +229,8 @@ def _on_channel(turning: Turning, entity: Name, channel: Name) -> None:
     elif clause is not None:
         writes["down", channel] = False
     sight = Sight(f"{entity} is on {channel}", writes)
-    if turning.observe(sight, happening(turning.c, sight)):
+    back = channel in turning.missing.get(channels_cell(entity), ())  # type: ignore[operator]
+    if turning.observe(sight, happening(turning.c, sight)) and not back:
         turning.breaks(
             f"{entity} is on {channel}; nobody handed it there, and nothing says that it returns", entity
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import OrderedDict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -17,7 +17,7 @@ from adapters.mavlink.fleet import Craft, Stations
 from adapters.mavlink.keys import Keeper
 from adapters.mavlink.message import Message, say
 from adapters.mavlink.numbers import GROUND_COMPONENT, GROUND_STATION, NO_AUTOPILOT
-from adapters.mavlink.objections import impassable, unfit
+from adapters.mavlink.objections import impassable, remarks, unfit
 from adapters.mavlink.pilot import Outcome, Pilot
 from adapters.mavlink.roster import Roster
 from adapters.mavlink.signing import Verdict
@@ -65,8 +65,12 @@ class Autopilot:
         _check_crafts(crafts, self._stations)
         self._name = name
         self._address = parse_address(address)
-        self._pilots = {craft.entity: Pilot(craft, self._stations, _bound(craft)) for craft in crafts}
+        self._pilots = {
+            craft.entity: Pilot(craft, self._stations, _bound(craft), signs=keeper is not None)
+            for craft in crafts
+        }
         self._roster = Roster()
+        self._strangers: set[int] = set()
         self._keeper = keeper
         self._tap = tap
         self._decoders: OrderedDict[Remote, Decoder] = OrderedDict()
@@ -98,11 +102,21 @@ class Autopilot:
     def objection(self, entity: str, place: Geometry, name: str) -> str | None:
         """Return why a place is none for a vehicle, as far as its kind is known; None if nothing is against it."""
         pilot = self._pilots[entity]
-        return unfit(GoTo("", entity, place, name=name), pilot.craft, pilot.known.profile)
+        return unfit(GoTo("", entity, place, name=name), pilot.craft, pilot.known)
 
     def bar(self, entity: str, place: Geometry, name: str) -> str | None:
         """Return why a vehicle can't pass a place on its way; None if nothing is against it."""
-        return impassable(place, self._pilots[entity].craft, name)
+        pilot = self._pilots[entity]
+        return impassable(place, pilot.craft, pilot.known, name)
+
+    def is_known(self) -> bool:
+        """Tell whether all vehicles have told what they may do, as far as they do."""
+        return all(map(piloting.is_known, self._pilots.values()))
+
+    def remarks(self) -> Iterator[str]:
+        """Yield what an operator has to know of the vehicles before they take off."""
+        for pilot in self._pilots.values():
+            yield from remarks(pilot.craft, pilot.known)
 
     async def command(self, command: Command) -> None:
         """Take on a command; raises Refused."""
@@ -175,7 +189,8 @@ class Autopilot:
         if found.question is not None:
             for name in self._stations.own:  # it may obey any of them, and only that
                 self._send(replace(found.question, system=self._stations.ids[name]), remote)
-        if found.stranger:
+        if found.stranger and message.system not in self._strangers:
+            self._strangers.add(message.system)
             serial = self._roster.serials.get(message.system)
             called = f"system {message.system}" + (f" with serial number {serial}" if serial else "")
             detail = f"{called} is no vehicle of the mission; add it, or keep it off this link"

@@ -38,6 +38,14 @@ class Telling:
         return f"the vehicle refuses {self.what}: {Result(self.answer).name.lower()}"
 
     @property
+    def objection(self) -> str:
+        """What the vehicle has answered last, if that was no yes."""
+        if self.answer in (None, Result.ACCEPTED, Result.IN_PROGRESS):
+            return ""
+        known = self.answer in tuple(Result)
+        return Result(self.answer).name if known else f"MAV_RESULT {self.answer}"
+
+    @property
     def what(self) -> str:
         """What is told, for people."""
         number = self.message.fields.get("command")

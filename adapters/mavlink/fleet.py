@@ -23,7 +23,7 @@ class Craft:
         system: Its MAVLink system id; None where the first vehicle heard is meant.
         channels: The channels it is on as long as it is heard, beside its control authority.
         fence: The polygon that it must stay in; uploaded before it is armed.
-        circle: The radius in metres that it needs to stay somewhere; its kind's if None.
+        circle: The radius in metres at which it circles where it stays; its own if None.
         height: Metres above home at which it travels if nothing else is said; its kind's if None.
         time_to_live: Seconds for which a position of it counts.
         serial: Its autopilot's serial number in hexadecimal digits: nothing else is taken for it then.
@@ -38,10 +38,6 @@ class Craft:
     height: float | None = None
     time_to_live: float = 30.0
     serial: str | None = None
-
-    def circle_of(self, profile: Profile) -> float:
-        """Return the radius that it needs to stay somewhere."""
-        return profile.circle if self.circle is None else self.circle
 
     def height_of(self, profile: Profile) -> float:
         """Return the height at which it travels."""

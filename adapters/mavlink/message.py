@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
+
+VERSION_2: Final = 0xFD
+"""The first byte of a frame of MAVLink 2; its third has flags."""
+
+FLAGS: Final = 2
+SIGNED: Final = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +33,11 @@ class Message:
 
     def __getitem__(self, name: str) -> Any:
         return self.fields[name]
+
+    @property
+    def signed(self) -> bool:
+        """Whether it came with a signature, of whatever worth."""
+        return len(self.raw) > FLAGS and self.raw[0] == VERSION_2 and bool(self.raw[FLAGS] & SIGNED)
 
     @property
     def target(self) -> int:

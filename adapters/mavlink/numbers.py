@@ -27,8 +27,12 @@ FIX_3D: Final = 3
 AUTOPILOT_VERSION: Final = 148
 """The number of the message that tells an autopilot's serial number."""
 
-AUTHORITY_PARAMETER: Final = "SYSID_MYGCS"
-"""ArduPilot's parameter that says which ground station it obeys."""
+AUTHORITY_PARAMETERS: Final = ("SYSID_MYGCS", "MAV_GCS_SYSID")
+"""ArduPilot's parameter that says which ground station it obeys, as it is called to 4.6 and from 4.7 on."""
+
+FENCE_PARAMETERS: Final = ("FENCE_ENABLE", "FENCE_TYPE", "FENCE_RADIUS")
+HEIGHT_PARAMETERS: Final = ("FENCE_AUTOENABLE", "FENCE_ALT_MAX")
+CIRCLE_PARAMETERS: Final = ("WP_LOITER_RAD", "RTL_RADIUS")
 
 
 class ModeFlag(IntFlag):
@@ -50,6 +54,15 @@ class MissionType(IntEnum):
 
     MISSION = 0
     FENCE = 1
+
+
+class Fence(IntFlag):
+    """ArduPilot's fences: the bits of FENCE_TYPE, and of the second parameter of DO_FENCE_ENABLE."""
+
+    ALT_MAX = 1
+    CIRCLE = 2
+    POLYGON = 4
+    ALT_MIN = 8
 
 
 class MissionResult(IntEnum):

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from adapters.mavlink.fencing import beyond, keeps_no_polygon, own_fences
 from adapters.mavlink.fleet import Craft, Stations
+from adapters.mavlink.plan import height_of
 from adapters.mavlink.profiles import Profile
+from adapters.mavlink.room import described, home_circle, room
 from adapters.mavlink.telemetry import Telemetry
 from adapters.plugin import Command, Follow, GoTo, HandOver
-from physical import Geometry, circle, contains, waypoint
+from physical import Geometry, circle, contains, point, waypoint
 
 MAX_PATH = 500
 """Points of a path: fewer than the items that every autopilot holds."""
@@ -20,37 +23,56 @@ def objection(command: Command, craft: Craft, stations: Stations, known: Telemet
 
 
 def _objections(command: Command, craft: Craft, stations: Stations, known: Telemetry) -> Iterator[str]:
-    yield from _of_authority(stations, known)
+    foreign = not_ours(stations, known)
+    if foreign:
+        yield foreign
     if isinstance(command, HandOver):
         yield from _of_hand_over(command, stations, known)
     if isinstance(command, Follow) and not 0 < len(command.path) <= MAX_PATH:
         yield f"a path has 1 to {MAX_PATH} points, this one {len(command.path)}"
         return
-    yield from _of_place(command, craft, known.profile)
+    yield from _of_place(command, craft, known)
 
 
-def unfit(command: GoTo | Follow, craft: Craft, profile: Profile | None) -> str | None:
-    """Return why a place is none for a vehicle, whoever commands it: it is too small, or outside the fence."""
-    return next(_of_place(command, craft, profile), None)
+def unfit(command: GoTo | Follow, craft: Craft, known: Telemetry) -> str | None:
+    """Return why a place is none for a vehicle, whoever commands it: it is too small, or outside a fence."""
+    return next(_of_place(command, craft, known), None)
 
 
-def impassable(place: Geometry, craft: Craft, name: str) -> str | None:
+def impassable(place: Geometry, craft: Craft, known: Telemetry, name: str) -> str | None:
     """Return why a place can't be passed: a circle needs no room there."""
-    if craft.fence is None or contains(craft.fence, waypoint(place)):
-        return None
-    return f"{name} lies outside the fence"
+    if craft.fence is not None and not contains(craft.fence, waypoint(place)):
+        return f"{name} lies outside the fence"
+    own = own_fences(known, given=craft.fence is not None)
+    return next(beyond(own, known, waypoint(place), 0.0, None, name), None)
 
 
-def _of_place(command: Command, craft: Craft, profile: Profile | None) -> Iterator[str]:
-    yield from _of_fence(command, craft, profile)
-    if isinstance(command, GoTo | Follow) and profile is not None:
-        yield from _of_size(command, craft, profile)
+def remarks(craft: Craft, known: Telemetry) -> Iterator[str]:
+    """Yield what an operator has to know of a vehicle before it takes off."""
+    own = own_fences(known, given=craft.fence is not None)
+    if str(own):
+        yield f"{craft.entity} keeps {own}, too: fences of its own are on"
+    profile, home = known.profile, known.home
+    if profile is None or home is None or craft.fence is None or profile.drift == 1.0:
+        return
+    radius = home_circle(craft, profile, known)
+    if not contains(craft.fence, _around(point(*home), radius * profile.drift)):
+        yield f"{craft.entity} circles its home at {radius:g} m when it returns, which leaves the fence"
 
 
-def _of_authority(stations: Stations, known: Telemetry) -> Iterator[str]:
+def _of_place(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]:
+    yield from _of_fence(command, craft, known)
+    if isinstance(command, GoTo | Follow) and known.profile is not None:
+        yield from _of_size(command, craft, known.profile, known)
+        yield from _of_own_fences(command, craft, known.profile, known)
+
+
+def not_ours(stations: Stations, known: Telemetry) -> str | None:
+    """Return whom a vehicle obeys, if that is certainly none of our stations."""
     name = stations.name_of(known.authority)
-    if known.authority is not None and name not in stations.own:
-        yield f"it obeys {name or f'system {known.authority}'}, not {' or '.join(stations.own)}"
+    if known.authority is None or name in stations.own:
+        return None
+    return f"it obeys {name or f'system {known.authority}'}, not {' or '.join(stations.own)}"
 
 
 def _of_hand_over(command: HandOver, stations: Stations, known: Telemetry) -> Iterator[str]:
@@ -61,12 +83,15 @@ def _of_hand_over(command: HandOver, stations: Stations, known: Telemetry) -> It
         yield f"it is not on {command.leave}"
 
 
-def _of_fence(command: Command, craft: Craft, profile: Profile | None) -> Iterator[str]:
+def _of_fence(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]:
     """Object to points outside of the fence, and to a circle around the last that leaves it."""
     if craft.fence is None or not isinstance(command, GoTo | Follow):
         return
+    why = keeps_no_polygon(known)
+    if why:
+        yield why
     points = tuple(map(waypoint, _path(command)))
-    radius = 0.0 if profile is None else craft.circle_of(profile)
+    radius = 0.0 if known.profile is None else room(craft, known.profile, known)
     outside = [at for at in points if not contains(craft.fence, at)]
     if outside:
         yield f"{outside[0]!r} lies outside the fence"
@@ -78,11 +103,25 @@ def _path(command: GoTo | Follow) -> tuple[Geometry, ...]:
     return (command.place,) if isinstance(command, GoTo) else command.path
 
 
-def _of_size(command: GoTo | Follow, craft: Craft, profile: Profile) -> Iterator[str]:
-    radius = craft.circle_of(profile)
-    if not holds_circle(_path(command)[-1], radius):
+def _of_size(command: GoTo | Follow, craft: Craft, profile: Profile, known: Telemetry) -> Iterator[str]:
+    if not holds_circle(_path(command)[-1], room(craft, profile, known)):
         name = command.name or "the place"
-        yield f"{name} is too small: the {profile.kind} needs a circle of {radius:g} m around its centre to stay"
+        needed = described(craft, profile, known)
+        yield f"{name} is too small: to stay around its centre the {profile.kind} needs {needed}"
+
+
+def _of_own_fences(command: GoTo | Follow, craft: Craft, profile: Profile, known: Telemetry) -> Iterator[str]:
+    """Object to what the fences that are on beside ours do not hold."""
+    own = own_fences(known, given=craft.fence is not None)
+    around = room(craft, profile, known) if profile.drift > 1.0 else 0.0
+    height = None
+    if known.position is not None:
+        height = height_of(command.altitude, profile, known.position, craft.height_of(profile))
+    name = command.name or "the place"
+    *passed, last = map(waypoint, _path(command))
+    for at in passed:
+        yield from beyond(own, known, at, 0.0, None, "a point of its way")
+    yield from beyond(own, known, last, around, height, name)
 
 
 def holds_circle(place: Geometry, radius: float) -> bool:

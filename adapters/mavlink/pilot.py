@@ -5,20 +5,22 @@ A pure state machine: no socket, no clock, no randomness.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
 from adapters.mavlink import plan, streams
 from adapters.mavlink import task as tasks
-from adapters.mavlink.command import read_parameter
+from adapters.mavlink.command import long, read_parameter
 from adapters.mavlink.fleet import CONTROL, Craft, Stations
 from adapters.mavlink.items import Items
 from adapters.mavlink.link import Link, watch
 from adapters.mavlink.message import Message
-from adapters.mavlink.numbers import AUTHORITY_PARAMETER, MissionType
-from adapters.mavlink.objections import objection
+from adapters.mavlink.numbers import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, Cmd, MissionType
+from adapters.mavlink.objections import not_ours, objection
+from adapters.mavlink.room import circle, home_circle
 from adapters.mavlink.streams import Streams
+from adapters.mavlink.sync import Sync
 from adapters.mavlink.task import Progress, Task
 from adapters.mavlink.telemetry import Position, Telemetry, absorb, property_of
 from adapters.plugin import (
@@ -37,6 +39,12 @@ AUTHORITY_UNKNOWN: Final = 10.0
 
 ASK_AUTHORITY: Final = 1.0
 CHECK_AUTHORITY: Final = 5.0
+
+UNANSWERED: Final = 8
+"""Questions after which it is said that a vehicle does not tell whom it obeys: a link that loses a third answers one."""
+
+MOST_QUESTIONS: Final = 10
+"""How often a vehicle is asked, once a second, what it may do: a parameter that it does not have it does not answer."""
 
 _ANSWERS: Final = frozenset(
     {
@@ -61,6 +69,7 @@ class Pilot:
         craft: What the mission says of it.
         stations: Who may command it.
         system: Its MAVLink system id.
+        signs: Whether what it is told is signed.
         known: What its messages show.
         link: Whether it is heard.
         streams: What it was asked to send.
@@ -68,6 +77,8 @@ class Pilot:
         moving: The command that it carries out.
         handing: The hand-over under way.
         asked: When its authority was asked for.
+        unanswered: How often it was asked for since it was told.
+        questions: How often it was asked what it may do since it booted.
         since: Since when it has a position.
         shown: What was published last.
     """
@@ -75,6 +86,7 @@ class Pilot:
     craft: Craft
     stations: Stations
     system: int
+    signs: bool = False
     known: Telemetry = field(default_factory=Telemetry)
     link: Link = field(default_factory=Link)
     streams: Streams = field(default_factory=Streams)
@@ -82,6 +94,8 @@ class Pilot:
     moving: Task | None = None
     handing: Task | None = None
     asked: float | None = None
+    unanswered: int = 0
+    questions: int = 0
     since: float | None = None
     shown: Shown = (None, None, False)
 
@@ -136,8 +150,9 @@ def _continued(before: Task | None, task: Task) -> Task:
 def hear(pilot: Pilot, message: Message, now: float) -> Outcome:
     """Take a message of the vehicle that is meant for us, or for everybody."""
     known = absorb(pilot.known, message, now)
-    on_board = pilot.on_board if known.boots == pilot.known.boots else {}
-    pilot = replace(pilot, known=known, on_board=on_board, streams=streams.hear(pilot.streams, message, now))
+    if known.boots != pilot.known.boots:
+        pilot = replace(pilot, on_board={}, questions=0)
+    pilot = replace(pilot, known=known, streams=streams.hear(pilot.streams, message, now))
     if message.name not in _ANSWERS or pilot.moving is None or pilot.moving.over:
         pilot, published, trouble = _publication(pilot, now)
         return Outcome(pilot, reports=trouble, published=published)  # tasks go on at the next tick
@@ -151,28 +166,56 @@ def tick(pilot: Pilot, now: float) -> Outcome:
     link, change = watch(pilot.link, pilot.craft.entity, pilot.known, now)
     pilot = replace(pilot, link=link)
     questions: tuple[Message, ...] = ()
+    before = pilot.unanswered
     if pilot.known.heard is not None and not link.lost:
         pilot, questions = _asked(pilot, now)
     outcome = _advance(pilot, now)
     reports = outcome.reports if change is None else (change, *outcome.reports)
+    if before < UNANSWERED <= pilot.unanswered:
+        reports = (*reports, Trouble(pilot.craft.entity, now, "authority not told", _deaf(pilot)))
     return replace(outcome, sent=_spoken(pilot, (*questions, *outcome.sent)), reports=reports)
 
 
 def _asked(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
-    """Ask for the messages that are missing, and whom the vehicle obeys."""
+    """Ask for the messages that are missing, whom the vehicle obeys, and what it may do."""
     flow, missing = streams.tick(pilot.streams, pilot.system, now)
     pilot = replace(pilot, streams=flow)
     unsure = pilot.known.authority is None or (pilot.handing is not None and not pilot.handing.over)
-    every = ASK_AUTHORITY if unsure else CHECK_AUTHORITY
+    more = () if pilot.known.authority is None else tuple(_untold(pilot))
+    every = ASK_AUTHORITY if unsure or more else CHECK_AUTHORITY
     if pilot.asked is not None and now - pilot.asked < every:
         return pilot, missing
-    return replace(pilot, asked=now), (*missing, *_who_commands(pilot))
+    unanswered = pilot.unanswered + 1 if pilot.known.authority is None else 0
+    pilot = replace(pilot, asked=now, unanswered=unanswered, questions=pilot.questions + bool(more))
+    return pilot, (*missing, *_who_commands(pilot), *more)
 
 
 def _who_commands(pilot: Pilot) -> tuple[Message, ...]:
     """Ask as each station: a vehicle may answer only the one that it obeys, and its last answer may be lost."""
-    question = read_parameter(pilot.system, AUTHORITY_PARAMETER)
-    return tuple(replace(question, system=pilot.stations.ids[name]) for name in pilot.stations.own)
+    known = pilot.known.authority_parameter
+    names = AUTHORITY_PARAMETERS if known is None else (known,)
+    asked = (read_parameter(pilot.system, name) for name in names)
+    return tuple(
+        replace(each, system=pilot.stations.ids[name]) for each in asked for name in pilot.stations.own
+    )
+
+
+def _untold(pilot: Pilot) -> Iterator[Message]:
+    """Yield the questions for what a vehicle has not told of what it may do, as long as it may answer."""
+    known = pilot.known
+    if known.profile is None or pilot.questions >= MOST_QUESTIONS:
+        return
+    for name in known.profile.parameters:
+        if name not in known.parameters:
+            yield read_parameter(pilot.system, name)
+    if known.version is None:
+        yield long(Cmd.REQUEST_MESSAGE, pilot.system, AUTOPILOT_VERSION)
+
+
+def is_known(pilot: Pilot) -> bool:
+    """Tell whether a vehicle has told all that is asked of what it may do, or was asked for long enough."""
+    known = pilot.known.profile is not None and pilot.known.home is not None
+    return known and not any(_untold(pilot))
 
 
 def _spoken(pilot: Pilot, sent: tuple[Message, ...]) -> tuple[Message, ...]:
@@ -212,6 +255,9 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
         if reason:
             return tasks.rejected(task, reason, now)
         task = replace(task, checked=True)
+    foreign = not_ours(pilot.stations, pilot.known)
+    if foreign and isinstance(task.doing, Sync):  # nobody here can end what was begun
+        return tasks.rejected(task, foreign, now)
     task = _with_height(pilot, task)
     vehicle = plan.Vehicle(
         system=pilot.system,
@@ -219,13 +265,25 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
         profile=profile,
         on_board=pilot.on_board,
         fence=pilot.craft.fence,
-        circle=pilot.craft.circle_of(profile),
+        circle=circle(pilot.craft, profile, pilot.known),
+        home_circle=home_circle(pilot.craft, profile, pilot.known),
         height=task.height or 0.0,
         begun=task.begun,
         resumes=task.resumes,
+        speaker=pilot.stations.speaker(pilot.known.authority),
+        deaf=_deaf(pilot),
     )
     step = plan.next_step(task.command, task.station, vehicle)
     return tasks.advance(task, step, vehicle, lost=pilot.link.lost, now=now)
+
+
+def _deaf(pilot: Pilot) -> str:
+    """Return why a vehicle seems not to hear us, if it does."""
+    if pilot.known.authority is not None:
+        return ""
+    if pilot.known.signs and not pilot.signs:
+        return "it asks for signed packets: give its key, --key FILE"
+    return "it does not tell which station it obeys: it may obey another"
 
 
 def _unknown(pilot: Pilot, task: Task, now: float) -> Progress:
@@ -271,10 +329,8 @@ def _channels(pilot: Pilot) -> tuple[str, ...]:
 
 def _authority_trouble(pilot: Pilot, now: float) -> tuple[Report, ...]:
     authority = pilot.known.authority
-    if pilot.stations.name_of(authority) is not None:
+    if authority is None or pilot.stations.name_of(authority) is not None:
         return ()
     entity = pilot.craft.entity
-    if authority is None:
-        return (Trouble(entity, now, "authority not told", f"{entity} does not tell which station it obeys"),)
     detail = f"{entity} obeys system {authority}, which is no station of the mission; add it to the stations"
     return (Trouble(entity, now, "unknown authority", detail),)

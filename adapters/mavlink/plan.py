@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from adapters.mavlink import command as to
 from adapters.mavlink.items import Items, e7, fence, route
 from adapters.mavlink.message import Message
-from adapters.mavlink.numbers import AUTHORITY_PARAMETER, Cmd, MissionType
+from adapters.mavlink.numbers import AUTHORITY_PARAMETERS, Cmd, Fence, MissionType
 from adapters.mavlink.profiles import Profile, TakeOff
 from adapters.mavlink.telemetry import Position, Telemetry
 from adapters.plugin import Command, Follow, GoTo, HandOver, Hold, Return
@@ -72,10 +72,13 @@ class Vehicle:
         profile: What kind it is.
         on_board: The missions and fences that were read back since it booted.
         fence: The polygon that it is to be kept within.
-        circle: The radius in metres that it needs to stay somewhere.
+        circle: The radius in metres at which it circles where it stays.
         height: Metres above home at which the command is carried out.
         begun: Whether its mission was seen to begin since the command.
         resumes: Whether that goes on with the item that it is at.
+        home_circle: The radius in metres at which it circles its home when it returns.
+        speaker: The system id by which it is spoken to: of who has the authority.
+        deaf: Why it seems not to hear us, if it does.
     """
 
     system: int
@@ -87,6 +90,9 @@ class Vehicle:
     height: float
     begun: bool
     resumes: bool = False
+    home_circle: float = 0.0
+    speaker: int = 0
+    deaf: str = ""
 
 
 def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
@@ -113,8 +119,10 @@ def _prepared(vehicle: Vehicle) -> Step | None:
     if vehicle.fence is None:
         return None
     load = _loaded(vehicle, fence(vehicle.fence), MissionType.FENCE)
-    if load is None and not vehicle.known.fenced:
-        return Tell("to keep within its fence", to.long(Cmd.FENCE_ENABLE, vehicle.system, 1))
+    if load is None and not (vehicle.known.fenced and vehicle.known.polygon):
+        # Without the polygon's bit all its fences come on, such as a circle of 300 m around home.
+        command = to.long(Cmd.FENCE_ENABLE, vehicle.system, 1, Fence.POLYGON)
+        return Tell("to keep within its fence", command)
     return load
 
 
@@ -213,7 +221,8 @@ def _at_the_end(command: Follow, items: Items, vehicle: Vehicle) -> bool:
 def _hand_over(station: int, vehicle: Vehicle) -> Step:
     if vehicle.known.authority == station:
         return Underway(done=True)
-    return Tell("to obey the other station", to.set_parameter(vehicle.system, AUTHORITY_PARAMETER, station))
+    name = vehicle.known.authority_parameter or AUTHORITY_PARAMETERS[0]
+    return Tell("to obey the other station", to.set_parameter(vehicle.system, name, station))
 
 
 def _in_mode(vehicle: Vehicle, mode: int) -> Step | None:
@@ -231,7 +240,7 @@ def _is_home(vehicle: Vehicle) -> bool:
     home, position = vehicle.known.home, vehicle.known.position
     if home is None or position is None:
         return vehicle.known.armed is False
-    near = distance(_spot(vehicle), point(*home)) <= vehicle.circle + vehicle.profile.reach
+    near = distance(_spot(vehicle), point(*home)) <= vehicle.home_circle + vehicle.profile.reach
     return near or vehicle.known.armed is False
 
 

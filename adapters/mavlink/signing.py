@@ -32,8 +32,6 @@ RESERVE: Final = 60 * UNITS
 
 KEY_BYTES: Final = 32
 _BLOCK: Final = 13  # link id, time stamp, signature
-_SIGNED: Final = 1
-_V2: Final = 0xFD
 
 
 class Verdict(StrEnum):
@@ -65,7 +63,7 @@ def new_key(passphrase: str) -> bytes:
 def check(signing: Signing, message: Message) -> tuple[Signing, Verdict]:
     """Judge one packet by its frame."""
     raw = message.raw
-    if len(raw) < _BLOCK + 12 or raw[0] != _V2 or not raw[2] & _SIGNED:
+    if len(raw) < _BLOCK + 12 or not message.signed:
         return signing, Verdict.UNSIGNED
     expected = hashlib.sha256(signing.key + raw[:-6]).digest()[:6]
     if not hmac.compare_digest(expected, raw[-6:]):

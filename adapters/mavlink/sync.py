@@ -17,11 +17,12 @@ ROUNDS: Final = 5
 
 @dataclass(frozen=True, slots=True)
 class Sync:
-    """A mission on its way on board; `rounds` counts how often what was read back differed."""
+    """A mission on its way on board, by one `speaker`; `rounds` counts how often what was read back differed."""
 
     items: Items
     kind: MissionType
     system: int
+    speaker: int
     doing: writing.Upload | reading.Download
     rounds: int = 0
     confirmed: bool = False
@@ -48,9 +49,9 @@ class Sync:
 Step = tuple[Sync, tuple[Message, ...]]
 
 
-def begin(items: Items, kind: MissionType, system: int) -> Sync:
-    """Begin with an upload."""
-    return Sync(items, kind, system, writing.Upload(items, kind, system))
+def begin(items: Items, kind: MissionType, system: int, speaker: int) -> Sync:
+    """Begin with an upload; all of it is said by the same station, by its system id, and answered to that."""
+    return Sync(items, kind, system, speaker, writing.Upload(items, kind, system))
 
 
 def tick(sync: Sync, now: float) -> Step:
@@ -63,7 +64,9 @@ def tick(sync: Sync, now: float) -> Step:
 
 
 def hear(sync: Sync, message: Message, now: float) -> Step:
-    """Take a message of the vehicle that is meant for us."""
+    """Take a message of the vehicle, if it is meant for the speaker."""
+    if message.target not in (0, sync.speaker):
+        return sync, ()
     if isinstance(sync.doing, writing.Upload):
         upload, sent = writing.hear(sync.doing, message, now)
         return _onwards(replace(sync, doing=upload), sent, now)
@@ -73,12 +76,14 @@ def hear(sync: Sync, message: Message, now: float) -> Step:
 
 def _onwards(sync: Sync, sent: tuple[Message, ...], now: float) -> Step:
     """Go from the upload to the download, and from a difference to the next upload."""
+    sent = tuple(replace(message, system=sync.speaker) for message in sent)
     if sync.confirmed or not sync.doing.over or sync.refusal:
         return sync, sent
     if isinstance(sync.doing, writing.Upload):
         download, asked = reading.tick(reading.Download(sync.kind, sync.system), now)
-        return replace(sync, doing=download), (*sent, *asked)
+        said = tuple(replace(message, system=sync.speaker) for message in asked)
+        return replace(sync, doing=download), (*sent, *said)
     if same(sync.items, sync.doing.items, sync.kind):
         return replace(sync, confirmed=True), sent
-    again = replace(begin(sync.items, sync.kind, sync.system), rounds=sync.rounds + 1)
+    again = replace(begin(sync.items, sync.kind, sync.system, sync.speaker), rounds=sync.rounds + 1)
     return again, sent

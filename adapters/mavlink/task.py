@@ -12,7 +12,7 @@ from adapters.mavlink.items import Items
 from adapters.mavlink.message import Message
 from adapters.mavlink.numbers import Cmd, MissionType, Result
 from adapters.mavlink.plan import Load, Step, Tell, Underway, Vehicle, Wait
-from adapters.plugin import Accepted, Arrived, Command, Rejected, Report
+from adapters.plugin import Accepted, Arrived, Command, Rejected, Report, Trouble
 
 PATIENCE: Final = 45.0
 """Seconds, while the vehicle is heard, that one step may take; that an upload may take without getting further."""
@@ -45,6 +45,7 @@ class Task:
         strange: Since when the state contradicts what it was.
         boots: The vehicle's boots that all this is about.
         checked: Whether it was seen to be possible for this kind of vehicle.
+        complained: Whether it was reported that the vehicle does not do this step for now.
     """
 
     command: Command
@@ -63,6 +64,7 @@ class Task:
     strange: float | None = None
     boots: int = 0
     checked: bool = False
+    complained: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,14 +95,36 @@ def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float)
     if task.accepted or (task.was_armed and vehicle.known.armed is False):
         return _contradicted(task, step, vehicle, now)
     if step != task.step:
-        task = replace(task, step=step, since=now, reached=(0, 0, 0), doing=_exchange(step, vehicle))
+        task = replace(
+            task,
+            step=step,
+            since=now,
+            reached=(0, 0, 0),
+            doing=_exchange(step, vehicle),
+            complained=False,
+        )
+    if isinstance(task.doing, syncing.Sync) and task.doing.speaker != vehicle.speaker:
+        # Handed over: of what one station has begun the vehicle takes nothing from another.
+        task = replace(task, since=now, reached=(0, 0, 0), doing=_exchange(step, vehicle))
     if isinstance(task.doing, syncing.Sync) and task.doing.reached > task.reached:
         task = replace(task, since=now, reached=task.doing.reached)
     if lost:
         return Progress(replace(task, since=now))
     if now - task.since > _patience(step):
         return rejected(task, _failure(step, task, vehicle), now)
-    return _pursued(task, now)
+    return _complained(_pursued(task, now), vehicle, now)
+
+
+def _complained(progress: Progress, vehicle: Vehicle, now: float) -> Progress:
+    """Report the first no of a vehicle that is not its last: it is told again, and that may take a while."""
+    task = progress.task
+    no = task.doing.objection if isinstance(task.doing, telling.Telling) else ""
+    if not no or task.complained or progress.report or not isinstance(task.step, Tell):
+        return progress
+    words = f"; its last words: {vehicle.known.said!r:.80}" if vehicle.known.said else ""
+    detail = f"it was told {task.step.why}, and answers {no}{words}; it is told again for {PATIENCE:.0f} s"
+    report = Trouble(task.command.entity, now, "not now", detail)
+    return replace(progress, task=replace(task, complained=True), report=report)
 
 
 def rejected(task: Task, reason: str, now: float) -> Progress:
@@ -168,7 +192,7 @@ def _exchange(step: Step, vehicle: Vehicle) -> telling.Telling | syncing.Sync | 
         case Tell():
             return telling.Telling(step.message)
         case Load():
-            return syncing.begin(step.items, step.kind, vehicle.system)
+            return syncing.begin(step.items, step.kind, vehicle.system, vehicle.speaker)
     return None
 
 
@@ -192,13 +216,14 @@ def _pursued(task: Task, now: float) -> Progress:
 
 def _failure(step: Step, task: Task, vehicle: Vehicle) -> str:
     said = f"; its last words: {vehicle.known.said!r:.80}" if vehicle.known.said else ""
-    if vehicle.known.authority is None:
-        said += "; it does not tell which station it obeys: it may obey another"
+    said += f"; {vehicle.deaf}" if vehicle.deaf else ""
     match step:
         case Wait():
             return f"{step.why}, for {_patience(step):.0f} s{said}"
         case Tell():
-            return f"it was told {step.why}, and did not in {PATIENCE:.0f} s{said}"
+            no = task.doing.objection if isinstance(task.doing, telling.Telling) else ""
+            answer = f", but answered {no}" if no else ""
+            return f"it was told {step.why}, and did not in {PATIENCE:.0f} s{answer}{said}"
         case Load():
             return f"the {step.kind.name.lower()} could not be confirmed on board in {PATIENCE:.0f} s{said}"
     raise AssertionError(task)

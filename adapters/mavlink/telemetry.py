@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -16,12 +16,14 @@ from adapters.mavlink.fleet import Craft
 from adapters.mavlink.message import Message
 from adapters.mavlink.numbers import (
     ACTIVE,
-    AUTHORITY_PARAMETER,
+    AUTHORITY_PARAMETERS,
     AUTOPILOT_COMPONENT,
     FIX_3D,
     GEOFENCE,
     PREARM_HEALTHY,
+    Cmd,
     ModeFlag,
+    Result,
 )
 from adapters.mavlink.profiles import Profile, profile_of
 from physical import Band, PhysicalProperty, Velocity, point
@@ -31,6 +33,9 @@ FIX_SECONDS: Final = 10.0
 
 BACKWARDS: Final = 5_000
 """Milliseconds by which the vehicle's clock must go back to mean a reboot: less is a late packet."""
+
+LARGEST: Final = 1e6
+"""What is larger is no radius, height or set of fences."""
 
 NOWHERE: Final = 0.01
 """Degrees around (0, 0) in which nobody is: what an autopilot says before its filter has settled."""
@@ -66,8 +71,13 @@ class Telemetry:
         current: The number of the mission item that it pursues.
         target: Where it is going: degrees.
         home: Where it returns to: degrees.
-        fenced: Whether it keeps within its fence.
+        fenced: Whether it keeps within a fence, of its own or ours.
+        polygon: Whether it has said that it keeps within the polygon.
         authority: The system id of the station that it obeys.
+        authority_parameter: The parameter in which it has told that.
+        parameters: What else it has told of what it may do, and how it circles.
+        version: Of its firmware: major and minor.
+        signs: Whether it signs its packets.
         clock: Its own milliseconds since boot.
         suspect: What its clock said when it first seemed to have gone back.
         placed: What its clock said of its position: of when it was measured, which is before other messages.
@@ -87,7 +97,12 @@ class Telemetry:
     target: tuple[float, float] | None = None
     home: tuple[float, float] | None = None
     fenced: bool | None = None
+    polygon: bool = False
     authority: int | None = None
+    authority_parameter: str | None = None
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    version: tuple[int, int] | None = None
+    signs: bool = False
     clock: int | None = None
     boots: int = 0
     said: str = ""
@@ -105,6 +120,8 @@ def absorb(known: Telemetry, message: Message, now: float) -> Telemetry:
     if message.component != AUTOPILOT_COMPONENT:
         return known
     known = _clocked(known, message.fields.get("time_boot_ms"), now)
+    if known.signs != message.signed:
+        known = replace(known, signs=message.signed)
     reader = _READERS.get(message.name)
     return known if reader is None else reader(known, message.fields, now)
 
@@ -190,9 +207,22 @@ def _target(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry
 
 
 def _parameter(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
-    if said["param_id"] != AUTHORITY_PARAMETER or not 0 < said["param_value"] < 256:
+    name, value = said["param_id"], said["param_value"]
+    if name in AUTHORITY_PARAMETERS and 0 < value < 256:
+        return replace(known, authority=round(value), authority_parameter=name)
+    if known.profile is None or name not in known.profile.parameters or not abs(value) <= LARGEST:
         return known
-    return replace(known, authority=round(said["param_value"]))
+    return replace(known, parameters={**known.parameters, name: value})
+
+
+def _answer(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
+    fenced = said["command"] == Cmd.FENCE_ENABLE and said["result"] == Result.ACCEPTED
+    return replace(known, polygon=True) if fenced else known
+
+
+def _version(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
+    number = said["flight_sw_version"]
+    return replace(known, version=(number >> 24 & 255, number >> 16 & 255))
 
 
 def _text(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
@@ -209,6 +239,8 @@ _READERS: Final[Mapping[str, Callable[[Telemetry, Mapping[str, Any], float], Tel
         "MISSION_CURRENT": _current,
         "POSITION_TARGET_GLOBAL_INT": _target,
         "PARAM_VALUE": _parameter,
+        "COMMAND_ACK": _answer,
+        "AUTOPILOT_VERSION": _version,
         "STATUSTEXT": _text,
     }
 )

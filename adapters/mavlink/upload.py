@@ -3,6 +3,9 @@
 The vehicle asks for item after item, again after a second, and gives up after eight; so only the count is ever sent by
 timer. ArduPlane asks with MISSION_REQUEST, others with MISSION_REQUEST_INT: both get MISSION_ITEM_INT. What an ACK
 says is not believed: `adapters.mavlink.sync` reads back what is on board.
+
+A vehicle takes one upload at a time, from one system id. To whoever else counts it says DENIED, until that one is over;
+so this is a last no only once it has lasted longer than a vehicle waits.
 """
 
 from __future__ import annotations
@@ -37,6 +40,7 @@ class Upload:
         counted: When the count was sent last.
         asked: When an item was asked for last; None before the first.
         wanted: The items asked for so far.
+        denied: Since when the vehicle has said DENIED, and asked for nothing.
         over: Whether it has ended, one way or the other.
         refusal: The vehicle's final no, if it said no.
     """
@@ -47,6 +51,7 @@ class Upload:
     counted: float | None = None
     asked: float | None = None
     wanted: frozenset[int] = frozenset()
+    denied: float | None = None
     over: bool = False
     refusal: int | None = None
 
@@ -74,7 +79,7 @@ def hear(upload: Upload, message: Message, now: float) -> Step:
     if message.name in ("MISSION_REQUEST", "MISSION_REQUEST_INT"):
         return _give(upload, message["seq"], now)
     if message.name == "MISSION_ACK" and upload.counted is not None:
-        return _answered(upload, message["type"]), ()
+        return _answered(upload, message["type"], now), ()
     return upload, ()
 
 
@@ -93,12 +98,15 @@ def _give(upload: Upload, index: int, now: float) -> Step:
     if not 0 <= index < len(upload.items):
         return upload, ()
     item = item_message(upload.items[index], index, upload.kind, upload.system)
-    return replace(upload, asked=now, wanted=upload.wanted | {index}), (item,)
+    return replace(upload, asked=now, wanted=upload.wanted | {index}, denied=None), (item,)
 
 
-def _answered(upload: Upload, result: int) -> Upload:
+def _answered(upload: Upload, result: int, now: float) -> Upload:
     if result == MissionResult.ACCEPTED:
         return replace(upload, over=len(upload.wanted) == len(upload.items))
     if result in _NOT_FINAL:  # booting, or out of step with lost items: the count comes again by timer
         return upload if result == MissionResult.INVALID_SEQUENCE else replace(upload, asked=None)
+    since = now if upload.denied is None else upload.denied
+    if result == MissionResult.DENIED and now - since <= GIVEN_UP:
+        return replace(upload, asked=None, denied=since)
     return replace(upload, over=True, refusal=result)

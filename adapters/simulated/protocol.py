@@ -7,13 +7,12 @@ from types import MappingProxyType
 from typing import Final
 
 from adapters.mavlink.message import Message, is_for, say
-from adapters.mavlink.numbers import AUTHORITY_PARAMETER, AUTOPILOT_VERSION, STREAMS, Cmd, MissionType, Result
+from adapters.mavlink.numbers import AUTOPILOT_VERSION, STREAMS, Cmd, Fence, MissionType, Result
 from adapters.mavlink.profiles import TakeOff
 from adapters.mavlink.signing import EPOCH, UNITS, Signing, Verdict, check
 from adapters.simulated.body import metres_to
 from adapters.simulated.reporting import Reporter, parameter_value
 from adapters.simulated.vehicle import Target, Vehicle
-from physical import PhysicalError, polygon
 
 Answer = list[Message]
 
@@ -34,7 +33,7 @@ def hear(vehicle: Vehicle, reporter: Reporter, message: Message, now: float) -> 
     """Answer a message, if it is believed, meant for this vehicle and said by whom it obeys."""
     if not _believed(vehicle, message) or not is_for(message, vehicle.system):
         return []
-    stranger = vehicle.enforce and message.system != round(vehicle.parameters[AUTHORITY_PARAMETER])
+    stranger = vehicle.enforce and message.system != round(vehicle.parameters[vehicle.authority_parameter])
     if stranger:
         return []
     if message.name.startswith("MISSION_"):
@@ -68,7 +67,10 @@ def _set_parameter(vehicle: Vehicle, _reporter: Reporter, message: Message) -> A
     name = message["param_id"]
     if name not in vehicle.parameters or not abs(message["param_value"]) <= LARGEST:
         return []
+    switched = name == "FENCE_ENABLE" and message["param_value"] != vehicle.parameters[name]
     vehicle.parameters[name] = message["param_value"]
+    if switched:
+        vehicle.switch_fences(~Fence.ALT_MIN, on=bool(message["param_value"]))
     return [parameter_value(vehicle, name)]
 
 
@@ -111,7 +113,7 @@ def _set_mode(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result
     vehicle.mode = int(mode)
     if mode == vehicle.kind.profile.guided and vehicle.armed:
         here = vehicle.body
-        vehicle.target = Target(here.latitude, here.longitude, here.height, vehicle.kind.profile.circle)
+        vehicle.target = Target(here.latitude, here.longitude, here.height, vehicle.circle)
     return Result.ACCEPTED
 
 
@@ -144,22 +146,26 @@ def _reposition(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Resu
     if message.name != "COMMAND_INT" or not vehicle.armed:
         return Result.DENIED
     latitude, longitude = message["x"] / 1e7, message["y"] / 1e7
-    height, circle = message["z"], message["param3"] or profile.circle
+    height, circle = message["z"], message["param3"] or vehicle.circle
     far = metres_to(vehicle.body, latitude, longitude)[0] > FARTHEST
     if far or not abs(height) <= HIGHEST or not 0 < circle <= FARTHEST:
         return Result.DENIED
+    if profile.takeoff is not TakeOff.NONE and not vehicle.holds(latitude, longitude, height):
+        return Result.DENIED if profile.takeoff is TakeOff.MISSION else Result.FAILED
     vehicle.mode = profile.guided
     vehicle.target = Target(latitude, longitude, height, circle)
     return Result.ACCEPTED
 
 
 def _keep_fence(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
-    corners = vehicle.store.items.get(MissionType.FENCE, ())
-    try:
-        kept = polygon([(corner.x / 1e7, corner.y / 1e7) for corner in corners])
-    except PhysicalError:
+    if not 0 <= message["param2"] < 16:
         return Result.FAILED
-    vehicle.fence = kept if message["param1"] > 0.5 else None
+    meant = Fence(int(message["param2"])) if vehicle.version >= (4, 6, 0) else Fence(0)
+    meant = meant or ~Fence(0)
+    on = message["param1"] > 0.5
+    if on and not vehicle.configured & meant:
+        return Result.FAILED
+    vehicle.switch_fences(meant, on=on)
     return Result.ACCEPTED
 
 

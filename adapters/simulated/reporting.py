@@ -101,7 +101,8 @@ def _heartbeat(vehicle: Vehicle) -> Message:
 def _status(vehicle: Vehicle) -> Message:
     sensors = {
         "onboard_control_sensors_present": PREARM_HEALTHY | GEOFENCE,
-        "onboard_control_sensors_enabled": PREARM_HEALTHY | (GEOFENCE if vehicle.fence else 0),
+        "onboard_control_sensors_enabled": PREARM_HEALTHY
+        | (GEOFENCE if vehicle.fences & vehicle.configured else 0),
         "onboard_control_sensors_health": PREARM_HEALTHY if vehicle.ready else 0,
     }
     rest = dict.fromkeys(
@@ -189,6 +190,7 @@ def _version(vehicle: Vehicle) -> Message:
     nothing: dict[str, Any] = dict.fromkeys([*numbers, "vendor_id", "product_id", "uid"], 0)
     custom = {f"{part}_custom_version": [0] * 8 for part in ("flight", "middleware", "os")}
     nothing["capabilities"] = CAPABILITIES
+    nothing["flight_sw_version"] = int.from_bytes(bytes((*vehicle.version, 255)))
     return say("AUTOPILOT_VERSION", uid2=list(vehicle.serial.ljust(18, b"\0")), **nothing, **custom)
 
 

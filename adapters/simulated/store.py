@@ -1,7 +1,8 @@
 """The vehicle's side of mission upload and download, with the habits of ArduPilot.
 
 It asks for item after item, again after a second, and gives up after eight; answers an item that it did not ask for by
-INVALID_SEQUENCE; overwrites item 0 by home; and serves one ground station at a time.
+INVALID_SEQUENCE; overwrites item 0 by home; and serves one ground station at a time: it answers DENIED to whoever else
+counts or gives items meanwhile, and to all who read, and goes on waiting.
 """
 
 from __future__ import annotations
@@ -50,6 +51,8 @@ class Store:
         match message.name:
             case "MISSION_COUNT" if kind is not None:
                 return self._count(message, kind, ready=ready, now=now)
+            case "MISSION_REQUEST_LIST" | "MISSION_REQUEST_INT" if self._receives(kind):
+                return [_answer(message, kind, MissionResult.DENIED)]
             case "MISSION_ITEM_INT" if self.receiving is not None and kind is self.receiving.kind:
                 return self._item(self.receiving, message, now)
             case "MISSION_REQUEST_LIST" if kind is not None:
@@ -58,6 +61,9 @@ class Store:
             case "MISSION_REQUEST_INT" if kind is not None:
                 return self._asked(message, kind)
         return []
+
+    def _receives(self, kind: MissionType | None) -> bool:
+        return self.receiving is not None and self.receiving.kind is kind
 
     def tick(self, now: float) -> list[Message]:
         """Ask again for an item that does not come, or give up."""
@@ -79,10 +85,10 @@ class Store:
         return self._ask(going, now) if going.count else self._complete(going)
 
     def _item(self, going: Receiving, message: Message, now: float) -> list[Message]:
-        if message.system != going.station:
-            return []
         if message["seq"] != len(going.items):
-            return [_ack(going, MissionResult.INVALID_SEQUENCE)]
+            return [_answer(message, going.kind, MissionResult.INVALID_SEQUENCE)]
+        if (message.system, message.component) != (going.station, going.component):
+            return [_answer(message, going.kind, MissionResult.DENIED)]
         item = item_of(message.fields)
         if not _sound(item):
             self.receiving = None
@@ -129,6 +135,10 @@ def _kind(message: Message) -> MissionType | None:
 
 def _back(message: Message) -> dict[str, int]:
     return {"target_system": message.system, "target_component": message.component}
+
+
+def _answer(message: Message, kind: MissionType | None, result: MissionResult) -> Message:
+    return say("MISSION_ACK", type=int(result), mission_type=int(kind or 0), **_back(message))
 
 
 def _ack(going: Receiving, result: MissionResult) -> Message:

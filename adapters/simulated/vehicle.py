@@ -5,18 +5,19 @@ Commands and messages are `protocol`'s and `reporting`'s business, packets `serv
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Final
 
 from adapters.mavlink.items import Item
-from adapters.mavlink.numbers import AUTHORITY_PARAMETER, Cmd, MissionType
+from adapters.mavlink.numbers import AUTHORITY_PARAMETERS, Cmd, Fence, MissionType
 from adapters.mavlink.profiles import BOAT, COPTER, PLANE, ROVER, Profile, TakeOff
 from adapters.mavlink.signing import Signing
 from adapters.simulated import body as bodies
-from adapters.simulated.body import Body, Limits, metres_to, moved, towards
+from adapters.simulated.body import Body, Limits, astray, metres_to, moved, towards
 from adapters.simulated.store import Store
-from physical import Geometry, contains, point
+from physical import Geometry, PhysicalError, contains, point, polygon
 
 WAYPOINT_RADIUS: Final = 50.0
 """Metres from a waypoint at which a plane takes the next."""
@@ -25,7 +26,18 @@ FIX_AFTER: Final = 10.0
 READY_AFTER: Final = 19.0
 """Seconds after boot at which it has a fix, and could be armed; before, it says that it is near (0, 0)."""
 
-PARAMETERS: Final = {AUTHORITY_PARAMETER: 255.0, "WP_RADIUS": WAYPOINT_RADIUS}
+NO_FENCE: Final = Fence(0)
+STOPS_BEFORE: Final = 4.0
+"""Metres before its circle fence at which what drives stops, in silence."""
+
+PARAMETERS: Final = {"WP_RADIUS": WAYPOINT_RADIUS, "FENCE_ENABLE": 0.0, "FENCE_RADIUS": 300.0}
+ALTITUDES: Final = {"FENCE_AUTOENABLE": 0.0, "FENCE_ALT_MAX": 100.0, "FENCE_ALT_MIN": -10.0}
+OF_KINDS: Final = {
+    TakeOff.MISSION: ALTITUDES | {"FENCE_TYPE": 4.0, "WP_LOITER_RAD": 80.0, "RTL_RADIUS": 0.0},
+    TakeOff.COMMAND: ALTITUDES | {"FENCE_TYPE": 7.0},
+    TakeOff.NONE: {"FENCE_TYPE": 6.0},
+}
+"""What ArduPilot 4.6 has by default, but for the radius of a plane's circle, which its simulator sets."""
 
 
 class Kind(Enum):
@@ -74,7 +86,9 @@ class Vehicle:
         enforce: Whether it obeys only the station that has the authority (SYSID_ENFORCE).
         accept_unsigned: Whether unsigned packets are obeyed although it has a key, as on ArduPilot's first link.
         fixed: Whether its receiver has satellites.
-        fence: The polygon that it keeps within.
+        fences: Which of its fences are on.
+        version: Of its firmware: before 4.6 all fences were switched at once.
+        wind: Metres a second to the north and to the east: it carries a plane out of its circle.
         serial: Its autopilot's serial number: at most 18 bytes.
     """
 
@@ -91,8 +105,10 @@ class Vehicle:
     mode: int = 0
     current: int = 0
     target: Target | None = None
-    fence: Geometry | None = None
-    parameters: dict[str, float] = field(default_factory=lambda: dict(PARAMETERS))
+    fences: Fence = NO_FENCE
+    version: tuple[int, int, int] = (4, 6, 3)
+    wind: tuple[float, float] = (0.0, 0.0)
+    parameters: dict[str, float] = field(default_factory=dict)
     signing: Signing | None = None
     serial: bytes = b""
     body: Body = field(init=False)
@@ -101,8 +117,52 @@ class Vehicle:
 
     def __post_init__(self) -> None:
         latitude, longitude, altitude = self.home
+        defaults = PARAMETERS | OF_KINDS[self.kind.profile.takeoff] | {self.authority_parameter: 255.0}
+        self.parameters = defaults | self.parameters
         self.body = Body(latitude, longitude)
         self.store = Store(self.kind.value[4], (round(latitude * 1e7), round(longitude * 1e7), altitude))
+
+    @property
+    def authority_parameter(self) -> str:
+        """What it calls the parameter that says whom it obeys."""
+        return AUTHORITY_PARAMETERS[self.version >= (4, 7, 0)]
+
+    @property
+    def fence(self) -> Geometry | None:
+        """The polygon that it keeps within."""
+        return self.polygon if Fence.POLYGON in self.fences else None
+
+    @property
+    def polygon(self) -> Geometry | None:
+        """The polygon that is on board, if it is one."""
+        corners = self.store.items.get(MissionType.FENCE, ())
+        try:
+            return polygon([(corner.x / 1e7, corner.y / 1e7) for corner in corners])
+        except PhysicalError:
+            return None
+
+    @property
+    def configured(self) -> Fence:
+        """Which fences it would keep within if they were on."""
+        configured = Fence(int(self.parameters["FENCE_TYPE"]))
+        return configured if self.polygon is not None else configured & ~Fence.POLYGON
+
+    def switch_fences(self, fences: Fence, *, on: bool) -> None:
+        """Switch the fences on, or off, that it is configured to have."""
+        meant = fences & Fence(int(self.parameters["FENCE_TYPE"]))
+        self.fences = self.fences | meant if on else self.fences & ~meant
+
+    @property
+    def circle(self) -> float:
+        """The radius at which it circles where it is told none."""
+        return (
+            abs(self.parameters["WP_LOITER_RAD"]) if self.kind.limits.must_move else self.kind.profile.circle
+        )
+
+    @property
+    def home_circle(self) -> float:
+        """The radius at which it circles its home; counter-clockwise if negative."""
+        return self.parameters.get("RTL_RADIUS") or self.circle
 
     @property
     def flies(self) -> bool:
@@ -131,6 +191,9 @@ class Vehicle:
         self.current, self.target = 0, None
         self.mode = self.mode if self.armed else 0
         self.store.receiving = None
+        self.fences = NO_FENCE
+        if self.parameters["FENCE_ENABLE"]:
+            self.switch_fences(~Fence.ALT_MIN, on=True)
 
     # --- moving -----------------------------------------------------------------------------------
 
@@ -146,15 +209,25 @@ class Vehicle:
         elif self.mode == profile.guided and self.target:
             self._go(self.target, seconds)
         elif self.mode == profile.home:
-            self._go(Target(*self.home[:2], profile.altitude, profile.circle), seconds)
+            self._go(Target(*self.home[:2], profile.altitude, self.home_circle), seconds)
         else:
             self._idle(seconds)
 
     def _keep_fence(self) -> None:
-        """Return as soon as it is outside its fence."""
-        here = point(self.body.latitude, self.body.longitude)
-        if self.fence is not None and not contains(self.fence, here):
+        """Return as soon as it is outside a fence; what drives has stopped before its circle."""
+        here = self.body
+        if not self.holds(here.latitude, here.longitude, here.height):
             self.mode = self.kind.profile.home
+
+    def holds(self, latitude: float, longitude: float, height: float) -> bool:
+        """Tell whether somewhere is inside all fences that are on."""
+        inside = self.fence is None or contains(self.fence, point(latitude, longitude))
+        if Fence.CIRCLE in self.fences:
+            away = metres_to(Body(*self.home[:2]), latitude, longitude)[0]
+            inside = inside and away <= self.parameters["FENCE_RADIUS"]
+        if Fence.ALT_MAX in self.fences:
+            inside = inside and height <= self.parameters["FENCE_ALT_MAX"]
+        return inside
 
     def _follow(self, seconds: float) -> None:
         items = self.store.items.get(MissionType.MISSION, ())
@@ -166,7 +239,7 @@ class Vehicle:
             self._take_off(item.z, seconds)
         else:
             stays = item.command == Cmd.LOITER_UNLIMITED
-            circle = self.kind.profile.circle if stays and self.kind.limits.must_move else 0.0
+            circle = self.circle if stays and self.kind.limits.must_move else 0.0
             self._go(Target(item.x / 1e7, item.y / 1e7, item.z, circle), seconds)
         if self._done(item) and self.current < len(items) - 1:
             self.reached.append(self.current)
@@ -187,13 +260,24 @@ class Vehicle:
     def _go(self, target: Target, seconds: float) -> None:
         limits = self.kind.limits
         if limits.must_move:
-            course = towards(self.body, target.latitude, target.longitude, target.circle)
+            _, bearing = metres_to(self.body, target.latitude, target.longitude)
+            circle = target.circle * astray(bearing, self.wind)
+            course = towards(self.body, target.latitude, target.longitude, circle)
             self.body = moved(self.body, limits, course, limits.speed, target.height, seconds)
             return
         distance, course = metres_to(self.body, target.latitude, target.longitude)
         speed = min(limits.speed, distance)  # slows down over the last second
+        if limits.climb == 0 and Fence.CIRCLE in self.fences:
+            speed = min(speed, max(0.0, self._before_the_circle(course)))
         height = target.height if limits.climb else 0.0
         self.body = moved(self.body, limits, course, speed, height, seconds)
+
+    def _before_the_circle(self, course: float) -> float:
+        """Return the metres that it may drive on a course before it stops at its circle fence."""
+        ahead = moved(replace(self.body, course=course, speed=1.0), self.kind.limits, course, 1.0, 0.0, 1.0)
+        home = Body(*self.home[:2])
+        here, there = (metres_to(home, at.latitude, at.longitude)[0] for at in (self.body, ahead))
+        return math.inf if there < here else self.parameters["FENCE_RADIUS"] - STOPS_BEFORE - here
 
     def _idle(self, seconds: float) -> None:
         """Circle where it is, if it must move; else stop, at the height that it was told to take off to."""

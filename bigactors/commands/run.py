@@ -25,7 +25,7 @@ from bigactors.exits import Exit
 from bigactors.missions import digest_of, locate, open_mission
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.plugins import plugins_of
-from bigactors.preflight import check_flyable, check_places
+from bigactors.preflight import check_flyable, check_places, get_to_know
 from bigactors.recordings import Resumed, resume
 from bigactors.sockets import socket_of
 from bigactors.stations import Company, company_of, parting_json
@@ -190,6 +190,7 @@ async def fly(flight: Flight, watchers: Sequence[Watcher]) -> Ending:
         except OSError as error:
             raise Mistake(error.strerror or str(error), "give another with --socket", str(path)) from error
         await live.begin(options.wait, forced=options.unverified)
+        await get_to_know(flight.plugins)
         check_places(flight.mission, flight.plugins)
         settle()
         say(f"{flight.mission.name} begins; bigactors say AGENT MESSAGE reaches it at {path}")

@@ -12,7 +12,18 @@ from adapters.mavlink.codec import Encoder
 from adapters.mavlink.command import long
 from adapters.mavlink.message import say
 from adapters.mavlink.numbers import Cmd
-from adapters.plugin import Accepted, Arrived, GoTo, HandOver, LinkLost, LinkRestored, Refused, Rejected
+from adapters.mavlink.signing import Signing
+from adapters.plugin import (
+    Accepted,
+    Arrived,
+    GoTo,
+    HandOver,
+    LinkLost,
+    LinkRestored,
+    Refused,
+    Rejected,
+    Trouble,
+)
 from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
 from physical import box, contains, point
 
@@ -249,8 +260,11 @@ def test_a_vehicle_that_is_in_no_mission_is_reported():
                 system_status=3,
                 mavlink_version=3,
             )
-            await send(f, encoder, beat)
-            await until(lambda: "unknown vehicle" in f.world.troubles())
+            for _ in range(5):
+                await send(f, encoder, beat)
+                await asyncio.sleep(1)
+            (trouble,) = f.world.of(Trouble, what="unknown vehicle")  # once, not with each heartbeat
+            assert trouble.count == 1
 
     run(main())
 
@@ -311,6 +325,33 @@ def test_a_vehicle_that_obeys_someone_else_and_does_not_answer_us_is_rejected_wi
             assert isinstance(end, Rejected)
             assert "it may obey another" in end.reason
             assert not f.vehicle.armed
+
+    run(main())
+
+
+def test_a_vehicle_that_asks_for_signed_packets_is_said_to():
+    async def main():
+        async with flight(signing=Signing(b"k" * 32)) as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            (trouble,) = await until(lambda: f.world.of(Trouble, what="authority not told"))
+            assert trouble.detail == "it asks for signed packets: give its key, --key FILE"
+            end = await f.ended("r1", 200)
+            assert isinstance(end, Rejected)
+            assert "it asks for signed packets" in end.reason
+
+    run(main())
+
+
+@pytest.mark.parametrize(("version", "name"), [((4, 6, 3), "SYSID_MYGCS"), ((4, 7, 0), "MAV_GCS_SYSID")])
+def test_whom_a_vehicle_obeys_is_read_and_set_by_the_name_that_its_version_has(version, name):
+    async def main():
+        async with flight(stations=TWO, version=version) as f:
+            await until(lambda: f.world.property("uav0"))
+            assert f.world.property("uav0").channels == ("control:gcs0",)
+            await f.plugin.command(HandOver("r1", "uav0", "control:gcs0", "control:gcs1"))
+            assert isinstance(await f.ended("r1"), Arrived)
+            assert f.vehicle.parameters[name] == 254
+            assert {"SYSID_MYGCS", "MAV_GCS_SYSID"} & f.vehicle.parameters.keys() == {name}
 
     run(main())
 

@@ -112,7 +112,9 @@ def test_a_path_whose_end_is_too_small_for_the_circle_is_refused_and_what_it_pas
     async def main():
         async with flight() as f:
             await until(lambda: f.world.property("uav0"))
-            with pytest.raises(Refused, match=r"the nest is too small: the plane needs a circle of 80 m"):
+            with pytest.raises(
+                Refused, match=r"the nest is too small: .* needs a circle of 104 m: it circles at 80 m"
+            ):
                 await f.plugin.command(Follow("r1", "uav0", (PATH[0], TINY), name="the nest"))
             await f.plugin.command(Follow("r2", "uav0", (TINY, AREA)))
 
@@ -205,7 +207,9 @@ def test_a_place_too_small_for_the_circle_is_refused_before_take_off():
     async def main():
         async with flight() as f:
             await until(lambda: f.world.property("uav0"))
-            with pytest.raises(Refused, match=r"the nest is too small: the plane needs a circle of 80 m"):
+            with pytest.raises(
+                Refused, match=r"the nest is too small: .* needs a circle of 104 m: it circles at 80 m"
+            ):
                 await f.plugin.command(GoTo("r1", "uav0", TINY, name="the nest"))
             assert not f.vehicle.armed
 
@@ -312,3 +316,38 @@ def test_the_same_seed_gives_the_same_flight():
             return f.world.reports, f.world.published
 
     assert run(main()) == run(main())
+
+
+@pytest.mark.parametrize("enforce", [True, False])
+@pytest.mark.parametrize("after", [0.6, 1.5, 3.0, 5.0])
+def test_a_hand_over_amid_an_upload_lets_the_new_authority_begin_it_anew(enforce, after):
+    async def main():
+        slow = Disturbance(delay=(0.15, 0.2))
+        async with flight(Kind.COPTER, slow, stations=TWO, enforce=enforce) as f:
+            await until(lambda: f.world.property("uav0"))
+            await until(lambda: f.vehicle.ready)
+            await f.plugin.command(Follow("r1", "uav0", LONG))
+            await asyncio.sleep(after)
+            await f.plugin.command(HandOver("r2", "uav0", "control:gcs0", "control:gcs1"))
+            assert isinstance(await f.ended("r2"), Arrived)
+            assert isinstance(await f.ended("r1"), Arrived), f.world.of(Rejected)
+            assert f.world.property("uav0").channels == ("control:gcs1",)
+
+    run(main())
+
+
+def test_an_upload_ends_where_the_vehicle_was_handed_to_a_station_that_is_not_ours():
+    async def main():
+        slow = Disturbance(delay=(0.15, 0.2))
+        stations = Stations({"gcs0": 255, "gcs1": 254}, ("gcs0",))
+        async with flight(Kind.COPTER, slow, stations=stations) as f:
+            await until(lambda: f.world.property("uav0"))
+            await until(lambda: f.vehicle.ready)
+            await f.plugin.command(Follow("r1", "uav0", LONG))
+            await asyncio.sleep(1.5)
+            await f.plugin.command(HandOver("r2", "uav0", "control:gcs0", "control:gcs1"))
+            end = await f.ended("r1", 20)
+            assert isinstance(end, Rejected)
+            assert end.reason == "it obeys gcs1, not gcs0"
+
+    run(main())

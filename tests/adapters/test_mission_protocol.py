@@ -76,9 +76,38 @@ def test_a_vehicle_that_boots_or_has_given_up_is_asked_again(result):
 
 
 def test_a_final_no_ends_it():
-    state, _ = upload.hear(begun(), ack(MissionResult.DENIED), 0.1)
+    state, _ = upload.hear(begun(), ack(MissionResult.INVALID), 0.1)
     assert state.over
+    assert state.refusal == MissionResult.INVALID
+
+
+def test_a_denial_is_final_only_once_another_upload_would_have_been_given_up():
+    state, sent = begun(), []
+    for tenth in range(1, 130):
+        state, messages = upload.tick(state, tenth / 10)
+        sent += messages
+        if messages:
+            state, _ = upload.hear(state, ack(MissionResult.DENIED), tenth / 10 + 0.05)
+            assert state.over == (tenth / 10 > GIVE_UP + 3)
+    assert [message.name for message in sent] == ["MISSION_COUNT"] * 6
     assert state.refusal == MissionResult.DENIED
+
+
+def test_an_answer_to_another_station_than_the_one_that_uploads_is_passed_over():
+    going, _ = sync.tick(sync.begin(ITEMS, MissionType.MISSION, 1, 254), 0.0)
+    for message in (asked(0), ack(MissionResult.INVALID)):  # meant for 255
+        assert sync.hear(going, message, 0.1) == (going, ())
+    _, (item,) = sync.hear(going, replace(asked(0), fields={**asked(0).fields, "target_system": 254}), 0.1)
+    assert (item.name, item.system) == ("MISSION_ITEM_INT", 254)
+
+
+@pytest.mark.parametrize("name", ["MISSION_REQUEST_LIST", "MISSION_REQUEST_INT"])
+def test_a_vehicle_that_is_given_a_mission_lets_nobody_read_it(name):
+    store = Store("MISSION_REQUEST", items={MissionType.MISSION: ITEMS})
+    count = replace(say("MISSION_COUNT", target_system=1, count=2, mission_type=0), system=255, component=190)
+    store.hear(count, ready=True, now=0.0)
+    (answer,) = store.hear(replace(say(name, seq=0, mission_type=0), system=254), ready=True, now=0.1)
+    assert (answer.name, answer["type"], answer.target) == ("MISSION_ACK", MissionResult.DENIED, 254)
 
 
 def test_an_acceptance_that_comes_too_early_is_not_believed():
@@ -106,7 +135,7 @@ class Line:
     """A vehicle's store and our sync with a line between them, by a clock of their own."""
 
     def __init__(self, items, kind, fates, store=None):
-        self.sync = sync.begin(items, kind, 1)
+        self.sync = sync.begin(items, kind, 1, 255)
         self.store = store or Store("MISSION_REQUEST")
         self.fates = iter(fates)
         self.now = 0.0

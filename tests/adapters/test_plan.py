@@ -236,7 +236,7 @@ def test_a_circle_that_leaves_the_fence_is_refused_although_its_centre_does_not(
     state = replace(begun(), craft=Craft("uav0", fence=fence))
     path = (point(37.0, -8.62), point(37.005, -8.62))
     for command in (GoTo("r", "uav0", path[1]), Follow("r", "uav0", path)):
-        with pytest.raises(Refused, match=r"a circle of 80 m around point\(37\.005, .*\) leaves the fence"):
+        with pytest.raises(Refused, match=r"a circle of 104 m around point\(37\.005, .*\) leaves the fence"):
             pilot.command(state, command, 1.0)
     with pytest.raises(Refused, match="outside the fence"):
         pilot.command(state, GoTo("r", "uav0", point(37.1, -8.62)), 1.0)

@@ -1,3 +1,4 @@
+import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
 from adapters.live.core import resumed, watch
@@ -210,6 +211,28 @@ def test_a_vehicle_under_another_authority_breaks_an_assumption():
     run = Run(plan_of(TOUR))
     run.turn(0.0, seen("uav0", WEST, 0.0, channels=("control:gcs1",)))
     assert run.kinds()[0] == "broken assumption"
+
+
+def test_a_link_that_comes_back_is_no_second_broken_assumption():
+    run = Run(plan_of(TOUR))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(9.0, seen("uav0", WEST, 9.0, channels=()), reports=[LinkLost("uav0", 9.0, 0.0)])
+    run.turn(12.0, seen("uav0", WEST, 12.0), reports=[LinkRestored("uav0", 12.0)])
+    assert sorted(run.kinds()) == ["broken assumption", "link restored", "lost link"]
+    assert run.labels[-1] == "⟨env : uav0 is on control:gcs0⟩"
+    run.turn(13.0, seen("uav0", WEST, 13.0, channels=("control:gcs1",)))
+    assert run.findings[-1].message.startswith("uav0 is on control:gcs1; nobody handed it there")
+
+
+@pytest.mark.parametrize(("where", "broken"), [((37.012, -8.612), 1), ((37.012, -8.652), 2)])
+def test_what_vanished_and_appears_where_it_was_is_no_second_broken_assumption(where, broken):
+    run = Run(plan_of(TOUR + "environment { boat0 drifts among east0, west0 }"))
+    run.turn(0.0, Heard("ais", Aged(boat((37.011, -8.611), 0.0).published, 60.0)))
+    run.turn(61.0)
+    assert run.kinds() == ["broken assumption"]
+    run.turn(70.0, boat(where, 70.0))
+    assert run.kinds() == ["broken assumption"] * broken
+    assert run.labels[-1].startswith("⟨env : boat0 appears in")
 
 
 def test_a_channel_that_may_drop_drops_and_returns_with_the_link():

@@ -15,7 +15,6 @@ from urllib.request import Request, urlopen
 
 from pyais.encode import encode_dict
 
-from adapters.mavlink.numbers import AUTHORITY_PARAMETER
 from adapters.simulated import Kind, Simulator, Vehicle, run
 from physical import PhysicalProperty, box, circle, contains, point, write_geojson
 
@@ -53,7 +52,7 @@ class Witnessed(Vehicle):
 
     def move(self, now):
         super().move(now)
-        authority = round(self.parameters[AUTHORITY_PARAMETER])
+        authority = round(self.parameters[self.authority_parameter])
         self.track.append(Moment(time.time(), (self.body.latitude, self.body.longitude), authority))
 
 

@@ -1,0 +1,73 @@
+"""The fences that a vehicle has of its own, beside the polygon that it is given: a circle around home, a ceiling."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from adapters.mavlink.numbers import Fence
+from adapters.mavlink.telemetry import Telemetry
+from physical import Geometry, distance, point
+
+EACH_BY_ITSELF: Final = (4, 6)
+"""The version of ArduPilot since which one fence can be switched on without the others."""
+
+
+@dataclass(frozen=True, slots=True)
+class OwnFences:
+    """What a vehicle keeps within by itself: metres around home and above it, None where that fence is off."""
+
+    circle: float | None = None
+    ceiling: float | None = None
+
+    def __str__(self) -> str:
+        circle = [] if self.circle is None else [f"within {self.circle:g} m around home (FENCE_RADIUS)"]
+        ceiling = [] if self.ceiling is None else [f"below {self.ceiling:g} m above home (FENCE_ALT_MAX)"]
+        return " and ".join([*circle, *ceiling])
+
+
+def own_fences(known: Telemetry, *, given: bool) -> OwnFences:
+    """Return the fences that are on, or come on when it is `given` a polygon to keep within."""
+    told = known.parameters
+    by_itself = told.get("FENCE_ENABLE") or told.get("FENCE_AUTOENABLE")
+    with_ours = given and (known.version is None or known.version < EACH_BY_ITSELF)
+    if not by_itself and not with_ours:
+        return OwnFences()
+    configured = _configured(known)
+    return OwnFences(
+        told.get("FENCE_RADIUS") if Fence.CIRCLE in configured else None,
+        told.get("FENCE_ALT_MAX") if Fence.ALT_MAX in configured else None,
+    )
+
+
+def _configured(known: Telemetry) -> Fence:
+    return Fence(int(known.parameters.get("FENCE_TYPE", 0)) & 15)
+
+
+def keeps_no_polygon(known: Telemetry) -> str | None:
+    """Return why a vehicle would not keep within a polygon that it is given."""
+    if "FENCE_TYPE" not in known.parameters or Fence.POLYGON in _configured(known):
+        return None
+    return (
+        f"it keeps within no polygon: its FENCE_TYPE is {known.parameters['FENCE_TYPE']:g}; "
+        "add 4 to that, or fly with --fence none"
+    )
+
+
+def beyond(
+    own: OwnFences, known: Telemetry, at: Geometry, room: float, height: float | None, name: str
+) -> Iterator[str]:
+    """Yield why a vehicle's own fences keep it from going to a point and circling there."""
+    if own.circle is not None and known.home is not None:
+        away = distance(point(*known.home), at) + room
+        if away > own.circle:
+            yield (
+                f"its circle fence of {own.circle:g} m around home does not hold {name}, which takes {away:.0f} m: "
+                "it would stop there, or not go; set FENCE_TYPE to 4 (the polygon alone), or FENCE_RADIUS to more"
+            )
+    if own.ceiling is not None and height is not None and height >= own.ceiling:
+        yield (
+            f"its altitude fence of {own.ceiling:g} m does not hold a flight at {height:g} m above home: "
+            "set FENCE_TYPE to 4 (the polygon alone), or FENCE_ALT_MAX to more"
+        )

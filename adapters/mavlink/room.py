@@ -1,0 +1,33 @@
+"""How much room a vehicle needs to stay somewhere: the circle that it says it flies, and what the wind makes of it."""
+
+from __future__ import annotations
+
+from adapters.mavlink.fleet import Craft
+from adapters.mavlink.profiles import Profile
+from adapters.mavlink.telemetry import Telemetry
+
+
+def circle(craft: Craft, profile: Profile, known: Telemetry) -> float:
+    """Return the radius in metres at which it circles: as the mission's author says, else as it says itself."""
+    if craft.circle is not None:
+        return craft.circle
+    return abs(known.parameters.get("WP_LOITER_RAD", 0.0)) or profile.circle
+
+
+def home_circle(craft: Craft, profile: Profile, known: Telemetry) -> float:
+    """Return the radius in metres at which it circles its home when it returns."""
+    return abs(known.parameters.get("RTL_RADIUS", 0.0)) or circle(craft, profile, known)
+
+
+def room(craft: Craft, profile: Profile, known: Telemetry) -> float:
+    """Return the radius in metres in which it stays when it circles somewhere, in wind too."""
+    return circle(craft, profile, known) * profile.drift
+
+
+def described(craft: Craft, profile: Profile, known: Telemetry) -> str:
+    """Return for what a vehicle needs room, with the figures."""
+    radius, needed = circle(craft, profile, known), room(craft, profile, known)
+    if needed == radius:
+        return f"a circle of {radius:g} m"
+    whose = " (WP_LOITER_RAD)" if craft.circle is None and "WP_LOITER_RAD" in known.parameters else ""
+    return f"a circle of {needed:g} m: it circles at {radius:g} m{whose}, and wind carries it farther out"
