@@ -17,7 +17,7 @@ MAX_BODY: Final = 1_000_000
 TIMEOUT: Final = 10.0
 JSON: Final = ("application/json", "application/geo+json")
 
-Handler = Callable[[str, str, bytes], tuple[int, str]]
+Handler = Callable[[str, str, bytes], Awaitable[tuple[int, str]]]
 """From method, path and body to status and text."""
 
 
@@ -45,7 +45,7 @@ async def serve(handler: Handler, where: Listen) -> AsyncIterator[int]:
     async def answer(request: Any) -> Any:
         status, text = _refusal(request, where.token) or (0, "")
         if not status:
-            status, text = handler(request.method, request.path, await request.read())
+            status, text = await handler(request.method, request.path, await request.read())
         return web.Response(status=status, text=text + "\n")
 
     application = web.Application(client_max_size=MAX_BODY)

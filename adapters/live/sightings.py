@@ -74,7 +74,12 @@ def placement_seen(c: Configuration, shape: Placed | None, sighting: Sighting) -
     banded = shape is not None and shape.altitude is not None
     placed = Placed(geometry, (said.altitude or shape.altitude) if shape is not None and banded else None)
     by = said.carried_by
-    return Carried(by, placed) if by is not None and by in c.setting.kinds else placed
+    return Carried(by, placed) if by is not None and _may_carry(c, by, said.entity) else placed
+
+
+def _may_carry(c: Configuration, by: Name, entity: Name) -> bool:
+    """Tell whether something is there that may carry an entity: nothing is carried by itself, over others neither."""
+    return by in c.setting.kinds and entity not in (by, *c.structure.physical.carriers(by))
 
 
 def _moved(shape: Geometry, to: Geometry) -> Geometry:
