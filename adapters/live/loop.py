@@ -24,13 +24,14 @@ from adapters.plugin import (
     Aged,
     Command,
     Failed,
-    Hold,
+    Follow,
+    GoTo,
+    HandOver,
     Plugin,
     Published,
     Refused,
     Rejected,
     Report,
-    Return,
 )
 from adapters.troubles import Troubles
 from physical import is_text
@@ -299,7 +300,7 @@ class LiveRun:
             if not said.done():  # who asked may have gone
                 said.set_result(answer)
         for command in (*turn.commands, *self._unrecorded()):
-            if not self.state.suspended or isinstance(command, Hold | Return):
+            if not (self.state.suspended and isinstance(command, GoTo | Follow | HandOver)):
                 self._orders.put_nowait(command)
         return turn
 

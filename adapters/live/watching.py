@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 
 from adapters.live.assumptions import broken_by_place, clause_of_leaving
@@ -24,6 +25,7 @@ from adapters.plugin import (
     Hosts,
     LinkLost,
     LinkRestored,
+    Rebind,
     Rejected,
     Report,
     Trouble,
@@ -38,6 +40,9 @@ from semantics.physical_model import Carried, Placed, Placement, channels_cell, 
 from semantics.rules import env
 from semantics.signature import REGION, Name
 from semantics.values import show
+
+_IS_AT = re.compile(r"is at (\S+:[0-9]{1,5})")
+"""What is said of a vehicle that sends from another address than before."""
 
 
 def hear(turning: Turning, heard: Iterable[Heard]) -> None:
@@ -256,6 +261,9 @@ def _restore(turning: Turning, entity: Name, *, rebooted: bool) -> None:
 def say_to(turning: Turning, saying: Saying) -> None:
     """Put a message into a mailbox, if the mission says that somebody may say it, and not too often."""
     agents = turning.c.alpha
+    if saying.agent in turning.plan.vehicles and saying.agent not in agents:
+        turning.answers.append(Answer(saying, _rebind(turning, saying)))
+        return
     if saying.agent in agents and not is_here(turning.c, saying.agent):
         there = station_of(turning.c, saying.agent)
         turning.answers.append(
@@ -275,3 +283,14 @@ def say_to(turning: Turning, saying: Saying) -> None:
     who = "" if saying.agent in agents else f"there is no bigActor '{saying.agent:.60}'; "
     what = f"what may be said now: {', '.join(left)}" if left else "nothing may be said any more"
     turning.answers.append(Answer(saying, f"{who}the mission does not say that this is said; {what}"))
+
+
+def _rebind(turning: Turning, saying: Saying) -> str:
+    """Let a vehicle be heard from another address, as an operator says; return why not, nothing if it is told so."""
+    found = _IS_AT.fullmatch(saying.message)
+    if found is None:
+        return (
+            f"{saying.agent} is a vehicle, of which is said where it is heard from now on: 'is at HOST:PORT'"
+        )
+    turning.commands.append(Rebind(turning.request_of("operator"), saying.agent, found[1]))
+    return ""
