@@ -7,6 +7,7 @@ of a vehicle, or be of a kind that nobody expects.
 from __future__ import annotations
 
 import asyncio
+from collections import OrderedDict
 from collections.abc import Collection
 from contextlib import AsyncExitStack
 from dataclasses import replace
@@ -24,6 +25,9 @@ from physical import PhysicalError, PhysicalProperty, legible, reading_geojson
 EVERY: Final = 1.0
 MAX_FILES: Final = 1_000
 """Files of a folder that are looked at: the newest."""
+
+MAX_KNOWN: Final = 10_000
+"""Detections that can be withdrawn: the newest."""
 
 PATH: Final = "/detections"
 
@@ -60,6 +64,7 @@ class Detections:
         self._troubles = Troubles(name)
         self._world: World | None = None
         self._taking = asyncio.Lock()
+        self._known: OrderedDict[str, None] = OrderedDict()
         self.port: int | None = None
         """Where it listens, once it does."""
 
@@ -106,7 +111,7 @@ class Detections:
 
     def _withdrawn(self, entity: str) -> tuple[int, str]:
         assert self._world is not None
-        if self._naming.identity(entity) != f"name:{entity}":
+        if self._known.pop(entity, entity) is not None:
             return 404, f"{entity!r:.60} was not detected"
         self._world.publish(Gone(entity, self._world.now(), self._name))
         return 200, "withdrawn"
@@ -121,6 +126,10 @@ class Detections:
             async for feature in in_slices(found):
                 stamped = replace(feature, time=self._world.now(), source=self._name)
                 self._world.publish(Aged(stamped, self._time_to_live))
+                self._known[feature.entity] = None
+                self._known.move_to_end(feature.entity)
+                if len(self._known) > MAX_KNOWN:
+                    self._known.popitem(last=False)
         return len(found)
 
     def _check(self, feature: PhysicalProperty) -> None:
@@ -129,7 +138,7 @@ class Detections:
             raise PhysicalError(
                 "kind", f"nobody expects {feature.kind} to be detected", f"kinds are {expected}"
             )
-        self._naming.name(f"name:{feature.entity}")
+        self._naming.name(f"name:{feature.entity}", feature.kind)
 
     # --- a folder ---------------------------------------------------------------------------------
 

@@ -85,7 +85,7 @@ class LocationService:
         async for index, entry in in_slices(enumerate(_entries(body))):
             try:
                 known = _property(entry, world.now(), self._name)
-                self._naming.name(f"name:{known.entity}")
+                self._naming.name(f"name:{known.entity}", known.kind)
             except PhysicalError as problem:
                 self._troubles.note("entity refused", f"entity {index}: {problem.message}")
                 continue

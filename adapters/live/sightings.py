@@ -35,6 +35,11 @@ def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) ->
         return Refusal(
             said.entity, f"'{heard.plugin}' speaks of {said.entity}, which is the vehicle of '{owner}'"
         )
+    kind = plan.first.setting.kinds.get(said.entity) or (known.property.kind if known is not None else None)
+    if kind is not None and not isinstance(said, Gone) and said.kind != kind:
+        return Refusal(
+            said.entity, f"'{heard.plugin}' speaks of {said.entity} as {said.kind}, and it is of kind {kind}"
+        )
     time = now if said.time is None else said.time
     if not math.isfinite(time) or time > now + MOST_AHEAD:
         ahead = f"gives times more than {MOST_AHEAD:g} s ahead"

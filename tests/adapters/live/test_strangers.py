@@ -118,6 +118,20 @@ def test_nothing_is_carried_by_itself_over_others_or_not():
     )
 
 
+def test_nobody_moves_an_entity_by_calling_it_something_else():
+    run = quiet_run()
+    run.turn(1.0, vessel(0, time=1.0))
+    for name, kind in (("boat0", "Location"), ("mmsi0", "Location"), ("gcs0", "Vessel")):
+        said = PhysicalProperty(name, kind, box((37.0, -8.62), (37.02, -8.60)), time=2.0)
+        run.turn(2.0, Heard("camera", said))
+    assert len(run.steps) == 1
+    assert [finding.message for finding in run.findings[1:]] == [
+        "'camera' speaks of boat0 as Location, and it is of kind Vessel",
+        "'camera' speaks of mmsi0 as Location, and it is of kind Vessel",
+        "'camera' speaks of gcs0 as Vessel, and it is of kind Station",
+    ]
+
+
 def test_a_stranger_that_is_withdrawn_at_once_was_never_there():
     run = quiet_run()
     run.turn(1.0, vessel(0), Heard("ais", Gone("mmsi0", 1.0, "ais")))
