@@ -160,10 +160,11 @@ class AisFeed:
         assert self._world is not None
         try:
             entity = self._naming.name(f"mmsi:{digits(mmsi)}")
+            known = replace(known, entity=entity, kind=self._naming.kind_of(entity, known.kind))
         except PhysicalError as clash:
             self._troubles.note(clash.code, clash.message)
             return
-        self._world.publish(Aged(replace(known, entity=entity), self._time_to_live))
+        self._world.publish(Aged(known, self._time_to_live))
 
     def _wanted(self, known: PhysicalProperty) -> bool:
         of_kind = self._kinds is None or known.kind in self._kinds

@@ -7,6 +7,7 @@ of a vehicle, or be of a kind that nobody expects.
 from __future__ import annotations
 
 import asyncio
+from collections import OrderedDict
 from collections.abc import Collection
 from contextlib import AsyncExitStack
 from dataclasses import replace
@@ -16,13 +17,17 @@ from urllib.parse import unquote
 
 from adapters.naming import NamingService
 from adapters.plugin import Aged, Command, Gone, Refused, World
+from adapters.slices import in_slices
 from adapters.troubles import Troubles
 from adapters.web import MAX_BODY, Listen, serve
-from physical import PhysicalError, PhysicalProperty, legible, read_geojson
+from physical import PhysicalError, PhysicalProperty, legible, reading_geojson
 
 EVERY: Final = 1.0
 MAX_FILES: Final = 1_000
 """Files of a folder that are looked at: the newest."""
+
+MAX_KNOWN: Final = 10_000
+"""Detections that can be withdrawn: the newest."""
 
 PATH: Final = "/detections"
 
@@ -58,6 +63,8 @@ class Detections:
         self._seen: dict[Path, int] = {}
         self._troubles = Troubles(name)
         self._world: World | None = None
+        self._taking = asyncio.Lock()
+        self._known: OrderedDict[str, None] = OrderedDict()
         self.port: int | None = None
         """Where it listens, once it does."""
 
@@ -81,22 +88,22 @@ class Detections:
             if self._listen is not None:
                 self.port = await stack.enter_async_context(serve(self._answer, self._listen))
             while True:
-                self._look()
+                await self._look()
                 self._troubles.report(world)
                 await asyncio.sleep(EVERY)
 
     # --- posts ------------------------------------------------------------------------------------
 
-    def _answer(self, method: str, path: str, body: bytes) -> tuple[int, str]:
+    async def _answer(self, method: str, path: str, body: bytes) -> tuple[int, str]:
         if method == "POST" and path == PATH:
-            return self._posted(body)
+            return await self._posted(body)
         if method == "DELETE" and path.startswith(f"{PATH}/"):
             return self._withdrawn(unquote(path.removeprefix(f"{PATH}/")))
         return 404, f"POST {PATH}, or DELETE {PATH}/NAME"
 
-    def _posted(self, body: bytes) -> tuple[int, str]:
+    async def _posted(self, body: bytes) -> tuple[int, str]:
         try:
-            count = self._take(body)
+            count = await self._take(body)
         except PhysicalError as problem:
             self._troubles.note("detection refused", str(problem))
             return 400, legible(str(problem))
@@ -104,20 +111,25 @@ class Detections:
 
     def _withdrawn(self, entity: str) -> tuple[int, str]:
         assert self._world is not None
-        if self._naming.identity(entity) != f"name:{entity}":
+        if self._known.pop(entity, entity) is not None:
             return 404, f"{entity!r:.60} was not detected"
         self._world.publish(Gone(entity, self._world.now(), self._name))
         return 200, "withdrawn"
 
-    def _take(self, body: bytes) -> int:
-        """Publish all features of a collection, or none."""
+    async def _take(self, body: bytes) -> int:
+        """Publish all features of a collection, or none; one collection at a time, and others are served meanwhile."""
         assert self._world is not None
-        found = read_geojson(body)
-        for feature in found:
-            self._check(feature)
-        for feature in found:
-            stamped = replace(feature, time=self._world.now(), source=self._name)
-            self._world.publish(Aged(stamped, self._time_to_live))
+        async with self._taking:
+            found = [feature async for feature in in_slices(reading_geojson(body))]
+            for feature in found:
+                self._check(feature)
+            async for feature in in_slices(found):
+                stamped = replace(feature, time=self._world.now(), source=self._name)
+                self._world.publish(Aged(stamped, self._time_to_live))
+                self._known[feature.entity] = None
+                self._known.move_to_end(feature.entity)
+                if len(self._known) > MAX_KNOWN:
+                    self._known.popitem(last=False)
         return len(found)
 
     def _check(self, feature: PhysicalProperty) -> None:
@@ -126,24 +138,25 @@ class Detections:
             raise PhysicalError(
                 "kind", f"nobody expects {feature.kind} to be detected", f"kinds are {expected}"
             )
-        self._naming.name(f"name:{feature.entity}")
+        self._naming.name(f"name:{feature.entity}", feature.kind)
 
     # --- a folder ---------------------------------------------------------------------------------
 
-    def _look(self) -> None:
+    async def _look(self) -> None:
         if self._folder is None:
             return
         files = {path: _changed(path) for path in self._folder.glob("*.geojson")}
         newest = sorted(files, key=lambda path: (files[path], path.name))[-MAX_FILES:]
         for path in newest:
             if self._seen.get(path) != files[path]:
-                self._read(path)
+                await self._read(path)
         self._seen = {path: files[path] for path in newest}
 
-    def _read(self, path: Path) -> None:
+    async def _read(self, path: Path) -> None:
         try:
             with path.open("rb") as file:
-                self._take(file.read(MAX_BODY + 1))
+                body = file.read(MAX_BODY + 1)
+            await self._take(body)
         except (OSError, PhysicalError) as problem:
             self._troubles.note("detection unreadable", f"{path.name}: {problem}")
 

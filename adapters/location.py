@@ -15,6 +15,7 @@ from typing import Any, Final
 
 from adapters.naming import NamingService
 from adapters.plugin import Aged, Command, Refused, World
+from adapters.slices import in_slices
 from adapters.troubles import Troubles
 from adapters.web import MAX_BODY, fetching
 from physical import Band, PhysicalError, PhysicalProperty, Velocity, is_word, point, read_json
@@ -72,7 +73,7 @@ class LocationService:
         async with fetching() as fetch:
             while True:
                 try:
-                    self._take(world, await fetch(self._url))
+                    await self._take(world, await fetch(self._url))
                 except OSError as problem:
                     self._troubles.note("no answer", f"{self._url}: {problem}")
                 except PhysicalError as problem:
@@ -80,11 +81,11 @@ class LocationService:
                 self._troubles.report(world)
                 await asyncio.sleep(self._every)
 
-    def _take(self, world: World, body: bytes) -> None:
-        for index, entry in enumerate(_entries(body)):
+    async def _take(self, world: World, body: bytes) -> None:
+        async for index, entry in in_slices(enumerate(_entries(body))):
             try:
                 known = _property(entry, world.now(), self._name)
-                self._naming.name(f"name:{known.entity}")
+                self._naming.name(f"name:{known.entity}", known.kind)
             except PhysicalError as problem:
                 self._troubles.note("entity refused", f"entity {index}: {problem.message}")
                 continue

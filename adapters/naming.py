@@ -2,21 +2,25 @@
 
 An identity is a kind of number and the number: `mavlink:1` (a system id), `serial:2F003B` (an autopilot's own),
 `mmsi:244660274`, or `name:oilSpill1` of what already comes with one. The mission's own table goes first; what it
-doesn't name is named by its identity. Own vehicles and the places that never move have their names before anything is
-heard: nobody else can take them.
+doesn't name is named by its identity. Own vehicles, stations and the places that never move have their names before
+anything is heard: nobody else can take them.
+
+What is not in the table is named by a rule, and nothing is remembered of it: so no flood of made-up identities uses
+anything up.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Final
 
 from physical import PhysicalError
 
-MAX_NAMES: Final = 100_000
-"""Entities named at a time: a flood of made-up identities ends there."""
-
 SCHEMES: Final = ("mavlink", "mmsi", "name", "serial")
+
+_NUMBERED: Final = re.compile(r"(mavlink|mmsi)[0-9]+|serial[0-9A-F]+")
+"""Names that are given to numbers: nobody who comes with a name has one of them."""
 
 
 class NameClash(PhysicalError):
@@ -29,48 +33,66 @@ class NamingService:
     Arguments:
         table: The mission's own names, by identity.
         own: Names that are taken: whose vehicles and places they are, by identity (`mavlink:1`, `place:harbour0`).
+        kinds: What the mission's entities are: who gives one of them another kind speaks of something else.
 
     Raises NameClash where two identities get one name, PhysicalError where the table has no identity.
     """
 
-    def __init__(self, table: Mapping[str, str] | None = None, own: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self,
+        table: Mapping[str, str] | None = None,
+        own: Mapping[str, str] | None = None,
+        kinds: Mapping[str, str] | None = None,
+    ) -> None:
         self._names: dict[str, str] = {}
         self._identities: dict[str, str] = {}
+        self._kinds = kinds or {}
         for identity, name in (own or {}).items():
             self._give(identity, name)
         for identity, name in sorted((table or {}).items()):
             _check(identity)
             self._give(identity, name)
 
-    def name(self, identity: str) -> str:
-        """Return the name of an identity, always the same.
+    def name(self, identity: str, kind: str | None = None) -> str:
+        """Return the name of an identity of a kind, always the same.
 
         >>> NamingService({"mmsi:244660274": "tanker0"}).name("mmsi:244660274")
         'tanker0'
 
-        Raises NameClash where its name is another's.
+        Raises NameClash where its name is another's, or another kind's.
         """
-        if identity not in self._names:
-            if len(self._names) >= MAX_NAMES:
-                raise PhysicalError(
-                    "names", f"more than {MAX_NAMES:,} entities", "filter the feed by area or kind"
-                )
-            self._give(identity, _own_name(identity))
-        return self._names[identity]
+        if identity in self._names:
+            return self._names[identity]
+        name = _own_name(identity)
+        holder = self._identities.get(name)
+        if holder is not None:
+            raise _clash(identity, name, holder)
+        if identity.startswith("name:") and _NUMBERED.fullmatch(name):
+            raise NameClash("name-clash", f"{name} is the name of a number", "call it otherwise")
+        known = self._kinds.get(name, kind)
+        if kind is not None and known != kind:
+            raise NameClash(
+                "name-clash", f"{name} is of kind {known} in the mission, not {kind}", "call it otherwise"
+            )
+        return name
 
-    def identity(self, name: str) -> str | None:
-        """Return whose name it is."""
-        return self._identities.get(name)
+    def kind_of(self, name: str, said: str) -> str:
+        """Return what an entity is: what the mission has it as, else what is said of it."""
+        return self._kinds.get(name, said)
 
     def _give(self, identity: str, name: str) -> None:
         holder = self._identities.setdefault(name, identity)
         if holder != identity:
-            raise NameClash(
-                "name-clash",
-                f"{identity} would be called {name}, as {holder} is",
-                "give one of them another name in the mission's table",
-            )
+            raise _clash(identity, name, holder)
         self._names[identity] = name
+
+
+def _clash(identity: str, name: str, holder: str) -> NameClash:
+    return NameClash(
+        "name-clash",
+        f"{identity} would be called {name}, as {holder} is",
+        "give one of them another name in the mission's table",
+    )
 
 
 def _own_name(identity: str) -> str:

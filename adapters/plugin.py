@@ -122,8 +122,17 @@ class Return:
     entity: str
 
 
-Command = GoTo | Follow | HandOver | Hold | Return
-"""What a vehicle can be told. A new one for the same entity ends what it was told before, HandOver excepted."""
+@dataclass(frozen=True, slots=True)
+class Rebind:
+    """Believe a vehicle at another address (`HOST:PORT`) than before: an operator says that it has moved there."""
+
+    request: str
+    entity: str
+    source: str
+
+
+Command = GoTo | Follow | HandOver | Hold | Return | Rebind
+"""What a vehicle can be told. A new one for the same entity ends what it was told before; HandOver and Rebind don't."""
 
 
 class Refused(Exception):  # an answer, not an error
@@ -356,6 +365,7 @@ __all__ = [
     "LinkRestored",
     "Plugin",
     "Published",
+    "Rebind",
     "Refused",
     "Rejected",
     "Report",

@@ -26,7 +26,7 @@ BURST: Final = 1_048_576
 """Bytes that a socket is asked to hold while something else is served; systems give less."""
 
 MAX_AT_ONCE: Final = 32
-"""Datagrams that are read before others are served."""
+"""Datagrams that are read before others are served, and no more of them once they have `CHUNK` bytes."""
 
 MAX_PEERS: Final = 64
 """Connections accepted by one port."""
@@ -82,13 +82,17 @@ class _Datagrams:
 
     def read(self) -> None:
         """Hand over what has come in, up to a bound: others want to be served too."""
+        read = 0
         for _ in range(MAX_AT_ONCE):
+            if read >= CHUNK:
+                return
             try:
                 data, sender = self._link.recvfrom(CHUNK)
             except BlockingIOError:
                 return
             except OSError:
                 continue  # nobody listens where something was sent: somebody may yet
+            read += len(data)
             self._receive((sender[0], sender[1]), data)
 
     def send(self, data: bytes, remote: Remote | None = None) -> None:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
+from ipaddress import IPv4Address, IPv6Address, ip_address
 from typing import Any, Final
 
 from adapters.addresses import LOOPBACK
-from physical import PhysicalError
+from physical import PhysicalError, legible
 
 MAX_BODY: Final = 1_000_000
 """Bytes of a request or answer."""
@@ -17,7 +19,7 @@ MAX_BODY: Final = 1_000_000
 TIMEOUT: Final = 10.0
 JSON: Final = ("application/json", "application/geo+json")
 
-Handler = Callable[[str, str, bytes], tuple[int, str]]
+Handler = Callable[[str, str, bytes], Awaitable[tuple[int, str]]]
 """From method, path and body to status and text."""
 
 
@@ -37,15 +39,16 @@ class Listen:
 async def serve(handler: Handler, where: Listen) -> AsyncIterator[int]:
     """Serve HTTP until the context is left, and say at which port.
 
-    Only JSON is taken, so that no web page that is open in a browser here can post. Raises OSError where it can't
+    Only JSON is taken, and only what is sent to this machine by its address, so that no web page that is open in a
+    browser here can post, whatever its own name is made to stand for. Raises OSError where it can't
     listen there.
     """
     web = _aiohttp().web
 
     async def answer(request: Any) -> Any:
-        status, text = _refusal(request, where.token) or (0, "")
+        status, text = _refusal(request, where) or (0, "")
         if not status:
-            status, text = handler(request.method, request.path, await request.read())
+            status, text = await handler(request.method, request.path, await request.read())
         return web.Response(status=status, text=text + "\n")
 
     application = web.Application(client_max_size=MAX_BODY)
@@ -60,11 +63,39 @@ async def serve(handler: Handler, where: Listen) -> AsyncIterator[int]:
         await runner.cleanup()
 
 
-def _refusal(request: Any, token: str | None) -> tuple[int, str] | None:
+def _refusal(request: Any, where: Listen) -> tuple[int, str] | None:
+    if not _is_meant(request.headers.get("Host", ""), where.host):
+        return (
+            421,
+            f"address it as localhost, or by its number: {legible(request.host, 60)} is not known here",
+        )
+    token = where.token
     if token is not None and request.headers.get("Authorization") != f"Bearer {token}":
         return 401, "say who you are: Authorization: Bearer TOKEN"
     if request.method == "POST" and request.content_type not in JSON:
         return 415, f"send {' or '.join(JSON)}"
+    return None
+
+
+def _is_meant(header: str, listening: str) -> bool:
+    """Tell whether a request's Host names what listens at an address; a name that was made to stand for it does not.
+
+    >>> _is_meant("127.0.0.1:8080", "127.0.0.1"), _is_meant("[::1]", "::1"), _is_meant("evil.example:8080", "127.0.0.1")
+    (True, True, False)
+    """
+    host = header if header.endswith("]") else re.sub(r":[0-9]*$", "", header)
+    host = host.removeprefix("[").removesuffix("]").lower()
+    if host in ("localhost", listening.lower()):
+        return True
+    said, own = _number(host), _number(listening)
+    if said is None or own is None:
+        return False
+    return own.is_unspecified or (own.is_loopback and said.is_loopback)
+
+
+def _number(host: str) -> IPv4Address | IPv6Address | None:
+    with suppress(ValueError):
+        return ip_address(host)
     return None
 
 

@@ -32,7 +32,9 @@ def plugins_of(
         crafts = _crafts(options, mission)
         vehicles = _vehicles(options, mission, crafts, tap)
         feeds = feeds_of(
-            options, mission, NamingService(dict(options.name), _own_names(options, mission, crafts))
+            options,
+            mission,
+            NamingService(dict(options.name), _own_names(options, mission, crafts), mission.setting.kinds),
         )
     except PhysicalError as error:
         raise Mistake(error.message, error.hint, error.where) from error
@@ -109,7 +111,7 @@ def _system(name: str, given: int | None, told: str | None) -> int | None:
 
 
 def _own_names(options: Namespace, mission: ElaboratedMission, crafts: dict[str, Craft]) -> dict[str, str]:
-    """Return the names that nobody else can take: of the vehicles, and of places that never move.
+    """Return the names that nobody else can take: of the vehicles, the stations, and places that never move.
 
     A place of a kind that detections are told to be of can be detected: where it is otherwise, an assumption breaks.
     """
@@ -119,6 +121,8 @@ def _own_names(options: Namespace, mission: ElaboratedMission, crafts: dict[str,
         for name in sorted(mission.fixed - crafts.keys())
         if _has_border(name, mission) and mission.setting.kinds[name] not in detected
     }
+    told = {called for _, called in options.name}  # a station may carry a transponder
+    own |= {f"station:{name}": name for name in sorted(_stations_of(mission) - crafts.keys() - told)}
     for name, craft in crafts.items():
         known = f"serial:{craft.serial}" if craft.serial else f"mavlink:{craft.system}"
         anonymous = craft.serial is None and craft.system is None
@@ -126,6 +130,15 @@ def _own_names(options: Namespace, mission: ElaboratedMission, crafts: dict[str,
             name  # ids are unique on one link only
         )
     return own
+
+
+def _stations_of(mission: ElaboratedMission) -> set[str]:
+    """Return what is ours on the ground: the entities that have control authority, and those that host bigActors."""
+    alpha, kinds = mission.initial.alpha, mission.setting.kinds
+    hosts = {alpha.host(agent) for agent in alpha.names()}
+    channels = {each for name in kinds for each in mission.initial.structure.physical.channels(name)}
+    named = {channel.partition(":")[2] for channel in channels if _is_authority(channel)}
+    return (hosts | named) & mission.fixed
 
 
 def _has_border(name: str, mission: ElaboratedMission) -> bool:

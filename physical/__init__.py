@@ -8,7 +8,7 @@ from physical.altitude import Band, band_contains
 from physical.containment import Conflict, Place, PlaceIndex, check_places, holds
 from physical.drift import Face, drift_faces, face_at
 from physical.errors import GeometryError, PhysicalError
-from physical.geojson import GeoJSONError, read_geojson, write_geojson
+from physical.geojson import GeoJSONError, read_geojson, reading_geojson, write_geojson
 from physical.measure import area, centroid, distance, interior_point, waypoint
 from physical.mobility import JoinChannel, LeaveChannel, MobilityCommand, Waypoint, go_to, rechannel
 from physical.place_files import read_places
@@ -62,6 +62,7 @@ __all__ = [
     "read_places",
     "read_plan",
     "read_waypoints",
+    "reading_geojson",
     "rechannel",
     "translate_to",
     "visited",

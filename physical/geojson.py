@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Final, NoReturn
 
 import shapely
@@ -49,19 +49,28 @@ def read_geojson(text: str | bytes) -> tuple[PhysicalProperty, ...]:
     Raises:
         GeoJSONError: With all problems of all features.
     """
-    features = _features(_parsed(text))
+    return tuple(reading_geojson(text))
+
+
+def reading_geojson(text: str | bytes) -> Iterator[PhysicalProperty]:
+    """Yield the properties one by one, for whoever does something else in between; problems are told at the end.
+
+    Raises:
+        GeoJSONError: With all problems of all features.
+    """
     found: list[PhysicalProperty] = []
     problems: list[PhysicalError] = []
-    for index, feature in enumerate(features):
+    for index, feature in enumerate(_features(_parsed(text))):
         try:
             found.append(_property(feature))
         except PhysicalError as problem:
             where = f"feature {index}{_label(feature)}"
             problems.append(PhysicalError(problem.code, problem.message, problem.hint, where))
+        else:
+            yield found[-1]
     problems += _repeated(found)
     if problems:
         raise GeoJSONError(problems)
-    return tuple(found)
 
 
 def write_geojson(properties: Iterable[PhysicalProperty]) -> str:

@@ -5,8 +5,8 @@ looked at puts another `Cells` in the place of a configuration: nothing in `sema
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
-from functools import lru_cache
 from typing import Any, Protocol, TypeVar
+from weakref import WeakValueDictionary
 
 Part = TypeVar("Part")
 
@@ -103,7 +103,7 @@ class Written:
 class Layout:
     """A sorted tuple of cells with its index; one object for each tuple, so that rows compare by position."""
 
-    __slots__ = ("cells", "index")
+    __slots__ = ("__weakref__", "cells", "index")
 
     def __init__(self, cells: tuple[Cell, ...]) -> None:
         self.cells = cells
@@ -113,10 +113,13 @@ class Layout:
         return (layout_of, (self.cells,))
 
 
-@lru_cache(maxsize=4096)
+_LAYOUTS: WeakValueDictionary[tuple[Cell, ...], Layout] = WeakValueDictionary()
+
+
 def layout_of(cells: tuple[Cell, ...]) -> Layout:
-    """Return the one layout of these cells, which must be sorted."""
-    return Layout(cells)
+    """Return the one layout of these cells, which must be sorted; it is kept as long as a row has it."""
+    layout = _LAYOUTS.get(cells)
+    return _LAYOUTS.setdefault(cells, Layout(cells)) if layout is None else layout
 
 
 class Row:

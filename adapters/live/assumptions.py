@@ -41,8 +41,6 @@ def broken_by_place(plan: Plan, c: Configuration, entity: Name, seen: Placement 
 
 def _broken_by_appearing(plan: Plan, c: Configuration, entity: Name, now: Relations) -> str:
     where = ", ".join(sorted(now[0])) or "none of the places"
-    if entity not in plan.first.setting.kinds:
-        return f"{entity} ({c.setting.kind(entity)}) is in {where}; the mission names no such entity"
     clause = _clause(plan, Appears, entity)
     first = plan.first.structure.physical.placement(entity)  # what is heard again may be where it was
     places = (

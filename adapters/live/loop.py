@@ -12,7 +12,8 @@ from __future__ import annotations
 import asyncio
 import gc
 import time
-from collections.abc import Callable, Sequence
+from collections import OrderedDict
+from collections.abc import Callable, Container, Sequence
 from dataclasses import dataclass, field
 
 from adapters.listening import Listening
@@ -24,15 +25,16 @@ from adapters.plugin import (
     Aged,
     Command,
     Failed,
-    Hold,
+    Follow,
+    GoTo,
+    HandOver,
     Plugin,
     Published,
     Refused,
     Rejected,
     Report,
-    Return,
-    Trouble,
 )
+from adapters.troubles import Troubles
 from physical import is_text
 
 GATHER = 0.002
@@ -46,6 +48,12 @@ IDLE = 0.5
 
 AHEAD = 1.0
 """Seconds by which the system's clock may be ahead of the loop's: less is how they are set right."""
+
+AT_ONCE = 200
+"""How many positions of strangers, which the mission does not name, one turn takes in."""
+
+MOST_WAITING = 20_000
+"""How many of them may wait; more are left out, the oldest first, and that is reported."""
 
 MOST_SAYINGS = 1_000
 """How many sayings may wait; more are refused, and whoever says them is told."""
@@ -89,12 +97,19 @@ class PluginFailed(Exception):
 
 @dataclass(slots=True)
 class Inbox:
-    """What has come in since the last turn, newest positions only."""
+    """What has come in and was not taken yet, newest positions only.
+
+    Attributes:
+        named: The entities of the mission: of them all is taken at once, of strangers a slice.
+    """
 
     watchers: Watchers
     now: Callable[[], float]
+    named: Container[str] = ()
     awake: asyncio.Event = field(default_factory=asyncio.Event)
     heard: dict[tuple[str, str], Heard] = field(default_factory=dict)
+    strangers: OrderedDict[tuple[str, str], Heard] = field(default_factory=OrderedDict)
+    troubles: Troubles = field(default_factory=lambda: Troubles("feeds"))
     reports: list[Report] = field(default_factory=list)
     sayings: list[tuple[Saying, asyncio.Future[Answer]]] = field(default_factory=list)
 
@@ -102,15 +117,18 @@ class Inbox:
         """Take what a plugin publishes; what it said before of the same entity is not needed any more."""
         flaw = flaw_of(published)
         if flaw:
-            self.report(Trouble(plugin, self.now(), "unusable property", flaw))
+            self.troubles.note("unusable property", f"'{plugin}': {flaw}")
             return
         heard = Heard(plugin, published)
         self.watchers.arrived(heard, self.now())
-        self.heard.pop(
-            (plugin, _entity(published)), None
-        )  # in the order said: of two of one time the later counts
-        self.heard[plugin, _entity(published)] = heard
+        entity = _entity(published)
+        waiting = self.heard if entity in self.named else self.strangers
+        waiting.pop((plugin, entity), None)  # in the order said: of two of one time the later counts
+        waiting[plugin, entity] = heard
         self.awake.set()
+        if len(self.strangers) > MOST_WAITING:
+            self.strangers.popitem(last=False)
+            self.troubles.note("too much at once", "positions of entities that the mission does not name")
 
     def report(self, report: Report) -> None:
         """Take what a plugin reports, in words that can be printed and recorded."""
@@ -133,12 +151,18 @@ class Inbox:
         return answer
 
     def take(self, missed: float = 0.0) -> tuple[Batch, list[asyncio.Future[Answer]]]:
-        """Return what has come in, and forget it; `missed` are the seconds for which nobody listened."""
+        """Return what has come in, and forget it; of strangers a slice, the oldest.
+
+        `missed` are the seconds for which nobody listened.
+        """
+        self.troubles.report(Ear("", self))
         said = tuple(saying for saying, _ in self.sayings)
-        batch = Batch(tuple(self.heard.values()), tuple(self.reports), said, missed)
+        some = [self.strangers.popitem(last=False)[1] for _ in range(min(AT_ONCE, len(self.strangers)))]
+        batch = Batch((*self.heard.values(), *some), tuple(self.reports), said, missed)
         answers = [answer for _, answer in self.sayings]
         self.heard, self.reports, self.sayings = {}, [], []
-        self.awake.clear()
+        if not self.strangers:
+            self.awake.clear()
         return batch, answers
 
 
@@ -208,7 +232,7 @@ class LiveRun:
         self.state = state
         self.clock = Clock()
         self._watchers = Watchers(watchers)
-        self.inbox = Inbox(self._watchers, self.clock)
+        self.inbox = Inbox(self._watchers, self.clock, plan.first.setting.kinds)
         self._listening = Listening(self.clock())
         self._told = 0.0
         self._plugins = tuple(plugins)
@@ -295,7 +319,7 @@ class LiveRun:
             if not said.done():  # who asked may have gone
                 said.set_result(answer)
         for command in (*turn.commands, *self._unrecorded()):
-            if not self.state.suspended or isinstance(command, Hold | Return):
+            if not (self.state.suspended and isinstance(command, GoTo | Follow | HandOver)):
                 self._orders.put_nowait(command)
         return turn
 

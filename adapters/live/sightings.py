@@ -35,6 +35,11 @@ def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) ->
         return Refusal(
             said.entity, f"'{heard.plugin}' speaks of {said.entity}, which is the vehicle of '{owner}'"
         )
+    kind = plan.first.setting.kinds.get(said.entity) or (known.property.kind if known is not None else None)
+    if kind is not None and not isinstance(said, Gone) and said.kind != kind:
+        return Refusal(
+            said.entity, f"'{heard.plugin}' speaks of {said.entity} as {said.kind}, and it is of kind {kind}"
+        )
     time = now if said.time is None else said.time
     if not math.isfinite(time) or time > now + MOST_AHEAD:
         ahead = f"gives times more than {MOST_AHEAD:g} s ahead"
@@ -74,7 +79,12 @@ def placement_seen(c: Configuration, shape: Placed | None, sighting: Sighting) -
     banded = shape is not None and shape.altitude is not None
     placed = Placed(geometry, (said.altitude or shape.altitude) if shape is not None and banded else None)
     by = said.carried_by
-    return Carried(by, placed) if by is not None and by in c.setting.kinds else placed
+    return Carried(by, placed) if by is not None and _may_carry(c, by, said.entity) else placed
+
+
+def _may_carry(c: Configuration, by: Name, entity: Name) -> bool:
+    """Tell whether something is there that may carry an entity: nothing is carried by itself, over others neither."""
+    return by in c.setting.kinds and entity not in (by, *c.structure.physical.carriers(by))
 
 
 def _moved(shape: Geometry, to: Geometry) -> Geometry:

@@ -59,6 +59,8 @@ class Turning:
         self.failed = set(state.failed)
         self.reported = set(state.reported)
         self.told = state.told
+        self.shares = dict(state.shares)
+        self.coming: set[Name] = set()  # strangers that are about to be admitted
         self.quiet = state.quiet
         self.last = state.last
         self.fences = Fences(self.c)
@@ -92,6 +94,7 @@ class Turning:
             self.last,
             self.before.number + len(self.steps),
             self.told,
+            self.shares,
         )
         gathered = (tuple(self.steps), tuple(self.commands), tuple(self.findings), tuple(self.answers))
         again = None if self.again == math.inf else self.again

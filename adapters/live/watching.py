@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 
 from adapters.live.assumptions import broken_by_place, clause_of_leaving, relations
 from adapters.live.elsewhere import hear_of
 from adapters.live.flying import arrive, come_through, renew
 from adapters.live.orders import is_authority
-from adapters.live.sightings import Fences, Refusal, placement_seen, sighting_of
-from adapters.live.state import Answer, Heard, Saying, Sighting
+from adapters.live.sightings import Refusal, placement_seen, sighting_of
+from adapters.live.state import Answer, Heard, Saying
+from adapters.live.strangers import comes_in, place_strangers, remove_strangers
 from adapters.live.turning import Turning
 from adapters.plugin import (
     Accepted,
@@ -23,35 +25,38 @@ from adapters.plugin import (
     Hosts,
     LinkLost,
     LinkRestored,
+    Rebind,
     Rejected,
     Report,
     Trouble,
     Underway,
 )
 from semantics.cells import Cell
-from semantics.configuration import Configuration
 from semantics.environment import Appears, Leaves, Says
 from semantics.extension import say
-from semantics.observed import Sight, admitting, happening
+from semantics.observed import Sight, happening
 from semantics.parting import is_here, station_of
 from semantics.physical_model import Carried, Placed, Placement, channels_cell, placement_cell
 from semantics.rules import env
 from semantics.signature import REGION, Name
 from semantics.values import show
 
-MOST_NEWCOMERS = 1_000
-"""How many entities that nobody announced are taken in."""
+_IS_AT = re.compile(r"is at (\S+:[0-9]{1,5})")
+"""What is said of a vehicle that sends from another address than before."""
 
 
 def hear(turning: Turning, heard: Iterable[Heard]) -> None:
-    """Take in what plugins published: of each entity the newest."""
+    """Take in what plugins published: of each entity the newest. What the mission names has a step of its own."""
+    named = turning.plan.first.setting.kinds
     changed: dict[Name, None] = {}
     for each in heard:
         name = _merge(turning, each)
         if name is not None:
             changed[name] = None
     for entity in changed:
-        _place(turning, entity)
+        if entity in named:
+            _place(turning, entity)
+    place_strangers(turning, (entity for entity in changed if entity not in named))
     if turning.now >= turning.expires:
         _expire(turning)
 
@@ -65,29 +70,13 @@ def _merge(turning: Turning, heard: Heard) -> Name | None:
         return None
     if found is None:
         return None
-    if entity not in turning.c.setting.kinds and not _comes_in(turning, found):
+    if entity not in turning.c.setting.kinds and not comes_in(turning, heard.plugin, found):
         return None
     if entity not in turning.seen:
         turning.quiet = None  # commands may wait for it to be heard
     turning.seen[entity] = found
     turning.expires = min(turning.expires, found.until)
     return entity
-
-
-def _comes_in(turning: Turning, found: Sighting) -> bool:
-    """Tell whether what nobody announced is of a kind that the mission knows, and in one of its places."""
-    kind, c = found.property.kind, turning.c
-    if kind not in c.setting.signature.kinds:
-        return False
-    at = placement_seen(c, None, found)
-    if not isinstance(at, Placed) or not turning.around(found.property.entity, kind, at):
-        return False
-    known = len(c.setting.kinds) - len(turning.plan.first.setting.kinds)
-    if known >= MOST_NEWCOMERS:
-        message = f"more than {MOST_NEWCOMERS:,} entities that nobody announced; others are left out"
-        turning.find("trouble", "", message, once=True)
-        return False
-    return True
 
 
 # --- places -------------------------------------------------------------------------------------------
@@ -119,18 +108,15 @@ def _same_place(turning: Turning, entity: Name, here: Placement | None, seen: Pl
 
 
 def _move(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> None:
-    said = turning.seen[entity].property
-    admits = {} if entity in turning.c.setting.kinds else {entity: said.kind}
-    there = admitting(turning.c, admits)
-    broken = broken_by_place(turning.plan, there, entity, seen)
-    if here is None and _is_back(turning, there, entity, seen):
+    broken = broken_by_place(turning.plan, turning.c, entity, seen)
+    if here is None and _is_back(turning, entity, seen):
         broken = ""
     writes: dict[Cell, object] = {placement_cell(entity): seen}
     if here is None:
         writes[channels_cell(entity)] = _channels_of_newcomer(turning, entity)
-    around = sorted(Fences(there).holders(entity, there.setting.kind(entity), seen))
+    around = sorted(turning.around(entity, turning.c.setting.kind(entity), seen))
     verb = "appears in" if here is None else "is seen in"
-    sight = Sight(f"{entity} {verb} {', '.join(around) or REGION}", writes, admits)
+    sight = Sight(f"{entity} {verb} {', '.join(around) or REGION}", writes)
     if turning.observe(sight, happening(turning.c, sight)):
         if broken:
             turning.breaks(broken, entity)
@@ -138,12 +124,11 @@ def _move(turning: Turning, entity: Name, here: Placement | None, seen: Placemen
             renew(turning, entity)
 
 
-def _is_back(turning: Turning, there: Configuration, entity: Name, seen: Placement) -> bool:
+def _is_back(turning: Turning, entity: Name, seen: Placement) -> bool:
     """Tell whether an entity stands as it did before its vanishing broke an assumption: once is enough."""
     before = turning.missing.pop(placement_cell(entity), None)
-    return isinstance(before, Placed | Carried) and relations(there, entity, before) == relations(
-        there, entity, seen
-    )
+    c = turning.c
+    return isinstance(before, Placed | Carried) and relations(c, entity, before) == relations(c, entity, seen)
 
 
 def _channels_of_newcomer(turning: Turning, entity: Name) -> tuple[Name, ...]:
@@ -158,11 +143,15 @@ def _channels_of_newcomer(turning: Turning, entity: Name) -> tuple[Name, ...]:
 def _expire(turning: Turning) -> None:
     """Take out of P what was not heard for longer than its time to live."""
     old = sorted(name for name, sighting in turning.seen.items() if sighting.until <= turning.now)
+    named = turning.plan.first.setting.kinds
     for entity in old:
         del turning.seen[entity]
+        if entity not in named:
+            continue
         physical = turning.c.structure.physical
         if entity in physical and physical.transit(entity) is None and physical.carrier(entity) is None:
             _vanish(turning, entity)
+    remove_strangers(turning, (entity for entity in old if entity not in named))
     turning.expires = min((sighting.until for sighting in turning.seen.values()), default=math.inf)
 
 
@@ -286,6 +275,9 @@ def _restore(turning: Turning, entity: Name, *, rebooted: bool) -> None:
 def say_to(turning: Turning, saying: Saying) -> None:
     """Put a message into a mailbox, if the mission says that somebody may say it, and not too often."""
     agents = turning.c.alpha
+    if saying.agent in turning.plan.vehicles and saying.agent not in agents:
+        turning.answers.append(Answer(saying, _rebind(turning, saying)))
+        return
     if saying.agent in agents and not is_here(turning.c, saying.agent):
         there = station_of(turning.c, saying.agent)
         turning.answers.append(
@@ -305,3 +297,14 @@ def say_to(turning: Turning, saying: Saying) -> None:
     who = "" if saying.agent in agents else f"there is no bigActor '{saying.agent:.60}'; "
     what = f"what may be said now: {', '.join(left)}" if left else "nothing may be said any more"
     turning.answers.append(Answer(saying, f"{who}the mission does not say that this is said; {what}"))
+
+
+def _rebind(turning: Turning, saying: Saying) -> str:
+    """Let a vehicle be heard from another address, as an operator says; return why not, nothing if it is told so."""
+    found = _IS_AT.fullmatch(saying.message)
+    if found is None:
+        return (
+            f"{saying.agent} is a vehicle, of which is said where it is heard from now on: 'is at HOST:PORT'"
+        )
+    turning.commands.append(Rebind(turning.request_of("operator"), saying.agent, found[1]))
+    return ""

@@ -21,18 +21,15 @@ from adapters.mavlink.objections import impassable, remarks, unfit
 from adapters.mavlink.pilot import Outcome, Pilot
 from adapters.mavlink.roster import Roster
 from adapters.mavlink.signing import Verdict
-from adapters.plugin import Aged, Command, Failed, GoTo, LinkLost, Refused, Report, World
+from adapters.plugin import Aged, Command, Failed, GoTo, LinkLost, Rebind, Refused, Report, World
 from adapters.transport import Port, Remote, open_port
 from adapters.troubles import Troubles
 from physical import Geometry, PhysicalError
 
 TICK: Final = 0.2
 HEARTBEAT: Final = 1.0
-SAVE: Final = 30.0
-"""Seconds between two writings of the signing state: half of what runs ahead on disk."""
-
 MAX_REMOTES: Final = 64
-"""Remote addresses with a parser each; the one unheard the longest gives way."""
+"""Remote addresses with a parser each; of those that no vehicle is at the one unheard the longest gives way."""
 
 Tap = Callable[[float, bytes], None]
 """Who wants every frame heard and said, with its time: a tlog."""
@@ -76,6 +73,7 @@ class Autopilot:
         self._decoders: OrderedDict[Remote, Decoder] = OrderedDict()
         self._encoders: dict[int, Encoder] = {}
         self._routes: dict[int, Remote] = {}
+        self._elsewhere: dict[int, set[Remote]] = {}
         self._troubles = Troubles(name)
         self._world: World | None = None
         self._listening = Listening(0.0)
@@ -122,6 +120,9 @@ class Autopilot:
         """Take on a command; raises Refused."""
         if self._world is None or not self.owns(command.entity):
             raise Refused(f"{command.entity} takes no commands from {self._name}", "start the plugin first")
+        if isinstance(command, Rebind):
+            self._rebind(self._pilots[command.entity], command.source)
+            return
         self._take(command.entity, piloting.command(self._pilots[command.entity], command, self._listened()))
 
     async def run(self, world: World) -> None:
@@ -129,9 +130,11 @@ class Autopilot:
         self._world, self._listening = world, Listening(world.now())
         try:
             async with open_port(self._address, self._receive) as self._port:
-                await asyncio.gather(self._ticking(world), self._beating(), self._saving())
+                await asyncio.gather(self._ticking(world), self._beating())
         finally:
-            self._save()
+            if self._keeper is not None:
+                self._keeper.save()
+                self._note_unsaved(self._keeper)
             self._troubles.report(world, now=True)
             self._world = self._port = None
 
@@ -150,16 +153,25 @@ class Autopilot:
             decoder = self._decoders[remote] = Decoder()
         self._decoders.move_to_end(remote)
         if len(self._decoders) > MAX_REMOTES:
-            self._decoders.popitem(last=False)
+            bound = frozenset(self._routes.values())
+            strange = next((each for each in self._decoders if each not in bound), remote)
+            del self._decoders[strange]
         return decoder
 
     def _believed(self, message: Message) -> bool:
         if self._keeper is None:
             return True
         verdict = self._keeper.judge(message)
+        self._note_unsaved(self._keeper)
         if verdict is not Verdict.GOOD:
             self._troubles.note(verdict.value, f"{message.name} of system {message.system}")
         return verdict is Verdict.GOOD
+
+    def _note_unsaved(self, keeper: Keeper) -> None:
+        if keeper.trouble:
+            detail = f"{keeper.trouble}: after a crash, packets could be replayed"
+            self._troubles.note("signing state not written", detail)
+            keeper.trouble = ""
 
     def _hear(self, remote: Remote, message: Message) -> None:
         assert self._world is not None
@@ -169,10 +181,40 @@ class Autopilot:
             return
         now = self._listened()
         pilot = self._pilot_of(message, remote, now)
-        if pilot is None or not self._is_for_us(message):
+        if pilot is None or not self._is_for_us(message) or not self._is_its_source(pilot, remote):
             return
-        self._routes[message.system] = remote
+        self._routes[pilot.system] = remote
         self._take(pilot.craft.entity, piloting.hear(pilot, message, now))
+
+    def _is_its_source(self, pilot: Pilot, remote: Remote) -> bool:
+        """Tell whether a vehicle is believed from an address: without signatures, from where it was heard first."""
+        bound = self._routes.get(pilot.system, remote)
+        if self._keeper is not None or bound == remote:
+            return True
+        others = self._elsewhere.setdefault(pilot.system, set())
+        if remote not in others and len(others) < MAX_REMOTES:
+            others.add(remote)
+            entity, there = pilot.craft.entity, _shown(remote)
+            detail = (
+                f"{entity} is believed from {_shown(bound)} alone, and something speaks for it from {there}"
+            )
+            remedy = f"if it has moved, say so once it is silent: bigactors say {entity} 'is at {there}'"
+            self._troubles.note(f"second source of {entity}", f"{detail}; {remedy}")
+        return False
+
+    def _rebind(self, pilot: Pilot, source: str) -> None:
+        """Believe a vehicle from another address, if the one before is silent."""
+        host, _, port = source.rpartition(":")
+        bound = self._routes.get(pilot.system)
+        entity = pilot.craft.entity
+        if self._keeper is not None:
+            self._troubles.note("source kept", f"{entity} signs, and is believed from any address")
+        elif bound is None or not pilot.link.lost:
+            at = "nowhere as yet" if bound is None else f"from {_shown(bound)}"
+            self._troubles.note("source kept", f"{entity} is heard {at}; it can move when it is silent")
+        else:
+            self._routes[pilot.system] = host.removeprefix("[").removesuffix("]"), int(port)
+            self._elsewhere.pop(pilot.system, None)
 
     def _overheard(self, message: Message) -> None:
         """Note that another ground station speaks to a vehicle of ours; what it says is not obeyed here."""
@@ -257,14 +299,10 @@ class Autopilot:
                     self._send(beat, remote)
             await asyncio.sleep(HEARTBEAT)
 
-    async def _saving(self) -> None:
-        while True:
-            self._save()
-            await asyncio.sleep(SAVE)
 
-    def _save(self) -> None:
-        if self._keeper is not None:
-            self._keeper.save()
+def _shown(remote: Remote) -> str:
+    host, port = remote
+    return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
 
 
 def _heartbeat() -> Message:

@@ -15,7 +15,7 @@ from adapters.mavlink.message import Message
 from adapters.mavlink.numbers import AUTHORITY_PARAMETERS, Cmd, Fence, MissionType
 from adapters.mavlink.profiles import Profile, TakeOff
 from adapters.mavlink.telemetry import Position, Telemetry
-from adapters.plugin import Command, Follow, GoTo, HandOver, Hold, Return
+from adapters.plugin import Command, Follow, GoTo, HandOver, Hold, Rebind, Return
 from physical import Band, Geometry, contains, distance, point, waypoint
 
 TARGET_METRES = 5.0
@@ -108,6 +108,8 @@ def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
             return _in_mode(vehicle, vehicle.profile.hold) or Underway(done=True)
         case Return():
             return _in_mode(vehicle, vehicle.profile.home) or Underway(done=_is_home(vehicle))
+        case Rebind():
+            raise AssertionError("it is done at once")
 
 
 def _prepared(vehicle: Vehicle) -> Step | None:

@@ -27,8 +27,11 @@ UNITS: Final = 100_000
 """Units of a time stamp in a second."""
 
 NEW_STREAM: Final = 60 * UNITS
-RESERVE: Final = 60 * UNITS
-"""How far the time stamp on disk runs ahead, so that a crash reuses none."""
+RESERVE: Final = 10 * UNITS
+"""How far time stamps on disk run ahead in a run: after a crash none is sent, and no packet believed, a second time.
+
+For as long a vehicle is not believed after a crash: until its own time stamps have come so far.
+"""
 
 KEY_BYTES: Final = 32
 _BLOCK: Final = 13  # link id, time stamp, signature
@@ -81,6 +84,20 @@ def stamp(signing: Signing, now: float) -> Signing:
     return replace(signing, timestamp=max(signing.timestamp + 1, int((now - EPOCH) * UNITS)))
 
 
+def ahead(signing: Signing) -> Signing:
+    """Return a state with every time stamp in reserve: what stands on disk while it is used."""
+    streams = {stream: time + RESERVE for stream, time in signing.streams.items()}
+    return replace(signing, timestamp=signing.timestamp + RESERVE, streams=streams)
+
+
+def covers(reserved: Signing, signing: Signing) -> bool:
+    """Tell whether a state on disk is at least as far as another in every time stamp."""
+    known = reserved.streams
+    return reserved.timestamp >= signing.timestamp and all(
+        known.get(stream, -1) >= time for stream, time in signing.streams.items()
+    )
+
+
 def setup_signing(key: bytes, now: float, system: int, component: int = 1) -> Message:
     """Return the message that gives a vehicle its key, in clear: send it by cable only."""
     return say(
@@ -115,7 +132,7 @@ def save(signing: Signing, path: Path) -> None:
     """Write the state for a later run, readable by its owner only, whole or not at all."""
     data = {
         "key": signing.key.hex(),
-        "timestamp": signing.timestamp + RESERVE,
+        "timestamp": signing.timestamp,
         "streams": {".".join(map(str, stream)): time for stream, time in sorted(signing.streams.items())},
     }
     beside = path.with_name(f"{path.name}.new")

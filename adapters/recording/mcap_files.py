@@ -12,6 +12,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
+from adapters.disk import writing
 from adapters.recording.decompression import opened
 
 MAGIC: Final = b"\x89MCAP0\r\n"
@@ -22,8 +23,6 @@ RECORD, COUNT = struct.Struct("<BQ"), struct.Struct("<Q")
 SAID, CHUNKED = struct.Struct("<HIQQ"), struct.Struct("<QQQII")
 """How a message begins: channel, number, when logged, when published. How a chunk does: from when, until when, bytes
 that it yields, their checksum, and how long the name of its compression is."""
-
-from adapters.disk import writing
 
 MOST_BYTES = 8 * 2**20
 """The longest record that is read; missions hold a megabyte."""

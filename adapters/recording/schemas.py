@@ -102,7 +102,7 @@ STEP: Final = _object(
 COMMAND: Final = _object(
     "What a vehicle is told: written before it is sent.",
     ("command", "request", "entity"),
-    command={"enum": ["GoTo", "Follow", "HandOver", "Hold", "Return"]},
+    command={"enum": ["GoTo", "Follow", "HandOver", "Hold", "Return", "Rebind"]},
     request=_TEXT,
     entity=_TEXT,
     ring=_RING,
@@ -110,6 +110,7 @@ COMMAND: Final = _object(
     name=_TEXT,
     leave=_TEXT,
     join=_TEXT,
+    source={**_TEXT, "description": "Where the vehicle is heard from now on."},
 )
 
 REPORTS: Final = (

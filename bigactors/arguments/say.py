@@ -6,8 +6,14 @@ from bigactors.arguments.values import named
 
 def fill(parser: Parser) -> None:
     """Add the arguments of `bigactors say`."""
-    parser.add_argument("agent", metavar="AGENT", help="a bigActor of the running mission")
-    parser.add_argument("message", metavar="MESSAGE", help="what its environment section says may be said")
+    parser.add_argument(
+        "agent", metavar="AGENT", help="a bigActor of the running mission, or one of its vehicles"
+    )
+    parser.add_argument(
+        "message",
+        metavar="MESSAGE",
+        help="what its environment section says may be said; of a vehicle 'is at HOST:PORT'",
+    )
     parser.add_argument(
         "--socket",
         metavar="FILE",
@@ -20,7 +26,8 @@ COMMAND = Command(
     "say",
     "say something to a bigActor of a running mission",
     "Put a message into the mailbox of a bigActor, as the mission's environment section says that someone may:\n"
-    "what it does not say is refused, with what may be said instead.",
-    ("bigactors say op handover",),
+    "what it does not say is refused, with what may be said instead. Of a vehicle on an unsigned link it is said\n"
+    "where it is heard from now on, once it is silent at the address before.",
+    ("bigactors say op handover", "bigactors say uav0 'is at 192.168.1.7:14555'"),
     fill,
 )

@@ -380,6 +380,47 @@ def test_a_detection_cannot_take_the_name_of_a_vehicle_and_a_token_is_asked_for(
     run(main())
 
 
+@pytest.mark.parametrize(
+    ("host", "status"),
+    [
+        ("127.0.0.1", 200),
+        ("localhost:8080", 200),
+        ("LOCALHOST", 200),
+        ("[::1]:8080", 200),
+        ("evil.example", 421),
+        ("127.0.0.1.evil.example:8080", 421),
+        ("192.0.2.7", 421),
+        ("", 421),
+    ],
+)
+def test_a_page_whose_name_was_made_to_stand_for_this_machine_can_do_nothing(host, status):
+    async def main():
+        world, plugin = World(), Detections("camera", listen=Listen(0))
+        async with running(plugin.run(world)), aiohttp.ClientSession(headers={"Host": host}) as session:
+            await until(lambda: plugin.port)
+            async with session.post(posting(plugin), json=json.loads(write_geojson([SPILL]))) as answer:
+                assert answer.status == status
+            async with session.delete(posting(plugin, "/detections/oilSpill0")) as answer:
+                assert answer.status == status
+            assert len(world.published) == (2 if status == 200 else 0)
+
+    run(main())
+
+
+def test_what_another_source_has_named_cannot_be_withdrawn_by_a_detection():
+    async def main():
+        world, naming = World(), NamingService()
+        naming.name("name:drifter0")  # a location service has it
+        plugin = Detections("camera", listen=Listen(0), naming=naming)
+        async with running(plugin.run(world)), aiohttp.ClientSession() as session:
+            await until(lambda: plugin.port)
+            async with session.delete(posting(plugin, "/detections/drifter0")) as answer:
+                assert answer.status == 404
+            assert world.published == []
+
+    run(main())
+
+
 def test_detections_are_read_from_a_folder_when_a_file_is_new_or_changed(tmp_path):
     async def main():
         world = World()

@@ -1,14 +1,17 @@
 """MAVLink 2 signing: forged, unsigned and replayed packets are neither obeyed by a vehicle nor believed of one."""
 
 import asyncio
+import shutil
 import socket
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega
 from worlds import AREA, EPOCH, flight, until
 
+from adapters.mavlink import signing
 from adapters.mavlink.codec import Decoder, Encoder
 from adapters.mavlink.command import long
+from adapters.mavlink.keys import Keeper
 from adapters.mavlink.message import say
 from adapters.mavlink.numbers import Cmd
 from adapters.mavlink.signing import Signing, Verdict, check, load, new_key, save, setup_signing, stamp
@@ -162,6 +165,48 @@ def test_a_vehicle_that_does_not_sign_is_not_believed(tmp_path):
             await asyncio.sleep(30)
             assert f.world.published == []
             assert "unsigned packet" in f.world.troubles()
+
+    run(main())
+
+
+def test_after_a_kill_no_packet_that_was_believed_is_believed_again_and_no_time_stamp_sent(tmp_path):
+    path = tmp_path / "key.json"
+    save(Signing(KEY), path)
+    keeper, believed, sent = Keeper(path), [], 0
+    for second in range(0, 60, 3):
+        believed.append(frame(KEY, NOW + second + 0.5, system=1))
+        if second > 40:  # a stream that is heard for the first time shortly before the end
+            believed.append(frame(KEY, NOW + second + 0.7, system=2))
+        sent = keeper.stamp(NOW + second)
+    assert {keeper.judge(heard(raw)) for raw in believed} == {Verdict.GOOD}
+    again = Keeper(path)  # what stood on disk at any moment
+    assert {again.judge(heard(raw)) for raw in believed} == {Verdict.REPLAYED}
+    assert again.stamp(NOW) > sent
+    assert (
+        again.judge(heard(frame(KEY, NOW + 60 + 10, system=1))) is Verdict.GOOD
+    )  # it has waited for the reserve
+
+
+def test_the_file_is_written_each_ten_seconds_not_with_each_packet(tmp_path, monkeypatch):
+    path = tmp_path / "key.json"
+    save(Signing(KEY), path)
+    keeper, written = Keeper(path), []
+    monkeypatch.setattr(signing, "save", lambda state, _path: written.append(state))
+    for tenth in range(1, 301):
+        keeper.judge(heard(frame(KEY, NOW + tenth / 10, system=1)))
+    assert len(written) == 3
+
+
+def test_a_state_that_cannot_be_written_is_said_and_nobody_is_kept_from_flying(tmp_path):
+    folder = tmp_path / "keys"
+    folder.mkdir()
+    save(Signing(KEY), folder / "key.json")
+
+    async def main():
+        async with flight(key_file=folder / "key.json", signing=Signing(KEY)) as f:
+            shutil.rmtree(folder)
+            await until(lambda: f.world.property("uav0"))
+            await until(lambda: "signing state not written" in f.world.troubles())
 
     run(main())
 

@@ -3,10 +3,12 @@
 import stat
 import subprocess
 import sys
+from contextlib import nullcontext
 
 import pytest
 
 from adapters.mavlink.signing import load
+from adapters.naming import NameClash
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
 from bigactors.fences import fence_of
@@ -138,7 +140,9 @@ def test_vehicles_with_one_system_id_on_two_links_both_have_their_names(mission,
     )
     more = ["--vehicle=uav1:1=udp:2", "--feed=detections=folder:."]
     *_, feed = plugins(*more, mission=str(tmp_path / "m.mission"), vehicle="--vehicle=uav0:1=udp:1")
-    assert (feed._naming.identity("uav0"), feed._naming.identity("uav1")) == ("mavlink:1", "vehicle:uav1")
+    for name, holder in (("uav0", "mavlink:1"), ("uav1", "vehicle:uav1")):
+        with pytest.raises(NameClash, match=f"as {holder} is"):
+            feed._naming.name(f"name:{name}")
 
 
 # --- feeds ----------------------------------------------------------------------------------------------
@@ -168,9 +172,22 @@ def test_who_listens_to_the_network_asks_for_a_token(tmp_path):
 def test_a_place_that_never_moves_can_be_detected_where_its_kind_is_expected():
     for more, clashes in (((), True), (("--kinds=detections=Location",), False)):
         _, feed = plugins("--feed=detections=folder:.", *more)
-        assert (feed._naming.identity("searchArea0") == "place:searchArea0") == clashes
-        if not clashes:
-            assert feed._naming.name("name:searchArea0") == "searchArea0"
+        with pytest.raises(NameClash, match="as place:searchArea0 is") if clashes else nullcontext():
+            assert feed._naming.name("name:searchArea0", "Location") == "searchArea0"
+
+
+def test_a_station_cannot_be_detected_whatever_its_kind_unless_the_table_says_which_transponder_it_has():
+    _, feed = plugins("--feed=detections=folder:.", "--kinds=detections=Station")
+    with pytest.raises(NameClash, match="name:gcs0 would be called gcs0, as station:gcs0 is"):
+        feed._naming.name("name:gcs0", "Station")
+    _, feed = plugins("--feed=ais=udp:0", "--name=mmsi:244660274=gcs0")
+    assert feed._naming.name("mmsi:244660274", "BaseStation") == "gcs0"
+
+
+def test_what_is_detected_is_of_the_kind_that_the_mission_has_it_as():
+    _, feed = plugins("--feed=detections=folder:.")
+    with pytest.raises(NameClash, match="oilSpill0 is of kind OilSpill in the mission, not Drifter"):
+        feed._naming.name("name:oilSpill0", "Drifter")
 
 
 # --- keys -----------------------------------------------------------------------------------------------

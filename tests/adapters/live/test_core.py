@@ -4,7 +4,7 @@ from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 from adapters.live.core import resumed, watch
 from adapters.live.state import Batch, Heard, Plan, Saying
 from adapters.live.turning import MOST_REPORTED
-from adapters.plugin import Aged, Gone, GoTo, HandOver, Hold, LinkLost, LinkRestored, Rejected, Return
+from adapters.plugin import Aged, Gone, GoTo, HandOver, Hold, LinkLost, LinkRestored, Rebind, Rejected, Return
 from physical import PhysicalProperty, polygon
 from semantics.physical_model import InTransit, Placed
 from semantics.precautions import Fallback, Precautions, TimeLimit
@@ -452,3 +452,18 @@ def test_a_channel_that_nothing_shows_to_be_joined_is_never_committed():
     assert run.kinds() == ["blocked"]
     assert "nothing shows that uav0 joins or leaves wifi" in run.findings[0].message
     assert run.state.configuration.structure.physical.channels("uav0") == ("control:gcs0",)
+
+
+def test_an_operator_says_that_a_vehicle_is_heard_from_another_address():
+    run = Run(plan_of(TOUR))
+    for number, message in enumerate(
+        ("is at 127.0.0.1:5555", "is at home", "is at [::1]:99", "is at h:123456")
+    ):
+        run.turn(float(number), sayings=[Saying("uav0", message)])
+    refusal = "uav0 is a vehicle, of which is said where it is heard from now on: 'is at HOST:PORT'"
+    assert [answer.refusal for answer in run.answers] == ["", refusal, "", refusal]
+    assert run.commands == [
+        Rebind("operator-1", "uav0", "127.0.0.1:5555"),
+        Rebind("operator-2", "uav0", "[::1]:99"),
+    ]
+    assert run.steps == []

@@ -7,6 +7,7 @@ import asyncio
 import json
 import socket
 from collections import deque
+from contextlib import suppress
 from functools import partial
 
 import aiohttp
@@ -114,11 +115,11 @@ def test_a_receiver_that_fails_says_zero_and_comes_back_only_delays_the_mission(
 
 
 def test_a_clock_in_the_past_or_future_changes_nothing(flying):
-    async def liar(flight, _simulator, witness):
-        encoder = Encoder(1, 1)
+    async def liar(_flight, simulator, witness):
         await airborne(witness)
         for clock in (0, 1, 2**32 - 1) * 7:
-            _post(flight, encoder.pack(say("SYSTEM_TIME", time_unix_usec=2**60, time_boot_ms=clock)))
+            time = say("SYSTEM_TIME", time_unix_usec=2**60, time_boot_ms=clock)
+            simulator._broadcast(witness.vehicle, [time])
             await asyncio.sleep(1)
 
     flown = flying(SHUTTLE, copter(speedup=3.0), foe=liar)
@@ -166,6 +167,9 @@ def test_a_station_that_the_vehicle_obeys_too_ends_the_flight_and_nothing_is_com
     assert flown.inside("west0")  # returned, as the mission says of a flight that takes too long
 
 
+NO_FIX = {"alt": 0, "eph": 0, "epv": 0, "vel": 0, "cog": 0, "satellites_visible": 9}
+
+
 def position(at, clock):
     fields = {"alt": 120_000, "relative_alt": 100_000, "vx": 0, "vy": 0, "vz": 0, "hdg": 0}
     return say(
@@ -202,6 +206,29 @@ def test_forged_unsigned_and_replayed_packets_that_say_it_has_arrived_commit_not
     for trouble in ("unsigned packet", "forged signature", "replayed packet"):
         assert trouble in told
     assert signing.load(tmp_path / "key.json").timestamp > 0
+
+
+def test_a_second_source_that_says_that_it_has_arrived_commits_nothing_and_hears_no_command(flying):
+    heard = []
+
+    async def impostor(flight, _simulator, witness):
+        await airborne(witness)
+        encoder, clock = Encoder(1, 1), 10**7
+        fix = say("GPS_RAW_INT", time_usec=0, fix_type=3, lat=0, lon=0, **NO_FIX)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+            link.setblocking(False)
+            while "commit" not in witness.rules:
+                clock += 100
+                for message in (beat(2, 3), fix, position(EAST, clock)):
+                    link.sendto(encoder.pack(message), flight.plugins[0].local)
+                await asyncio.sleep(0.1)
+                with suppress(BlockingIOError):
+                    heard.append(link.recv(2_000))
+
+    flown = flying(SHUTTLE, copter(), foe=impostor)  # each commit is held against where the vehicle was
+    assert flown.ended
+    assert heard == []
+    assert flown.witness.told().count("second source of uav0") == 1
 
 
 # --- names ----------------------------------------------------------------------------------------------

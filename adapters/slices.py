@@ -1,0 +1,19 @@
+"""Much at once, a little at a time: whoever takes in a long list lets others be served in between."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Iterable
+from typing import Final, TypeVar
+
+AT_ONCE: Final = 50
+
+Item = TypeVar("Item")
+
+
+async def in_slices(items: Iterable[Item]) -> AsyncIterator[Item]:
+    """Yield the items, and let the event loop go on after every 50 of them."""
+    for number, item in enumerate(items, 1):
+        yield item
+        if number % AT_ONCE == 0:
+            await asyncio.sleep(0)
