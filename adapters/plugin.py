@@ -122,7 +122,15 @@ class Return:
     entity: str
 
 
-Command = GoTo | Follow | HandOver | Hold | Return
+@dataclass(frozen=True, slots=True)
+class GiveBack:
+    """Take commands again: an operator has given back the vehicle, which had been taken over."""
+
+    request: str
+    entity: str
+
+
+Command = GoTo | Follow | HandOver | Hold | Return | GiveBack
 """What a vehicle can be told. A new one for the same entity ends what it was told before, HandOver excepted."""
 
 
@@ -152,7 +160,7 @@ class Arrived:
     """The vehicle's position, or for a hand-over its authority, shows that the request is done.
 
     Of a path it says that all of it is behind the vehicle, which no position shows. Whether the request is done in
-    logical space is decided by the rules, from what is published, not from this.
+    logical space is decided by the rules, from what is published once it was accepted, not from this.
     """
 
     request: str
@@ -165,6 +173,19 @@ class Rejected:
     """A request that was taken on turned out not to be possible: the vehicle refuses, or answers no more."""
 
     request: str
+    entity: str
+    time: float
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class TakenOver:
+    """The vehicle does what nobody here ordered: a pilot, another station, a fail-safe or a reboot has it.
+
+    All that it is told is refused until `GiveBack`. While this may be so, but is not certain as yet, nothing is
+    published of the vehicle: where it goes is no arrival.
+    """
+
     entity: str
     time: float
     reason: str
@@ -264,7 +285,7 @@ class Broken:
 Elsewhere = Delivered | Underway | Hosts | Believes | Broken
 """What is reported of other stations."""
 
-Report = Accepted | Arrived | Rejected | LinkLost | LinkRestored | Trouble | Elsewhere
+Report = Accepted | Arrived | Rejected | TakenOver | LinkLost | LinkRestored | Trouble | Elsewhere
 
 # --- who talks to whom ------------------------------------------------------------------------------
 
@@ -324,6 +345,7 @@ __all__ = [
     "Delivered",
     "Elsewhere",
     "Follow",
+    "GiveBack",
     "GoTo",
     "Gone",
     "HandOver",
@@ -337,6 +359,7 @@ __all__ = [
     "Rejected",
     "Report",
     "Return",
+    "TakenOver",
     "Trouble",
     "Underway",
     "World",

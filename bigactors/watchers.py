@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
@@ -28,11 +28,13 @@ class Terminal:
     Attributes:
         resting: Which verdicts rest on what broke.
         broken: Whether an assumption broke.
+        taken: Which vehicles were taken over, and how.
     """
 
     resting: Resting
     broken: bool = field(default=False)
     began: float | None = None
+    taken: Mapping[str, str] = field(default_factory=dict)
 
     def arrived(self, heard: Heard, now: float) -> None:
         """Print nothing: positions come all the time."""
@@ -43,6 +45,7 @@ class Terminal:
     def turned(self, turn: Turn, now: float) -> None:
         """Print what a turn came to."""
         self.began = now if self.began is None else self.began
+        self.taken = turn.state.taken
         for step in turn.steps:
             label = step.transition.label
             if label.rule in TOLD:

@@ -9,11 +9,11 @@ import asyncio
 import gc
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
-from adapters.live.core import advance, is_over, watch
-from adapters.live.state import Answer, Batch, Finding, Heard, LiveState, Plan, Saying, Turn
+from adapters.live.core import advance, is_over, is_refused, watch
+from adapters.live.state import Answer, Batch, Finding, Heard, LiveState, Plan, Said, Saying, Turn
 from adapters.plugin import Aged, Command, Plugin, Published, Refused, Rejected, Report
 
 GATHER = 0.002
@@ -87,7 +87,7 @@ class Inbox:
     awake: asyncio.Event = field(default_factory=asyncio.Event)
     heard: dict[tuple[str, str], Heard] = field(default_factory=dict)
     reports: list[Report] = field(default_factory=list)
-    sayings: list[tuple[Saying, asyncio.Future[Answer]]] = field(default_factory=list)
+    sayings: list[tuple[Said, asyncio.Future[Answer]]] = field(default_factory=list)
 
     def publish(self, plugin: str, published: Published) -> None:
         """Take what a plugin publishes; what it said before of the same entity is not needed any more."""
@@ -108,14 +108,14 @@ class Inbox:
         self.reports.append(report)
         self.awake.set()
 
-    def say(self, agent: str, message: str) -> asyncio.Future[Answer]:
+    def say(self, said: Said) -> asyncio.Future[Answer]:
         """Take what someone says; the answer comes with the next turn."""
-        saying = Saying(agent, message, len(self.sayings))
+        said = replace(said, number=len(self.sayings))
         answer: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
         if len(self.sayings) >= MOST_SAYINGS:
-            answer.set_result(Answer(saying, "too much is being said at once; say it again"))
+            answer.set_result(Answer(said, "too much is being said at once; say it again"))
         else:
-            self.sayings.append((saying, answer))
+            self.sayings.append((said, answer))
             self.awake.set()
         return answer
 
@@ -228,9 +228,8 @@ class LiveRun:
                 suspended=False
             )  # who flies unverified has been told what is otherwise
         for order in (*self.state.orders.values(), *self.state.handing.values()):
-            self._orders.put_nowait(
-                order.command
-            )  # of a run that is resumed: its vehicles have been compared
+            if order.command.entity not in self.state.taken:  # of a run that is resumed: it was compared
+                self._orders.put_nowait(order.command)
 
     def _refuse(self, answers: list[asyncio.Future[Answer]]) -> None:
         for answer in answers:
@@ -248,6 +247,8 @@ class LiveRun:
             again = turn.again
             if until(self.state):
                 return Ending("the mission has ended", self.state)
+            if again is None and is_refused(self.state):
+                return Ending("what was left to be done was refused", self.state)
             if end is not None and self.clock() >= end:
                 return Ending("the time is over", self.state)
 

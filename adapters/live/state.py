@@ -52,13 +52,17 @@ class Order:
         command: What it was told last.
         agent: Whose request it serves.
         since: When it was first told.
+        obeyed: Whether the vehicle has shown that it does it, and nothing since that it does not.
         through: Whether the vehicle has said that the path that it was told is behind it.
+        refused: Whether it turned out not to be possible.
     """
 
     command: GoTo | Follow | HandOver
     agent: Name
     since: float
+    obeyed: bool = False
     through: bool = False
+    refused: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +93,7 @@ class LiveState:
         orders: Where each vehicle in flight was told to go.
         handing: Which hand-over each vehicle was told, and has not confirmed.
         lost: Vehicles whose link is lost.
+        taken: Vehicles that were taken over, and how: nobody here commands them until an operator gives them back.
         idle: Agents that cannot go on by themselves: they wait for an observation, a message, or for ever.
         quiet: The configuration in which nothing more could be served, None if that is not known.
         heads: What stands at the head of each agent's line.
@@ -108,6 +113,7 @@ class LiveState:
     orders: Mapping[Name, Order] = field(default_factory=dict)
     handing: Mapping[Name, Order] = field(default_factory=dict)
     lost: frozenset[Name] = frozenset()
+    taken: Mapping[Name, str] = field(default_factory=dict)
     idle: frozenset[Name] = frozenset()
     quiet: Configuration | None = None
     heads: Mapping[Name, Waiting] = field(default_factory=dict)
@@ -146,12 +152,24 @@ class Saying:
 
 
 @dataclass(frozen=True, slots=True)
+class GivingBack:
+    """An operator's word that a vehicle that was taken over may be commanded again."""
+
+    vehicle: Name
+    number: int = 0
+
+
+Said = Saying | GivingBack
+"""What is said to a run from outside."""
+
+
+@dataclass(frozen=True, slots=True)
 class Batch:
     """All that came in since the last turn, in its order."""
 
     heard: tuple[Heard, ...] = ()
     reports: tuple[Report, ...] = ()
-    sayings: tuple[Saying, ...] = ()
+    sayings: tuple[Said, ...] = ()
 
 
 # --- what comes out -----------------------------------------------------------------------------------
@@ -183,7 +201,8 @@ class Finding:
     """Something that the operator has to know.
 
     Attributes:
-        kind: `broken assumption`, `refused`, `lost link`, `link restored`, `late`, `blocked`, `failed`, `trouble`.
+        kind: `broken assumption`, `refused`, `taken over`, `given back`, `lost link`, `link restored`, `late`,
+            `blocked`, `failed`, `trouble`.
         about: The entity or agent.
         message: One line.
         time: When.
@@ -201,9 +220,9 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What came of a saying: an empty text if it was said, else why it was not."""
+    """What came of what was said: an empty text if it was taken, else why it was not."""
 
-    saying: Saying
+    saying: Said
     refusal: str = ""
 
 

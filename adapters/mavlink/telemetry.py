@@ -32,6 +32,13 @@ FIX_SECONDS: Final = 10.0
 BACKWARDS: Final = 5_000
 """Milliseconds by which the vehicle's clock must go back to mean a reboot: less is a late packet."""
 
+MEMORY: Final = 60.0
+"""Seconds for which what it said may be the reason of what it does."""
+
+MOST_WORDS: Final = 3
+WARNING: Final = 4
+"""MAV_SEVERITY_WARNING: what is less urgent has a larger number."""
+
 NOWHERE: Final = 0.01
 """Degrees around (0, 0) in which nobody is: what an autopilot says before its filter has settled."""
 
@@ -72,7 +79,8 @@ class Telemetry:
         suspect: What its clock said when it first seemed to have gone back.
         placed: What its clock said of its position: of when it was measured, which is before other messages.
         boots: How often it was seen to boot anew.
-        said: The last text that it said.
+        words: What it said last that was a warning or worse, with the times.
+        beat: When its last heartbeat came.
     """
 
     heard: float | None = None
@@ -90,7 +98,8 @@ class Telemetry:
     authority: int | None = None
     clock: int | None = None
     boots: int = 0
-    said: str = ""
+    words: tuple[tuple[float, str], ...] = ()
+    beat: float | None = None
     suspect: int | None = None
     placed: int | None = None
 
@@ -98,6 +107,11 @@ class Telemetry:
     def flying(self) -> bool:
         """Whether it is off the ground, as it says."""
         return bool(self.armed and self.active)
+
+    def last_words(self, now: float) -> str:
+        """Return what it has warned of of late, to be put behind a reason; nothing if it has not."""
+        lately = [text for time, text in self.words if now - time <= MEMORY]
+        return f"; its last words: {', '.join(map(repr, dict.fromkeys(lately)))}" if lately else ""
 
 
 def absorb(known: Telemetry, message: Message, now: float) -> Telemetry:
@@ -134,11 +148,13 @@ def _clocked(known: Telemetry, clock: int | None, now: float) -> Telemetry:
     return Telemetry(heard=now, profile=known.profile, clock=clock, boots=known.boots + 1)
 
 
-def _heartbeat(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
+def _heartbeat(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
     profile = profile_of(said["type"], said["autopilot"])
     mode = said["custom_mode"] if said["base_mode"] & ModeFlag.CUSTOM_MODE else None
     armed = bool(said["base_mode"] & ModeFlag.ARMED)
-    return replace(known, profile=profile, mode=mode, armed=armed, active=said["system_status"] >= ACTIVE)
+    return replace(
+        known, profile=profile, mode=mode, armed=armed, active=said["system_status"] >= ACTIVE, beat=now
+    )
 
 
 def _fix(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
@@ -195,8 +211,11 @@ def _parameter(known: Telemetry, said: Mapping[str, Any], _now: float) -> Teleme
     return replace(known, authority=round(said["param_value"]))
 
 
-def _text(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
-    return replace(known, said="".join(filter(str.isprintable, said["text"])))
+def _text(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
+    text = "".join(filter(str.isprintable, said["text"])).strip()
+    if said["severity"] > WARNING or not text:
+        return known
+    return replace(known, words=(*known.words, (now, text))[-MOST_WORDS:])
 
 
 _READERS: Final[Mapping[str, Callable[[Telemetry, Mapping[str, Any], float], Telemetry]]] = MappingProxyType(

@@ -25,7 +25,13 @@ FIX_AFTER: Final = 10.0
 READY_AFTER: Final = 19.0
 """Seconds after boot at which it has a fix, and could be armed; before, it says that it is near (0, 0)."""
 
-PARAMETERS: Final = {AUTHORITY_PARAMETER: 255.0, "WP_RADIUS": WAYPOINT_RADIUS}
+PARAMETERS: Final = {
+    AUTHORITY_PARAMETER: 255.0,
+    "WP_RADIUS": WAYPOINT_RADIUS,
+    "BATT_LOW_VOLT": 10.5,
+    "BATT_LOW_TIMER": 10.0,
+    "BATT_FS_LOW_ACT": 0.0,
+}
 
 
 class Kind(Enum):
@@ -45,6 +51,11 @@ class Kind(Enum):
     def limits(self) -> Limits:
         """What it can do."""
         return self.value[2]
+
+    @property
+    def returns(self) -> float:
+        """The value of BATT_FS_LOW_ACT with which a low battery sends it home; 1 lets a copter land."""
+        return 2.0 if self is Kind.COPTER else 1.0
 
     @property
     def radius(self) -> float:
@@ -76,6 +87,10 @@ class Vehicle:
         fixed: Whether its receiver has satellites.
         fence: The polygon that it keeps within.
         serial: Its autopilot's serial number: at most 18 bytes.
+        voltage: Its battery's; when it is low for a while, the fail-safe acts once.
+        low: Since when it is low.
+        failed_safe: Whether the fail-safe has acted since it booted.
+        words: What it has to say.
     """
 
     kind: Kind
@@ -98,6 +113,10 @@ class Vehicle:
     body: Body = field(init=False)
     store: Store = field(init=False)
     reached: list[int] = field(default_factory=list)
+    voltage: float = 12.6
+    low: float | None = None
+    failed_safe: bool = False
+    words: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         latitude, longitude, altitude = self.home
@@ -131,6 +150,12 @@ class Vehicle:
         self.current, self.target = 0, None
         self.mode = self.mode if self.armed else 0
         self.store.receiving = None
+        self.low, self.failed_safe = None, False
+
+    def restart(self) -> None:
+        """Boot anew on the ground at home, as a simulator does that was killed in flight and started again."""
+        self.reboot()
+        self.body = Body(*self.home[:2])
 
     # --- moving -----------------------------------------------------------------------------------
 
@@ -140,6 +165,7 @@ class Vehicle:
         if not self.armed or seconds <= 0:
             return
         self._keep_fence()
+        self._watch_battery()
         profile = self.kind.profile
         if self.mode == profile.auto:
             self._follow(seconds)
@@ -154,6 +180,19 @@ class Vehicle:
         """Return as soon as it is outside its fence."""
         here = point(self.body.latitude, self.body.longitude)
         if self.fence is not None and not contains(self.fence, here):
+            self.mode = self.kind.profile.home
+
+    def _watch_battery(self) -> None:
+        """Return once the battery is low, if the parameters say so; who sends it on after that has overruled it."""
+        if self.voltage >= self.parameters["BATT_LOW_VOLT"] or self.failed_safe:
+            self.low = None
+            return
+        self.low = self.time if self.low is None else self.low
+        if self.time - self.low < self.parameters["BATT_LOW_TIMER"]:
+            return
+        self.failed_safe = True
+        self.words.append(f"Battery 1 is low {self.voltage:.2f}V used 0 mAh")
+        if self.parameters["BATT_FS_LOW_ACT"] == self.kind.returns:
             self.mode = self.kind.profile.home
 
     def _follow(self, seconds: float) -> None:

@@ -8,6 +8,11 @@ def fill(parser: Parser) -> None:
     """Add the arguments of `bigactors say`."""
     parser.add_argument("agent", metavar="AGENT", help="a bigActor of the running mission")
     parser.add_argument("message", metavar="MESSAGE", help="what its environment section says may be said")
+    add_socket(parser)
+
+
+def add_socket(parser: Parser) -> None:
+    """Add the option that says which running mission is meant."""
     parser.add_argument(
         "--socket",
         metavar="FILE",
