@@ -131,7 +131,15 @@ class Rebind:
     source: str
 
 
-Command = GoTo | Follow | HandOver | Hold | Return | Rebind
+@dataclass(frozen=True, slots=True)
+class GiveBack:
+    """Take commands again: an operator has given back the vehicle, which had been taken over."""
+
+    request: str
+    entity: str
+
+
+Command = GoTo | Follow | HandOver | Hold | Return | GiveBack | Rebind
 """What a vehicle can be told. A new one for the same entity ends what it was told before; HandOver and Rebind don't."""
 
 
@@ -161,7 +169,7 @@ class Arrived:
     """The vehicle's position, or for a hand-over its authority, shows that the request is done.
 
     Of a path it says that all of it is behind the vehicle, which no position shows. Whether the request is done in
-    logical space is decided by the rules, from what is published, not from this.
+    logical space is decided by the rules, from what is published once it was accepted, not from this.
     """
 
     request: str
@@ -174,6 +182,19 @@ class Rejected:
     """A request that was taken on turned out not to be possible: the vehicle refuses, or answers no more."""
 
     request: str
+    entity: str
+    time: float
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class TakenOver:
+    """The vehicle does what nobody here ordered: a pilot, another station, a fail-safe or a reboot has it.
+
+    All that it is told is refused until `GiveBack`. While this may be so, but is not certain as yet, nothing is
+    published of the vehicle: where it goes is no arrival.
+    """
+
     entity: str
     time: float
     reason: str
@@ -295,7 +316,7 @@ class Failed:
 Elsewhere = Delivered | Underway | Hosts | Believes | Broken
 """What is reported of other stations."""
 
-Report = Accepted | Arrived | Rejected | LinkLost | LinkRestored | Trouble | Failed | Elsewhere
+Report = Accepted | Arrived | Rejected | TakenOver | LinkLost | LinkRestored | Trouble | Failed | Elsewhere
 
 # --- who talks to whom ------------------------------------------------------------------------------
 
@@ -356,6 +377,7 @@ __all__ = [
     "Elsewhere",
     "Failed",
     "Follow",
+    "GiveBack",
     "GoTo",
     "Gone",
     "HandOver",
@@ -370,6 +392,7 @@ __all__ = [
     "Rejected",
     "Report",
     "Return",
+    "TakenOver",
     "Trouble",
     "Underway",
     "World",

@@ -18,7 +18,7 @@ from typing import Any
 from adapters.live.core import started
 from adapters.live.loop import LiveRun, settle
 from adapters.live.state import Heard, Plan, Turn
-from adapters.plugin import Aged, Command, GoTo, Report, World
+from adapters.plugin import Accepted, Aged, Command, GoTo, Report, World
 from adapters.recording.writing import Recorder
 from bigactors.terminal import say
 from bigactors.watchers import Tape
@@ -68,9 +68,11 @@ class Fleet:
         self.arrived: dict[str, float] = {}
         self.published = 0
         self.random = random.Random(1)
+        self.world: World | None = None
 
     async def run(self, world: World) -> None:
         """Publish until cancelled."""
+        self.world = world
         names = list(self.at)
         start = asyncio.get_running_loop().time()
         sent = 0
@@ -99,6 +101,8 @@ class Fleet:
             goal = centroid(command.place).vertices[0]
             flight = self.flight * (0.75 + 0.5 * self.random.random())
             self.goals[command.entity] = (time.perf_counter() + flight, goal)
+            assert self.world is not None
+            self.world.report(Accepted(command.request, command.entity, self.world.now()))
 
     def owns(self, entity: str) -> bool:
         """Tell whether it is one of the fleet."""

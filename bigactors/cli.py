@@ -23,7 +23,7 @@ def run(line: Sequence[str]) -> int:
     """Run one command line, and report what goes wrong."""
     try:
         options = parse_arguments(line)
-        return int(import_module(f"bigactors.commands.{options.command}").run(options))
+        return int(import_module(f"bigactors.commands.{options.command.replace('-', '_')}").run(options))
     except SystemExit as end:  # after --help and --version
         return int(end.code or 0)
     except Mistake as mistake:

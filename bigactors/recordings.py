@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -75,7 +75,8 @@ class Resumed:
         configuration: Where it was.
         steps: How many steps it took.
         orders: How many orders it gave.
-        messages: Its steps, to be recorded again.
+        messages: Its steps, and who was taken over and given back, to be recorded again.
+        taken: Which vehicles were taken over and not given back, and how.
         station: Which part of the mission it flew, None for the whole.
         left: What left for other stations, in its order.
     """
@@ -84,6 +85,7 @@ class Resumed:
     steps: int
     orders: int
     messages: tuple[Message, ...]
+    taken: Mapping[str, str]
     station: Parting | None = None
     left: tuple[Outgoing, ...] = ()
 
@@ -99,9 +101,30 @@ def resume(path: str, mission: ElaboratedMission) -> Resumed:
         trace = trace_of(recording, mission)
     except ReplayError as error:
         raise Mistake(f"it cannot be resumed: {error}", place=path) from error
-    steps, orders = recording.of("steps"), len(recording.of("commands"))
+    orders, taken = len(recording.of("commands")), tuple(_taken(recording))
+    kept = tuple(message for message in recording.messages if message.topic == "steps" or message in taken)
     left = tuple(_left(trace))
-    return Resumed(trace.configurations[-1], len(trace), orders, steps, parting_of(recording), left)
+    return Resumed(
+        trace.configurations[-1], len(trace), orders, kept, _still_taken(taken), parting_of(recording), left
+    )
+
+
+def _taken(recording: Recording) -> Iterator[Message]:
+    """Yield the messages that say that a vehicle was taken over or given back."""
+    for message in recording.messages:
+        taken = message.topic == "reports" and message.data.get("report") == "TakenOver"
+        if taken or (message.topic == "given_back" and not message.data.get("refusal")):
+            yield message
+
+
+def _still_taken(messages: Iterable[Message]) -> dict[str, str]:
+    taken: dict[str, str] = {}
+    for message in messages:
+        if message.topic == "reports":
+            taken[str(message.data.get("entity"))] = str(message.data.get("reason"))
+        else:
+            taken.pop(str(message.data.get("vehicle")), None)
+    return taken
 
 
 def _left(trace: Trace) -> Iterator[Outgoing]:

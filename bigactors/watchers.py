@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -33,11 +33,13 @@ class Terminal:
     Attributes:
         resting: Which verdicts rest on what broke.
         broken: Whether an assumption broke, or the recording or a plugin failed.
+        taken: Which vehicles were taken over, and how.
     """
 
     resting: Resting
     broken: bool = field(default=False)
     began: float | None = None
+    taken: Mapping[str, str] = field(default_factory=dict)
 
     def arrived(self, heard: Heard, now: float) -> None:
         """Print nothing: positions come all the time."""
@@ -48,6 +50,7 @@ class Terminal:
     def turned(self, turn: Turn, now: float) -> None:
         """Print what a turn came to."""
         self.began = now if self.began is None else self.began
+        self.taken = turn.state.taken
         for step in turn.steps:
             label = step.transition.label
             at = f"{step.time - self.began:8.1f} s "

@@ -6,15 +6,19 @@ the loop call the same.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from adapters.live.flying import remember
 from adapters.live.limits import check_limits
 from adapters.live.serving import in_turn
 from adapters.live.state import Batch, LiveState, Plan, Turn
 from adapters.live.turning import Turning
-from adapters.live.watching import hear, note, say_to
+from adapters.live.watching import answer, take_in
 from semantics.configuration import Configuration
+from semantics.environment import Says
 from semantics.parting import is_parted
 from semantics.requests import READY
+from semantics.signature import Name
 
 MOST_STEPS = 400
 """How many steps one turn takes at the most."""
@@ -26,8 +30,8 @@ LONG = 5.0
 def advance(plan: Plan, state: LiveState, batch: Batch, now: float, most: int = MOST_STEPS) -> Turn:
     """Return what one turn comes to: the world is taken in, then agents go on until nothing more can be done now."""
     turning = _taken_in(plan, state, batch, now)
-    for saying in batch.sayings:
-        say_to(turning, saying)
+    for said in batch.sayings:
+        answer(turning, said)
     turning.go_on(most)
     check_limits(turning)
     return turning.turn()
@@ -45,9 +49,7 @@ def _taken_in(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turning
             f"nothing was listened to for {batch.missed:.0f} s: nobody is taken to have been silent meanwhile"
         )
         turning.find("trouble", "", missed)
-    hear(turning, batch.heard)
-    for report in batch.reports:
-        note(turning, report)
+    take_in(turning, batch)
     return turning
 
 
@@ -63,9 +65,32 @@ def is_over(state: LiveState) -> bool:
     return not any(map(c.alpha.code, c.alpha.names())) and all(isinstance(each, READY) for each in pending)
 
 
-def resumed(plan: Plan, c: Configuration, steps: int, orders: int, now: float) -> LiveState:
+def is_refused(state: LiveState) -> bool:
+    """Tell whether all that is left to be done was refused: nothing that happens by itself changes that.
+
+    Where an operator may give a vehicle back, or say something, more may happen, and so may at other stations.
+    """
+    c = state.configuration
+    if is_parted(c) or state.taken or state.suspended or state.grounded or _may_be_said(c):
+        return False
+    pending = [each.request for each in c.eta.all() if not isinstance(each.request, READY)]
+    told = (*state.orders.values(), *state.handing.values())
+    refusing = {order.agent for order in told if order.refused}
+    rest = state.idle | state.failed
+    at_rest = all(a in rest or not c.alpha.code(a) for a in c.alpha.names())
+    return at_rest and bool(pending) and all(request.agent in refusing for request in pending)
+
+
+def _may_be_said(c: Configuration) -> bool:
+    says = (clause for clause in c.setting.environment if isinstance(clause, Says))
+    return any(c.read(clause.counter) for clause in says)
+
+
+def resumed(
+    plan: Plan, c: Configuration, steps: int, orders: int, now: float, taken: Mapping[Name, str] | None = None
+) -> LiveState:
     """Return the state of a run that goes on where another was killed: what it had asked of vehicles is outstanding."""
-    state = LiveState(c, number=steps, told=orders)
+    state = LiveState(c, number=steps, told=orders, taken=taken or {})
     turning = Turning(plan, state, now)
     for pending in in_turn(c):
         remember(turning, pending.request)

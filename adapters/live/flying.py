@@ -19,17 +19,19 @@ from semantics.signature import Name
 def arrive(turning: Turning, entity: Name) -> bool:
     """Commit the flight of a vehicle if it was seen where it was to go, and whoever flies with it too.
 
-    Who was told a path may come through its destination on the way: it has to have said that the path is behind it.
+    A vehicle comes through places for many reasons, back to its home by itself among them: it has to show that it does
+    what it was told. Who was told a path has to have said that the path is behind it.
     """
     transit, order = turning.c.structure.physical.transit(entity), turning.orders.get(entity)
     at = turning.where_seen(entity)
-    if transit is None or order is None or at is None or order.agent in turning.grounded:
+    if transit is None or order is None or at is None:
         return False
-    if isinstance(order.command, Follow) and not order.through:
+    together = sorted(other for other, told in turning.orders.items() if told.agent == order.agent)
+    obeyed = all(turning.flies(other) and turning.orders[other].obeyed for other in together)
+    if not obeyed or (isinstance(order.command, Follow) and not order.through):
         return False
     if transit.to not in turning.around(entity, turning.c.setting.kind(entity), at):
         return False
-    together = sorted(other for other, told in turning.orders.items() if told.agent == order.agent)
     sight = Sight(
         f"{entity} arrives", {placement_cell(other): turning.where_seen(other) for other in together}
     )
@@ -40,12 +42,33 @@ def arrive(turning: Turning, entity: Name) -> bool:
     return True
 
 
-def come_through(turning: Turning, entity: Name, request: str) -> None:
-    """Note that a vehicle has the path behind it that it was told by a request."""
+def obey(turning: Turning, entity: Name, request: str, *, through: bool) -> None:
+    """Note that a vehicle shows that it does what it was told by a request; `through`: that it has done all of it."""
     order = turning.orders.get(entity)
     if order is not None and order.command.request == request:
-        turning.orders[entity] = replace(order, through=True)
+        turning.orders[entity] = replace(order, obeyed=True, through=order.through or through)
         arrive(turning, entity)
+
+
+def refuse(turning: Turning, entity: Name, request: str) -> None:
+    """Note that what a vehicle was told by a request is not possible."""
+    for orders in (turning.orders, turning.handing):
+        order = orders.get(entity)
+        if order is not None and order.command.request == request:
+            orders[entity] = replace(order, obeyed=False, refused=True)
+
+
+def ask_anew(turning: Turning, entity: Name) -> None:
+    """Tell a vehicle that was given back what it was told before, if that is still wanted."""
+    turning.handing.pop(entity, None)  # it is told again in its turn
+    order = turning.orders.get(entity)
+    fly = None if order is None else _flight(turning, order)
+    if order is None or fly is None or isinstance(order.command, HandOver) or turning.stops(order.agent):
+        return
+    told = renewed(turning.c, fly, order.command) or order.command
+    command = replace(told, request=turning.request_of(order.agent))
+    turning.orders[entity] = Order(command, order.agent, order.since)
+    turning.commands.append(command)
 
 
 def renew(turning: Turning, place: Name) -> None:
@@ -53,23 +76,27 @@ def renew(turning: Turning, place: Name) -> None:
     physical = turning.c.structure.physical
     for entity, order in sorted(turning.orders.items()):
         transit = physical.transit(entity)
-        if transit is None or turning.suspended or order.agent in turning.grounded:
+        if transit is None or not turning.flies(entity):
             continue
         if transit.to != place or not arrive(turning, entity):
             _send_on(turning, entity, order, place)
 
 
 def _send_on(turning: Turning, entity: Name, order: Order, place: Name) -> None:
-    fly = next((p.request for p in in_turn(turning.c) if p.request.agent == order.agent), None)
-    if not isinstance(fly, FLY) or isinstance(order.command, HandOver):
+    fly, transit = _flight(turning, order), turning.c.structure.physical.transit(entity)
+    if fly is None or isinstance(order.command, HandOver):
         return
-    transit = turning.c.structure.physical.transit(entity)
     if transit is None or place not in (transit.to, *fly.reaction.via):
         return
     command = renewed(turning.c, fly, order.command)
     if command is not None:
         turning.orders[entity] = replace(order, command=command, through=False)
         turning.commands.append(command)
+
+
+def _flight(turning: Turning, order: Order) -> FLY | None:
+    fly = next((p.request for p in in_turn(turning.c) if p.request.agent == order.agent), None)
+    return fly if isinstance(fly, FLY) else None
 
 
 def remember(turning: Turning, request: Request) -> None:

@@ -14,12 +14,12 @@ import gc
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Container, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from adapters.listening import Listening
 from adapters.live.admission import flaw_of, legible_report
-from adapters.live.core import advance, is_over, watch
-from adapters.live.state import Answer, Batch, Finding, Heard, LiveState, Plan, Saying, Turn
+from adapters.live.core import advance, is_over, is_refused, watch
+from adapters.live.state import Answer, Batch, Finding, Heard, LiveState, Plan, Said, Saying, Turn
 from adapters.live.watchers import Watcher, Watchers
 from adapters.plugin import (
     Aged,
@@ -111,7 +111,7 @@ class Inbox:
     strangers: OrderedDict[tuple[str, str], Heard] = field(default_factory=OrderedDict)
     troubles: Troubles = field(default_factory=lambda: Troubles("feeds"))
     reports: list[Report] = field(default_factory=list)
-    sayings: list[tuple[Saying, asyncio.Future[Answer]]] = field(default_factory=list)
+    sayings: list[tuple[Said, asyncio.Future[Answer]]] = field(default_factory=list)
 
     def publish(self, plugin: str, published: Published) -> None:
         """Take what a plugin publishes; what it said before of the same entity is not needed any more."""
@@ -137,16 +137,16 @@ class Inbox:
         self.reports.append(report)
         self.awake.set()
 
-    def say(self, agent: str, message: str) -> asyncio.Future[Answer]:
+    def say(self, said: Said) -> asyncio.Future[Answer]:
         """Take what someone says; the answer comes with the next turn."""
-        saying = Saying(agent, message, len(self.sayings))
+        said = replace(said, number=len(self.sayings))
         answer: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
-        if not (is_text(agent) and is_text(message)):
-            answer.set_result(Answer(saying, "this is no text in valid Unicode"))
+        if not all(map(is_text, said.texts)):
+            answer.set_result(Answer(said, "this is no text in valid Unicode"))
         elif len(self.sayings) >= MOST_SAYINGS:
-            answer.set_result(Answer(saying, "too much is being said at once; say it again"))
+            answer.set_result(Answer(said, "too much is being said at once; say it again"))
         else:
-            self.sayings.append((saying, answer))
+            self.sayings.append((said, answer))
             self.awake.set()
         return answer
 
@@ -281,9 +281,8 @@ class LiveRun:
                 suspended=False
             )  # who flies unverified has been told what is otherwise
         for order in (*self.state.orders.values(), *self.state.handing.values()):
-            self._orders.put_nowait(
-                order.command
-            )  # of a run that is resumed: its vehicles have been compared
+            if order.command.entity not in self.state.taken:  # of a run that is resumed: it was compared
+                self._orders.put_nowait(order.command)
 
     def _refuse(self, answers: list[asyncio.Future[Answer]]) -> None:
         for answer in answers:
@@ -302,6 +301,8 @@ class LiveRun:
             again = turn.again
             if until(self.state):
                 return Ending("the mission has ended", self.state)
+            if again is None and is_refused(self.state):
+                return Ending("what was left to be done was refused", self.state)
             if end is not None and self.clock() >= end:
                 return Ending("the time is over", self.state)
 

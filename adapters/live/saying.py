@@ -1,4 +1,4 @@
-"""Saying something to an agent of a running mission: a Unix socket, a line of JSON each way."""
+"""Saying something to a running mission, to an agent or of a vehicle: a Unix socket, a line of JSON each way."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 from typing import Final
 
+from adapters.live.state import GivingBack, Said, Saying
 from physical import PhysicalError, is_text, read_json
 
 MOST_BYTES: Final = 16_384
 PATIENCE: Final = 5.0
 
-Listener = Callable[[str, str], Awaitable[str]]
-"""Takes an agent and a message, and returns why it was not said, nothing if it was."""
+Listener = Callable[[Said], Awaitable[str]]
+"""Takes what is said, and returns why it was not taken, nothing if it was."""
 
 
 class NobodyListens(Exception):
@@ -68,8 +69,11 @@ async def _answer(line: bytes, listener: Listener) -> str:
     with suppress(PhysicalError):
         match read_json(line, MOST_BYTES):
             case {"agent": str(agent), "message": str(message)} if is_text(agent) and is_text(message):
-                return await listener(agent, message)
-    return "this is no saying: an object with 'agent' and 'message', in valid Unicode, was expected"
+                return await listener(Saying(agent, message))
+            case {"give_back": str(vehicle)} if is_text(vehicle):
+                return await listener(GivingBack(vehicle))
+    expected = "an object with 'agent' and 'message', or 'give_back', in valid Unicode"
+    return f"this is no saying: {expected}, was expected"
 
 
 async def say(path: Path, agent: str, message: str) -> str:
@@ -78,7 +82,16 @@ async def say(path: Path, agent: str, message: str) -> str:
     Raises:
         NobodyListens: No run does, or it does not answer.
     """
-    line = json.dumps({"agent": agent, "message": message}).encode() + b"\n"
+    return await _say(path, {"agent": agent, "message": message})
+
+
+async def give_back(path: Path, vehicle: str) -> str:
+    """Give a vehicle that was taken over back to the run that listens at a path; as `say`."""
+    return await _say(path, {"give_back": vehicle})
+
+
+async def _say(path: Path, said: dict[str, str]) -> str:
+    line = json.dumps(said).encode() + b"\n"
     if len(line) > MOST_BYTES:
         return f"a message of more than {MOST_BYTES:,} bytes"
     match json.loads(await _exchange(path, line)):

@@ -53,13 +53,17 @@ class Order:
         command: What it was told last.
         agent: Whose request it serves.
         since: When it was first told.
+        obeyed: Whether the vehicle has shown that it does it, and nothing since that it does not.
         through: Whether the vehicle has said that the path that it was told is behind it.
+        refused: Whether it turned out not to be possible.
     """
 
     command: GoTo | Follow | HandOver
     agent: Name
     since: float
+    obeyed: bool = False
     through: bool = False
+    refused: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +94,7 @@ class LiveState:
         orders: Where each vehicle in flight was told to go.
         handing: Which hand-over each vehicle was told, and has not confirmed.
         lost: Vehicles whose link is lost.
+        taken: Vehicles that were taken over, and how: nobody here commands them until an operator gives them back.
         idle: Agents that cannot go on by themselves: they wait for an observation, a message, or for ever.
         quiet: The configuration in which nothing more could be served, None if that is not known.
         heads: What stands at the head of each agent's line.
@@ -111,6 +116,7 @@ class LiveState:
     orders: Mapping[Name, Order] = field(default_factory=dict)
     handing: Mapping[Name, Order] = field(default_factory=dict)
     lost: frozenset[Name] = frozenset()
+    taken: Mapping[Name, str] = field(default_factory=dict)
     idle: frozenset[Name] = frozenset()
     quiet: Configuration | None = None
     heads: Mapping[Name, Waiting] = field(default_factory=dict)
@@ -155,6 +161,28 @@ class Saying:
     message: str
     number: int = 0
 
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """What in it came from outside."""
+        return self.agent, self.message
+
+
+@dataclass(frozen=True, slots=True)
+class GivingBack:
+    """An operator's word that a vehicle that was taken over may be commanded again."""
+
+    vehicle: Name
+    number: int = 0
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """What in it came from outside."""
+        return (self.vehicle,)
+
+
+Said = Saying | GivingBack
+"""What is said to a run from outside."""
+
 
 @dataclass(frozen=True, slots=True)
 class Batch:
@@ -162,7 +190,7 @@ class Batch:
 
     heard: tuple[Heard, ...] = ()
     reports: tuple[Report, ...] = ()
-    sayings: tuple[Saying, ...] = ()
+    sayings: tuple[Said, ...] = ()
     missed: float = 0.0
 
 
@@ -195,8 +223,8 @@ class Finding:
     """Something that the operator has to know.
 
     Attributes:
-        kind: `broken assumption`, `refused`, `lost link`, `link restored`, `late`, `blocked`, `failed` (a computation,
-            the recording, a plugin), `trouble`.
+        kind: `broken assumption`, `refused`, `taken over`, `given back`, `lost link`, `link restored`, `late`,
+            `blocked`, `failed` (a computation, the recording, a plugin), `trouble`.
         about: The entity or agent.
         message: One line.
         time: When.
@@ -214,9 +242,9 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What came of a saying: an empty text if it was said, else why it was not."""
+    """What came of what was said: an empty text if it was taken, else why it was not."""
 
-    saying: Saying
+    saying: Said
     refusal: str = ""
 
 

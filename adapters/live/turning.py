@@ -50,6 +50,7 @@ class Turning:
         self.orders = dict(state.orders)
         self.handing = dict(state.handing)
         self.lost = set(state.lost)
+        self.taken = dict(state.taken)
         self.idle = set(state.idle)
         self.heads = dict(state.heads)
         self.paces = dict(state.paces)
@@ -82,6 +83,7 @@ class Turning:
             self.orders,
             self.handing,
             frozenset(self.lost),
+            self.taken,
             frozenset(self.idle),
             self.quiet,
             self.heads,
@@ -236,7 +238,7 @@ class Turning:
         found = served(self.c, pending)
         if not isinstance(request, CTR):
             return found, False
-        if self.suspended or request.agent in self.grounded:
+        if self.stops(request.agent):
             return (), False
         if not found:
             self._blocked(request)
@@ -285,7 +287,7 @@ class Turning:
             message = f"no vehicle takes commands as {node}{here}: say --vehicle {node}=..."
             self.find("blocked", node, message, once=True)
             return False
-        return node in self.seen and node not in self.lost
+        return node in self.seen and node not in self.lost and node not in self.taken
 
     def _confirmed(self, told: HandOver) -> bool:
         sighting = self.seen.get(told.entity)
@@ -304,6 +306,17 @@ class Turning:
         return f"{agent}-{self.told}"
 
     # --- flights
+
+    def stops(self, agent: Name) -> bool:
+        """Tell whether no control of an agent is served any more."""
+        return self.suspended or agent in self.grounded
+
+    def flies(self, entity: Name) -> bool:
+        """Tell whether a vehicle in flight is still to do what it was told for it."""
+        order = self.orders.get(entity)
+        if order is None or self.stops(order.agent):
+            return False
+        return not order.refused and entity not in self.taken
 
     def shape(self, entity: Name) -> Placed | None:
         """Return the shape that the mission gives an entity."""
@@ -330,6 +343,10 @@ class Turning:
         if fallback is Fallback.CONTINUE:
             return
         for entity in filter(self.answers_for, entities):
+            if entity in self.taken:
+                what = f"{entity} is not told to {fallback.value}: it was taken over"
+                self.find("taken over", entity, what, once=True)
+                continue
             request = self.request_of("fallback")
             told = Hold(request, entity) if fallback is Fallback.HOLD else Return(request, entity)
             self.commands.append(told)

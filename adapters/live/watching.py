@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
+from dataclasses import replace
 
 from adapters.live.assumptions import broken_by_place, clause_of_leaving, relations
 from adapters.live.elsewhere import hear_of
-from adapters.live.flying import arrive, come_through, renew
+from adapters.live.flying import arrive, ask_anew, obey, refuse, renew
 from adapters.live.orders import is_authority
 from adapters.live.sightings import Refusal, placement_seen, sighting_of
-from adapters.live.state import Answer, Heard, Saying
+from adapters.live.state import Answer, Batch, Heard, Said, Saying
 from adapters.live.strangers import comes_in, place_strangers, remove_strangers
 from adapters.live.turning import Turning
 from adapters.plugin import (
@@ -22,12 +23,14 @@ from adapters.plugin import (
     Broken,
     Delivered,
     Failed,
+    GiveBack,
     Hosts,
     LinkLost,
     LinkRestored,
     Rebind,
     Rejected,
     Report,
+    TakenOver,
     Trouble,
     Underway,
 )
@@ -43,6 +46,17 @@ from semantics.values import show
 
 _IS_AT = re.compile(r"is at (\S+:[0-9]{1,5})")
 """What is said of a vehicle that sends from another address than before."""
+
+
+def take_in(turning: Turning, batch: Batch) -> None:
+    """Take in what was seen and reported: first who was taken over, so that nothing that they do is an arrival."""
+    for report in batch.reports:
+        if isinstance(report, TakenOver):
+            note(turning, report)
+    hear(turning, batch.heard)
+    for report in batch.reports:
+        if not isinstance(report, TakenOver):
+            note(turning, report)
 
 
 def hear(turning: Turning, heard: Iterable[Heard]) -> None:
@@ -231,16 +245,19 @@ def _on_channel(turning: Turning, entity: Name, channel: Name) -> None:
 def note(turning: Turning, report: Report) -> None:
     """Take in what a plugin reports; nothing is committed by it."""
     match report:
-        case Accepted():
-            pass  # recorded; positions decide
-        case Arrived(request, entity):
-            come_through(turning, entity, request)
+        case Accepted(request, entity) | Arrived(request, entity):
+            obey(turning, entity, request, through=isinstance(report, Arrived))
         case Delivered() | Underway() | Hosts() | Believes() | Broken():
             hear_of(turning, report)
         case Rejected(request, entity, _, reason):
-            turning.find(
-                "refused", entity, f"{entity} refuses {request}: {reason}; the request stays pending"
-            )
+            refuse(turning, entity, request)
+            if entity not in turning.taken:  # else that is what was said
+                message = f"{entity} refuses {request}: {reason}; the request stays pending"
+                turning.find("refused", entity, message)
+        case TakenOver(entity, _, reason):
+            turning.taken[entity] = reason
+            back = f"nobody here commands it until `bigactors give-back {entity}`"
+            turning.find("taken over", entity, f"{entity} was taken over: {reason}; {back}")
         case LinkLost(entity, _, since):
             _lose(turning, entity, since)
         case LinkRestored(entity, _, rebooted):
@@ -268,8 +285,35 @@ def _restore(turning: Turning, entity: Name, *, rebooted: bool) -> None:
     turning.quiet = None
     turning.find("link restored", entity, f"{entity} is heard again{', rebooted' if rebooted else ''}")
     order = turning.orders.get(entity)
-    if rebooted and order is not None and not turning.suspended and order.agent not in turning.grounded:
+    if not rebooted or order is None:
+        return
+    turning.orders[entity] = order = replace(order, obeyed=False)
+    if turning.flies(entity):
         turning.commands.append(order.command)
+
+
+def answer(turning: Turning, said: Said) -> None:
+    """Take what someone outside says, and answer it."""
+    if isinstance(said, Saying):
+        say_to(turning, said)
+    else:
+        turning.answers.append(Answer(said, _give_back(turning, said.vehicle)))
+
+
+def _give_back(turning: Turning, entity: Name) -> str:
+    """Command a vehicle again that was taken over or has refused; return why not, nothing if it is done."""
+    told = (turning.orders.get(entity), turning.handing.get(entity))
+    refused = any(order.refused for order in told if order is not None)
+    if entity not in turning.plan.vehicles:
+        return f"there is no vehicle '{entity:.60}'; there are {', '.join(sorted(turning.plan.vehicles))}"
+    if entity not in turning.taken and not refused:
+        return f"{entity} was not taken over here, and has refused nothing"
+    turning.taken.pop(entity, None)
+    turning.quiet = None
+    turning.commands.append(GiveBack(turning.request_of("give-back"), entity))
+    ask_anew(turning, entity)
+    turning.find("given back", entity, f"{entity} was given back, and is commanded again")
+    return ""
 
 
 def say_to(turning: Turning, saying: Saying) -> None:

@@ -89,8 +89,11 @@ NAN: Final = float("nan")
 """One object: two would differ, and so would two equal messages."""
 
 
-def reposition(system: int, x: int, y: int, height: float, circle: float) -> Message:
-    """Return the command to go to a point (1e-7 degree, metres above home), in guided mode, and circle there."""
+def reposition(system: int, x: int, y: int, height: float, circle: float, *, enters: bool) -> Message:
+    """Return the command to go to a point (1e-7 degree, metres above home), and circle there.
+
+    It is for guided mode; from another one it is refused, but for who `enters` guided mode by it.
+    """
     return say(
         "COMMAND_INT",
         target_system=system,
@@ -100,7 +103,7 @@ def reposition(system: int, x: int, y: int, height: float, circle: float) -> Mes
         current=0,
         autocontinue=0,
         param1=-1.0,  # the vehicle's own speed
-        param2=1.0,  # change the mode as well
+        param2=float(enters),
         param3=circle,
         param4=NAN,  # the vehicle's own heading
         x=x,

@@ -9,15 +9,18 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
+from adapters.mavlink import helm as helms
 from adapters.mavlink import plan, streams
 from adapters.mavlink import task as tasks
 from adapters.mavlink.command import long, read_parameter
 from adapters.mavlink.fleet import CONTROL, Craft, Stations
+from adapters.mavlink.helm import Helm
 from adapters.mavlink.items import Items
 from adapters.mavlink.link import Link, watch
 from adapters.mavlink.message import Message
 from adapters.mavlink.numbers import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, Cmd, MissionType
 from adapters.mavlink.objections import not_ours, objection
+from adapters.mavlink.profiles import Profile
 from adapters.mavlink.room import circle, home_circle
 from adapters.mavlink.streams import Streams
 from adapters.mavlink.sync import Sync
@@ -27,10 +30,12 @@ from adapters.plugin import (
     Aged,
     Command,
     Follow,
+    GiveBack,
     GoTo,
     HandOver,
     Refused,
     Report,
+    TakenOver,
     Trouble,
 )
 
@@ -57,6 +62,8 @@ _ANSWERS: Final = frozenset(
     }
 )
 
+_SLOTS: Final = ("handing", "moving")
+
 Shown = tuple[Position | None, int | None, bool]
 """What the last publication rested on: position, authority, whether the link was lost."""
 
@@ -76,6 +83,7 @@ class Pilot:
         on_board: The missions and fences that were read back since it booted.
         moving: The command that it carries out.
         handing: The hand-over under way.
+        helm: Whether it is as it was ordered.
         asked: When its authority was asked for.
         unanswered: How often it was asked for since it was told.
         questions: How often it was asked what it may do since it booted.
@@ -93,6 +101,7 @@ class Pilot:
     on_board: Mapping[MissionType, Items] = field(default_factory=dict)
     moving: Task | None = None
     handing: Task | None = None
+    helm: Helm = field(default_factory=Helm)
     asked: float | None = None
     unanswered: int = 0
     questions: int = 0
@@ -112,6 +121,10 @@ class Outcome:
 
 def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     """Take on a command; raises Refused where it is known not to be possible."""
+    if isinstance(told, GiveBack):
+        return Outcome(replace(pilot, helm=helms.given_back(pilot.known), moving=None))
+    if pilot.helm.taken:
+        raise Refused(f"it was taken over: {pilot.helm.taken}", "an operator may give it back")
     reason = objection(told, pilot.craft, pilot.stations, pilot.known)
     if reason:
         raise Refused(reason)
@@ -133,7 +146,7 @@ def _check_not_rejected(before: Task | None, told: Command) -> None:
 
 
 def _continued(before: Task | None, task: Task) -> Task:
-    """Keep of a task whose place has moved on that it had armed and begun; a path goes on where it was."""
+    """Keep of a task whose place has moved on that it had begun; a path goes on where it was."""
     follows = isinstance(task.command, Follow)
     if before is None or before.command.request != task.command.request or (before.over and not follows):
         return task
@@ -142,7 +155,6 @@ def _continued(before: Task | None, task: Task) -> Task:
         height=before.height,
         begun=before.begun and not follows,
         resumes=before.resumes or (before.begun and follows),
-        was_armed=before.was_armed,
         boots=before.boots,
     )
 
@@ -153,12 +165,15 @@ def hear(pilot: Pilot, message: Message, now: float) -> Outcome:
     if known.boots != pilot.known.boots:
         pilot = replace(pilot, on_board={}, questions=0)
     pilot = replace(pilot, known=known, streams=streams.hear(pilot.streams, message, now))
-    if message.name not in _ANSWERS or pilot.moving is None or pilot.moving.over:
+    answered: tuple[Message, ...] = ()
+    if message.name in _ANSWERS and pilot.moving is not None and not pilot.moving.over:
+        heard = tasks.hear(pilot.moving, message, now)
+        pilot, answered = replace(pilot, moving=heard.task), heard.sent
+    elif message.name != "HEARTBEAT":  # which shows at once who has the helm
         pilot, published, trouble = _publication(pilot, now)
         return Outcome(pilot, reports=trouble, published=published)  # tasks go on at the next tick
-    heard = tasks.hear(pilot.moving, message, now)
-    outcome = _advance(replace(pilot, moving=heard.task), now)
-    return replace(outcome, sent=_spoken(pilot, (*heard.sent, *outcome.sent)))
+    outcome = _advance(pilot, now)
+    return replace(outcome, sent=_spoken(pilot, (*answered, *outcome.sent)))
 
 
 def tick(pilot: Pilot, now: float) -> Outcome:
@@ -224,31 +239,77 @@ def _spoken(pilot: Pilot, sent: tuple[Message, ...]) -> tuple[Message, ...]:
 
 
 def _advance(pilot: Pilot, now: float) -> Outcome:
-    """Take the tasks onwards, and publish what has changed."""
+    """See who has the helm, take the tasks onwards, and publish what has changed."""
+    pilot, lost = _watched(pilot, now)
     sent: list[Message] = []
-    reports: list[Report] = []
-    for slot in ("handing", "moving"):
+    reports: list[Report] = [*lost]
+    for slot in _SLOTS if pilot.helm.held else ():
         task: Task | None = getattr(pilot, slot)
         if task is None or task.over:
             continue
         progress = _progress(pilot, task, now)
-        on_board = pilot.on_board if progress.on_board is None else {**pilot.on_board, **progress.on_board}
-        pilot = _onwards(pilot, slot, progress.task, on_board)
+        pilot = replace(pilot, on_board={**pilot.on_board, **(progress.on_board or {})})
+        pilot = _onwards(pilot, slot, progress.task)
         sent += progress.sent
         reports += [progress.report] if progress.report else []
     pilot, published, trouble = _publication(pilot, now)
     return Outcome(pilot, tuple(sent), (*reports, *trouble), published)
 
 
-def _onwards(pilot: Pilot, slot: str, task: Task, on_board: Mapping[MissionType, Items]) -> Pilot:
-    if slot == "handing":
-        return replace(pilot, handing=task, on_board=on_board)
-    return replace(pilot, moving=task, on_board=on_board)
+def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
+    """See whether the vehicle is as it was ordered; if it was taken over, what it was told ends."""
+    profile, known = pilot.known.profile, pilot.known
+    if profile is None:
+        return pilot, ()
+    if not _is_ours(pilot):
+        return replace(pilot, helm=Helm(boots=known.boots)), ()
+    command = None if pilot.moving is None else pilot.moving.command
+    helm = helms.watch(pilot.helm, known, profile, command, _undone(pilot, profile))
+    lost = bool(helm.taken) and not pilot.helm.taken
+    pilot = replace(pilot, helm=helm)
+    return _taken_over(pilot, now) if lost else (pilot, ())
+
+
+def _undone(pilot: Pilot, profile: Profile) -> str:
+    """Return what the vehicle would have to be told again of what it was seen to do."""
+    task = pilot.moving
+    if task is None or not task.accepted:
+        return ""
+    step = plan.next_step(task.command, task.station, _vehicle(pilot, task, profile))
+    return tasks.undone(task, step, pilot.known.boots)
+
+
+def _taken_over(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
+    """End what the vehicle was told: nothing that it does from now on is of our doing."""
+    reason = pilot.helm.taken + pilot.known.last_words(now)
+    pilot = replace(pilot, helm=replace(pilot.helm, taken=reason))
+    reports: list[Report] = [TakenOver(pilot.craft.entity, now, reason)]
+    for slot in _SLOTS:
+        task: Task | None = getattr(pilot, slot)
+        if task is not None and not task.over:
+            ended = tasks.rejected(task, reason, now)
+            pilot = _onwards(pilot, slot, ended.task)
+            reports += [ended.report] if ended.report else []
+    return pilot, tuple(reports)
+
+
+def _is_ours(pilot: Pilot) -> bool:
+    """Tell whether it is for us to say what a vehicle does; where it does not tell whom it obeys, if we have."""
+    stations, authority = pilot.stations, pilot.known.authority
+    if authority is None:
+        return set(stations.own) == set(stations.ids) or bool(pilot.helm.modes)
+    return stations.name_of(authority) in stations.own
+
+
+def _onwards(pilot: Pilot, slot: str, task: Task) -> Pilot:
+    return replace(pilot, handing=task) if slot == "handing" else replace(pilot, moving=task)
 
 
 def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
     profile = pilot.known.profile
-    if profile is None:  # not heard yet, or something that nobody here can command
+    if (
+        profile is None or pilot.known.mode is None
+    ):  # not heard yet, or something that nobody here can command
         return _unknown(pilot, task, now)
     if not task.checked:
         reason = objection(task.command, pilot.craft, pilot.stations, pilot.known)
@@ -259,7 +320,13 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
     if foreign and isinstance(task.doing, Sync):  # nobody here can end what was begun
         return tasks.rejected(task, foreign, now)
     task = _with_height(pilot, task)
-    vehicle = plan.Vehicle(
+    vehicle = _vehicle(pilot, task, profile)
+    step = plan.next_step(task.command, task.station, vehicle)
+    return tasks.advance(task, step, vehicle, lost=pilot.link.lost, now=now)
+
+
+def _vehicle(pilot: Pilot, task: Task, profile: Profile) -> plan.Vehicle:
+    return plan.Vehicle(
         system=pilot.system,
         known=pilot.known,
         profile=profile,
@@ -273,8 +340,6 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
         speaker=pilot.stations.speaker(pilot.known.authority),
         deaf=_deaf(pilot),
     )
-    step = plan.next_step(task.command, task.station, vehicle)
-    return tasks.advance(task, step, vehicle, lost=pilot.link.lost, now=now)
 
 
 def _deaf(pilot: Pilot) -> str:
@@ -287,7 +352,7 @@ def _deaf(pilot: Pilot) -> str:
 
 
 def _unknown(pilot: Pilot, task: Task, now: float) -> Progress:
-    if pilot.known.mode is None or now - task.since <= tasks.STRANGE:
+    if pilot.known.mode is None or now - task.since <= helms.STRANGE:
         return Progress(task)
     return tasks.rejected(task, "it is no vehicle with ArduPilot, and only those are known here", now)
 
@@ -304,6 +369,8 @@ def _with_height(pilot: Pilot, task: Task) -> Task:
 def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Aged, ...], tuple[Report, ...]]:
     """Publish the vehicle where anything that is shown of it has changed."""
     position, authority = pilot.known.position, pilot.known.authority
+    if pilot.helm.strange is not None and not pilot.helm.taken:
+        return pilot, (), ()  # who has the helm is to be known first
     if position is None or pilot.known.profile is None:  # a run begins when it is known what flies
         return replace(pilot, since=None), (), ()
     if pilot.since is None:

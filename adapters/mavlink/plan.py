@@ -15,7 +15,7 @@ from adapters.mavlink.message import Message
 from adapters.mavlink.numbers import AUTHORITY_PARAMETERS, Cmd, Fence, MissionType
 from adapters.mavlink.profiles import Profile, TakeOff
 from adapters.mavlink.telemetry import Position, Telemetry
-from adapters.plugin import Command, Follow, GoTo, HandOver, Hold, Rebind, Return
+from adapters.plugin import Command, Follow, GiveBack, GoTo, HandOver, Hold, Rebind, Return
 from physical import Band, Geometry, contains, distance, point, waypoint
 
 TARGET_METRES = 5.0
@@ -50,6 +50,11 @@ class Load:
 
     items: Items
     kind: MissionType
+
+    @property
+    def why(self) -> str:
+        """What it is for, as `Tell` says it."""
+        return f"its {self.kind.name.lower()} anew"
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +113,7 @@ def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
             return _in_mode(vehicle, vehicle.profile.hold) or Underway(done=True)
         case Return():
             return _in_mode(vehicle, vehicle.profile.home) or Underway(done=_is_home(vehicle))
-        case Rebind():
+        case GiveBack() | Rebind():
             raise AssertionError("it is done at once")
 
 
@@ -180,11 +185,16 @@ def _has_takeoff(vehicle: Vehicle) -> bool:
 
 
 def _sent(vehicle: Vehicle, at: Geometry) -> Step | None:
-    """See that it is in guided mode and tells the target as its own."""
+    """See that it is in guided mode and tells the target as its own.
+
+    What is in guided mode may leave it at that moment, for its own safety: it is not told to enter it then.
+    """
     known, (x, y) = vehicle.known, e7(at)
-    if known.mode == vehicle.profile.guided and _targets(known, at):
+    enters = known.mode != vehicle.profile.guided
+    if not enters and _targets(known, at):
         return None
-    return Tell("to go there", to.reposition(vehicle.system, x, y, vehicle.height, vehicle.circle))
+    where = x, y, vehicle.height, vehicle.circle
+    return Tell("to go there", to.reposition(vehicle.system, *where, enters=enters))
 
 
 def _targets(known: Telemetry, at: Geometry) -> bool:

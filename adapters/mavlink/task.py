@@ -20,9 +20,6 @@ PATIENCE: Final = 45.0
 BOOT_PATIENCE: Final = 120.0
 """Seconds that a vehicle may take to be ready: its filters settle, its receiver finds satellites."""
 
-STRANGE: Final = 3.0
-"""Seconds for which a state must differ from what it was before it counts: a heartbeat can come late."""
-
 
 @dataclass(frozen=True, slots=True)
 class Task:
@@ -41,8 +38,6 @@ class Task:
         rejection: Why it was rejected, if it was.
         begun: Whether the mission was seen at its first item, or the vehicle has said that it resumes it.
         resumes: Whether the path has moved under way: the vehicle is told again to go to the item that it is at.
-        was_armed: Whether it was armed since the command.
-        strange: Since when the state contradicts what it was.
         boots: The vehicle's boots that all this is about.
         checked: Whether it was seen to be possible for this kind of vehicle.
         complained: Whether it was reported that the vehicle does not do this step for now.
@@ -60,8 +55,6 @@ class Task:
     rejection: str | None = None
     begun: bool = False
     resumes: bool = False
-    was_armed: bool = False
-    strange: float | None = None
     boots: int = 0
     checked: bool = False
     complained: bool = False
@@ -92,8 +85,6 @@ def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float)
     task = _followed(task, vehicle, now)
     if isinstance(step, Underway):
         return _underway(task, step, now)
-    if task.accepted or (task.was_armed and vehicle.known.armed is False):
-        return _contradicted(task, step, vehicle, now)
     if step != task.step:
         task = replace(
             task,
@@ -111,8 +102,15 @@ def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float)
     if lost:
         return Progress(replace(task, since=now))
     if now - task.since > _patience(step):
-        return rejected(task, _failure(step, task, vehicle), now)
-    return _complained(_pursued(task, now), vehicle, now)
+        return rejected(task, _failure(step, task, vehicle) + vehicle.known.last_words(now), now)
+    return _complained(_pursued(task, vehicle, now), vehicle, now)
+
+
+def undone(task: Task, step: Step, boots: int) -> str:
+    """Return what a vehicle that has done what it was told would have to be told again, nothing if it still does it."""
+    if not task.accepted or boots != task.boots or isinstance(step, Underway | Wait):
+        return ""
+    return f"it does not do any more what it was told: it would have to be told {step.why}"
 
 
 def _complained(progress: Progress, vehicle: Vehicle, now: float) -> Progress:
@@ -121,7 +119,7 @@ def _complained(progress: Progress, vehicle: Vehicle, now: float) -> Progress:
     no = task.doing.objection if isinstance(task.doing, telling.Telling) else ""
     if not no or task.complained or progress.report or not isinstance(task.step, Tell):
         return progress
-    words = f"; its last words: {vehicle.known.said!r:.80}" if vehicle.known.said else ""
+    words = vehicle.known.last_words(now)
     detail = f"it was told {task.step.why}, and answers {no}{words}; it is told again for {PATIENCE:.0f} s"
     report = Trouble(task.command.entity, now, "not now", detail)
     return replace(progress, task=replace(task, complained=True), report=report)
@@ -137,7 +135,7 @@ def rejected(task: Task, reason: str, now: float) -> Progress:
 def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
     """Bring what is remembered up to date with what the vehicle shows."""
     known = vehicle.known
-    if known.boots != task.boots:  # all but that it was armed is void
+    if known.boots != task.boots:  # all of it is void
         task = replace(
             task,
             boots=known.boots,
@@ -146,11 +144,8 @@ def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
             accepted=False,
             begun=False,
             resumes=False,
-            strange=None,
         )
-    begun, was_armed = task.begun or _begins(task, vehicle), task.was_armed or known.armed is True
-    unchanged = (begun, was_armed) == (task.begun, task.was_armed)
-    return task if unchanged else replace(task, begun=begun, was_armed=was_armed)
+    return replace(task, begun=True) if not task.begun and _begins(task, vehicle) else task
 
 
 def _begins(task: Task, vehicle: Vehicle) -> bool:
@@ -165,26 +160,13 @@ def _begins(task: Task, vehicle: Vehicle) -> bool:
 
 def _underway(task: Task, step: Underway, now: float) -> Progress:
     request, entity = task.command.request, task.command.entity
-    if (task.strange, task.step, task.doing) != (None, step, None):
-        task = replace(task, strange=None, step=step, doing=None)
+    if (task.step, task.doing) != (step, None):
+        task = replace(task, step=step, doing=None)
     if step.done and not task.over:
         return Progress(replace(task, accepted=True, over=True), report=Arrived(request, entity, now))
     if not task.accepted:
         return Progress(replace(task, accepted=True), report=Accepted(request, entity, now))
     return Progress(task)
-
-
-def _contradicted(task: Task, step: Step, vehicle: Vehicle, now: float) -> Progress:
-    """See whether someone else, or the vehicle itself, has undone it: then nobody here fights for it."""
-    if task.strange is None or now - task.strange <= STRANGE:
-        return Progress(task if task.strange is not None else replace(task, strange=now))
-    known = vehicle.known
-    if task.was_armed and known.armed is False:
-        return rejected(task, "it was disarmed, and is not armed again without a new command", now)
-    mode = vehicle.profile.mode_name(known.mode)
-    missing = f", and would have to be told {step.why}" if isinstance(step, Tell) else ""
-    reason = f"it does not do so any more, by itself or told by someone else: it is in {mode}{missing}"
-    return rejected(task, reason, now)
 
 
 def _exchange(step: Step, vehicle: Vehicle) -> telling.Telling | syncing.Sync | None:
@@ -200,10 +182,10 @@ def _patience(step: Step) -> float:
     return BOOT_PATIENCE if isinstance(step, Wait) else PATIENCE
 
 
-def _pursued(task: Task, now: float) -> Progress:
+def _pursued(task: Task, vehicle: Vehicle, now: float) -> Progress:
     refusal = task.doing.refusal if task.doing is not None else None
     if refusal:
-        return rejected(task, refusal, now)
+        return rejected(task, refusal + vehicle.known.last_words(now), now)
     if isinstance(task.doing, telling.Telling):
         told, sent = telling.tick(task.doing, now)
         return Progress(replace(task, doing=told), sent)
@@ -215,15 +197,14 @@ def _pursued(task: Task, now: float) -> Progress:
 
 
 def _failure(step: Step, task: Task, vehicle: Vehicle) -> str:
-    said = f"; its last words: {vehicle.known.said!r:.80}" if vehicle.known.said else ""
-    said += f"; {vehicle.deaf}" if vehicle.deaf else ""
+    other = f"; {vehicle.deaf}" if vehicle.deaf else ""
     match step:
         case Wait():
-            return f"{step.why}, for {_patience(step):.0f} s{said}"
+            return f"{step.why}, for {_patience(step):.0f} s{other}"
         case Tell():
             no = task.doing.objection if isinstance(task.doing, telling.Telling) else ""
             answer = f", but answered {no}" if no else ""
-            return f"it was told {step.why}, and did not in {PATIENCE:.0f} s{answer}{said}"
+            return f"it was told {step.why}, and did not in {PATIENCE:.0f} s{answer}{other}"
         case Load():
-            return f"the {step.kind.name.lower()} could not be confirmed on board in {PATIENCE:.0f} s{said}"
-    raise AssertionError(task)
+            return f"the {step.kind.name.lower()} could not be confirmed on board in {PATIENCE:.0f} s{other}"
+    raise AssertionError(step)

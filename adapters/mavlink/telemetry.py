@@ -36,6 +36,12 @@ BACKWARDS: Final = 5_000
 
 LARGEST: Final = 1e6
 """What is larger is no radius, height or set of fences."""
+MEMORY: Final = 60.0
+"""Seconds for which what it said may be the reason of what it does."""
+
+MOST_WORDS: Final = 3
+WARNING: Final = 4
+"""MAV_SEVERITY_WARNING: what is less urgent has a larger number."""
 
 NOWHERE: Final = 0.01
 """Degrees around (0, 0) in which nobody is: what an autopilot says before its filter has settled."""
@@ -82,7 +88,8 @@ class Telemetry:
         suspect: What its clock said when it first seemed to have gone back.
         placed: What its clock said of its position: of when it was measured, which is before other messages.
         boots: How often it was seen to boot anew.
-        said: The last text that it said.
+        words: What it said last that was a warning or worse, with the times.
+        beat: When its last heartbeat came.
     """
 
     heard: float | None = None
@@ -105,7 +112,8 @@ class Telemetry:
     signs: bool = False
     clock: int | None = None
     boots: int = 0
-    said: str = ""
+    words: tuple[tuple[float, str], ...] = ()
+    beat: float | None = None
     suspect: int | None = None
     placed: int | None = None
 
@@ -113,6 +121,11 @@ class Telemetry:
     def flying(self) -> bool:
         """Whether it is off the ground, as it says."""
         return bool(self.armed and self.active)
+
+    def last_words(self, now: float) -> str:
+        """Return what it has warned of of late, to be put behind a reason; nothing if it has not."""
+        lately = [text for time, text in self.words if now - time <= MEMORY]
+        return f"; its last words: {', '.join(map(repr, dict.fromkeys(lately)))}" if lately else ""
 
 
 def absorb(known: Telemetry, message: Message, now: float) -> Telemetry:
@@ -151,11 +164,13 @@ def _clocked(known: Telemetry, clock: int | None, now: float) -> Telemetry:
     return Telemetry(heard=now, profile=known.profile, clock=clock, boots=known.boots + 1)
 
 
-def _heartbeat(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
+def _heartbeat(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
     profile = profile_of(said["type"], said["autopilot"])
     mode = said["custom_mode"] if said["base_mode"] & ModeFlag.CUSTOM_MODE else None
     armed = bool(said["base_mode"] & ModeFlag.ARMED)
-    return replace(known, profile=profile, mode=mode, armed=armed, active=said["system_status"] >= ACTIVE)
+    return replace(
+        known, profile=profile, mode=mode, armed=armed, active=said["system_status"] >= ACTIVE, beat=now
+    )
 
 
 def _fix(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
@@ -225,8 +240,11 @@ def _version(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetr
     return replace(known, version=(number >> 24 & 255, number >> 16 & 255))
 
 
-def _text(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
-    return replace(known, said="".join(filter(str.isprintable, said["text"])))
+def _text(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
+    text = "".join(filter(str.isprintable, said["text"])).strip()
+    if said["severity"] > WARNING or not text:
+        return known
+    return replace(known, words=(*known.words, (now, text))[-MOST_WORDS:])
 
 
 _READERS: Final[Mapping[str, Callable[[Telemetry, Mapping[str, Any], float], Telemetry]]] = MappingProxyType(

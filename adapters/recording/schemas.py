@@ -102,7 +102,7 @@ STEP: Final = _object(
 COMMAND: Final = _object(
     "What a vehicle is told: written before it is sent.",
     ("command", "request", "entity"),
-    command={"enum": ["GoTo", "Follow", "HandOver", "Hold", "Return", "Rebind"]},
+    command={"enum": ["GoTo", "Follow", "HandOver", "Hold", "Return", "GiveBack", "Rebind"]},
     request=_TEXT,
     entity=_TEXT,
     ring=_RING,
@@ -114,7 +114,7 @@ COMMAND: Final = _object(
 )
 
 REPORTS: Final = (
-    *("Accepted", "Arrived", "Rejected", "LinkLost", "LinkRestored", "Trouble", "Failed"),
+    *("Accepted", "Arrived", "Rejected", "TakenOver", "LinkLost", "LinkRestored", "Trouble", "Failed"),
     *("Delivered", "Underway", "Hosts", "Believes", "Broken"),
 )
 """Those of a vehicle or a feed, then those of other stations."""
@@ -149,6 +149,13 @@ SAYING: Final = _object(
     refusal=_TEXT,
 )
 
+GIVEN_BACK: Final = _object(
+    "That an operator gave a vehicle back that had been taken over, and why it was not taken, if it was not.",
+    ("vehicle", "refusal"),
+    vehicle=_TEXT,
+    refusal=_TEXT,
+)
+
 FINDING: Final = _object(
     "What the operator was told: a broken assumption, a refusal, a lost link, a request that takes too long.",
     ("kind", "about", "message"),
@@ -168,6 +175,7 @@ SCHEMAS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
     "commands": (f"bigactors.command/{VERSION}", COMMAND),
     "reports": (f"bigactors.plugin_report/{VERSION}", REPORT),
     "sayings": (f"bigactors.saying/{VERSION}", SAYING),
+    "given_back": (f"bigactors.given_back/{VERSION}", GIVEN_BACK),
     "findings": (f"bigactors.finding/{VERSION}", FINDING),
     "end": (f"bigactors.end/{VERSION}", END),
 }

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-from adapters.live.state import Answer, Finding, Heard, Turn
+from adapters.live.state import Answer, Finding, GivingBack, Heard, Turn
 from adapters.plugin import Report
 from adapters.recording.encoding import arrival_json, command_json, finding_json, report_json, step_json
 from adapters.recording.mcap_files import McapWriter, Message
@@ -38,7 +38,7 @@ class Recorder:
         for finding in turn.findings:
             self._file.write("findings", now, finding_json(finding, verdicts(finding)))
         for answer in turn.answers:
-            self._file.write("sayings", now, _saying_json(answer))
+            self._file.write(*_answer_json(answer, now))
         if turn.steps or turn.commands or turn.findings or turn.answers:
             self._file.flush()
 
@@ -58,5 +58,8 @@ class Recorder:
         self._file.close()
 
 
-def _saying_json(answer: Answer) -> dict[str, Any]:
-    return {"agent": answer.saying.agent, "message": answer.saying.message, "refusal": answer.refusal}
+def _answer_json(answer: Answer, now: float) -> tuple[str, float, dict[str, Any]]:
+    said = answer.saying
+    if isinstance(said, GivingBack):
+        return "given_back", now, {"vehicle": said.vehicle, "refusal": answer.refusal}
+    return "sayings", now, {"agent": said.agent, "message": said.message, "refusal": answer.refusal}

@@ -23,6 +23,9 @@ _NAMES: Final[Mapping[float, str]] = MappingProxyType(
 FARTHEST: Final = 50_000.0
 """Metres from home beyond which no target is taken."""
 
+CHANGE_MODE: Final = 1
+"""MAV_DO_REPOSITION_FLAGS: into guided mode from any other."""
+
 HIGHEST: Final = 10_000.0
 LARGEST: Final = 1e6
 LONGEST: Final = 3.6e9
@@ -150,6 +153,8 @@ def _reposition(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Resu
     far = metres_to(vehicle.body, latitude, longitude)[0] > FARTHEST
     if far or not abs(height) <= HIGHEST or not 0 < circle <= FARTHEST:
         return Result.DENIED
+    if vehicle.mode != profile.guided and not int(message["param2"]) & CHANGE_MODE:
+        return Result.FAILED if profile.takeoff is TakeOff.MISSION else Result.DENIED
     if profile.takeoff is not TakeOff.NONE and not vehicle.holds(latitude, longitude, height):
         return Result.DENIED if profile.takeoff is TakeOff.MISSION else Result.FAILED
     vehicle.mode = profile.guided

@@ -33,6 +33,7 @@ class Reporter:
         self._said: dict[str, float] = {}
         self._texts: list[str] = []
         self._once: list[str] = []
+        self._mode: int | None = None
 
     def every(self, name: str, seconds: float) -> None:
         """Say a message at another interval; none if it isn't positive."""
@@ -55,12 +56,16 @@ class Reporter:
     def due(self, vehicle: Vehicle) -> list[Message]:
         """Return what is to be said now, by the vehicle's own clock."""
         names = [name for name, period in self._every.items() if self._is_due(name, period, vehicle.uptime)]
-        texts = [say("STATUSTEXT", severity=6, text=text.encode()[:50]) for text in self._texts]
+        if vehicle.mode != self._mode:  # a change is said at once
+            names, self._mode = ["HEARTBEAT", *names], vehicle.mode
+        words = [*self._texts, *vehicle.words]
+        texts = [say("STATUSTEXT", severity=4, text=text.encode()[:50]) for text in words]
         reached = [say("MISSION_ITEM_REACHED", seq=index) for index in vehicle.reached]
         names += self._once
         self._texts.clear()
         self._once.clear()
         vehicle.reached.clear()
+        vehicle.words.clear()
         return [*(_MESSAGES[name](vehicle) for name in names), *texts, *reached]
 
     def _is_due(self, name: str, period: float, uptime: float) -> bool:
@@ -93,7 +98,7 @@ def _heartbeat(vehicle: Vehicle) -> Message:
         autopilot=ARDUPILOT,
         base_mode=int(flags),
         custom_mode=vehicle.mode,
-        system_status=4 if vehicle.flies else 3,
+        system_status=5 if vehicle.failed_safe else 4 if vehicle.flies else 3,
         mavlink_version=3,
     )
 
@@ -110,7 +115,9 @@ def _status(vehicle: Vehicle) -> Message:
         + [f"errors_count{number}" for number in range(1, 5)],
         0,
     )
-    return say("SYS_STATUS", **sensors, voltage_battery=12_600, battery_remaining=90, **rest)
+    return say(
+        "SYS_STATUS", **sensors, voltage_battery=round(vehicle.voltage * 1000), battery_remaining=90, **rest
+    )
 
 
 def _gps(vehicle: Vehicle) -> Message:

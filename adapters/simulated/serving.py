@@ -64,6 +64,12 @@ class Simulator:
         vehicle.reboot(armed=armed)
         reporter.reset()
 
+    def restart(self, system: int) -> None:
+        """Let a vehicle boot anew on the ground at home, as if its simulator had been killed and started again."""
+        vehicle, reporter = self._vehicles[system]
+        vehicle.restart()
+        reporter.reset()
+
     def every(self, system: int, name: str, seconds: float) -> None:
         """Let a vehicle say a message at an interval, before anybody asks for it."""
         self._vehicles[system][1].every(name, seconds)

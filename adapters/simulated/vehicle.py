@@ -30,7 +30,14 @@ NO_FENCE: Final = Fence(0)
 STOPS_BEFORE: Final = 4.0
 """Metres before its circle fence at which what drives stops, in silence."""
 
-PARAMETERS: Final = {"WP_RADIUS": WAYPOINT_RADIUS, "FENCE_ENABLE": 0.0, "FENCE_RADIUS": 300.0}
+PARAMETERS: Final = {
+    "WP_RADIUS": WAYPOINT_RADIUS,
+    "FENCE_ENABLE": 0.0,
+    "FENCE_RADIUS": 300.0,
+    "BATT_LOW_VOLT": 10.5,
+    "BATT_LOW_TIMER": 10.0,
+    "BATT_FS_LOW_ACT": 0.0,
+}
 ALTITUDES: Final = {"FENCE_AUTOENABLE": 0.0, "FENCE_ALT_MAX": 100.0, "FENCE_ALT_MIN": -10.0}
 OF_KINDS: Final = {
     TakeOff.MISSION: ALTITUDES | {"FENCE_TYPE": 4.0, "WP_LOITER_RAD": 80.0, "RTL_RADIUS": 0.0},
@@ -57,6 +64,11 @@ class Kind(Enum):
     def limits(self) -> Limits:
         """What it can do."""
         return self.value[2]
+
+    @property
+    def returns(self) -> float:
+        """The value of BATT_FS_LOW_ACT with which a low battery sends it home; 1 lets a copter land."""
+        return 2.0 if self is Kind.COPTER else 1.0
 
     @property
     def radius(self) -> float:
@@ -90,6 +102,10 @@ class Vehicle:
         version: Of its firmware: before 4.6 all fences were switched at once.
         wind: Metres a second to the north and to the east: it carries a plane out of its circle.
         serial: Its autopilot's serial number: at most 18 bytes.
+        voltage: Its battery's; when it is low for a while, the fail-safe acts once.
+        low: Since when it is low.
+        failed_safe: Whether the fail-safe has acted since it booted.
+        words: What it has to say.
     """
 
     kind: Kind
@@ -114,6 +130,10 @@ class Vehicle:
     body: Body = field(init=False)
     store: Store = field(init=False)
     reached: list[int] = field(default_factory=list)
+    voltage: float = 12.6
+    low: float | None = None
+    failed_safe: bool = False
+    words: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         latitude, longitude, altitude = self.home
@@ -191,9 +211,15 @@ class Vehicle:
         self.current, self.target = 0, None
         self.mode = self.mode if self.armed else 0
         self.store.receiving = None
+        self.low, self.failed_safe = None, False
         self.fences = NO_FENCE
         if self.parameters["FENCE_ENABLE"]:
             self.switch_fences(~Fence.ALT_MIN, on=True)
+
+    def restart(self) -> None:
+        """Boot anew on the ground at home, as a simulator does that was killed in flight and started again."""
+        self.reboot()
+        self.body = Body(*self.home[:2])
 
     # --- moving -----------------------------------------------------------------------------------
 
@@ -203,6 +229,7 @@ class Vehicle:
         if not self.armed or seconds <= 0:
             return
         self._keep_fence()
+        self._watch_battery()
         profile = self.kind.profile
         if self.mode == profile.auto:
             self._follow(seconds)
@@ -228,6 +255,19 @@ class Vehicle:
         if Fence.ALT_MAX in self.fences:
             inside = inside and height <= self.parameters["FENCE_ALT_MAX"]
         return inside
+
+    def _watch_battery(self) -> None:
+        """Return once the battery is low, if the parameters say so; who sends it on after that has overruled it."""
+        if self.voltage >= self.parameters["BATT_LOW_VOLT"] or self.failed_safe:
+            self.low = None
+            return
+        self.low = self.time if self.low is None else self.low
+        if self.time - self.low < self.parameters["BATT_LOW_TIMER"]:
+            return
+        self.failed_safe = True
+        self.words.append(f"Battery 1 is low {self.voltage:.2f}V used 0 mAh")
+        if self.parameters["BATT_FS_LOW_ACT"] == self.kind.returns:
+            self.mode = self.kind.profile.home
 
     def _follow(self, seconds: float) -> None:
         items = self.store.items.get(MissionType.MISSION, ())

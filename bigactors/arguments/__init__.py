@@ -10,7 +10,20 @@ from collections.abc import Sequence
 from typing import Final
 
 from bigactors import __version__
-from bigactors.arguments import big, check, demo, explain, fmt, replay, run, say, show, simulate, world
+from bigactors.arguments import (
+    big,
+    check,
+    demo,
+    explain,
+    fmt,
+    give_back,
+    replay,
+    run,
+    say,
+    show,
+    simulate,
+    world,
+)
 from bigactors.arguments.common import EXITS
 from bigactors.arguments.parser import Command, Parser
 from bigactors.arguments.values import FORMATS
@@ -20,7 +33,7 @@ __all__ = ["COMMANDS", "FORMATS", "Command", "Parser", "make_parser", "parse_arg
 
 COMMANDS: Final[dict[str, Command]] = {
     each.COMMAND.name: each.COMMAND
-    for each in (check, show, simulate, run, say, replay, world, big, explain, fmt, demo)
+    for each in (check, show, simulate, run, say, give_back, replay, world, big, explain, fmt, demo)
 }
 """The commands by name, in the order of the help."""
 

@@ -14,6 +14,11 @@ def fill(parser: Parser) -> None:
         metavar="MESSAGE",
         help="what its environment section says may be said; of a vehicle 'is at HOST:PORT'",
     )
+    add_socket(parser)
+
+
+def add_socket(parser: Parser) -> None:
+    """Add the option that says which running mission is meant."""
     parser.add_argument(
         "--socket",
         metavar="FILE",

@@ -6,7 +6,7 @@ import asyncio
 import sys
 import time
 from argparse import Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AsyncExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +15,7 @@ from typing import Any
 from adapters.live.core import resumed, started
 from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, settle
 from adapters.live.saying import listening
-from adapters.live.state import Finding, LiveState, Plan
+from adapters.live.state import Finding, LiveState, Plan, Said
 from adapters.live.watchers import Watcher
 from adapters.plugin import Plugin
 from adapters.recording.mcap_files import RecordingError
@@ -79,12 +79,18 @@ def run(options: Namespace) -> Exit:
     except (NotAsAssumed, NotHeard, PluginFailed) as error:
         return _not_begun(error)
     except KeyboardInterrupt:
-        tell("interrupted: vehicles go on as they were told last")
+        tell(f"interrupted: vehicles go on as they were told last{_taken_over(terminal.taken)}")
         return Exit.INCOMPLETE
-    say(f"{ending.reason} after {ending.state.number} steps")
+    say(f"{ending.reason} after {ending.state.number} steps{_taken_over(ending.state.taken)}")
     if terminal.broken:
         return Exit.VIOLATED
-    return Exit.HOLDS if ending.reason == "the mission has ended" else Exit.INCOMPLETE
+    ended = ending.reason == "the mission has ended" and not ending.state.taken
+    return Exit.HOLDS if ended else Exit.INCOMPLETE
+
+
+def _taken_over(taken: Mapping[str, str]) -> str:
+    """Return who was taken over and not given back, to be put behind how a run ended."""
+    return "".join(f"; {vehicle} was taken over: {how}" for vehicle, how in sorted(taken.items()))
 
 
 def prepare(options: Namespace) -> Flight:
@@ -104,7 +110,7 @@ def prepare(options: Namespace) -> Flight:
         plan, plugins = company.plan(plan, mission), company.plugins(plugins)
     state = started(plan)
     if before is not None:
-        state = resumed(plan, before.configuration, before.steps, before.orders, time.time())
+        state = resumed(plan, before.configuration, before.steps, before.orders, time.time(), before.taken)
     return Flight(options, mission, licence, plan, state, plugins, before, log, company)
 
 
@@ -181,8 +187,8 @@ async def fly(flight: Flight, watchers: Sequence[Watcher]) -> Ending:
     async with AsyncExitStack() as stack:
         live = await stack.enter_async_context(LiveRun(flight.plan, flight.state, flight.plugins, watchers))
 
-        async def listener(agent: str, message: str) -> str:
-            return (await live.inbox.say(agent, message)).refusal
+        async def listener(said: Said) -> str:
+            return (await live.inbox.say(said)).refusal
 
         path = socket_of(flight.mission.name, options.socket)
         try:

@@ -2,6 +2,9 @@
 
 import asyncio
 from argparse import Namespace
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Any
 
 from adapters.live.saying import NobodyListens
 from adapters.live.saying import say as send
@@ -16,12 +19,17 @@ def run(options: Namespace) -> Exit:
     """Say it, and print what came of it."""
     if not (is_text(options.agent) and is_text(options.message)):
         raise Mistake("what is said has to be text in valid Unicode, of at most 2,000 characters")
-    path = only_socket(options.socket)
-    try:
-        refusal = asyncio.run(send(path, options.agent, options.message))
-    except NobodyListens as error:
-        raise Mistake(str(error), "is the mission running?") from error
+    refusal = heard_at(options.socket, lambda path: send(path, options.agent, options.message))
     if refusal:
         raise Mistake(refusal, "the environment section of the mission says what may be said")
     say(f"said to {options.agent}: {options.message}")
     return Exit.HOLDS
+
+
+def heard_at(socket: str | None, saying: Callable[[Path], Coroutine[Any, Any, str]]) -> str:
+    """Say something to the mission that listens at a socket, or to the only one that runs; return its refusal."""
+    path = only_socket(socket)
+    try:
+        return asyncio.run(saying(path))
+    except NobodyListens as error:
+        raise Mistake(str(error), "is the mission running?") from error

@@ -6,15 +6,28 @@ import pytest
 
 from adapters.mavlink import Autopilot, pilot
 from adapters.mavlink.fleet import Craft, Stations
+from adapters.mavlink.helm import STRANGE
 from adapters.mavlink.items import route
 from adapters.mavlink.message import Message, say
 from adapters.mavlink.numbers import Cmd, MissionType, Result
 from adapters.mavlink.pilot import Pilot
 from adapters.mavlink.plan import Load, Tell, Underway, Vehicle, Wait, next_step
 from adapters.mavlink.profiles import BOAT, COPTER, PLANE, ROVER, profile_of
-from adapters.mavlink.task import PATIENCE, STRANGE
+from adapters.mavlink.task import PATIENCE
 from adapters.mavlink.telemetry import Position, Telemetry
-from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Hold, Refused, Rejected, Return
+from adapters.plugin import (
+    Accepted,
+    Arrived,
+    Follow,
+    GiveBack,
+    GoTo,
+    HandOver,
+    Hold,
+    Refused,
+    Rejected,
+    Return,
+    TakenOver,
+)
 from physical import PhysicalError, box, point, waypoint
 
 AREA = box((37.015, -8.61), (37.005, -8.625))
@@ -126,7 +139,7 @@ def ticked(state, start, end, alive=True):
     for tenth in range(round(start * 10), round(end * 10)):
         now = tenth / 10
         if alive:
-            state = replace(state, known=replace(state.known, heard=now))
+            state = replace(state, known=replace(state.known, heard=now, beat=now))
         outcome = pilot.tick(state, now)
         state, sent, reports = outcome.pilot, sent + list(outcome.sent), reports + list(outcome.reports)
     return state, sent, reports
@@ -141,7 +154,7 @@ def of(sent, command):
 
 
 def test_a_step_that_is_never_taken_is_told_again_and_again_and_then_rejected_with_the_last_words():
-    _, sent, reports = ticked(begun(said="Mode change failed"), 0, PATIENCE + 2)
+    _, sent, reports = ticked(begun(words=((0.0, "Mode change failed"),)), 0, PATIENCE + 2)
     assert 25 < len(of(sent, Cmd.DO_SET_MODE)) < 35
     (end,) = ended(reports)
     assert (
@@ -193,15 +206,18 @@ def test_a_state_that_stays_otherwise_is_someone_elses_doing_and_not_fought():
     state = under_way()
     _, sent, reports = ticked(replace(state, known=replace(state.known, mode=5)), 1, 20)
     (end,) = ended(reports)
-    assert "FBWA" in end.reason
+    assert end.reason == "it is in FBWA, by itself or told by someone else"
+    assert [report.reason for report in reports if isinstance(report, TakenOver)] == [end.reason]
     assert of(sent, Cmd.DO_SET_MODE) == of(sent, Cmd.REPOSITION) == []
 
 
 def test_a_place_that_moves_on_does_not_take_a_vehicle_back_from_who_took_it_over():
     state, _, _ = ticked(replace(under_way(), known=replace(under_way().known, mode=5)), 1, 20)
-    with pytest.raises(Refused, match="the request was rejected: it does not do so any more"):
-        pilot.command(state, replace(THERE, place=box((37.02, -8.61), (37.01, -8.625))), 20.0)
-    assert pilot.command(state, replace(THERE, request="r2"), 20.0).pilot.moving.command.request == "r2"
+    for told in (replace(THERE, place=box((37.02, -8.61), (37.01, -8.625))), Hold("r2", "uav0")):
+        with pytest.raises(Refused, match="it was taken over: it is in FBWA"):
+            pilot.command(state, told, 20.0)
+    given = pilot.command(state, GiveBack("r3", "uav0"), 20.0).pilot
+    assert pilot.command(given, replace(THERE, request="r4"), 20.0).pilot.moving.command.request == "r4"
 
 
 def test_everything_is_said_by_the_station_that_has_the_authority_but_who_that_is_each_asks():

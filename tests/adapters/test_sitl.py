@@ -2,20 +2,27 @@
 
 import asyncio
 import os
+import socket
 import subprocess
+import time
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from worlds import AREA, HOME, World, running, until
+from worlds import AREA, HOME, ROUND, World, running, until
 
+from adapters.live.saying import give_back
 from adapters.mavlink import Autopilot, Craft, Stations
+from adapters.mavlink.codec import Encoder
+from adapters.mavlink.command import long, set_parameter
+from adapters.mavlink.numbers import Cmd
+from adapters.mavlink.profiles import PLANE
 from adapters.plugin import Arrived, Follow, GoTo, HandOver, Rejected, Return
 from adapters.simulated import run
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
 from bigactors.commands.run import fly, prepare, record
-from physical import box, contains, point
+from physical import box, circle, contains, point
 
 FOLDER = os.environ.get("BIGACTORS_SITL", "")
 SPEED = 10
@@ -60,7 +67,7 @@ def autopilot(model, port, tmp_path):
         command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     ) as process:
         try:
-            yield
+            yield process
         finally:
             process.kill()
 
@@ -116,23 +123,137 @@ environment { uav0 arrives }
 """
 
 
+def flown_by_run(mission, model, tmp_path, foe=None, seconds=1200):
+    """Fly a mission that was checked as `bigactors run` does; return how it ended, and what was seen of it."""
+    Path("flown.mission").write_text(mission)
+    checked = ["check", "--no-traces", "--control", "timed", "--verdict", "v.json", "flown.mission"]
+    assert main(checked) == 0
+    line = ["run", "flown.mission", "--verdict=v.json", "--vehicle=uav0:1=udp:127.0.0.1:0", "--socket=s"]
+    flight = prepare(parse_arguments([*line, "--record=r.mcap", f"--for={seconds}", "--wait=180"]))
+    seen = Seen()
+
+    async def fly_it():
+        task = asyncio.ensure_future(fly(flight, (tape, seen)))
+        await until(lambda: flight.plugins[0].local)
+        seen.port = port = flight.plugins[0].local[1]
+        with autopilot(model, port, tmp_path) as process:
+            beside = None if foe is None else asyncio.ensure_future(foe(seen, process))
+            ending = await task
+            if beside is not None and beside.done():
+                beside.result()
+            return ending, flight.plugins[0].pilot("uav0").known
+
+    with record(flight) as tape:
+        return *run(fly_it(), SPEED), seen
+
+
+class Seen:
+    """What a run has come to."""
+
+    def __init__(self):
+        self.rules, self.findings = [], []
+
+    def arrived(self, heard, now):
+        pass
+
+    def reported(self, report, now):
+        pass
+
+    def turned(self, turn, _now):
+        self.rules += [step.transition.label.rule for step in turn.steps]
+        self.findings += turn.findings
+
+    async def leg(self, number):
+        """Wait until the vehicle is on its way from the place of its so-many-th commit."""
+        await until(lambda: self.rules.count("commit") == number, 1_200)
+        await asyncio.sleep(5.0)
+
+    def kinds(self):
+        return {finding.kind for finding in self.findings}
+
+
+def tell(system, *messages):
+    """Speak to the autopilot over another link than the run's, as another ground station does."""
+    encoder = Encoder(system, 190)
+    with socket.create_connection(("127.0.0.1", 5762 + 10 * int(INSTANCE)), timeout=5.0) as link:
+        for message in messages:
+            link.sendall(encoder.pack(message))
+        time.sleep(0.2)  # it reads what has come only while it is connected
+
+
 @pytest.mark.parametrize("model", PROGRAMS)
 def test_a_verified_mission_flies_the_real_autopilot(model, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    Path("tour.mission").write_text(MISSION)
-    checked = ["check", "--no-traces", "--control", "timed", "--verdict", "tour.verdict.json", "tour.mission"]
-    assert main(checked) == 0
-    line = ["run", "tour.mission", "--vehicle=uav0:1=udp:127.0.0.1:0", "--socket=s", "--record=r.mcap"]
-    flight = prepare(parse_arguments([*line, "--for=1200", "--wait=180"]))
-
-    async def fly_it():
-        task = asyncio.ensure_future(fly(flight, (tape,)))
-        await until(lambda: flight.plugins[0].local)
-        with autopilot(model, flight.plugins[0].local[1], tmp_path):
-            return await task
-
-    with record(flight) as tape:
-        ending = run(fly_it(), SPEED)
+    ending, _, _ = flown_by_run(MISSION, model, tmp_path)
     assert ending.reason == "the mission has ended"
     logical = ending.state.configuration.structure.logical
     assert (logical.parent("uav0"), logical.links("uav0")) == ("area0", ("control:gcs1",))
+
+
+LOW = {"BATT_FS_LOW_ACT": 1, "BATT_LOW_TIMER": 1, "BATT_LOW_VOLT": 30}
+
+
+def low_battery(number):
+    async def foe(seen, _process):
+        await seen.leg(number)
+        tell(255, *(set_parameter(1, name, value) for name, value in LOW.items()))
+
+    return foe
+
+
+async def other_station(seen, _process):
+    await seen.leg(1)
+    tell(253, long(Cmd.DO_SET_MODE, 1, 1, PLANE.home))
+
+
+@pytest.mark.parametrize(
+    ("foe", "legs", "words"),
+    [
+        (low_battery(1), 1, "Battery 1 is low"),
+        (low_battery(3), 3, "Battery 1 is low"),
+        (other_station, 1, ""),
+    ],
+    ids=["over its destination", "to where the mission ends", "by another station"],
+)
+def test_a_real_plane_that_flies_home_unasked_arrives_nowhere_and_is_not_called_back(
+    foe, legs, words, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    ending, known, seen = flown_by_run(ROUND, "plane", tmp_path, foe, 700)
+    assert ending.reason == "the time is over"
+    assert seen.rules.count("commit") == legs
+    assert "it is in RTL, by itself or told by someone else" in ending.state.taken["uav0"]
+    assert words in ending.state.taken["uav0"]
+    assert known.mode == PLANE.home
+    home = circle((37.0, -8.6), 300.0)
+    assert contains(home, point(known.position.latitude, known.position.longitude))
+
+
+def test_a_real_plane_that_an_operator_gives_back_flies_its_mission_to_the_end(tmp_path, monkeypatch):
+    async def operator(seen, process):
+        await low_battery(1)(seen, process)
+        await until(lambda: "taken over" in seen.kinds())
+        await asyncio.sleep(30.0)
+        assert await give_back(Path("s"), "uav0") == ""
+
+    monkeypatch.chdir(tmp_path)
+    ending, _, seen = flown_by_run(ROUND, "plane", tmp_path, operator, 1_800)
+    assert ending.reason == "the mission has ended"
+    assert seen.kinds() - {"trouble"} == {"taken over", "given back"}
+
+
+def test_a_real_plane_that_boots_anew_on_the_ground_where_it_was_to_go_has_not_arrived(tmp_path, monkeypatch):
+    async def killer(seen, process):
+        await seen.leg(3)
+        process.kill()
+        process.wait()
+        await asyncio.sleep(8.0)
+        with autopilot("plane", seen.port, tmp_path):
+            await asyncio.sleep(1_000.0)
+
+    monkeypatch.chdir(tmp_path)
+    ending, known, seen = flown_by_run(ROUND, "plane", tmp_path, killer, 700)
+    assert ending.reason == "the time is over"
+    assert seen.rules.count("commit") == 3
+    assert known.armed is False
+    assert ending.state.taken["uav0"].startswith("it has booted anew and is disarmed")

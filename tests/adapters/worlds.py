@@ -23,6 +23,27 @@ AREA = box((37.015, -8.61), (37.005, -8.625))
 FIELD = circle((37.0, -8.6), 900)
 TINY = circle((37.01, -8.61), 60)
 
+ROUND = """
+mission round
+signature { kind Location contains Location, UAV, Station kind UAV driven kind Station }
+world {
+  home0: Location = circle (37.0, -8.6) radius 300 m
+  mid0: Location = circle (37.015, -8.6) radius 300 m
+  north0: Location = circle (37.03, -8.6) radius 300 m
+  side0: Location = circle (37.015, -8.56) radius 300 m
+  gcs0: Station = point (37.001, -8.601) linked control:gcs0
+  uav0: UAV = point (37.0, -8.6) linked control:gcs0
+}
+BigActor a hosted_at uav0 with_behavior {
+  control(MOVE_HOST_TO north0)
+  control(MOVE_HOST_TO mid0)
+  control(MOVE_HOST_TO side0)
+  control(MOVE_HOST_TO home0)
+}
+environment { uav0 arrives }
+"""
+"""The way back from north0 leads over mid0, and home is where the mission ends."""
+
 
 @dataclass
 class World:

@@ -75,6 +75,10 @@ PLACES = {
     "northGate0": circle((37.14, -8.612), 300.0),
     "southGate0": circle((37.108, -8.612), 300.0),
     "town0": box((37.135, -8.57), (37.115, -8.6)),
+    "home0": circle((37.0, -8.6), 300.0),
+    "mid0": circle((37.015, -8.6), 300.0),
+    "north0": circle((37.03, -8.6), 300.0),
+    "side0": circle((37.015, -8.56), 300.0),
 }
 STATIONS = {"gcs0": 255.0, "gcs1": 254.0}
 GOOD = Disturbance()

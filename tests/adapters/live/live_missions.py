@@ -4,6 +4,7 @@ from pathlib import Path
 
 from adapters.live.core import advance, started
 from adapters.live.state import Batch, Heard, Plan
+from adapters.plugin import Accepted
 from physical import PhysicalProperty, point
 from semantics.precautions import Precautions
 from semantics.setting import Control, Scheduler
@@ -53,22 +54,27 @@ def boat(at, time, name="boat0"):
 
 
 class Run:
-    """A live run in which the test is the world."""
+    """A live run in which the test is the world; vehicles do what they are told as long as they are `willing`."""
 
-    def __init__(self, plan):
-        self.plan, self.state = plan, started(plan)
+    def __init__(self, plan, willing=True):
+        self.plan, self.state, self.willing = plan, started(plan), willing
         self.steps, self.commands, self.findings, self.answers = [], [], [], []
         self.again = None
 
     def turn(self, now, *heard, reports=(), sayings=(), missed=0.0):
-        batch = Batch(heard, tuple(reports), tuple(sayings), missed)
-        turn = advance(self.plan, self.state, batch, now)
+        reports = (*self.accepted(now), *reports)
+        turn = advance(self.plan, self.state, Batch(heard, reports, tuple(sayings), missed), now)
         self.state, self.again = turn.state, turn.again
         self.steps += turn.steps
         self.commands += turn.commands
         self.findings += turn.findings
         self.answers += turn.answers
         return turn
+
+    def accepted(self, now):
+        """What vehicles report of what they are to do."""
+        told = [order.command for order in self.state.orders.values() if not (order.obeyed or order.refused)]
+        return [Accepted(command.request, command.entity, now) for command in told if self.willing]
 
     @property
     def labels(self):

@@ -1,10 +1,23 @@
 import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
-from adapters.live.core import resumed, watch
-from adapters.live.state import Batch, Heard, Plan, Saying
+from adapters.live.core import is_refused, resumed, watch
+from adapters.live.state import Batch, GivingBack, Heard, Plan, Saying
 from adapters.live.turning import MOST_REPORTED
-from adapters.plugin import Aged, Gone, GoTo, HandOver, Hold, LinkLost, LinkRestored, Rebind, Rejected, Return
+from adapters.plugin import (
+    Accepted,
+    Aged,
+    Gone,
+    GoTo,
+    HandOver,
+    Hold,
+    LinkLost,
+    LinkRestored,
+    Rebind,
+    Rejected,
+    Return,
+    TakenOver,
+)
 from physical import PhysicalProperty, polygon
 from semantics.physical_model import InTransit, Placed
 from semantics.precautions import Fallback, Precautions, TimeLimit
@@ -268,6 +281,134 @@ def test_a_flight_that_takes_too_long_falls_back_and_is_never_committed():
     assert len(run.findings) == 1
 
 
+# --- vehicles that do otherwise -------------------------------------------------------------------------
+
+
+def told(run):
+    return [type(command).__name__ for command in run.commands]
+
+
+def test_a_vehicle_that_has_not_shown_that_it_does_what_it_was_told_has_not_arrived():
+    run = Run(plan_of(TOUR + GO), willing=False)
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(1.0, seen("uav0", EAST, 1.0))
+    assert "commit" not in run.rules
+    run.turn(2.0, reports=[Accepted("a-1", "uav0", 2.0)])
+    assert run.rules[-4] == "commit"
+
+
+def test_a_flight_that_was_refused_is_not_committed_by_where_its_vehicle_comes():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(1.0, reports=[Rejected("a-1", "uav0", 1.0, "denied")])
+    run.turn(2.0, seen("uav0", EAST, 2.0))
+    assert "commit" not in run.rules
+
+
+def test_a_vehicle_that_was_taken_over_has_not_arrived_though_the_same_news_show_it_there():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(1.0, seen("uav0", BETWEEN, 1.0))
+    run.turn(2.0, seen("uav0", EAST, 2.0), reports=[TakenOver("uav0", 2.0, "it is in RTL")])
+    assert "commit" not in run.rules
+    assert [finding.message for finding in run.findings] == [
+        "uav0 was taken over: it is in RTL; nobody here commands it until `bigactors give-back uav0`"
+    ]
+    run.turn(3.0, reports=[Rejected("a-1", "uav0", 3.0, "it is in RTL")])
+    assert run.kinds() == ["taken over"]
+
+
+def test_a_vehicle_on_which_the_mission_falls_back_does_not_arrive_on_its_way_home():
+    run = Run(plan_of(TOUR + GO, Precautions(Fallback.RETURN)))
+    run.turn(0.0, seen("uav0", WEST, 0.0), boat((37.03, -8.63), 0.0))
+    run.turn(1.0, boat(WEST, 1.0))
+    assert told(run) == ["GoTo", "Return"]
+    run.turn(2.0, seen("uav0", EAST, 2.0))
+    assert "commit" not in run.rules
+
+
+def test_what_the_mission_falls_back_on_does_not_overrule_who_has_taken_a_vehicle_over():
+    for fallback in (Fallback.HOLD, Fallback.RETURN):
+        run = Run(plan_of(TOUR, Precautions(fallback)))
+        run.turn(0.0, seen("uav0", WEST, 0.0))
+        run.turn(1.0, seen("uav0", BETWEEN, 1.0), reports=[TakenOver("uav0", 1.0, "it is in RTL")])
+        assert run.kinds() == ["taken over", "broken assumption", "taken over"]
+        assert run.commands == []
+
+
+def test_nothing_is_told_to_a_vehicle_that_was_taken_over_before_it_is_given_back():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, reports=[TakenOver("uav0", 0.0, "it is in RTL")])
+    run.turn(1.0, seen("uav0", WEST, 1.0))
+    assert run.commands == []
+    run.turn(2.0, sayings=[GivingBack("uav0")])
+    assert told(run) == ["GiveBack", "GoTo"]
+    assert [answer.refusal for answer in run.answers] == [""]
+    assert run.state.taken == {}
+
+
+def test_a_vehicle_that_is_given_back_is_told_anew_what_it_was_to_do():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    for number, report in enumerate((TakenOver("uav0", 1.0, "x"), Rejected("a-3", "uav0", 2.0, "denied")), 1):
+        run.turn(float(number), reports=[report])
+        run.turn(number + 0.5, sayings=[GivingBack("uav0")])
+    assert [command.request for command in run.commands] == [
+        "a-1",
+        "give-back-2",
+        "a-3",
+        "give-back-4",
+        "a-5",
+    ]
+    run.turn(3.0, seen("uav0", EAST, 3.0))
+    assert "commit" in run.rules
+
+
+def test_a_hand_over_that_was_refused_is_told_again_when_the_vehicle_is_given_back():
+    run = Run(plan_of(HAND))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(1.0, reports=[Rejected("op-1", "uav0", 1.0, "no answer")])
+    run.turn(2.0, sayings=[GivingBack("uav0")])
+    assert told(run) == ["HandOver", "GiveBack", "HandOver"]
+
+
+def test_who_was_not_taken_over_is_not_given_back():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 0.0), sayings=[GivingBack("uav0"), GivingBack("uav9")])
+    assert [answer.refusal for answer in run.answers] == [
+        "uav0 was not taken over here, and has refused nothing",
+        "there is no vehicle 'uav9'; there are uav0",
+    ]
+
+
+def test_a_run_that_is_resumed_gives_no_vehicle_back_by_itself():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    again = Run(run.plan)
+    first = run.state.configuration
+    again.state = resumed(run.plan, first, run.state.number, run.state.told, 100.0, {"uav0": "it is in RTL"})
+    again.turn(101.0, seen("uav0", EAST, 101.0))
+    assert again.rules == []
+
+
+def test_only_a_run_of_which_all_that_is_left_was_refused_has_nothing_left_to_do():
+    alone, beside, talking = (
+        Run(plan_of(TOUR + GO + more))
+        for more in (
+            "",
+            "BigActor op hosted_at gcs0 with_behavior { observe(ALL) control(HAND uav0 TO gcs1) }",
+            'environment { says "go" to a at most once }',
+        )
+    )
+    for run in (alone, beside, talking):
+        run.turn(0.0, seen("uav0", WEST, 0.0))
+        assert not is_refused(run.state)
+        run.turn(1.0, reports=[Rejected("a-1", "uav0", 1.0, "denied")])
+    assert [is_refused(run.state) for run in (alone, beside, talking)] == [True, False, False]
+    alone.turn(2.0, reports=[TakenOver("uav0", 2.0, "it is in RTL")])
+    assert not is_refused(alone.state)
+
+
 # --- sayings --------------------------------------------------------------------------------------------
 
 TALK = (
@@ -413,14 +554,16 @@ def after_a_crash(run):
     return resumed_run
 
 
-def test_a_flight_that_ended_while_nobody_looked_is_committed_and_not_told_again():
+def test_a_flight_that_ended_while_nobody_looked_is_committed_once_its_vehicle_shows_that_it_did_what_it_was_told():
     run = Run(plan_of(TOUR + GO))
     run.turn(0.0, seen("uav0", WEST, 0.0))
     again = after_a_crash(run)
     turn = watch(again.plan, again.state, Batch((seen("uav0", EAST, 101.0),)), 101.0)
-    assert [step.transition.label.rule for step in turn.steps] == ["commit"]
-    assert turn.state.orders == {}
-    assert turn.commands == ()
+    assert turn.steps == ()
+    again.state = turn.state
+    again.turn(102.0)
+    assert again.rules[0] == "commit"
+    assert again.commands == []
 
 
 def test_a_flight_that_goes_on_is_still_ordered_after_a_crash():

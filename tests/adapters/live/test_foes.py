@@ -97,7 +97,7 @@ def test_a_vehicle_that_comes_back_disarmed_stops_the_mission_and_is_not_armed_a
 
     flown = flying(SHUTTLE, copter(), foe=watchdog, seconds=720)
     assert not flown.ended
-    assert {"refused", "late"} <= flown.witness.kinds()
+    assert {"taken over", "late"} <= flown.witness.kinds()
     assert "commit" not in flown.witness.rules
     assert not flown.vehicle.armed
 
@@ -155,16 +155,17 @@ def test_a_second_ground_station_is_reported_and_changes_nothing(flying):
     assert "second ground station" in flown.witness.told()
 
 
-def test_a_station_that_the_vehicle_obeys_too_ends_the_flight_and_nothing_is_committed(flying):
+def test_a_station_that_the_vehicle_obeys_too_has_it_and_not_even_the_fall_back_takes_it_away(flying):
     async def other(_flight, _simulator, witness):
         await airborne(witness)
         witness.vehicle.mode = witness.vehicle.kind.profile.hold
 
     flown = flying(SHUTTLE, copter(), foe=other, seconds=720)
     assert not flown.ended
-    assert {"refused", "late"} <= flown.witness.kinds()
+    assert {"taken over", "late"} <= flown.witness.kinds()
+    assert "uav0 is not told to return: it was taken over" in flown.witness.told()
     assert "commit" not in flown.witness.rules
-    assert flown.inside("west0")  # returned, as the mission says of a flight that takes too long
+    assert flown.vehicle.mode == flown.vehicle.kind.profile.hold
 
 
 NO_FIX = {"alt": 0, "eph": 0, "epv": 0, "vel": 0, "cog": 0, "satellites_visible": 9}

@@ -8,7 +8,7 @@ from live_missions import BETWEEN, EAST, TOUR, WEST, plan_of
 from adapters.live.core import started
 from adapters.live.loop import LiveRun, NotAsAssumed, NotHeard, PluginFailed
 from adapters.live.saying import NobodyListens, listening, say
-from adapters.plugin import Aged, GoTo, HandOver, LinkLost, Refused
+from adapters.plugin import Accepted, Aged, GoTo, HandOver, LinkLost, Refused
 from physical import PhysicalProperty, centroid, point
 
 GO = """
@@ -31,6 +31,7 @@ class Vehicle:
         self.told, self.way = [], []
 
     async def run(self, world):
+        self.world = world
         while True:
             if self.way:
                 self.at = self.way.pop(0)
@@ -43,6 +44,7 @@ class Vehicle:
             raise Refused(self.refuses)
         self.told.append(command)
         if isinstance(command, GoTo):
+            self.world.report(Accepted(command.request, command.entity, self.world.now()))
             self.way = [BETWEEN, BETWEEN, centroid(command.place).vertices[0]]
         elif isinstance(command, HandOver):
             self.channels = (command.join,)
@@ -125,9 +127,9 @@ def test_a_run_that_is_interrupted_ends_even_if_something_has_just_come_in():
     assert asyncio.run(interrupted())
 
 
-def test_what_is_refused_is_reported_and_stays_pending():
-    ending, looker = fly(TOUR + GO, Vehicle(refuses="not armed"), seconds=0.3)
-    assert ending.reason == "the time is over"
+def test_what_is_refused_is_reported_and_a_run_with_nothing_else_to_do_ends():
+    ending, looker = fly(TOUR + GO, Vehicle(refuses="not armed"))
+    assert ending.reason == "what was left to be done was refused"
     assert [finding.kind for finding in looker.findings] == ["refused"]
     assert "commit" not in [step.transition.label.rule for step in looker.steps]
 
@@ -191,9 +193,9 @@ def _fields(said):
 
 
 async def _talk(path, *messages):
-    async def listener(agent, message):
+    async def listener(said):
         await asyncio.sleep(0)
-        return "" if message == "go" else f"{agent} is not told {message}"
+        return "" if said.message == "go" else f"{said.agent} is not told {said.message}"
 
     async with listening(path, listener):
         mode = stat.S_IMODE(path.stat().st_mode)

@@ -1,0 +1,20 @@
+"""The arguments of `bigactors give-back`."""
+
+from bigactors.arguments.parser import Command, Parser
+from bigactors.arguments.say import add_socket
+
+
+def fill(parser: Parser) -> None:
+    """Add the arguments of `bigactors give-back`."""
+    parser.add_argument("vehicle", metavar="VEHICLE", help="a vehicle of the running mission")
+    add_socket(parser)
+
+
+COMMAND = Command(
+    "give-back",
+    "give a vehicle that was taken over back to a running mission",
+    "Let a running mission command a vehicle again that a pilot, another station, a fail-safe or a reboot has taken\n"
+    "over, or that has refused a command. What it was told before it is told anew, in whatever mode it is: look first.",
+    ("bigactors give-back uav0",),
+    fill,
+)

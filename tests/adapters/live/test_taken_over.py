@@ -1,0 +1,117 @@
+"""Vehicles that do what nobody here ordered: nothing of it is an arrival, and nobody here overrules it."""
+
+import asyncio
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import pytest
+from audited import flown_in
+from worlds import ROUND
+
+from adapters.live.saying import give_back
+from adapters.mavlink.command import long
+from adapters.mavlink.numbers import Cmd, Result
+from adapters.simulated import Kind, Vehicle, protocol
+from adapters.simulated.reporting import Reporter
+from bigactors.cli import main
+from bigactors.recordings import open_recording
+
+
+@pytest.fixture
+def flying(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return partial(flown_in, tmp_path, ROUND)
+
+
+def plane(**more):
+    return Vehicle(Kind.PLANE, (37.0, -8.6, 20.0), **more)
+
+
+async def leg(witness, number):
+    """Wait until the vehicle is on its way from the place of its so-many-th commit."""
+    while witness.rules.count("commit") < number:
+        await asyncio.sleep(0.5)
+    await asyncio.sleep(5.0)
+
+
+def low_battery(number):
+    async def foe(_flight, _simulator, witness):
+        await leg(witness, number)
+        witness.vehicle.parameters |= {"BATT_FS_LOW_ACT": 1.0, "BATT_LOW_TIMER": 1.0, "BATT_LOW_VOLT": 30.0}
+
+    return foe
+
+
+async def other_station(_flight, simulator, witness):
+    await leg(witness, 1)
+    told = replace(long(Cmd.DO_SET_MODE, 1, 1, 11), system=253)
+    assert protocol.hear(witness.vehicle, Reporter(), told, simulator.now())[0]["result"] == Result.ACCEPTED
+
+
+async def killed_on_the_way_home(_flight, simulator, witness):
+    await leg(witness, 3)
+    simulator.restart(1)
+
+
+def home(vehicle):
+    return vehicle.mode == vehicle.kind.profile.home
+
+
+BATTERY = "'Battery 1 is low 12.60V used 0 mAh'"
+RTL = "it is in RTL, by itself or told by someone else"
+
+
+@pytest.mark.parametrize(
+    ("foe", "legs", "reason"),
+    [
+        (low_battery(1), 1, f"{RTL}; its last words: {BATTERY}"),
+        (low_battery(3), 3, f"{RTL}; its last words: {BATTERY}"),
+        (other_station, 1, RTL),
+    ],
+    ids=["over its destination", "to where the mission ends", "by another station"],
+)
+def test_a_vehicle_that_flies_home_unasked_arrives_nowhere_and_is_not_called_back(flying, foe, legs, reason):
+    flown = flying(plane(enforce=False), foe=foe, seconds=600)
+    assert flown.witness.rules.count("commit") == legs
+    assert not flown.ended
+    assert home(flown.vehicle)
+    assert flown.inside("home0")
+    assert flown.ending.state.taken == {"uav0": reason}
+    assert flown.witness.kinds() == {"taken over"}
+
+
+def test_a_vehicle_that_boots_anew_on_the_ground_where_it_was_to_go_has_not_arrived(flying):
+    flown = flying(plane(), foe=killed_on_the_way_home, seconds=600)
+    assert flown.inside("home0")
+    assert flown.witness.rules.count("commit") == 3
+    assert not flown.ended
+    assert not flown.vehicle.armed
+    (reason,) = flown.ending.state.taken.values()
+    assert reason.startswith("it has booted anew and is disarmed")
+
+
+def test_a_vehicle_that_an_operator_gives_back_flies_its_mission_to_the_end(flying):
+    answers = []
+
+    async def operator(flight, simulator, witness):
+        await low_battery(1)(flight, simulator, witness)
+        while "taken over" not in witness.kinds():
+            await asyncio.sleep(0.5)
+        await asyncio.sleep(60.0)
+        answers.append(await give_back(Path("s"), "uav1"))
+        answers.append(await give_back(Path("s"), "uav0"))
+
+    flown = flying(plane(), foe=operator, seconds=1500)
+    assert flown.ended
+    assert answers == ["there is no vehicle 'uav1'; there are uav0", ""]
+    assert flown.ending.state.taken == {}
+    assert flown.witness.kinds() == {"taken over", "given back"}
+    recording = open_recording("r.mcap")
+    assert [message.data for message in recording.of("given_back")] == [
+        {"vehicle": "uav1", "refusal": answers[0]},
+        {"vehicle": "uav0", "refusal": ""},
+    ]
+    told = [message.data["command"] for message in recording.of("commands")]
+    assert told == ["GoTo", "GoTo", "GiveBack", "GoTo", "GoTo", "GoTo"]
+    assert main(["replay", "r.mcap"]) == 0
