@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from typing import TYPE_CHECKING, Any
 
+from semantics.agents import Store
 from semantics.configuration import Configuration
 from semantics.program import VariableOf
 from semantics.signature import REGION, Name
@@ -261,22 +262,25 @@ def _is_agent(c: Configuration, agent: Name) -> bool:
     return agent in c.alpha
 
 
-def _held(variable: VariableOf, c: Configuration) -> Value | None:
-    """Return the value of a variable, None where it has none.
+def _about_variable(atom: VariableIs | IsBound, c: Configuration) -> bool:
+    """Tell whether an atom about a variable is true.
 
     Raises:
         ValueError: The configuration is one of a setting that forgets the variable.
     """
+    variable = atom.variable
     if variable not in c.setting.program.watched:
         raise ValueError(
             f"'{variable}' is forgotten once nobody reads it any more: begin with watching(initial, properties)"
         )
-    store = dict(c.alpha.store(variable.agent)) if _is_agent(c, variable.agent) else {}
-    return store.get(variable.key)
+    return is_true_of(atom, c.alpha.store(variable.agent) if _is_agent(c, variable.agent) else ())
 
 
-def _variable_is(atom: VariableIs, c: Configuration) -> bool:
-    held = _held(atom.variable, c)
+def is_true_of(atom: VariableIs | IsBound, store: Store) -> bool:
+    """Tell whether an atom about a variable is true of the store in which it is kept."""
+    held = dict(store).get(atom.variable.key)
+    if isinstance(atom, IsBound):
+        return held is not None
     if held is None:
         return atom.unbound
     if atom.operator == "==":
@@ -290,8 +294,8 @@ _TRUTH: dict[type, Callable[[Any, Configuration], bool]] = {
     Inside: _inside,
     LinkedWith: _linked,
     HasPending: lambda atom, c: _is_agent(c, atom.agent) and _pending(atom, c),
-    VariableIs: _variable_is,
-    IsBound: lambda atom, c: _held(atom.variable, c) is not None,
+    VariableIs: _about_variable,
+    IsBound: _about_variable,
     Present: lambda atom, c: atom.entity in c.structure.physical,
     Known: lambda atom, c: atom.node in c.structure.logical,
     Ended: lambda atom, c: _is_agent(c, atom.agent) and not c.alpha.code(atom.agent),

@@ -168,15 +168,15 @@ class Choosing:
                 continue
             column = columns.all[number]
             asked += [number, len(answers)]
-            answers += [bool(seen.question(column.value(code))) for code in range(len(column.values))]
+            answers += [seen.question(column.value(code)) for code in range(len(column.values))]
         self.seen = np.array(asked, np.int32)
         self.seen_answers = np.array(answers, np.uint8)
 
     def _columns(self, seen: Seen) -> list[int]:
-        """Return the columns of a cell: of its skeleton, and of what its holes say."""
+        """Return the columns of a cell: of its skeleton, and where the value counts, of what its holes say."""
         columns = self.learner.columns
         number = columns.numbers.get((seen.cell,))
-        holes = range(columns.holes.get(seen.cell, 0))
+        holes = range(columns.holes.get(seen.cell, 0) if seen.question is None else 0)
         said = [column for hole in holes for _, column in columns.of_hole(seen.cell, hole)]
         return said if number is None else [number, *said]
 

@@ -27,18 +27,21 @@ from semantics.propositions import (
     Proposition,
     VariableIs,
     Waiting,
+    is_true_of,
 )
 from semantics.signature import REGION, Name
 from semantics.statements import React
-from semantics.values import Value
 
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """One cell as far as a proposition asks for it: its value, or what a question makes of the value."""
+    """One cell as far as a proposition asks for it: its value, or the answer to a question about the value.
+
+    No question is about what an observation says.
+    """
 
     cell: Cell
-    question: Callable[[Any], Any] | None = None
+    question: Callable[[Any], bool] | None = None
 
     def of(self, c: Configuration) -> Any:
         """Return what is seen in a configuration."""
@@ -82,7 +85,7 @@ class Eyes:
             case HasPending(agent):
                 yield from (Seen(AGENTS), Seen(line_cell(agent)), Seen(sends_cell(agent)))
             case VariableIs(variable) | IsBound(variable):
-                yield from (Seen(AGENTS), Seen(store_cell(variable.agent), _Holds(variable.key)))
+                yield from (Seen(AGENTS), Seen(store_cell(variable.agent), _IsTrue(formula)))
 
     def _places(self, node: Name, actually: bool) -> Iterator[Seen]:
         if node not in self.bounds.names or node == REGION:
@@ -107,13 +110,13 @@ def _is_there(value: Any) -> bool:
 
 
 @dataclass(frozen=True)
-class _Holds:
-    """What a store has under a name."""
+class _IsTrue:
+    """Whether an atom about a variable is true of a store."""
 
-    key: str
+    atom: VariableIs | IsBound
 
-    def __call__(self, store: Store | None) -> Value | None:
-        return dict(store or ()).get(self.key)
+    def __call__(self, store: Store | None) -> bool:
+        return is_true_of(self.atom, store or ())
 
 
 @dataclass(frozen=True)

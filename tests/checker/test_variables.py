@@ -363,13 +363,12 @@ def test_a_variable_is_kept_however_it_is_bound(engine, claim):
       reachable "at the end": {claim} and ended a and ended b
       ltl "from then on": [] ({claim} -> [] {claim})
     """
-    report = check(*_asked(f"{EVERY_WAY} check {{ {claims} }}"), engine=engine)
+    mission = load(f"{EVERY_WAY} check {{ {claims} }}")
+    report = check(mission.initial, mission.properties, engine=engine)
     assert outcomes(report) == {"at the end": True, "from then on": True, "computation": True}
-
-
-def _asked(text):
-    mission = load(text)
-    return mission.initial, mission.properties
+    reduced = check(mission.initial, mission.properties, engine=engine, reduce=[Reduction.POR])
+    assert outcomes(reduced)["at the end"] is True
+    assert reduced.configurations < report.configurations
 
 
 FOUND = VariableIs(VariableOf("scout", ("found",)), Truth.TRUE)
@@ -422,6 +421,30 @@ def test_nothing_is_kept_that_no_property_names():
     assert [checked(f"{text} check {{ {claim} }}").configurations for claim in claims] == [1 + 3, 1 + 2 * 3]
 
 
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_a_reduction_sees_what_is_given_to_variables(engine):
+    """Both agents compute apart from each other: with the variables unseen, one order would stand for both."""
+    text = "".join(
+        f"""
+        BigActor {agent} hosted_at {uav} with_behavior {{
+          let n = 1
+          observe(HOST)
+          n = n + 1
+          observe(HOST)
+        }}"""
+        for agent, uav in (("a", "uav0"), ("b", "uav1"))
+    )
+    claims = "".join(
+        f' reachable "{one} {other}": a.n == {one} and b.n == {other}' for one in (1, 2) for other in (1, 2)
+    )
+    first = {each: load(f"{text} check {{ {each} }}") for each in ("local_consistency", claims)}
+    plain, named = (
+        check(each.initial, each.properties, engine=engine, reduce=[Reduction.POR]) for each in first.values()
+    )
+    assert set(outcomes(named).values()) == {True}
+    assert plain.configurations < named.configurations
+
+
 def test_agents_are_not_exchanged_where_a_property_names_a_variable_of_one():
     twins = "".join(
         f"""
@@ -433,9 +456,10 @@ def test_agents_are_not_exchanged_where_a_property_names_a_variable_of_one():
         }}"""
         for agent, uav in (("a", "uav0"), ("b", "uav1"))
     )
-    one = load(f'{twins} check {{ reachable "it": a.n == 1 }}', ALIKE)
-    with pytest.raises(RefusedError, match="a property tells them apart"):
-        check(one.initial, one.properties, reduce=[Reduction.SYMMETRY])
+    for claim in ('reachable "it": a.n == 1', 'ltl "it": <> a.n == 1'):
+        one = load(f"{twins} check {{ {claim} }}", ALIKE)
+        with pytest.raises(RefusedError, match=r"a property tells them apart: it names a\.n"):
+            check(one.initial, one.properties, reduce=[Reduction.SYMMETRY])
     both = load(
         f'{twins} check {{ invariant "it": a.n != 1 or b.n != 1 reachable "r": a.n > 0 and b.n > 0 }}', ALIKE
     )
