@@ -3,14 +3,16 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from small_missions import figure_2, mission, move_to, run
+from small_missions import explore, figure_2, mission, move_to, run
 
 from semantics import strategies
 from semantics.configuration import Configuration
 from semantics.expressions import Fault, Literal
+from semantics.monitor import monitored
 from semantics.printing import print_agent
 from semantics.program import Program, VariableOf
 from semantics.propositions import ORDERS, IsBound, Not, Or, Property, VariableIs, holds, watched, watching
+from semantics.provenance import NOTHING
 from semantics.reactions import COMMANDS
 from semantics.statements import Assign
 from semantics.successors import successors
@@ -108,6 +110,19 @@ def test_of_several_variables_written_alike_the_one_given_last_counts():
     assert c.alpha.code("a") == ()
     assert c.alpha.store("a") == (("x#", 3), ("x#2", 2))
     assert print_agent(c, "a") == "a@u0 ended [x = 3, x = 2]"
+
+
+def test_nothing_rests_on_what_is_only_watched():
+    """So the search for races has no more to remember."""
+    obs = VariableOf("a", ("obs",))
+    live, watched_only = set(), set()
+    for c in explore(monitored(watching(figure_2(), asking(obs)))).configurations:
+        kept = zip(c.alpha.store("a"), c.alpha.watch("a").store, strict=True)
+        found = live if "obs" in c.setting.program.live(c.alpha.code("a")) else watched_only
+        found.update(rests_on for (name, _), rests_on in kept if name == "obs")
+    assert NOTHING not in live
+    assert live
+    assert watched_only == {NOTHING}
 
 
 # --- beside a program that forgets nothing ---------------------------------------------------------------------
