@@ -3,6 +3,7 @@
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from semantics.agents import Store
@@ -333,16 +334,21 @@ class Property:
 def watched(properties: Iterable[Property]) -> frozenset[VariableOf]:
     """Return the variables that properties name, wherever it is."""
     found: set[VariableOf] = set()
-    waiting: list[Any] = list(properties)
+    waiting: list[object] = list(properties)
     while waiting:
         part = waiting.pop()
         if isinstance(part, VariableOf):
             found.add(part)
         elif isinstance(part, tuple):
             waiting.extend(part)
-        elif is_dataclass(part):
-            waiting.extend(getattr(part, each.name) for each in fields(part))
+        else:
+            waiting.extend(getattr(part, name) for name in _members(type(part)))
     return frozenset(found)
+
+
+@cache
+def _members(sort: type) -> tuple[str, ...]:
+    return tuple(each.name for each in fields(sort)) if is_dataclass(sort) else ()
 
 
 def watching(c: Configuration, properties: Iterable[Property]) -> Configuration:
