@@ -14,7 +14,17 @@ from semantics.configuration import Configuration, Transition
 from semantics.eta import line_cell, sends_cell
 from semantics.provenance import EVERYTHING, NOTHING, SLOT, Dependency, Key, Provenance, differences
 from semantics.queries import Step, Steps, answers, denoted
-from semantics.relevance import ANY, Questions, anybodys, may_tell, meet, questions_of, relevant, slots_of
+from semantics.relevance import (
+    ANY,
+    HEARD,
+    Questions,
+    anybodys,
+    meet,
+    questions_of,
+    relevant,
+    slots_of,
+    told_by,
+)
 from semantics.requests import CTR, FLY, SND, Request
 from semantics.signature import Name
 from semantics.structure import Parent, Relation
@@ -196,16 +206,22 @@ def _mark_one_own(each: Dependency, own: tuple[Key, ...], asked: Questions, agai
 
 
 def _mark_memory(c: Configuration, holder: Name, author: Name, again: Asking) -> Changes:
-    watch, own = c.alpha.watch(holder), holder == author
+    watch, mark = c.alpha.watch(holder), _mark_own if holder == author else _mark
     if watch is None or not any((*watch.code, *watch.store, *watch.mailbox)):
         return {}
-    if own and not may_tell(c.setting.program, c.alpha.code(holder)):
-        return {}
-    asked, mark = questions_of(c, holder), _mark_own if own else _mark
-    parts = (
-        tuple(mark(each, asked, again) for each in part) for part in (watch.code, watch.store, watch.mailbox)
-    )
-    return {watch_cell(holder): Watch(*parts)}
+    asked = questions_of(c, holder)
+    mailbox_too = holder != author or _passes_on(c, holder)
+
+    def marks(part: tuple[Provenance, ...]) -> tuple[Provenance, ...]:
+        return tuple(mark(each, asked, again) for each in part)
+
+    mailbox = marks(watch.mailbox) if mailbox_too else watch.mailbox
+    return {watch_cell(holder): Watch(marks(watch.code), marks(watch.store), mailbox)}
+
+
+def _passes_on(c: Configuration, agent: Name) -> bool:
+    """Tell whether others may be told what an agent receives."""
+    return HEARD in told_by(c.setting.program, c.alpha.code(agent))
 
 
 def _request_cells(c: Configuration, holder: Name) -> list[Cell]:
@@ -222,7 +238,7 @@ def _mark_request(
     c: Configuration, request: Request, rests_on: Provenance, author: Name, again: Asking
 ) -> Provenance:
     holder = _holder(request)
-    if not rests_on or (holder == author and not may_tell(c.setting.program, c.alpha.code(author))):
+    if not rests_on or (holder == author and not _passes_on(c, author)):
         return rests_on
     return (_mark_own if holder == author else _mark)(rests_on, _asked_by(c, request), again)
 

@@ -51,14 +51,16 @@ class Dependency:
         """Return the dependency with what others, and its holder, have changed, forgetting what nobody asks any more.
 
         Of what was tested that is all but the answer itself and the slots, which a redex may use; once the answer has
-        been changed the slots don't matter either.
+        been changed nothing else matters either.
         """
-        kept, known = frozenset(changed), None if own is None else frozenset(own)
-        if self.asked is not None:
-            slots = (key for key in kept if key[0].startswith(SLOT))
-            kept = frozenset({self.asked} if self.asked in kept else slots)
-            known = known and known.intersection({self.asked}).difference(kept)
-        return replace(self, changed=tuple(sorted(kept)), own=None if known is None else tuple(sorted(known)))
+        kept, known, steps = frozenset(changed), frozenset(own or ()), self.steps
+        if self.asked in kept:
+            kept, known, steps = frozenset({self.asked}), frozenset(), ()
+        elif self.asked is not None:
+            kept = frozenset(key for key in kept if key[0].startswith(SLOT))
+            known &= {self.asked}
+        keys = None if own is None else tuple(sorted(known))
+        return replace(self, steps=steps, changed=tuple(sorted(kept)), own=keys)
 
     def deciding(self) -> "Dependency":
         """Return the dependency of what was only done because of it."""

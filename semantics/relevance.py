@@ -25,12 +25,28 @@ from semantics.expressions import (
     TupleOf,
     free,
 )
+from semantics.patterns import variables
 from semantics.program import Program, expressions_of, reachable
 from semantics.provenance import EVERYTHING, SLOT, Key
 from semantics.reactions import NodeTerm, Pattern, Reaction
 from semantics.setting import Setting
 from semantics.signature import Name
-from semantics.statements import ChooseFrom, ControlBy, For, Migrate, Send, Spawn
+from semantics.statements import (
+    Assign,
+    Call,
+    Case,
+    ChooseFrom,
+    ControlBy,
+    For,
+    ForEach,
+    Match,
+    Migrate,
+    Observe,
+    React,
+    Send,
+    Spawn,
+    Statement,
+)
 
 Names = frozenset[Name]
 Questions = frozenset[Key]
@@ -71,9 +87,52 @@ def anybodys(c: Configuration) -> Questions:
     return questions_in(c.setting, every, frozenset[Name]().union(*(hosts_of(c, a) for a in c.alpha.names())))
 
 
-def may_tell(program: Program, code: Code) -> bool:
-    """Tell whether somebody with so much left to run may let others know what was observed."""
-    return tells(program, reachable(program, code))
+HEARD: Name = ""
+"""Stands, among variables, for what an agent receives."""
+
+
+def told_by(program: Program, code: Code) -> Names:
+    """Return the variables whose values may get into what somebody with so much left to run tells others."""
+    return _told(program, reachable(program, code))
+
+
+@lru_cache(maxsize=1 << 12)
+def _told(program: Program, reach: frozenset[int]) -> Names:
+    told: Names = frozenset()
+    while True:
+        parts = (_passed_on(program, program.statements[number], told) for number in sorted(reach))
+        grown = told.union(*parts)
+        if grown == told:
+            return told
+        told = grown
+
+
+def _passed_on(program: Program, statement: Statement, told: Names) -> Names:
+    """Return what a statement tells, or computes what is told from."""
+    match statement:
+        case Send(message, _):
+            return free(message)
+        case Spawn(_, _, _, arguments):
+            return frozenset[Name]().union(*map(free, arguments))
+        case Assign(variable, source) | For(source, variable, _) | ChooseFrom(variable, source, _):
+            return free(source) if variable in told else frozenset()
+        case ForEach(variable, rest, _):
+            return frozenset({rest} if variable in told else ())
+        case Match(source, cases):
+            return free(source) if _binds(cases, told) else frozenset()
+        case React(cases):
+            return frozenset({HEARD} if _binds(cases, told) else ())
+        case Observe(query):
+            return free(query) if HEARD in told else frozenset()
+        case Call(behaviour, arguments):
+            given = zip(program.behaviours[behaviour].parameters, arguments, strict=True)
+            return frozenset[Name]().union(*(free(each) for name, each in given if name in told))
+        case _:
+            return frozenset()
+
+
+def _binds(cases: Iterable[Case], told: Names) -> bool:
+    return any(not told.isdisjoint(variables(case.pattern)) for case in cases)
 
 
 def tells(program: Program, reach: Iterable[int]) -> bool:

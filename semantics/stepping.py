@@ -7,7 +7,7 @@ from semantics.configuration import Configuration
 from semantics.eta import line_cell, sends_cell
 from semantics.expressions import Scope
 from semantics.provenance import NOTHING, Provenance
-from semantics.relevance import may_tell
+from semantics.relevance import told_by
 from semantics.setting import Scheduler, Setting
 from semantics.signature import Name
 from semantics.statements import Statement
@@ -43,11 +43,15 @@ def continuing(c: Configuration, process: Process) -> Changes:
 
 
 def _variables(process: Process) -> tuple[Store, tuple[Provenance, ...]]:
-    """Return the variables, with what each rests on: who tells nobody of them knows what it has changed itself."""
+    """Return the variables, with what each rests on: what nobody is told of decides at the most what is done."""
     store, rests_on = process.variables()
-    if may_tell(process.program, process.code):
-        return store, rests_on
-    return store, tuple(frozenset(each.deciding() for each in part) for part in rests_on)
+    told = told_by(process.program, process.code)
+    kept = zip(store, rests_on, strict=True)
+    return store, tuple(each if name in told else _untold(each) for (name, _), each in kept)
+
+
+def _untold(provenance: Provenance) -> Provenance:
+    return frozenset(each.deciding() for each in provenance)
 
 
 def starting(setting: Setting, a: Name, host: Name, process: Process) -> Changes:

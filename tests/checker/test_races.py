@@ -490,6 +490,20 @@ TELLING = {
     "a value that goes through others' hands": FREE.replace("UAV)), b)", "UAV)), c)")
     + 'BigActor c hosted_at uav1 with_behavior { react { case m: Message => send(m, b) } }\n',
     "the observation": FREE.replace("size(o of UAV)", "o").replace("n == 0", "not (uav0 in n)"),
+    "a member that it goes through": FREE.replace(
+        'send(("free", size(o of UAV)), b)', 'for x in o { send(("free", size({x} of UAV)), b) }'
+    ),
+    "a member that it chooses": FREE.replace(
+        'send(("free", size(o of UAV)), b)', 'choose x in nodes(o) { send(("free", size({x} of UAV)), b) }'
+    ),
+    "a part that it matches": FREE.replace(
+        'send(("free", size(o of UAV)), b)', 'match size(o of UAV) { case k => send(("free", k), b) }'
+    ),
+    "an argument of a behaviour": "def tell(k) = { send((\"free\", k), b) }\n"
+    + FREE.replace('send(("free", size(o of UAV)), b)', "tell(size(o of UAV))"),
+    "what is seen where it led": FREE.replace(
+        "case there => ", "case there => let x = first(nodes(o)) observe(CHILDREN(x)) react { case p => "
+    ).replace("size(o of UAV)), b)", "size(p of UAV) - 1), b) }"),
     "an argument of who is spawned": """
     def enter(n) = { if n == 0 { control(MOVE_HOST_TO gate0) } }
     """ + FREE[: FREE.index("BigActor b")].replace(
@@ -580,6 +594,14 @@ def test_what_comes_after_rests_on(text):
 EVERY = frozenset({(kind, ANY) for kind in ("in", "parent", "children", "links")} | SLOTS | {EVERYTHING})
 
 
+class All:
+    def __contains__(self, _):
+        return True
+
+
+ALL = All()
+
+
 def first_races(c):
     """Return each stale-observation race with how many steps lead to it, or None where the search is cut off."""
     stale = StaleObservationRaces()
@@ -594,7 +616,7 @@ def remembering_everything(c):
         for name in ("questions_of", "anybodys", "slots_of"):
             patch.setattr(monitor, name, lambda *_: EVERY)
         for module in (monitor, stepping):
-            patch.setattr(module, "may_tell", lambda *_: True)
+            patch.setattr(module, "told_by", lambda *_: ALL)
         return first_races(c)
 
 

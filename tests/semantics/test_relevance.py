@@ -3,9 +3,21 @@
 from small_missions import around, explore, is_in, mission, move_to, of_name, received
 
 from checker.ownership import owned
-from semantics.expressions import Apply, Literal, Variable
+from semantics.expressions import Apply, Literal, QueryOf, TupleOf, Variable
+from semantics.program import Program
 from semantics.provenance import EVERYTHING
-from semantics.relevance import ANY, SLOTS, anybodys, meet, questions_of, relevant, slots_of
+from semantics.reactions import COMMANDS
+from semantics.relevance import (
+    ANY,
+    HEARD,
+    SLOTS,
+    anybodys,
+    meet,
+    questions_of,
+    relevant,
+    slots_of,
+    told_by,
+)
 from semantics.requests import CTR
 from semantics.statements import Assign, ControlBy, For, ForEach, If, Migrate, Observe, Send
 
@@ -97,3 +109,36 @@ def test_the_slots_of_a_redex_are_among_what_its_agent_may_ask():
     ]
     assert pending
     assert all(slots_of(request.reaction.redex) <= questions_of(c, request.agent) for request in pending)
+
+
+def told(statements, code):
+    return told_by(Program(tuple(statements), {}, COMMANDS), code)
+
+
+def test_nobody_is_told_of_what_only_decides():
+    statements = (
+        *ASKS,
+        Assign("x", is_in("u1", "o")),
+        If(Variable("x"), (6,)),
+        Send(Literal("go"), Variable("y")),
+    )
+    assert told(statements, (0, 1, 4, 5)) == frozenset()
+
+
+def test_what_a_message_is_computed_from_may_be_told():
+    statements = (
+        *ASKS,
+        Assign("x", is_in("u1", "o")),
+        Send(TupleOf((Literal("n"), Variable("x"))), Literal("b")),
+    )
+    assert told(statements, (0, 1, 4, 5)) == {"x", "o", HEARD}
+    assert told(statements, (0, 4)) == frozenset()
+
+
+def test_what_a_query_is_asked_of_is_told_with_what_it_shows():
+    statements = (
+        Observe(QueryOf("CHILDREN", QueryOf(None, Variable("place")))),
+        received("o", 2),
+        Send(Variable("o"), Literal("b")),
+    )
+    assert told(statements, (0, 1)) == {"o", "place", HEARD}
