@@ -46,7 +46,7 @@ ASK_AUTHORITY: Final = 1.0
 CHECK_AUTHORITY: Final = 5.0
 
 UNANSWERED: Final = 8
-"""Questions after which it is said that a vehicle doesn't tell whom it obeys: a link that loses a third answers one."""
+"""Questions after which it is said that a vehicle does not tell whom it obeys: a bad link answers one of them."""
 
 MOST_QUESTIONS: Final = 10
 """How often a vehicle is asked, once a second, what it may do: a parameter that it does not have it does not answer."""
