@@ -36,6 +36,10 @@ def broken_by_place(plan: Plan, c: Configuration, entity: Name, seen: Placement 
         where += f" and contains {', '.join(sorted(now[1]))}"
     if isinstance(drift, Drifts):
         return f"{where}; the mission lets it drift among {', '.join(drift.names)}"
+    if entity in plan.vehicles:
+        return (
+            f"{where}; it was not sent there, and has not stayed where it was: wind, or somebody else's doing"
+        )
     return f"{where}; the mission does not say that it drifts, and nobody sent it"
 
 

@@ -46,7 +46,7 @@ ASK_AUTHORITY: Final = 1.0
 CHECK_AUTHORITY: Final = 5.0
 
 UNANSWERED: Final = 8
-"""Questions after which it is said that a vehicle doesn't tell whom it obeys: a link that loses a third answers one."""
+"""Questions after which it is said why a vehicle does not answer, if that shows: a bad link answers one of them."""
 
 MOST_QUESTIONS: Final = 10
 """How often a vehicle is asked, once a second, what it may do: a parameter that it does not have it does not answer."""
@@ -186,8 +186,8 @@ def tick(pilot: Pilot, now: float) -> Outcome:
         pilot, questions = _asked(pilot, now)
     outcome = _advance(pilot, now)
     reports = outcome.reports if change is None else (change, *outcome.reports)
-    if before < UNANSWERED <= pilot.unanswered:
-        reports = (*reports, Trouble(pilot.craft.entity, now, "authority not told", _deaf(pilot)))
+    if before < UNANSWERED <= pilot.unanswered and pilot.known.signs and not pilot.signs:
+        reports = (*reports, Trouble(pilot.craft.entity, now, "no answer", _deaf(pilot)))
     return replace(outcome, sent=_spoken(pilot, (*questions, *outcome.sent)), reports=reports)
 
 
@@ -396,8 +396,10 @@ def _channels(pilot: Pilot) -> tuple[str, ...]:
 
 def _authority_trouble(pilot: Pilot, now: float) -> tuple[Report, ...]:
     authority = pilot.known.authority
-    if authority is None or pilot.stations.name_of(authority) is not None:
+    if pilot.stations.name_of(authority) is not None:
         return ()
     entity = pilot.craft.entity
+    if authority is None:
+        return (Trouble(entity, now, "authority not told", _deaf(pilot)),)
     detail = f"{entity} obeys system {authority}, which is no station of the mission; add it to the stations"
     return (Trouble(entity, now, "unknown authority", detail),)

@@ -23,6 +23,9 @@ COUNT_AGAIN: Final = 2.0
 GIVEN_UP: Final = 9.0
 """Seconds of silence amid an upload after which the vehicle has given it up, too."""
 
+BUSY: Final = 25.0
+"""Seconds for which DENIED may be said because of another's upload: thrice what a vehicle waits, by its own clock."""
+
 ACK_LOST: Final = 3.0
 """Seconds of silence after the last item, after which its ACK must have been lost."""
 
@@ -107,6 +110,6 @@ def _answered(upload: Upload, result: int, now: float) -> Upload:
     if result in _NOT_FINAL:  # booting, or out of step with lost items: the count comes again by timer
         return upload if result == MissionResult.INVALID_SEQUENCE else replace(upload, asked=None)
     since = now if upload.denied is None else upload.denied
-    if result == MissionResult.DENIED and now - since <= GIVEN_UP:
+    if result == MissionResult.DENIED and now - since <= BUSY:
         return replace(upload, asked=None, denied=since)
     return replace(upload, over=True, refusal=result)

@@ -335,7 +335,7 @@ def test_a_vehicle_that_asks_for_signed_packets_is_said_to():
     async def main():
         async with flight(signing=Signing(b"k" * 32)) as f:
             await f.plugin.command(GoTo("r1", "uav0", AREA))
-            (trouble,) = await until(lambda: f.world.of(Trouble, what="authority not told"))
+            (trouble,) = await until(lambda: f.world.of(Trouble, what="no answer"))
             assert trouble.detail == "it asks for signed packets: give its key, --key FILE"
             end = await f.ended("r1", 200)
             assert isinstance(end, Rejected)

@@ -5,7 +5,7 @@ import os
 import socket
 import subprocess
 import time
-from contextlib import contextmanager
+from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
 import pytest
@@ -17,12 +17,13 @@ from adapters.mavlink.codec import Encoder
 from adapters.mavlink.command import long, set_parameter
 from adapters.mavlink.numbers import Cmd
 from adapters.mavlink.profiles import PLANE
-from adapters.plugin import Arrived, Follow, GoTo, HandOver, Rejected, Return
+from adapters.mavlink.sync import Sync
+from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Refused, Rejected, Return
 from adapters.simulated import run
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
 from bigactors.commands.run import fly, prepare, record
-from physical import box, circle, contains, point
+from physical import box, circle, contains, distance, point
 
 FOLDER = os.environ.get("BIGACTORS_SITL", "")
 SPEED = 10
@@ -40,12 +41,14 @@ INSTANCE = os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")
 
 
 @contextmanager
-def autopilot(model, port, tmp_path):
+def autopilot(model, port, tmp_path, parameters=()):
     """Start ArduPilot's simulator, talking to a port of ours."""
     program = Path(FOLDER) / PROGRAMS[model]
     if not program.exists():
         pytest.skip(f"{program} is not there")
-    defaults = Path(FOLDER) / f"{model}.parm"
+    given, defaults = Path(FOLDER) / f"{model}.parm", tmp_path / f"{model}.parm"
+    lines = [given.read_text()] if given.exists() else []
+    defaults.write_text("\n".join([*lines, *(f"{name} {value}" for name, value in parameters), ""]))
     where = ",".join(map(str, (*HOME, 0)))
     command = [
         program,
@@ -62,7 +65,7 @@ def autopilot(model, port, tmp_path):
         "1",
     ]
     command += ["--serial0", f"udpclient:127.0.0.1:{port}"]
-    command += ["--defaults", defaults] if defaults.exists() else []
+    command += ["--defaults", defaults]
     with subprocess.Popen(
         command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     ) as process:
@@ -72,17 +75,25 @@ def autopilot(model, port, tmp_path):
             process.kill()
 
 
-async def flown(model, tmp_path, *told, craft=CRAFT):
-    """Tell one thing after the other, each when the one before has ended."""
+@asynccontextmanager
+async def linked(model, tmp_path, craft=CRAFT, parameters=()):
+    """Start a vehicle and its plugin, and wait until it has told where it is and what it may do."""
     world, plugin = World(), Autopilot("autopilot", "udp:127.0.0.1:0", [craft], STATIONS)
     async with running(plugin.run(world)):
         await until(lambda: plugin.local)
-        with autopilot(model, plugin.local[1], tmp_path):
+        with autopilot(model, plugin.local[1], tmp_path, parameters):
             await until(lambda: world.property("uav0"))
-            for number, each in enumerate(told, 1):
-                await plugin.command(each)
-                await until(lambda: len([*world.of(Arrived), *world.of(Rejected)]) == number, 1_200)  # noqa: B023
-    return world, plugin
+            await until(plugin.is_known)
+            yield world, plugin
+
+
+async def flown(model, tmp_path, *told, craft=CRAFT):
+    """Tell one thing after the other, each when the one before has ended."""
+    async with linked(model, tmp_path, craft) as (world, plugin):
+        for number, each in enumerate(told, 1):
+            await plugin.command(each)
+            await until(lambda: len([*world.of(Arrived), *world.of(Rejected)]) == number, 1_200)  # noqa: B023
+        return world, plugin
 
 
 @pytest.mark.parametrize("model", PROGRAMS)
@@ -101,6 +112,58 @@ def test_the_real_autopilot_follows_a_path_and_returns(model, tmp_path):
     path = (point(37.004, -8.604), point(37.008, -8.610))
     world, _ = run(flown(model, tmp_path, Follow("r1", "uav0", path), Return("r2", "uav0")), SPEED)
     assert [report.request for report in world.of(Arrived)] == ["r1", "r2"], world.reports
+
+
+@pytest.mark.parametrize(("kind", "wind"), [("plane", 0), ("plane", 8)])
+def test_the_real_plane_stays_where_it_has_arrived_as_far_out_as_we_reckon(kind, wind, tmp_path):
+    centre = (37.01, -8.61)
+
+    async def stays():
+        parameters = (("SIM_WIND_SPD", wind), ("SIM_WIND_DIR", 40))
+        async with linked(kind, tmp_path, parameters=parameters) as (world, plugin):
+            with pytest.raises(Refused, match=r"a circle of 104 m: it circles at 80 m \(WP_LOITER_RAD\)"):
+                await plugin.command(GoTo("r0", "uav0", circle(centre, 85)))
+            await plugin.command(GoTo("r1", "uav0", circle(centre, 105)))
+            await until(lambda: world.of(Arrived, request="r1"), 1_200)
+            farthest = 0.0
+            for _ in range(200):
+                await asyncio.sleep(1)
+                farthest = max(farthest, distance(world.property("uav0").geometry, point(*centre)))
+            return farthest
+
+    assert 85 < run(stays(), SPEED) < 105
+
+
+@pytest.mark.parametrize("model", ["quad", "rover"])
+def test_the_real_autopilots_own_circle_is_told_and_what_it_does_not_hold_refused(model, tmp_path):
+    async def refused():
+        async with linked(model, tmp_path, parameters=[("FENCE_ENABLE", 1), ("FENCE_RADIUS", 300)]) as (
+            _,
+            plugin,
+        ):
+            assert "keeps within 300 m around home" in "".join(plugin.remarks())
+            with pytest.raises(Refused, match="its circle fence of 300 m around home does not hold"):
+                await plugin.command(GoTo("r1", "uav0", AREA))
+
+    run(refused(), SPEED)
+
+
+@pytest.mark.parametrize("model", PROGRAMS)
+def test_a_hand_over_amid_an_upload_to_the_real_autopilot_begins_it_anew(model, tmp_path):
+    path = tuple(point(37.002 + 0.0001 * n, -8.604) for n in range(100))
+
+    async def handed():
+        async with linked(model, tmp_path) as (world, plugin):
+            doing = lambda: plugin.pilot("uav0").moving.doing  # noqa: E731
+            await until(lambda: plugin.pilot("uav0").known.healthy)
+            await plugin.command(Follow("r1", "uav0", path))
+            await until(lambda: isinstance(doing(), Sync) and doing().reached[2] >= 30, 60, 0.005)
+            await plugin.command(HandOver("r2", "uav0", "control:gcs0", "control:gcs1"))
+            await until(lambda: [*world.of(Accepted, request="r1"), *world.of(Rejected)], 200)
+            assert [report.request for report in world.of(Arrived)] == ["r2"]
+            assert world.of(Rejected) == []
+
+    run(handed(), SPEED)
 
 
 MISSION = """

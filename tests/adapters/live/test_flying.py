@@ -37,19 +37,52 @@ def options_of(name, folder, *more):
     return parse_arguments(line)
 
 
-async def flown(flight, tape, kind, home, disturbance):
+async def flown(flight, tape, kind, home, disturbance, **more):
     terminal = Terminal(flight.resting)
     task = asyncio.ensure_future(fly(flight, (terminal, *([tape] if tape else []))))
     plugin = flight.plugins[0]
     while not plugin.local and not task.done():
         await asyncio.sleep(0.05)
-    vehicle = Vehicle(kind, home)
+    vehicle = Vehicle(kind, home, **more)
     simulator = Simulator(f"udpout:127.0.0.1:{plugin.local[1]}", [vehicle], disturbance, 1)
     simulation = asyncio.ensure_future(simulator.run())
     try:
         return await task, terminal, vehicle
     finally:
         simulation.cancel()
+
+
+NEST = """mission nest
+signature { kind Location contains Location, UAV, Station kind UAV driven kind Station }
+world {
+  field0: Location = circle (37.0, -8.6) radius 900 m
+  nest0: Location = circle (37.02, -8.62) radius 105 m
+  gcs0: Station = point (37.001, -8.601) linked control:gcs0
+  uav0: UAV = point (37.0, -8.6) linked control:gcs0
+}
+BigActor a hosted_at uav0 with_behavior {
+  control(MOVE_HOST_TO nest0)
+  loop { react { case "look" => display("here") } }
+}
+environment { says "look" to a at most once }
+live { on broken assumption: return }
+"""
+
+
+@pytest.mark.parametrize(("wind", "broken"), [((5.0, 6.2), False), ((12.0, 9.0), True)])
+def test_a_plane_that_the_wind_carries_out_of_its_place_breaks_an_assumption_that_says_so(
+    tmp_path, capsys, wind, broken
+):
+    (tmp_path / "nest.mission").write_text(NEST)
+    asked = options_of(str(tmp_path / "nest.mission"), tmp_path, "--unverified", "--for", "400")
+    flight = prepare(asked)
+    _, terminal, vehicle = run(flown(flight, None, Kind.PLANE, (37.0, -8.6, 20.0), Disturbance(), wind=wind))
+    told = capsys.readouterr()
+    assert "⟨commit" in told.out
+    assert terminal.broken == broken
+    reason = "uav0 is in none of the places; it was not sent there, and has not stayed where it was"
+    assert (reason in told.err) == broken
+    assert vehicle.mode == (vehicle.kind.profile.home if broken else vehicle.kind.profile.guided)
 
 
 def test_the_oil_spill_mission_flies_is_recorded_and_replays_equal(verified, capsys):
