@@ -24,7 +24,7 @@ from pyais.encode import encode_dict
 from adapters.ais import AisFeed
 from adapters.live.core import started
 from adapters.live.loop import settle
-from adapters.live.state import Plan
+from adapters.live.state import Plan, Saying
 from adapters.mavlink import Craft
 from adapters.mavlink.codec import Encoder
 from adapters.mavlink.message import say as message_of
@@ -144,7 +144,7 @@ async def _flooded(run: TimedRun, watch: Stopwatch, seconds: float) -> dict[str,
 async def _ask(run: TimedRun, answers: list[float]) -> None:
     while True:
         asked = time.perf_counter()
-        await run.inbox.say("a0", "nothing")
+        await run.inbox.say(Saying("a0", "nothing"))
         answers.append(time.perf_counter() - asked)
         await asyncio.sleep(SAYING)
 

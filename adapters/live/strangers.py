@@ -79,7 +79,7 @@ def place_strangers(turning: Turning, entities: Iterable[Name]) -> None:
             writes[channels_cell(entity)] = ()
         if entity not in kinds:
             admits[entity] = kind
-        if here is None or around != before:
+        if entity not in kinds or (here is not None and around != before):  # one that is back is nothing new
             broken.append(f"{entity} ({kind}) is in {where or 'none of the places'}")
     _happen(turning, Sight(_together([words for _, words in placed]), writes, admits))
     if broken:

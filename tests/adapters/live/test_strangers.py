@@ -112,7 +112,7 @@ def test_of_places_that_nobody_announced_there_are_few_and_a_point_does_not_beco
         vessel(0),
     )
     assert run.state.shares == {"camera": (MOST_PLACES, MOST_PLACES), "ais": (1, 0)}
-    assert [finding.message for finding in run.findings][0] == (
+    assert run.findings[0].message == (
         "'camera': 60 places that nobody announced are taken in; others are left out"
     )
     run.turn(
