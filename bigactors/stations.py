@@ -82,7 +82,7 @@ def company_of(options: Namespace, mission: ElaboratedMission, before: Resumed |
         raise unreadable(str(path), error) from error
     parting = _parting(peers, journal, before)
     topic = file_stem(mission.name)
-    return Company(Sharing(peers, journal, topic, digest, _obeying(mission)), parting)
+    return Company(Sharing(peers, journal, topic, digest, _obeying(mission), mission.setting.kinds), parting)
 
 
 def driven(mission: ElaboratedMission) -> set[str]:

@@ -361,12 +361,19 @@ class LiveRun:
         """Report plugins that have failed; a run that has not begun ends with the first."""
         for task in tuple(self._tasks):
             if task.done() and not task.cancelled() and (error := task.exception()) is not None:
-                if not isinstance(error, OSError | ValueError):
+                if not self._begun and not isinstance(error, OSError | ValueError):
                     raise error
                 if not self._begun:
                     raise PluginFailed(f"{task.get_name()}: {error}") from error
                 self._tasks.remove(task)
-                self.inbox.report(Failed(task.get_name(), str(error), self.clock()))
+                self._fail(task.get_name(), error)
+
+    def _fail(self, plugin: str, error: BaseException) -> None:
+        """Report that a plugin failed; if by a bug, with all that is known of it."""
+        if not isinstance(error, OSError | ValueError):
+            known = {"message": f"a bug of bigactors or of the plugin {plugin}", "exception": error}
+            asyncio.get_running_loop().call_exception_handler(known)
+        self.inbox.report(Failed(plugin, str(error) or type(error).__name__, self.clock()))
 
     # --- commands
 
@@ -382,3 +389,5 @@ class LiveRun:
             except Refused as refused:
                 reason = f"{refused.reason}{f' ({refused.hint})' if refused.hint else ''}"
                 self.inbox.report(Rejected(command.request, command.entity, self.clock(), reason))
+            except Exception as error:  # others still have to be told what they do then
+                self._fail("" if owner is None else owner.name, error)

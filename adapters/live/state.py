@@ -107,7 +107,7 @@ class LiveState:
         last: The agent that went on last: the next turn begins with the one after it.
         number: How many steps were taken.
         told: How many orders were given.
-        shares: How many entities that nobody announced were taken in of each plugin.
+        shares: How many entities that nobody announced were taken in of each plugin, and how many of them are places.
     """
 
     configuration: Configuration
@@ -129,7 +129,7 @@ class LiveState:
     last: Name = ""
     number: int = 0
     told: int = 0
-    shares: Mapping[str, int] = field(default_factory=dict)
+    shares: Mapping[str, tuple[int, int]] = field(default_factory=dict)
 
     def with_(self, **changes: object) -> LiveState:
         """Return the state with some of its attributes changed."""

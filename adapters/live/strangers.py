@@ -15,7 +15,7 @@ from adapters.live.state import Sighting
 from adapters.live.turning import Turning
 from semantics.cells import NAMES, Cell
 from semantics.observed import Sight, happening
-from semantics.physical_model import Placed, channels_cell, placement_cell
+from semantics.physical_model import Placed, Placement, channels_cell, placement_cell
 from semantics.signature import REGION, Name
 
 MOST_STRANGERS = 1_000
@@ -23,6 +23,9 @@ MOST_STRANGERS = 1_000
 
 SHARE = MOST_STRANGERS // 2
 """How many of one plugin: whoever floods one feed leaves room for what the others see."""
+
+MOST_PLACES = 60
+"""How many of one plugin that may contain others: each observation compares what it sees with all of them."""
 
 
 def comes_in(turning: Turning, plugin: str, found: Sighting) -> bool:
@@ -33,12 +36,15 @@ def comes_in(turning: Turning, plugin: str, found: Sighting) -> bool:
     at = _placed(turning, found)
     if kind not in c.setting.signature.kinds or not turning.around(entity, kind, at):
         return False
-    taken = turning.shares.get(plugin, 0)
-    if taken >= SHARE or sum(turning.shares.values()) >= MOST_STRANGERS:
-        message = f"'{plugin}': {taken:,} entities that nobody announced are taken in; others are left out"
+    is_place = not at.geometry.is_point and bool(c.setting.signature[kind].contains)
+    taken, places = turning.shares.get(plugin, (0, 0))
+    full = taken >= SHARE or sum(share for share, _ in turning.shares.values()) >= MOST_STRANGERS
+    if full or (is_place and places >= MOST_PLACES):
+        what = f"{taken:,} entities" if full else f"{places} places"
+        message = f"'{plugin}': {what} that nobody announced are taken in; others are left out"
         turning.find("trouble", plugin, message, once=True)
         return False
-    turning.shares[plugin] = taken + 1
+    turning.shares[plugin] = taken + 1, places + is_place
     turning.coming.add(entity)
     return True
 
@@ -53,7 +59,7 @@ def place_strangers(turning: Turning, entities: Iterable[Name]) -> None:
     for entity in entities:
         sighting = turning.seen[entity]
         here, seen = physical.placement(entity), _placed(turning, sighting)
-        if sighting.until <= turning.now or here == seen:
+        if sighting.until <= turning.now or here == seen or _grows(here, seen):
             continue
         kind = kinds.get(entity, sighting.property.kind)
         around, before = turning.around(entity, kind, seen), turning.around(entity, kind, here)
@@ -73,7 +79,7 @@ def place_strangers(turning: Turning, entities: Iterable[Name]) -> None:
             writes[channels_cell(entity)] = ()
         if entity not in kinds:
             admits[entity] = kind
-        if here is None or around != before:
+        if entity not in kinds or (here is not None and around != before):  # one that is back is nothing new
             broken.append(f"{entity} ({kind}) is in {where or 'none of the places'}")
     _happen(turning, Sight(_together([words for _, words in placed]), writes, admits))
     if broken:
@@ -101,6 +107,11 @@ def _placed(turning: Turning, sighting: Sighting) -> Placed:
     at = placement_seen(turning.c, None, alone)
     assert isinstance(at, Placed)
     return at
+
+
+def _grows(here: Placement | None, seen: Placed) -> bool:
+    """Tell whether what came as a point is a place now, which is counted otherwise."""
+    return isinstance(here, Placed) and here.geometry.is_point and not seen.geometry.is_point
 
 
 def _happen(turning: Turning, sight: Sight) -> None:

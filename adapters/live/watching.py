@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterable
 from dataclasses import replace
+from ipaddress import ip_address
 
 from adapters.live.assumptions import broken_by_place, clause_of_leaving, relations
 from adapters.live.elsewhere import hear_of
@@ -44,8 +45,10 @@ from semantics.rules import env
 from semantics.signature import REGION, Name
 from semantics.values import show
 
-_IS_AT = re.compile(r"is at (\S+:[0-9]{1,5})")
-"""What is said of a vehicle that sends from another address than before."""
+_IS_AT = re.compile(r"is at (\[?([0-9a-fA-F:.]+)\]?:([0-9]{1,5}))")
+"""What is said of a vehicle that sends from another address than before: a number, since nobody waits for names."""
+
+MOST_PORT = 65_535
 
 
 def take_in(turning: Turning, batch: Batch) -> None:
@@ -346,9 +349,17 @@ def say_to(turning: Turning, saying: Saying) -> None:
 def _rebind(turning: Turning, saying: Saying) -> str:
     """Let a vehicle be heard from another address, as an operator says; return why not, nothing if it is told so."""
     found = _IS_AT.fullmatch(saying.message)
-    if found is None:
+    if found is None or not _is_number(found[2]) or int(found[3]) > MOST_PORT:
         return (
             f"{saying.agent} is a vehicle, of which is said where it is heard from now on: 'is at HOST:PORT'"
         )
     turning.commands.append(Rebind(turning.request_of("operator"), saying.agent, found[1]))
     return ""
+
+
+def _is_number(host: str) -> bool:
+    try:
+        ip_address(host)
+    except ValueError:
+        return False
+    return True

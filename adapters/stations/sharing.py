@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, Final
 
@@ -49,7 +49,7 @@ from adapters.stations.entries import (
     stamped,
 )
 from adapters.stations.journal import Journal
-from adapters.stations.merge import Merge, channels_of, on
+from adapters.stations.merge import MOST_ENTITIES, Merge, channels_of, on
 from adapters.stations.messages import MOST_ENTRIES, Message, fitting, read, written
 from adapters.stations.others import Other
 from adapters.stations.peers import Peers
@@ -77,6 +77,9 @@ SILENCE: Final = 4.0
 MOST_SKEW: Final = 1.0
 """Seconds by which clocks may differ before it is said."""
 
+MOST_STRANGERS: Final = MOST_ENTITIES // 4
+"""Of how many entities that the mission does not name the others are told, of each plugin."""
+
 MOST_PARCELS: Final = 10_000
 """How many parcels of one station may wait here; for more it is asked later."""
 
@@ -90,12 +93,19 @@ class Sharing:
         topic: What the mission is called between them.
         digest: Of the mission: who flies another is not listened to.
         vehicles: The entities of which only their own links may speak, and whether each obeys a station.
+        named: What the mission names; of other entities so many are told of each plugin.
     """
 
     name = NAME
 
     def __init__(
-        self, peers: Peers, journal: Journal, topic: str, digest: str, vehicles: Mapping[str, bool]
+        self,
+        peers: Peers,
+        journal: Journal,
+        topic: str,
+        digest: str,
+        vehicles: Mapping[str, bool],
+        named: Container[str] = (),
     ) -> None:
         self.merge = Merge()
         self.others = {name: Other() for name in peers.others}
@@ -104,6 +114,8 @@ class Sharing:
         self._topic = topic
         self._digest = digest
         self._vehicles = vehicles
+        self._named = named
+        self._strangers: dict[str, set[str]] = {}
         self._authority = Authority(journal.station)
         self._troubles = Troubles(NAME)
         self._ahead: set[str] = set()
@@ -179,6 +191,9 @@ class Sharing:
         if entity in self._vehicles and not owned:
             world.publish(published)  # refused there, and reported
             return
+        if not self._has_room(plugin.name, entity):
+            world.publish(published)  # our own run may take it in
+            return
         before = self._journal.word(("said", entity))
         if isinstance(before, Said) and before.time > Said(published, 0.0).time:
             return
@@ -198,6 +213,19 @@ class Sharing:
             self._show(world, entity)
         else:
             world.publish(published)  # it can't be said to the others any more; our own run sees it
+
+    def _has_room(self, plugin: str, entity: str) -> bool:
+        """Tell whether the others are told of an entity: a flood of one feed leaves room for what other feeds see."""
+        told = self._strangers.setdefault(plugin, set())
+        if entity in self._named or entity in told:
+            return True
+        if len(told) >= MOST_STRANGERS:
+            self._troubles.note(
+                "not told", f"'{plugin}': over {MOST_STRANGERS:,} entities that the mission does not name"
+            )
+            return False
+        told.add(entity)
+        return True
 
     def lags(self, entity: str) -> bool:
         """Tell whether a vehicle obeys us, and our link does not know it yet."""

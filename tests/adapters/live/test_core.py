@@ -600,11 +600,11 @@ def test_a_channel_that_nothing_shows_to_be_joined_is_never_committed():
 def test_an_operator_says_that_a_vehicle_is_heard_from_another_address():
     run = Run(plan_of(TOUR))
     for number, message in enumerate(
-        ("is at 127.0.0.1:5555", "is at home", "is at [::1]:99", "is at h:123456")
+        ("is at 127.0.0.1:5555", "is at home", "is at [::1]:99", "is at ::1", "is at 127.0.0.1:65536")
     ):
         run.turn(float(number), sayings=[Saying("uav0", message)])
     refusal = "uav0 is a vehicle, of which is said where it is heard from now on: 'is at HOST:PORT'"
-    assert [answer.refusal for answer in run.answers] == ["", refusal, "", refusal]
+    assert [answer.refusal for answer in run.answers] == ["", refusal, "", refusal, refusal]
     assert run.commands == [
         Rebind("operator-1", "uav0", "127.0.0.1:5555"),
         Rebind("operator-2", "uav0", "[::1]:99"),

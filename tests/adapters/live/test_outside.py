@@ -21,12 +21,13 @@ from worlds import World, flight, until
 from adapters.detections import Detections
 from adapters.live.core import started
 from adapters.live.loop import LiveRun
+from adapters.live.state import Saying
 from adapters.plugin import Aged, Failed, GoTo, Hold, Return, Trouble
 from adapters.recording.reading import read_recording
 from adapters.recording.writing import Recorder
 from adapters.simulated import run as simulated
 from adapters.stations.journal import Journal
-from adapters.stations.sharing import Sharing
+from adapters.stations.sharing import MOST_STRANGERS, Sharing
 from adapters.web import Listen
 from bigactors.watchers import Log, Tape, Terminal
 from physical import PhysicalProperty, Velocity, point
@@ -78,7 +79,7 @@ def test_half_a_surrogate_pair_from_anywhere_ends_no_run_and_is_recorded_legibly
                 answers.append((answer.status, await answer.text()))
             async with session.delete(f"{url}/%ED%A0%80") as answer:
                 answers.append((answer.status, await answer.text()))
-        answers.append((await run.inbox.say("a", "\udcff")).refusal)
+        answers.append((await run.inbox.say(Saying("a", "\udcff"))).refusal)
 
     path, looker = tmp_path / "run.mcap", Looker()
     tape = recorder_at(path)
@@ -206,6 +207,32 @@ def test_a_plugin_that_fails_in_flight_makes_vehicles_do_what_the_mission_says()
     assert [finding.message for finding in looker.findings] == ["radar fails: no such device"]
 
 
+@pytest.mark.parametrize("where", ["run", "command"])
+def test_a_bug_of_a_plugin_is_told_and_makes_vehicles_do_what_the_mission_says(where, caplog):
+    class Wrong(Vehicle):
+        name, owns = "radar", lambda _self, entity: entity == "boat0"
+
+        async def run(self, _world):
+            await asyncio.sleep(0.2)
+            if where == "run":
+                raise KeyError("forgotten")
+            await asyncio.sleep(60)
+
+        async def command(self, _command):
+            raise KeyError("forgotten")
+
+    async def tell(run):
+        await asyncio.sleep(0.2)
+        if where == "command":
+            run._orders.put_nowait(Hold("x", "boat0"))
+
+    vehicle, looker = Vehicle(), Looker()
+    fly(TOUR + STAY, [vehicle, Wrong()], [looker], tell, 0.8, Precautions(Fallback.RETURN))
+    assert [type(told) for told in vehicle.told] == [Return]
+    assert [finding.message for finding in looker.findings] == ["radar fails: 'forgotten'"]
+    assert "a bug of bigactors or of the plugin radar" in caplog.text
+
+
 @pytest.mark.parametrize("stream", ["stdout", "stderr"])
 def test_an_output_that_cannot_be_written_ends_no_run(monkeypatch, capfd, stream):
     """What is not written stays in the stream's buffer, so a stream of its own takes the place of pytest's."""
@@ -215,7 +242,7 @@ def test_an_output_that_cannot_be_written_ends_no_run(monkeypatch, capfd, stream
         monkeypatch.setattr(sys, stream, full)
         ending = fly(TOUR + GO, [vehicle], [terminal], _nothing, 0.5)
         monkeypatch.undo()
-    assert ending.reason == "the time is over"
+    assert ending.reason == "what was left to be done was refused"
     assert not terminal.broken
     told = capfd.readouterr()
     assert "No space left on device" in told.err or stream == "stderr"
@@ -233,6 +260,28 @@ def test_a_telemetry_log_that_is_full_is_said_once_and_the_link_goes_on():
 
     simulated(main())
     full.close()
+
+
+def test_a_flood_at_a_station_leaves_room_for_what_its_other_feeds_tell(tmp_path):
+    world, ais, camera = World(), Vehicle(), Vehicle()
+    ais.name, camera.name = "ais", "camera"
+    with closing(Journal(tmp_path / "gcs0.log", "gcs0", "sha256:0")) as journal:
+        station = Sharing(SimpleNamespace(others={}), journal, "tour", "sha256:0", {}, {"boat0"})
+
+        async def main():
+            station._world = world
+            for number in range(MOST_STRANGERS + 5):
+                station.publish(
+                    ais, world, PhysicalProperty(f"mmsi{number}", "Vessel", point(*WEST), time=1.0)
+                )
+            station.publish(ais, world, PhysicalProperty("boat0", "Vessel", point(*WEST), time=1.0))
+            station.publish(camera, world, PhysicalProperty("spill0", "Vessel", point(*WEST), time=1.0))
+
+        simulated(main())
+        assert journal.word(("said", "boat0")) is not None
+        assert journal.word(("said", "spill0")) is not None
+        assert len(list(journal.entries())) == MOST_STRANGERS + 2
+        assert len(world.published) == MOST_STRANGERS + 7
 
 
 def test_a_station_whose_log_is_full_tells_nobody_and_sees_its_own_world(tmp_path):

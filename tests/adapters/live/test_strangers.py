@@ -10,7 +10,7 @@ from adapters.detections import Detections
 from adapters.live.core import started
 from adapters.live.loop import AT_ONCE, MOST_WAITING, Inbox, LiveRun
 from adapters.live.state import Heard
-from adapters.live.strangers import MOST_STRANGERS, SHARE
+from adapters.live.strangers import MOST_PLACES, MOST_STRANGERS, SHARE
 from adapters.live.watchers import Watchers
 from adapters.plugin import Aged, Gone
 from adapters.web import Listen
@@ -79,7 +79,7 @@ def test_a_flood_of_one_plugin_leaves_room_for_the_others_and_there_is_an_end_to
     run.turn(1.0, *(vessel(number) for number in range(MOST_STRANGERS)))
     run.turn(1.1, *(vessel(number, plugin="radar") for number in range(5_000, 6_000)))
     run.turn(1.2, *(vessel(number, plugin="camera") for number in range(7_000, 7_010)))
-    assert run.state.shares == {"ais": SHARE, "radar": SHARE}
+    assert run.state.shares == {"ais": (SHARE, 0), "radar": (SHARE, 0)}
     strangers = run.state.configuration.setting.kinds.keys() - run.plan.first.setting.kinds.keys()
     assert len(strangers) == MOST_STRANGERS
     left_out = [finding.about for finding in run.findings if finding.kind == "trouble"]
@@ -102,6 +102,24 @@ def test_strangers_that_have_borders_are_places_and_their_moves_are_seen():
         "⟨env : place0 appears in west0, and so on for 19 more⟩",
         "⟨env : place0 is seen in east0⟩",
     ]
+
+
+def test_of_places_that_nobody_announced_there_are_few_and_a_point_does_not_become_one():
+    run = quiet_run()
+    run.turn(
+        1.0,
+        *(spill(number, (37.005, -8.659 + number * 2e-4)) for number in range(MOST_PLACES + 5)),
+        vessel(0),
+    )
+    assert run.state.shares == {"camera": (MOST_PLACES, MOST_PLACES), "ais": (1, 0)}
+    assert run.findings[0].message == (
+        "'camera': 60 places that nobody announced are taken in; others are left out"
+    )
+    run.turn(
+        2.0,
+        Heard("ais", PhysicalProperty("mmsi0", "Vessel", box((37.005, -8.655), (37.006, -8.654)), time=2.0)),
+    )
+    assert run.state.configuration.structure.physical.placement("mmsi0").geometry.is_point
 
 
 def test_nothing_is_carried_by_itself_over_others_or_not():
@@ -182,7 +200,7 @@ def test_thousands_of_detections_in_one_post_keep_nobody_waiting():
         looker.turned = lambda turn, _now: turns.append(turn)
         async with LiveRun(plan, started(plan), [Vehicle(), camera], [looker]) as run:
             await run.begin(2.0)
-            going = asyncio.create_task(run.go(lambda state: state.shares.get("camera") == SHARE))
+            going = asyncio.create_task(run.go(lambda state: state.shares.get("camera") == (SHARE, 0)))
 
             async def post():
                 async with aiohttp.ClientSession() as session:
