@@ -81,11 +81,16 @@ def run(options: Namespace) -> Exit:
     except KeyboardInterrupt:
         tell(f"interrupted: vehicles go on as they were told last{_taken_over(terminal.taken)}")
         return Exit.INCOMPLETE
+    return conclude(ending, broken=terminal.broken)
+
+
+def conclude(ending: Ending, *, broken: bool) -> Exit:
+    """Say how a run ended, and return its exit code."""
     say(f"{ending.reason} after {ending.state.number} steps{_taken_over(ending.state.taken)}")
-    if terminal.broken:
+    if broken:
         return Exit.VIOLATED
-    ended = ending.reason == "the mission has ended" and not ending.state.taken
-    return Exit.HOLDS if ended else Exit.INCOMPLETE
+    done = ending.reason == "the mission has ended" and not ending.state.taken
+    return Exit.HOLDS if done else Exit.INCOMPLETE
 
 
 def _taken_over(taken: Mapping[str, str]) -> str:

@@ -51,7 +51,7 @@ def frames():
     ours = Encoder(255, 190)
     questions = (
         long(Cmd.ARM_DISARM, 1, 1),
-        reposition(1, 370_000_000, -86_000_000, 100.0, 80.0),
+        reposition(1, 370_000_000, -86_000_000, 100.0, 80.0, enters=True),
         say("MISSION_COUNT", target_system=1, target_component=1, count=3, mission_type=0),
         say(
             "PARAM_SET",

@@ -28,7 +28,7 @@ def ack(result, number=Cmd.ARM_DISARM):
 
 
 def test_what_is_packed_is_read_again_by_us_and_by_pymavlinks_own_parser():
-    message = reposition(1, 370_000_000, -86_000_000, 100.0, 80.0)
+    message = reposition(1, 370_000_000, -86_000_000, 100.0, 80.0, enters=True)
     raw = Encoder(255, 190).pack(message)
     (ours,) = Decoder().feed(raw)
     (theirs,) = ardupilotmega.MAVLink(None).parse_buffer(raw)
@@ -205,6 +205,10 @@ def test_a_fix_is_believed_for_ten_seconds():
     assert absorb(known, position, 10.1).position is None
 
 
-def test_texts_of_a_vehicle_are_printable():
-    known = absorb(Telemetry(), Message("STATUSTEXT", {"text": "PreArm:\x1b[31m no"}, 1, 1), 0.0)
-    assert known.said == "PreArm:[31m no"
+def test_of_a_vehicle_the_last_warnings_of_a_minute_are_remembered_as_they_can_be_printed():
+    known = Telemetry()
+    said = [(0.0, 4, "gone"), (50.0, 2, "PreArm:\x1b[31m no"), (60.0, 6, "EKF is fine"), (61.0, 4, "\x07")]
+    for time, severity, text in said:
+        known = absorb(known, Message("STATUSTEXT", {"text": text, "severity": severity}, 1, 1), time)
+    assert known.last_words(61.0) == "; its last words: 'PreArm:[31m no'"
+    assert known.last_words(200.0) == ""

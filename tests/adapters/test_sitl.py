@@ -2,6 +2,7 @@
 
 import asyncio
 import os
+import re
 import socket
 import subprocess
 import time
@@ -11,7 +12,7 @@ from pathlib import Path
 import pytest
 from worlds import AREA, HOME, ROUND, World, running, until
 
-from adapters.live.saying import give_back
+from adapters.live.saying import give_back, say
 from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.codec import Encoder
 from adapters.mavlink.command import long, set_parameter
@@ -231,6 +232,10 @@ class Seen:
         await until(lambda: self.rules.count("commit") == number, 1_200)
         await asyncio.sleep(5.0)
 
+    def elsewhere(self):
+        """The addresses from which something speaks for the vehicle that is not believed."""
+        return re.findall("'is at ([^']+)'", "".join(finding.message for finding in self.findings))[-1:]
+
     def kinds(self):
         return {finding.kind for finding in self.findings}
 
@@ -312,6 +317,10 @@ def test_a_real_plane_that_boots_anew_on_the_ground_where_it_was_to_go_has_not_a
         process.wait()
         await asyncio.sleep(8.0)
         with autopilot("plane", seen.port, tmp_path):
+            while "taken over" not in seen.kinds():
+                await asyncio.sleep(5.0)
+                for there in seen.elsewhere():  # it speaks from another port now
+                    await say(Path("s"), "uav0", f"is at {there}")
             await asyncio.sleep(1_000.0)
 
     monkeypatch.chdir(tmp_path)

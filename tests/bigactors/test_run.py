@@ -7,7 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from adapters.live.loop import Ending
+from adapters.live.state import LiveState
 from bigactors.cli import main
+from bigactors.commands.run import conclude
 from bigactors.foreign import watched
 from bigactors.missions import open_mission
 from bigactors.mistakes import Mistake
@@ -148,3 +151,48 @@ def test_kinds_keep_their_colours_when_the_first_of_one_appears(there):
     first, last = (palette_of(shown.trace.configurations[step]).kinds for step in (0, -1))
     assert first == last
     assert sorted(first) == ["Location", "UAV", "Vessel"]
+
+
+TAKEN = {"uav0": "it is in RTL"}
+
+
+@pytest.mark.parametrize(
+    ("reason", "taken", "broken", "code", "last"),
+    [
+        ("the mission has ended", {}, False, 0, "the mission has ended after 7 steps"),
+        ("the mission has ended", {}, True, 1, "the mission has ended after 7 steps"),
+        (
+            "what was left to be done was refused",
+            {},
+            False,
+            3,
+            "what was left to be done was refused after 7 steps",
+        ),
+        (
+            "the time is over",
+            TAKEN,
+            False,
+            3,
+            "the time is over after 7 steps; uav0 was taken over: it is in RTL",
+        ),
+        (
+            "the mission has ended",
+            TAKEN,
+            False,
+            3,
+            "the mission has ended after 7 steps; uav0 was taken over: it is in RTL",
+        ),
+    ],
+)
+def test_the_last_line_and_the_exit_code_say_how_a_run_ended(capsys, reason, taken, broken, code, last):
+    state = LiveState(open_mission("oil_spill", Variation()).initial, number=7, taken=taken)
+    assert conclude(Ending(reason, state), broken=broken) == code
+    assert capsys.readouterr().out == f"{last}\n"
+
+
+@pytest.mark.usefixtures("there")
+def test_where_no_mission_runs_nothing_is_given_back(capsys):
+    assert main(["give-back", "uav0"]) == 2
+    assert "no mission runs here" in capsys.readouterr().err
+    assert main(["give-back", "uav0", "--socket=s"]) == 2
+    assert "no mission runs at s" in capsys.readouterr().err

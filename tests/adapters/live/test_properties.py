@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
 from adapters.live.core import advance, started
-from adapters.live.state import Batch, Saying
-from adapters.plugin import LinkLost, LinkRestored, Rejected
+from adapters.live.state import Batch, GivingBack, Saying
+from adapters.plugin import LinkLost, LinkRestored, Rejected, TakenOver
 from adapters.recording.encoding import step_json
 from checker import replay
 from checker.traces import SCHEMA, candidates
@@ -65,12 +65,15 @@ def batches(draw, now):
                     LinkLost("uav0", now, now - 9.0),
                     LinkRestored("uav0", now),
                     Rejected("a-1", "uav0", now, "no"),
+                    TakenOver("uav0", now, "it is in RTL"),
                 ]
             ),
             max_size=1,
         )
     )
-    sayings = draw(st.lists(st.sampled_from([Saying("op", "hand"), Saying("op", "x")]), max_size=1))
+    sayings = draw(
+        st.lists(st.sampled_from([Saying("op", "hand"), Saying("op", "x"), GivingBack("uav0")]), max_size=1)
+    )
     return Batch(tuple(heard), tuple(reports), tuple(sayings))
 
 
@@ -108,6 +111,16 @@ def test_what_is_committed_was_seen_where_it_was_to_be(history):
                 assert placed.geometry is run.state.seen["uav0"].property.geometry
                 assert after.abstract_parent("uav0") == to
                 assert step.transition.target.structure.logical.parent("uav0") == to
+
+
+@given(histories())
+def test_who_was_taken_over_is_told_nothing_and_arrives_nowhere_until_it_is_given_back(history):
+    run = Run(PLAN)
+    for now, batch in history:
+        turn = run.turn(now, *batch.heard, reports=batch.reports, sayings=batch.sayings)
+        if run.state.taken and GivingBack("uav0") not in batch.sayings:
+            assert turn.commands == ()
+            assert "commit" not in [step.transition.label.rule for step in turn.steps]
 
 
 @given(histories())

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from audited import flown_in
+from live_missions import LIVE
 from worlds import ROUND
 
 from adapters.live.saying import give_back
@@ -15,7 +16,8 @@ from adapters.mavlink.numbers import Cmd, Result
 from adapters.simulated import Kind, Vehicle, protocol
 from adapters.simulated.reporting import Reporter
 from bigactors.cli import main
-from bigactors.recordings import open_recording
+from bigactors.missions import open_mission
+from bigactors.recordings import open_recording, resume
 
 
 @pytest.fixture
@@ -54,6 +56,10 @@ async def killed_on_the_way_home(_flight, simulator, witness):
     simulator.restart(1)
 
 
+def resumed_from(recording):
+    return resume(recording, open_mission("flown.mission", LIVE))
+
+
 def home(vehicle):
     return vehicle.mode == vehicle.kind.profile.home
 
@@ -77,7 +83,7 @@ def test_a_vehicle_that_flies_home_unasked_arrives_nowhere_and_is_not_called_bac
     assert not flown.ended
     assert home(flown.vehicle)
     assert flown.inside("home0")
-    assert flown.ending.state.taken == {"uav0": reason}
+    assert flown.ending.state.taken == resumed_from("r.mcap").taken == {"uav0": reason}
     assert flown.witness.kinds() == {"taken over"}
 
 
@@ -105,7 +111,7 @@ def test_a_vehicle_that_an_operator_gives_back_flies_its_mission_to_the_end(flyi
     flown = flying(plane(), foe=operator, seconds=1500)
     assert flown.ended
     assert answers == ["there is no vehicle 'uav1'; there are uav0", ""]
-    assert flown.ending.state.taken == {}
+    assert flown.ending.state.taken == resumed_from("r.mcap").taken == {}
     assert flown.witness.kinds() == {"taken over", "given back"}
     recording = open_recording("r.mcap")
     assert [message.data for message in recording.of("given_back")] == [
