@@ -518,6 +518,18 @@ def test_what_its_sender_has_made_stale_is_stale_for_who_is_told(text, control):
     assert stale(text + f"control {control}\n") == {"b"}
 
 
+def test_who_is_spawned_rests_on_what_its_host_was_chosen_by():
+    text = """
+    def enter() = { control(MOVE_HOST_TO gate0) }
+    BigActor a hosted_at uav0 with_behavior {
+      observe(CHILDREN(south0))
+      react { case o => spawn c hosted_at first(o of UAV) with_behavior enter() }
+    }
+    BigActor b hosted_at gcs1 with_behavior { control(MOVE uav1 TO gate0) }
+    """
+    assert stale(text) == {"c"}
+
+
 TOLD_RIGHTLY = {
     "that something is done": FREE.replace("size(o of UAV)", "0"),
     "what is seen after it": FREE.replace("observe(PARENT(HOST))", "observe(CHILDREN(gate0))").replace(
