@@ -11,12 +11,13 @@ from bigactors.exits import Exit, worst
 from bigactors.files import check_writable, file_stem, make_folder, write_json
 from bigactors.missions import variation_of
 from bigactors.mistakes import Mistake
-from bigactors.outputs import outputs_of, write_outputs
+from bigactors.outputs import cautions_of, outputs_of, write_outputs
 from bigactors.terminal import paint, say, tell
 from bigactors.verdict_files import verdict_json
 from checker import Cluster, Engine, Keeping, Limits, Reduction, report_text
 from checker.coverage_report import coverage_text
 from checker.report import MARKS
+from checker.results import caution_text
 from checker.verdicts import Outcome
 from semantics.successors import rules_of
 
@@ -141,6 +142,8 @@ def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
     if silent:
         when = "never used" if report.complete and not report.reduced else "not used so far"
         yield f"  rules {when}: {', '.join(silent)}"
+    for caution in cautions_of(result.mission):
+        yield from caution_text(result.name, caution)
     if report.coverage is not None:
         yield from coverage_text(result.name, report.coverage, result.mission.source.text)
 

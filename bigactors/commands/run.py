@@ -22,7 +22,7 @@ from adapters.recording.mcap_files import RecordingError
 from adapters.recording.writing import Recorder
 from bigactors import __version__
 from bigactors.exits import Exit
-from bigactors.missions import digest_of, locate, open_mission
+from bigactors.missions import checkable, digest_of, locate, open_mission
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.plugins import plugins_of
 from bigactors.preflight import check_flyable, check_places, get_to_know
@@ -97,7 +97,7 @@ def prepare(options: Namespace) -> Flight:
     """Read everything, and refuse what cannot be flown; raises Mistake."""
     sources = {name: Path(file) for name, file in options.source}
     live = Variation(Scheduler.FCFS, Control.TIMED, sources)
-    mission = open_mission(options.file, live)
+    mission = checkable(open_mission(options.file, live))
     licence = _licence(options, mission)
     log = None if options.record is None else Log(Path(options.record).with_suffix(".tlog"))
     plugins, owners = plugins_of(options, mission, log)
