@@ -18,7 +18,7 @@ exit codes:
   0  the mission came to its end
   1  an assumption broke, the recording or a plugin failed, or the world was otherwise at the beginning
   2  a mistake in the input, no verdict, a vehicle that is not heard
-  3  it was stopped before its end"""
+  3  it was stopped before its end: by --for, Ctrl-C, SIGTERM or SIGHUP; vehicles go on as they were told last"""
 
 ADDRESS: Final = "udp:127.0.0.1:14550"
 

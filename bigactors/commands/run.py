@@ -134,6 +134,9 @@ def record(flight: Flight) -> Iterator[Tape | None]:
     reason = "the run has ended"
     try:
         yield tape
+    except KeyboardInterrupt:
+        reason = "interrupted"
+        raise
     except BaseException as error:
         reason = str(error) or type(error).__name__
         raise
