@@ -89,6 +89,12 @@ def _report(parser: Parser) -> None:
         help="write the verdict that `run` asks for (docs/live.md); of one mission, with --control timed",
     )
     group.add_argument(
+        "--sign",
+        metavar="KEY",
+        type=named,
+        help="sign the verdict with the key in KEY, for `run --trust KEY.pub` (bigactors keygen KEY makes a pair)",
+    )
+    group.add_argument(
         "--violations",
         metavar="N",
         type=at_least_one,

@@ -89,6 +89,12 @@ def fill(parser: Parser) -> None:
     parser.add_argument(
         "--verdict", metavar="FILE", type=named, help="the verdict (default: beside the mission, or here)"
     )
+    parser.add_argument(
+        "--trust",
+        metavar="KEY.pub",
+        type=named,
+        help="fly only by a verdict that is signed with the key of which this is the public half (check --sign)",
+    )
     parser.add_argument("--unverified", action="store_true", help="fly without a verdict, and say so")
     parser.add_argument("--for", metavar="SECONDS", dest="duration", type=seconds, help="end after SECONDS")
     parser.add_argument(

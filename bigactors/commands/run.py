@@ -27,6 +27,7 @@ from bigactors.mistakes import Mistake, unreadable
 from bigactors.plugins import plugins_of
 from bigactors.preflight import check_flyable, check_places, get_to_know
 from bigactors.recordings import Resumed, resume
+from bigactors.signatures import load_trusted
 from bigactors.sockets import socket_of
 from bigactors.stations import Company, company_of, parting_json
 from bigactors.terminal import paint, say, tell
@@ -118,13 +119,17 @@ def _licence(options: Namespace, mission: ElaboratedMission) -> Licence | None:
     name = options.file
     path = find_verdict(str(locate(name)), options.verdict)
     if options.unverified:
+        if options.trust is not None:
+            raise Mistake(
+                "--unverified asks for no verdict, --trust for a signed one", "leave one of the two out"
+            )
         warning = "nothing was verified of this run: --unverified"
         tell(paint(warning, "red", sys.stderr), "!")
         return None
     if path is None:
         hint = f"bigactors check --control timed --verdict {Path(name).stem}.verdict.json {name}, or --unverified"
         raise Mistake("there is no verdict that this mission holds", hint, name)
-    return licence_for(name, path, mission)
+    return licence_for(name, path, mission, None if options.trust is None else load_trusted(options.trust))
 
 
 @contextmanager
