@@ -136,7 +136,7 @@ def test_a_key_of_openssl_serves_as_well(there, bigactors):
 
 
 def test_without_the_extra_it_is_said_how_to_have_it(tmp_path):
-    line = "import sys; sys.modules['cryptography'] = None; from bigactors.cli import main; sys.exit(main(sys.argv[1:]))"
+    line = "import sys; sys.modules['cryptography'] = None; from bigactors.cli import main; exit(main(sys.argv[1:]))"
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
     ran = subprocess.run(
         [sys.executable, "-c", line, "keygen", "k"],
