@@ -5,14 +5,14 @@ from __future__ import annotations
 import os
 import stat
 from pathlib import Path
-from typing import IO, Any, Final
+from typing import BinaryIO, Final, cast
 
 OWNER: Final = 0o600
 
 
-def open_private(path: Path, mode: str, buffering: int = -1) -> IO[Any]:
-    """Open a file that only its owner may read and write; one that was there becomes so before anything is written."""
-    return open(path, mode, buffering, encoding=None if "b" in mode else "utf-8", opener=_opened)
+def open_private(path: Path, mode: str, buffering: int = -1) -> BinaryIO:
+    """Open a file of bytes that only its owner may read and write; one that was there becomes so before it is used."""
+    return cast("BinaryIO", open(path, mode, buffering, opener=_opened))
 
 
 def others_may_read(path: Path) -> str:

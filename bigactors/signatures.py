@@ -58,7 +58,8 @@ def load_key(path: str) -> SigningKey:
         raise _no_key(path, "a key to sign with", error) from error
     if not isinstance(key, crypto.ed25519.Ed25519PrivateKey):
         raise _no_key(path, "a key to sign with")
-    return key
+    found: SigningKey = key
+    return found
 
 
 def load_trusted(path: str) -> TrustedKey:
@@ -70,7 +71,8 @@ def load_trusted(path: str) -> TrustedKey:
         raise _no_key(path, f"a public key, FILE{PUBLIC}", error) from error
     if not isinstance(key, crypto.ed25519.Ed25519PublicKey):
         raise _no_key(path, f"a public key, FILE{PUBLIC}")
-    return key
+    found: TrustedKey = key
+    return found
 
 
 def signature_json(key: SigningKey, text: bytes) -> dict[str, str]:

@@ -140,8 +140,8 @@ def save(signing: Signing, path: Path) -> None:
         "streams": {".".join(map(str, stream)): time for stream, time in sorted(signing.streams.items())},
     }
     beside = path.with_name(f"{path.name}.new")
-    with open_private(beside, "w") as file:
-        json.dump(data, file)
+    with open_private(beside, "wb") as file:
+        file.write(json.dumps(data).encode("ascii"))
     beside.replace(path)
 
 
