@@ -8,7 +8,7 @@ from typing import Any
 from bigactors import __version__
 from bigactors.exits import Exit
 from bigactors.files import file_stem
-from bigactors.missions import digest_of, open_mission
+from bigactors.missions import checkable, diagnostic_json, digest_of, open_mission
 from bigactors.mistakes import Mistake, describe_bug
 from bigactors.progress import watching
 from bigactors.terminal import tell
@@ -70,7 +70,9 @@ class Checked:
 
     def as_json(self) -> dict[str, Any]:
         """Return the report as plain data."""
-        return report_json(self.name, self.digest, self.report, self.mission.setting.control)
+        report = report_json(self.name, self.digest, self.report, self.mission.setting.control)
+        source = self.mission.source
+        return report | {"warnings": [diagnostic_json(each, source) for each in self.mission.warnings]}
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +117,7 @@ def check_mission(
     """Check one mission; what goes wrong is told on the standard error and returned."""
     how = how or How()
     try:
-        mission = open_mission(name, variation)
+        mission = checkable(open_mission(name, variation))
         with watching(mission.name) as watch:
             report = check(
                 mission.initial,

@@ -7,13 +7,14 @@ from importlib import import_module
 from bigactors.arguments import parse_arguments
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake, describe_bug
+from bigactors.signals import ending_as_ctrl_c
 from bigactors.terminal import safe_output, tell
 
 
 def main(line: Sequence[str] | None = None) -> int:
     """Run one command line (default: this process's) and return its exit code."""
     try:
-        with safe_output():
+        with safe_output(), ending_as_ctrl_c():
             return run(sys.argv[1:] if line is None else line)
     except Mistake:  # the output itself cannot be written
         return Exit.MISTAKE

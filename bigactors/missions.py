@@ -12,7 +12,7 @@ from bigactors.mistakes import Mistake, suggestion
 from semantics.canonical import canonical
 from semantics.setting import Control, Scheduler
 from specs import Diagnostic, MissionError, Source
-from specs.elaboration import ElaboratedMission, Variation, load_mission
+from specs.elaboration import ElaboratedMission, Variation, load_mission, require_bigactor
 
 SUFFIX = ".mission"
 
@@ -60,6 +60,15 @@ def open_mission(word: str, variation: Variation) -> ElaboratedMission:
         return load_mission(locate(word), variation)
     except MissionError as error:
         raise as_mistake(error) from error
+
+
+def checkable(mission: ElaboratedMission) -> ElaboratedMission:
+    """Return a mission of which there is something to check; raises Mistake where nobody acts."""
+    try:
+        require_bigactor(mission)
+    except MissionError as error:
+        raise as_mistake(error) from error
+    return mission
 
 
 def opening(variation: Variation) -> Callable[[str], ElaboratedMission]:

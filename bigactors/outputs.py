@@ -11,7 +11,7 @@ from bigactors import __version__
 from bigactors.checking import Checked, Failed, results_json
 from bigactors.exits import Exit
 from bigactors.files import check_writable, json_text, write_text
-from bigactors.missions import locate
+from bigactors.missions import diagnostic_json, locate
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say_text
 from checker.annotations import annotations
@@ -110,8 +110,15 @@ def result_of(checked: Checked | Failed) -> Result:
     """Return a mission's result in the shape that the formats share."""
     file = file_of(checked.name)
     if isinstance(checked, Checked):
-        text = checked.mission.source.text
-        return Result(checked.name, file, checked.report, check_line=check_line(checked.mission), text=text)
+        mission = checked.mission
+        return Result(
+            checked.name,
+            file,
+            checked.report,
+            check_line=check_line(mission),
+            text=mission.source.text,
+            cautions=cautions_of(mission),
+        )
     return Result(checked.name, file, failures=tuple(_failures(checked)))
 
 
@@ -131,21 +138,27 @@ def check_line(mission: ElaboratedMission) -> int:
     return next((source.line(section.span.start) for section in tree.each(Check)), 1)
 
 
+def cautions_of(mission: ElaboratedMission) -> tuple[Issue, ...]:
+    """Return what a mission says that is hardly meant."""
+    said = (diagnostic_json(each, mission.source) for each in mission.warnings)
+    return tuple(_of_text(each, Level.WARNING) for each in said)
+
+
 def _failures(failed: Failed) -> Iterable[Issue]:
     if failed.exit is Exit.MISTAKE:
-        yield from map(_mistake, failed.details)
+        yield from (_of_text(each, Level.WRONG) for each in failed.details)
         return
     level = Level.BUG if failed.exit is Exit.BUG else Level.INCOMPLETE
     yield Issue(level, "exploration", level.value, failed.message, identity=(level.value,))
 
 
-def _mistake(said: dict[str, object]) -> Issue:
+def _of_text(said: dict[str, object], level: Level) -> Issue:
     line, column, end_line, end_column = (
         int(str(said.get(key, 0))) for key in ("line", "column", "end_line", "end_column")
     )
     rule, message, hint = str(said.get("code", "mistake")), str(said["message"]), str(said.get("hint", ""))
     details = (f"hint: {hint}",) if hint else ()
     return Issue(
-        Level.WRONG, rule, rule, message, line, column, end_line, end_column,
+        level, rule, rule, message, line, column, end_line, end_column,
         identity=(rule, message), details=details,
     )  # fmt: skip

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import TextIO
 
-from bigactors.terminal import is_terminal, paint
+from bigactors.terminal import is_terminal, paint, write
 from checker import Progress
 
 
@@ -41,15 +41,13 @@ class Watch:
         """Put a text in the place of the last."""
         width = shutil.get_terminal_size().columns - 1
         text = text[:width]
-        self.stream.write("\r" + paint(text.ljust(min(self.shown, width)), "faint", self.stream))
-        self.stream.flush()
+        write(self.stream, "\r" + paint(text.ljust(min(self.shown, width)), "faint", self.stream), flush=True)
         self.shown = len(text)
 
     def clear(self) -> None:
         """Take the line away."""
         if self.shown:
-            self.stream.write("\r" + " " * self.shown + "\r")
-            self.stream.flush()
+            write(self.stream, "\r" + " " * self.shown + "\r", flush=True)
             self.shown = 0
 
     def interrupt(self, signum: int, frame: FrameType | None) -> None:  # noqa: ARG002 - as signal handlers are called

@@ -1,7 +1,9 @@
 """Printing: safe in any encoding, quiet when nobody reads any more, coloured on a terminal only."""
 
 import codecs
+import errno
 import os
+import stat
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -36,18 +38,18 @@ def safe_output() -> Iterator[None]:
     try:
         yield
     finally:
-        _write(sys.stdout, "", flush=True)
-        _write(sys.stderr, "", flush=True)
+        write(sys.stdout, "", flush=True)
+        write(sys.stderr, "", flush=True)
 
 
 def say(line: str = "") -> None:
     """Print a line of the answer."""
-    _write(sys.stdout, f"{line}\n")
+    write(sys.stdout, f"{line}\n")
 
 
 def say_text(text: str, *, flush: bool = False) -> None:
     """Print a text as it is."""
-    _write(sys.stdout, text, flush=flush)
+    write(sys.stdout, text, flush=flush)
 
 
 def tell(text: str, mark: str = "") -> None:
@@ -55,11 +57,11 @@ def tell(text: str, mark: str = "") -> None:
 
     What files say may be quoted in it: signs that would steer a terminal are not passed on.
     """
-    _write(sys.stdout, "", flush=True)
+    write(sys.stdout, "", flush=True)
     shown = "".join(
         sign if sign.isprintable() or sign in "\n\t" else "\N{REPLACEMENT CHARACTER}" for sign in text
     )
-    _write(sys.stderr, f"{paint(mark, 'red', sys.stderr)} {shown}\n" if mark else f"{shown}\n", flush=True)
+    write(sys.stderr, f"{paint(mark, 'red', sys.stderr)} {shown}\n" if mark else f"{shown}\n", flush=True)
 
 
 def paint(text: str, colour: str, stream: TextIO) -> str:
@@ -77,16 +79,23 @@ def is_terminal(stream: TextIO) -> bool:
     return not stream.closed and stream.isatty()
 
 
-def _write(stream: TextIO, text: str, *, flush: bool = False) -> None:
+def write(stream: TextIO, text: str, *, flush: bool = False) -> None:
+    """Print to nobody where the reader has gone; raises Mistake for anything else that stands against it."""
     try:
         stream.write(text)
         if flush:
             stream.flush()
-    except BrokenPipeError:
-        _discard(stream)
     except OSError as error:
+        gone = isinstance(error, BrokenPipeError) or _was_terminal(stream, error)
         _discard(stream)
+        if gone:
+            return
         raise Mistake(f"cannot write the output: {error.strerror or error}") from error
+
+
+def _was_terminal(stream: TextIO, error: OSError) -> bool:
+    """Tell whether a terminal was written to that has been closed."""
+    return error.errno == errno.EIO and stat.S_ISCHR(os.fstat(stream.fileno()).st_mode)
 
 
 def _discard(stream: TextIO) -> None:

@@ -6,17 +6,21 @@ import hashlib
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from bigactors import __version__
 from bigactors.checking import Checked
 from bigactors.files import read_json
 from bigactors.missions import digest_of
 from bigactors.mistakes import Mistake
+from bigactors.signatures import check_signature, signature_json
 from semantics.canonical import digest
 from semantics.physical_model import placement_cell
 from semantics.setting import Control, Scheduler
 from specs.elaboration import ElaboratedMission
+
+if TYPE_CHECKING:
+    from bigactors.signatures import SigningKey, TrustedKey
 
 SCHEMA = "bigactors.verdict/1"
 """The version of the schema of verdict files (docs/verdict.md)."""
@@ -32,42 +36,46 @@ PARTS = {
 """What a verdict is bound to, part by part, and how each is called."""
 
 
-def verdict_json(checked: Checked, engine: str) -> dict[str, Any]:
-    """Return the verdict on a mission as plain data."""
+def verdict_json(checked: Checked, engine: str, key: SigningKey | None = None) -> dict[str, Any]:
+    """Return the verdict on a mission as plain data, sealed, and signed if there is a key."""
     report, mission = checked.report, checked.mission
-    return _sealed(
-        {
-            "schema": SCHEMA,
-            "mission": checked.name,
-            "version": __version__,
-            "engine": engine,
-            "scheduler": mission.setting.scheduler.value,
-            "control": mission.setting.control.value,
-            "digest": checked.digest,
-            "parts": parts_of(mission),
-            "holds": report.exit_code == 0,
-            "complete": report.complete,
-            "configurations": report.configurations,
-            "transitions": report.transitions,
-            "properties": [
-                {
-                    "name": verdict.property.name,
-                    "kind": verdict.property.kind,
-                    "verdict": verdict.outcome.value,
-                    "note": verdict.note,
-                    "rests_on": "text" if verdict.note.startswith("by ownership") else "environment",
-                }
-                for verdict in report.verdicts
-            ],
-        }
-    )
+    data = {
+        "schema": SCHEMA,
+        "mission": checked.name,
+        "version": __version__,
+        "engine": engine,
+        "scheduler": mission.setting.scheduler.value,
+        "control": mission.setting.control.value,
+        "digest": checked.digest,
+        "parts": parts_of(mission),
+        "holds": report.exit_code == 0,
+        "complete": report.complete,
+        "configurations": report.configurations,
+        "transitions": report.transitions,
+        "properties": [
+            {
+                "name": verdict.property.name,
+                "kind": verdict.property.kind,
+                "verdict": verdict.outcome.value,
+                "note": verdict.note,
+                "rests_on": "text" if verdict.note.startswith("by ownership") else "environment",
+            }
+            for verdict in report.verdicts
+        ],
+    }
+    signed = {} if key is None else {"signature": signature_json(key, said_by(data))}
+    return {**data, "seal": _seal(data), **signed}
 
 
-def _sealed(data: dict[str, Any]) -> dict[str, Any]:
-    """Add a digest of all that a verdict says: that it was changed by hand is seen, whatever part it was."""
-    said = {name: value for name, value in data.items() if name != "seal"}
-    text = json.dumps(said, sort_keys=True, ensure_ascii=True)
-    return {**said, "seal": "sha256:" + hashlib.sha256(text.encode("ascii")).hexdigest()}
+def said_by(data: dict[str, Any]) -> bytes:
+    """Return all that a verdict says as one text: what its seal is a digest of, and what is signed."""
+    said = {name: value for name, value in data.items() if name not in ("seal", "signature")}
+    return json.dumps(said, sort_keys=True, ensure_ascii=True).encode("ascii")
+
+
+def _seal(data: dict[str, Any]) -> str:
+    """Return a digest of all that a verdict says: an accident is seen; who means to can work it out as well."""
+    return "sha256:" + hashlib.sha256(said_by(data)).hexdigest()
 
 
 def parts_of(mission: ElaboratedMission) -> dict[str, str]:
@@ -112,12 +120,17 @@ def find_verdict(mission: str, given: str | None) -> str | None:
     return None
 
 
-def licence_for(name: str, path: str, mission: ElaboratedMission) -> Licence:
+def licence_for(
+    name: str, path: str, mission: ElaboratedMission, trusted: TrustedKey | None = None
+) -> Licence:
     """Return the verdict of a file as the right to run a mission; raises Mistake with what stands against it.
 
-    The mission is the one that is to be flown, as it was read: a file that was swapped since changes nothing.
+    The mission is the one that is to be flown, as it was read: a file that was swapped since changes nothing. Where a
+    key is trusted, the verdict has to be signed by it.
     """
     data = read_json(path)
+    if trusted is not None and isinstance(data, dict):
+        check_signature(data.get("signature"), said_by(data), trusted, path)
     scheduler = _scheduler_of(data, path)
     differing = _differing(data, mission.under(scheduler, Control.TIMED))
     if differing:
@@ -126,7 +139,7 @@ def licence_for(name: str, path: str, mission: ElaboratedMission) -> Licence:
         raise Mistake(
             "the verdict is not that everything holds", f"bigactors check {name} says what fails", path
         )
-    if data.get("seal") != _sealed(data)["seal"]:
+    if data.get("seal") != _seal(data):
         raise Mistake("the verdict was changed after it was reached", _hint(name, path), path)
     properties = data.get("properties")
     listed = properties if isinstance(properties, list) else []

@@ -15,6 +15,7 @@ from adapters.disk import writing
 from adapters.live.state import Finding, Heard, Turn
 from adapters.mavlink.tlog import entry
 from adapters.plugin import Report
+from adapters.private import open_private
 from adapters.recording.writing import Recorder
 from bigactors.mistakes import Mistake
 from bigactors.terminal import paint, say_text, tell
@@ -127,7 +128,7 @@ class Log:
     def __call__(self, time: float, frame: bytes) -> None:
         """Write a frame at once: what was written survives the process."""
         if self._file is None:
-            self._file = self._path.open("ab", buffering=0)
+            self._file = open_private(self._path, "ab", buffering=0)
         said = entry(time, frame)
         with writing(self._path):
             if self._file.write(said) < len(said):

@@ -64,6 +64,7 @@ class Result:
         failures: Why it was not.
         check_line: The line of its `check` section, 1 without one: where properties belong that nobody wrote.
         text: What the mission says, to quote its lines.
+        cautions: What it says that is hardly meant.
     """
 
     name: str
@@ -72,6 +73,7 @@ class Result:
     failures: tuple[Issue, ...] = ()
     check_line: int = 1
     text: str = ""
+    cautions: tuple[Issue, ...] = ()
 
     def issues(self) -> tuple[Issue, ...]:
         """Return all that there is to say, in the mission's order."""
@@ -100,9 +102,10 @@ class Result:
             )
 
     def warnings(self) -> Iterator[Issue]:
-        """Yield what holds and says less than it seems to, and what of the mission no run reaches."""
+        """Yield what is hardly meant, what holds and says less than it seems to, and what no run reaches."""
         if self.report is None:
             return
+        yield from self.cautions
         for verdict in self.report.verdicts:
             for remark in verdict.remarks:
                 yield self._remark(verdict, remark)
@@ -167,11 +170,20 @@ def issue_text(issue: Issue) -> str:
     return "\n".join(lines)
 
 
+def caution_text(name: str, caution: Issue) -> Iterator[str]:
+    """Yield what a mission says that is hardly meant, as it stands in a report."""
+    yield f"  {name}:{caution.line}: warning: {caution.rule}: {caution.message}"
+    yield from (f"    {detail}" for detail in caution.details)
+
+
 def result_text(result: Result) -> str:
     """Return the report of a result without its traces; empty where there is none."""
     if result.report is None:
         return ""
-    lines = list(report_text(result.name, result.report, traces=False))
+    lines = [
+        *report_text(result.name, result.report, traces=False),
+        *(line for caution in result.cautions for line in caution_text(result.name, caution)),
+    ]
     if result.report.coverage is not None:
         lines += coverage_text(result.name, result.report.coverage, result.text)
     return "\n".join(lines)

@@ -161,15 +161,3 @@ def scale_length(width: float) -> float:
     """Return the longest round number of metres, at most a quarter of a view's width."""
     power = 10.0 ** math.floor(math.log10(width / 4))
     return max(digit * power for digit in (1, 2, 5) if digit * power <= width / 4)
-
-
-def metres_text(metres: float) -> str:
-    """Write a length.
-
-    >>> metres_text(500.0), metres_text(2400.0), metres_text(5000.0), metres_text(1234567.0)
-    ('500 m', '2.4 km', '5 km', '1,235 km')
-    """
-    if metres < 1000:
-        return f"{metres:,.0f} m"
-    digits = 0 if metres >= 10_000 or metres % 1000 < 50 else 1
-    return f"{metres / 1000:,.{digits}f} km"

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Final
 
 import shapely
 
-from physical.frame import Position
 from physical.map_labels import BESIDE, Box, Spot, Wanted, around, place_labels
 from physical.map_marks import (
     MARK_RADIUS,
@@ -25,9 +24,9 @@ from physical.map_marks import (
 )
 from physical.map_scene import Scene, Sheet, area_of
 from physical.map_style import INK, QUIET, darker, text_width
-from physical.map_view import bounds, metres_text, scale_length, turned
-from physical.measure import distance
-from physical.shape import point
+from physical.map_view import bounds, scale_length
+from physical.measure import metres_text
+from physical.outliers import apart
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -132,8 +131,9 @@ def _block(scene: Scene, name: str) -> list[Line]:
     if entity.towards is not None:
         lines.append(Line(f"→ {entity.towards}", 7.0, ink=QUIET))
     if name in scene.far and entity.geometry is not None:
-        centre = point(*_middle_of(scene.sheet))
-        lines.append(Line(f"{metres_text(distance(centre, entity.geometry))} away", 7.0, ink=QUIET))
+        near = (scene.entities[each].geometry for each in scene.near())
+        metres = apart(entity.geometry, filter(None, near))
+        lines.append(Line(f"{metres_text(metres)} away", 7.0, ink=QUIET))
     cargo = scene.cargo(name)
     for depth, each in cargo[:MOST_CARRIED]:
         icon = (scene.shape(each), scene.colour(each))
@@ -142,11 +142,6 @@ def _block(scene: Scene, name: str) -> list[Line]:
     if len(cargo) > MOST_CARRIED:
         lines.append(Line(f"and {len(cargo) - MOST_CARRIED} more", 7.0, ink=QUIET, indent=9.0))
     return lines
-
-
-def _middle_of(sheet: Sheet) -> Position:
-    latitude, longitude = sheet.plane.degrees(sheet.view.centre)
-    return (min(max(latitude, -90.0), 90.0), turned(longitude))
 
 
 def _wanted(scene: Scene, name: str, size: Spot, pointers: Mapping[str, tuple[Spot, Spot]]) -> Wanted:

@@ -25,6 +25,10 @@ _GAUSS: Final = (
 """Nodes and weights of Gauss-Legendre quadrature on [0, 1]."""
 
 
+QUARTER: Final = 10_000_000.0
+"""Metres from the equator to a pole; farther off no local frame serves, and vertices are near enough."""
+
+
 def area(geometry: Geometry) -> float:
     """Return the area on the ellipsoid in square metres; a point has none.
 
@@ -59,6 +63,9 @@ def distance(a: Geometry, b: Geometry) -> float:
 
 @lru_cache(maxsize=1 << 12)
 def _apart(a: Geometry, b: Geometry) -> float:
+    if _between(_middle(a), _middle(b)) > QUARTER and not planar(a).intersects(planar(b)):
+        # Around the other side of the earth a frame turns areas inside out.
+        return min(_between(one, other) for one in a.ring for other in b.ring)
     frame = local_frame(_middle(a))
     for _ in range(2):  # near where they are nearest, the frame is exact
         line = shapely.shortest_line(frame.project(planar(a)), frame.project(planar(b)))
@@ -137,3 +144,15 @@ def waypoint(geometry: Geometry) -> Geometry:
     """Return where to send what should go there: the centroid if it lies inside, else an interior point."""
     middle = centroid(geometry)
     return middle if geometry.is_point or contains(geometry, middle) else interior_point(geometry)
+
+
+def metres_text(metres: float) -> str:
+    """Write a length.
+
+    >>> metres_text(500.0), metres_text(2400.0), metres_text(5000.0), metres_text(1234567.0)
+    ('500 m', '2.4 km', '5 km', '1,235 km')
+    """
+    if metres < 1000:
+        return f"{metres:,.0f} m"
+    digits = 0 if metres >= 10_000 or metres % 1000 < 50 else 1
+    return f"{metres / 1000:,.{digits}f} km"

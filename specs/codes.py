@@ -13,6 +13,7 @@ RANGES: Final = {
     "LS4": "behaviour",
     "LS5": "reaction rules",
     "LS6": "environment, checks and live runs",
+    "LS7": "warnings: what is allowed, and hardly meant",
 }
 
 
@@ -468,6 +469,33 @@ class Code(Enum):
         "LS612",
         "time limit out of bounds",
         """In the `live` section a request has more than no time, and a week at the most.""",
+    )
+
+    EMPTY_MISSION = (
+        "LS614",
+        "nothing to check",
+        """The file declares nothing, so that there is nothing to check or to fly. Is it the right file?""",
+    )
+
+    NO_BIGACTOR = (
+        "LS615",
+        "mission without a bigActor",
+        """What is checked is what bigActors do. A mission without one can be shown, and recordings can be replayed
+        in its places, but a verdict on it would say nothing.""",
+    )
+    # --- LS7: warnings
+    NOTHING_QUANTIFIED = (
+        "LS701",
+        "quantifier over nothing",
+        """There is no entity of the kind that a property quantifies over: `forall` is true whatever happens, `exists`
+        never. Declare one (it may be `absent` at first), or quantify over another kind.""",
+    )
+
+    FAR_FROM_THE_REST = (
+        "LS702",
+        "far from everything else",
+        """An entity lies a thousand kilometres or more from the others. Mostly latitude and longitude are
+        swapped: missions say (latitude, longitude), GeoJSON says [longitude, latitude].""",
     )
 
     @property

@@ -40,6 +40,7 @@ LIBRARIES = {
     "zstandard": ("adapters/recording/decompression.py",),
     "lz4": ("adapters/recording/decompression.py",),
     "nicegui": ("adapters/",),
+    "cryptography": ("bigactors/signatures.py",),
     "hypothesis": ("semantics/strategies.py",),
     "matplotlib": ("bigraphs/drawing.py", "physical/drawing.py", "physical/map_", "bigactors/pictures/"),
 }
@@ -47,6 +48,7 @@ LIBRARIES = {
 # Libraries that take long to load or are extras: imported in the functions that need them, never with the module.
 LAZY = {
     "aiohttp",
+    "cryptography",
     "matplotlib",
     "oxidd",
     "pyais",

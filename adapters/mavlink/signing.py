@@ -10,7 +10,6 @@ from __future__ import annotations
 import hashlib
 import hmac
 import json
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
@@ -18,6 +17,7 @@ from pathlib import Path
 from typing import Final
 
 from adapters.mavlink.message import Message, say
+from adapters.private import open_private, others_may_read
 from physical import PhysicalError
 
 EPOCH: Final = 1_420_070_400
@@ -112,10 +112,11 @@ def setup_signing(key: bytes, now: float, system: int, component: int = 1) -> Me
 def load(path: Path) -> Signing:
     """Read the state of an earlier run.
 
-    Raises PhysicalError where the file is no such state.
+    Raises PhysicalError where the file is no such state, or others may read it.
     """
     hint = "make one: python -m adapters.mavlink.new_key FILE"
     try:
+        exposed = others_may_read(path)
         data = json.loads(path.read_text(encoding="ascii"))
         key, timestamp = bytes.fromhex(data["key"]), int(data["timestamp"])
         streams = {_stream(name): int(time) for name, time in data["streams"].items()}
@@ -123,6 +124,9 @@ def load(path: Path) -> Signing:
         raise PhysicalError(
             "signing-file", f"cannot read the signing key: {problem}", hint, str(path)
         ) from None
+    if exposed:
+        told = f"others may read the signing key: its mode is {exposed}"
+        raise PhysicalError("signing-file", told, f"chmod 600 {path}; if others did, {hint}", str(path))
     if len(key) != KEY_BYTES:
         raise PhysicalError("signing-file", f"the key has {len(key)} bytes, not {KEY_BYTES}", hint, str(path))
     return Signing(key, timestamp, streams)
@@ -136,9 +140,8 @@ def save(signing: Signing, path: Path) -> None:
         "streams": {".".join(map(str, stream)): time for stream, time in sorted(signing.streams.items())},
     }
     beside = path.with_name(f"{path.name}.new")
-    handle = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-    with os.fdopen(handle, "w", encoding="ascii") as file:
-        json.dump(data, file)
+    with open_private(beside, "wb") as file:
+        file.write(json.dumps(data).encode("ascii"))
     beside.replace(path)
 
 

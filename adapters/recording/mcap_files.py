@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, Final
 
 from adapters.disk import writing
+from adapters.private import open_private
 from adapters.recording.decompression import opened
 
 MAGIC: Final = b"\x89MCAP0\r\n"
@@ -55,7 +56,7 @@ class McapWriter:
     def __init__(self, path: Path, schemas: Mapping[str, tuple[str, dict[str, Any]]]) -> None:
         """Begin a file; `schemas` gives each topic the name of its schema, and the schema."""
         self._path = path
-        self._file: BinaryIO = path.open("xb")
+        self._file: BinaryIO = open_private(path, "xb")
         self._writer = _writer()(self._file, use_chunking=False, use_statistics=True)
         self._writer.start(profile="", library="bigactors")
         self._channels: dict[str, int] = {}

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, Final
 
 from adapters.disk import writing
+from adapters.private import open_private
 from adapters.stations.entries import MOST_BYTES, Content, Entry, Posted, Took, entry_of, entry_text
 
 SCHEMA: Final = "bigactors.station/1"
@@ -179,7 +180,7 @@ def _parsed(line: bytes) -> Any:
 
 def _locked(path: Path) -> BinaryIO:
     """Open a file that no other process uses so."""
-    file = path.open("a+b")
+    file = open_private(path, "a+b")
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError as error:

@@ -17,6 +17,7 @@ from bigactors.arguments import (
     explain,
     fmt,
     give_back,
+    keygen,
     replay,
     run,
     say,
@@ -33,7 +34,7 @@ __all__ = ["COMMANDS", "FORMATS", "Command", "Parser", "make_parser", "parse_arg
 
 COMMANDS: Final[dict[str, Command]] = {
     each.COMMAND.name: each.COMMAND
-    for each in (check, show, simulate, run, say, give_back, replay, world, big, explain, fmt, demo)
+    for each in (check, show, simulate, run, say, give_back, keygen, replay, world, big, explain, fmt, demo)
 }
 """The commands by name, in the order of the help."""
 

@@ -31,8 +31,8 @@ COMMAND = Command(
     "check",
     "decide the properties of missions",
     "Explore every interleaving of a mission and decide its properties, with a shortest trace for each that\n"
-    "fails and a witness for each that holds. Ctrl-C ends the exploration with what was found so far.\n\n"
-    + EXITS,
+    "fails and a witness for each that holds. Ctrl-C, SIGTERM and SIGHUP end the exploration with what was\n"
+    "found so far.\n\n" + EXITS,
     (
         "bigactors check oil_spill.mission",
         "bigactors check --no-traces specs/missions/*.mission",
@@ -87,6 +87,12 @@ def _report(parser: Parser) -> None:
         metavar="FILE",
         type=named,
         help="write the verdict that `run` asks for (docs/live.md); of one mission, with --control timed",
+    )
+    group.add_argument(
+        "--sign",
+        metavar="KEY",
+        type=named,
+        help="sign the verdict with the key in KEY, for `run --trust KEY.pub` (bigactors keygen KEY makes a pair)",
     )
     group.add_argument(
         "--violations",

@@ -18,7 +18,7 @@ exit codes:
   0  the mission came to its end
   1  an assumption broke, the recording or a plugin failed, or the world was otherwise at the beginning
   2  a mistake in the input, no verdict, a vehicle that is not heard
-  3  it was stopped before its end"""
+  3  it was stopped before its end: by --for, Ctrl-C, SIGTERM or SIGHUP; vehicles go on as they were told last"""
 
 ADDRESS: Final = "udp:127.0.0.1:14550"
 
@@ -88,6 +88,12 @@ def fill(parser: Parser) -> None:
     )
     parser.add_argument(
         "--verdict", metavar="FILE", type=named, help="the verdict (default: beside the mission, or here)"
+    )
+    parser.add_argument(
+        "--trust",
+        metavar="KEY.pub",
+        type=named,
+        help="fly only by a verdict that is signed with the key of which this is the public half (check --sign)",
     )
     parser.add_argument("--unverified", action="store_true", help="fly without a verdict, and say so")
     parser.add_argument("--for", metavar="SECONDS", dest="duration", type=seconds, help="end after SECONDS")

@@ -1,24 +1,32 @@
 """`bigactors check`: the verdicts on missions."""
 
+from __future__ import annotations
+
 import re
 import sys
 from argparse import Namespace
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from bigactors.checking import Checked, Failed, How, check_missions
 from bigactors.exits import Exit, worst
 from bigactors.files import check_writable, file_stem, make_folder, write_json
 from bigactors.missions import variation_of
 from bigactors.mistakes import Mistake
-from bigactors.outputs import outputs_of, write_outputs
+from bigactors.outputs import cautions_of, outputs_of, write_outputs
+from bigactors.signatures import load_key
 from bigactors.terminal import paint, say, tell
 from bigactors.verdict_files import verdict_json
 from checker import Cluster, Engine, Keeping, Limits, Reduction, report_text
 from checker.coverage_report import coverage_text
 from checker.report import MARKS
+from checker.results import caution_text
 from checker.verdicts import Outcome
 from semantics.successors import rules_of
+
+if TYPE_CHECKING:
+    from bigactors.signatures import SigningKey
 
 COLOURS = {Outcome.HOLDS: "green", Outcome.VIOLATED: "red", Outcome.INCOMPLETE: "yellow"}
 SIGNS = {MARKS[outcome]: colour for outcome, colour in COLOURS.items()}
@@ -37,8 +45,7 @@ def run(options: Namespace) -> Exit:
     limits = limits_of(options)
     if options.trace:
         make_folder(options.trace)
-    if options.verdict:
-        _check_verdict(options)
+    key = _check_verdict(options)
     outputs = outputs_of(options)
     alone = any(output.to_standard_output for output in outputs)
     results: list[Checked | Failed] = []
@@ -52,7 +59,7 @@ def run(options: Namespace) -> Exit:
             for line in report_lines(result, traces=not options.no_traces):
                 say(coloured(line))
         if options.verdict and isinstance(result, Checked):
-            keep_verdict(result, options)
+            keep_verdict(result, options, key)
         if options.trace and isinstance(result, Checked):
             keep_evidence(result, options.trace, folders)
     code = worst(result.exit for result in results)
@@ -141,6 +148,8 @@ def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
     if silent:
         when = "never used" if report.complete and not report.reduced else "not used so far"
         yield f"  rules {when}: {', '.join(silent)}"
+    for caution in cautions_of(result.mission):
+        yield from caution_text(result.name, caution)
     if report.coverage is not None:
         yield from coverage_text(result.name, report.coverage, result.mission.source.text)
 
@@ -173,15 +182,21 @@ def coloured(line: str) -> str:
     return f"  {paint(found[1], colour, sys.stdout)} {line[4:]}"
 
 
-def _check_verdict(options: Namespace) -> None:
+def _check_verdict(options: Namespace) -> SigningKey | None:
+    """Return the key that the verdict is signed with, if any; raises Mistake before anything is explored."""
+    if options.verdict is None:
+        if options.sign is not None:
+            raise Mistake("--sign signs a verdict", "say where it is written: --verdict FILE")
+        return None
     if len(options.files) > 1:
         raise Mistake("--verdict writes the verdict of one mission", "check the missions one by one")
     check_writable(options.verdict)
+    return None if options.sign is None else load_key(options.sign)
 
 
-def keep_verdict(checked: Checked, options: Namespace) -> None:
+def keep_verdict(checked: Checked, options: Namespace, key: SigningKey | None) -> None:
     """Write the verdict on a mission, and say so."""
-    data = verdict_json(checked, options.engine or "by size")
+    data = verdict_json(checked, options.engine or "by size", key)
     write_json(options.verdict, data)
     tell(f"  verdict: {'holds' if data['holds'] else 'does not hold'}, written to {options.verdict}")
 

@@ -22,11 +22,12 @@ from adapters.recording.mcap_files import RecordingError
 from adapters.recording.writing import Recorder
 from bigactors import __version__
 from bigactors.exits import Exit
-from bigactors.missions import digest_of, locate, open_mission
+from bigactors.missions import checkable, digest_of, locate, open_mission
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.plugins import plugins_of
 from bigactors.preflight import check_flyable, check_places, get_to_know
 from bigactors.recordings import Resumed, resume
+from bigactors.signatures import load_trusted
 from bigactors.sockets import socket_of
 from bigactors.stations import Company, company_of, parting_json
 from bigactors.terminal import paint, say, tell
@@ -102,7 +103,7 @@ def prepare(options: Namespace) -> Flight:
     """Read everything, and refuse what cannot be flown; raises Mistake."""
     sources = {name: Path(file) for name, file in options.source}
     live = Variation(Scheduler.FCFS, Control.TIMED, sources)
-    mission = open_mission(options.file, live)
+    mission = checkable(open_mission(options.file, live))
     licence = _licence(options, mission)
     log = None if options.record is None else Log(Path(options.record).with_suffix(".tlog"))
     plugins, owners = plugins_of(options, mission, log)
@@ -123,13 +124,17 @@ def _licence(options: Namespace, mission: ElaboratedMission) -> Licence | None:
     name = options.file
     path = find_verdict(str(locate(name)), options.verdict)
     if options.unverified:
+        if options.trust is not None:
+            raise Mistake(
+                "--unverified asks for no verdict, --trust for a signed one", "leave one of the two out"
+            )
         warning = "nothing was verified of this run: --unverified"
         tell(paint(warning, "red", sys.stderr), "!")
         return None
     if path is None:
         hint = f"bigactors check --control timed --verdict {Path(name).stem}.verdict.json {name}, or --unverified"
         raise Mistake("there is no verdict that this mission holds", hint, name)
-    return licence_for(name, path, mission)
+    return licence_for(name, path, mission, None if options.trust is None else load_trusted(options.trust))
 
 
 @contextmanager
@@ -139,6 +144,9 @@ def record(flight: Flight) -> Iterator[Tape | None]:
     reason = "the run has ended"
     try:
         yield tape
+    except KeyboardInterrupt:
+        reason = "interrupted"
+        raise
     except BaseException as error:
         reason = str(error) or type(error).__name__
         raise

@@ -7,8 +7,10 @@ that has forgotten.
 
 import os
 import shutil
+import signal
 import socket
 import tempfile
+import threading
 import time
 import weakref
 from dataclasses import replace
@@ -212,6 +214,7 @@ def connect(cluster: Cluster) -> None:
         return
     if cluster.address not in (None, "auto"):
         _reach(str(cluster.address))
+    before = signal.getsignal(signal.SIGTERM)
     quiet = {"include_dashboard": False, "log_to_driver": False, "logging_level": "error"}
     try:
         if cluster.address is None:
@@ -222,6 +225,8 @@ def connect(cluster: Cluster) -> None:
         if cluster.address is None:
             raise MachineError(f"no Ray cluster could be started here: {error}") from error
         raise ClusterError(f"there is no Ray cluster at {cluster.address}: {error}") from error
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, before)  # Ray has put its own there, which leaves at once
     if cluster.address is None and not ray.util.get_node_ip_address().startswith("127."):
         ray.shutdown()
         raise ClusterError("Ray was loaded before and would listen to others: let the checker load it")

@@ -17,11 +17,12 @@ LONGEST: Final = 60
 
 
 class Findings:
-    """Collects the mistakes of one mission."""
+    """Collects the mistakes of one mission, and what looks like one."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
         self._found: dict[Diagnostic, None] = {}
+        self._warned: dict[Diagnostic, None] = {}
         self._suggested = 0
 
     def __len__(self) -> int:
@@ -31,6 +32,16 @@ class Findings:
         """Note a mistake, once."""
         span = where if isinstance(where, Span) else where.span
         self._found.setdefault(Diagnostic(code, span, message, hint))
+
+    def warn(self, code: Code, where: Node | Span, message: str, hint: str = "") -> None:
+        """Note what is allowed and hardly meant, once."""
+        span = where if isinstance(where, Span) else where.span
+        self._warned.setdefault(Diagnostic(code, span, message, hint))
+
+    @property
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """What is allowed and hardly meant, by position."""
+        return MissionError(self.source, self._warned).diagnostics
 
     def unknown(
         self,

@@ -145,6 +145,14 @@ class Formulas:
             return []
         members = [name for name, kind in sorted(self.names.kinds.items()) if kind == node.kind.text]
         if not members:
+            always = "true whatever happens" if node.quantifier == "forall" else "never true"
+            self.names.findings.warn(
+                Code.NOTHING_QUANTIFIED,
+                node.kind,
+                f"there is no entity of kind {node.kind.text}: '{node.quantifier} {node.variable.text}: "
+                f"{node.kind.text}' is {always}",
+                "declare one, absent if it is to appear later, or quantify over another kind",
+            )
             elaborate(node.body, around.naming(node.variable.text, REGION))  # for the mistakes in it
         return [around.naming(node.variable.text, name) for name in members]
 

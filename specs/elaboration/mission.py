@@ -26,7 +26,7 @@ from specs.elaboration.files import Library
 from specs.elaboration.findings import Findings
 from specs.elaboration.live import elaborate_live
 from specs.elaboration.names import Names
-from specs.elaboration.places import check_nesting, elaborate_mobility, fixed_entities
+from specs.elaboration.places import check_nesting, elaborate_mobility, fixed_entities, warn_of_outliers
 from specs.elaboration.rules import elaborate_rules
 from specs.elaboration.signature import elaborate_signature
 from specs.elaboration.variation import AS_WRITTEN, Variation
@@ -49,6 +49,7 @@ class ElaboratedMission:
         fixed: Entities whose place neither agents nor the environment can ever change.
         spans: Where each name is declared, by sort (entity, kind, channel, agent, rule, behaviour) and name.
         precautions: What is done when a live run goes otherwise.
+        warnings: What is allowed and hardly meant, by position.
         begin: Makes the first configuration under a setting, of the world as it was read.
     """
 
@@ -61,6 +62,7 @@ class ElaboratedMission:
     fixed: frozenset[Name]
     spans: Mapping[tuple[str, str], s.Span]
     precautions: Precautions
+    warnings: tuple[Diagnostic, ...]
     begin: Callable[[Setting], Configuration] = field(repr=False)
 
     def under(self, scheduler: Scheduler, control: Control) -> ElaboratedMission:
@@ -89,6 +91,7 @@ def elaborate(
     mobility = elaborate_mobility(mission, names, world)
     check_nesting(names, world, mobility)
     clauses, clause_lines, arriving = elaborate_environment(mission, names, world, mobility)
+    warn_of_outliers(names, world, clauses)
     beliefs = elaborate_beliefs(mission, names)
     bodies, program = elaborate_bodies(mission, names, elaborate_rules(mission, names))
     agents = {}
@@ -131,8 +134,23 @@ def elaborate(
         fixed,
         dict(names.spans),
         precautions,
+        names.findings.warnings,
         begin,
     )
+
+
+def require_bigactor(mission: ElaboratedMission) -> None:
+    """Refuse a mission in which nobody acts: nothing checked is no pass; raises MissionError."""
+    if mission.initial.alpha.names():
+        return
+    if mission.spans:
+        hint = "add one: BigActor a hosted_at HOST with_behavior { ... }"
+        found = Diagnostic(
+            Code.NO_BIGACTOR, _START, "there is no bigActor in it: nothing would be checked", hint
+        )
+    else:
+        found = Diagnostic(Code.EMPTY_MISSION, _START, "the file declares nothing", "is it the right file?")
+    raise MissionError(mission.source, [found])
 
 
 def _stop(findings: Findings) -> None:

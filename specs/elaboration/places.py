@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from physical import Place, check_places
+from physical import Geometry, Place, check_places
+from physical.measure import metres_text
+from physical.outliers import is_swapped, outliers
+from semantics.environment import Appears, Clause, Drifts
 from semantics.physical_model import Carried, Placed
 from specs import syntax as s
 from specs.codes import Code
@@ -81,3 +84,28 @@ def check_nesting(names: Names, world: World, mobility: Mobility) -> None:
         spans = [names.spans["entity", name] for name in (conflict.first, conflict.second)]
         hint = "places must nest or be apart: change one of the two"
         names.findings.add(Code.PLACES_OVERLAP, max(spans), str(conflict), hint)
+
+
+def warn_of_outliers(names: Names, world: World, clauses: Iterable[Clause]) -> None:
+    """Warn of what lies so far from everything else that its latitude and longitude may be swapped."""
+    geometries = dict(_geometries(world, clauses))
+    found = outliers(geometries)
+    rest = [geometry for key, geometry in geometries.items() if key not in found]
+    for (name, words), metres in found.items():
+        swapped = is_swapped(geometries[name, words], rest, metres)
+        hint = "are latitude and longitude swapped? the other way about it would be near" if swapped else ""
+        message = f"{words} lies {metres_text(metres)} from everything else"
+        hint = hint or "look at its coordinates: missions say (latitude, longitude)"
+        names.findings.warn(Code.FAR_FROM_THE_REST, names.spans["entity", name], message, hint)
+
+
+def _geometries(world: World, clauses: Iterable[Clause]) -> Iterator[tuple[tuple[str, str], Geometry]]:
+    """Yield where each entity is or may come to be, with its name and how it is called."""
+    for name, placement in world.placements.items():
+        if isinstance(placement, Placed):
+            yield (name, name), placement.geometry
+    for clause in clauses:
+        if isinstance(clause, Drifts | Appears):
+            for words, placement in zip(clause.words, clause.placements, strict=True):
+                if isinstance(placement, Placed):
+                    yield (clause.entity, f"where {words}"), placement.geometry

@@ -67,7 +67,9 @@ class BigActor(Node):
 class DriftsAmong(Node):
     """`oilSpill0 drifts among circle (37.0, -8.7) radius 400 m, searchArea1`.
 
-    Placements, or the centroids of places.
+    Placements, or the centroids of places. What is absent, carried or under command does not drift: a vehicle in
+    transit is on its way to its destination until its flight ends (or, where nothing says that it arrives, may never
+    end), and is nowhere that the wind could take it from. From where it has arrived it drifts again.
     """
 
     entity: Name

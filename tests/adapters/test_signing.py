@@ -98,6 +98,7 @@ def test_the_state_on_disk_refuses_replays_of_the_run_before(tmp_path):
 def test_a_key_file_that_is_none_is_the_users_mistake(tmp_path, text):
     path = tmp_path / "key.json"
     path.write_text(text)
+    path.chmod(0o600)
     with pytest.raises(PhysicalError, match="key"):
         load(path)
 
@@ -230,3 +231,12 @@ def test_the_recorded_packet_of_one_run_is_a_replay_in_the_next(tmp_path):
             state, verdict = check(state, message)
             verdicts.add(verdict)
     assert verdicts == {Verdict.REPLAYED}
+
+
+def test_a_key_that_others_may_read_is_refused_with_what_to_do(tmp_path):
+    path = tmp_path / "key"
+    save(Signing(KEY), path)
+    path.chmod(0o644)
+    with pytest.raises(PhysicalError, match="others may read the signing key: its mode is 0644") as refused:
+        load(path)
+    assert refused.value.hint.startswith(f"chmod 600 {path}; if others did, make one: ")

@@ -4,6 +4,7 @@ import resource
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -215,7 +216,8 @@ def test_the_marks_of_the_summary_are_those_of_the_report():
 
 @pytest.mark.usefixtures("missions")
 @pytest.mark.skipif(os.name == "nt", reason="signals and terminals are POSIX's")
-def test_an_interrupted_exploration_is_incomplete_and_reports_what_it_found():
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda each: each.name)
+def test_an_interrupted_exploration_is_incomplete_and_reports_what_it_found(number):
     ours, theirs = os.openpty()
     words = ("check", "endless.mission", "holds.mission", "--no-traces")
     shown = b""
@@ -225,7 +227,7 @@ def test_an_interrupted_exploration_is_incomplete_and_reports_what_it_found():
         os.close(theirs)
         while b"frontier" not in shown:  # the exploration is under way
             shown += os.read(ours, 1000)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
         out = process.communicate(timeout=60)[0].decode()
     os.close(ours)
     assert process.returncode == 3
@@ -235,3 +237,51 @@ def test_an_interrupted_exploration_is_incomplete_and_reports_what_it_found():
     assert b"endless: " in shown
     assert b" configurations, depth " in shown
     assert b"Traceback" not in shown
+
+
+OWNING = """
+import fcntl, os, sys, termios
+fcntl.ioctl(0, termios.TIOCSCTTY, 0)  # its session's terminal
+os.execv(sys.executable, [sys.executable, "-m", "bigactors", *sys.argv[1:]])
+"""
+
+
+@pytest.mark.usefixtures("missions")
+def test_a_terminal_that_closes_ends_an_exploration_with_what_was_found(missions):
+    ours, theirs = os.openpty()
+
+    words = ("check", "endless.mission", "--no-traces", "--json", "report.json")
+    with subprocess.Popen(
+        [sys.executable, "-c", OWNING, *words],
+        stdin=theirs,
+        stdout=theirs,
+        stderr=theirs,
+        start_new_session=True,
+    ) as process:
+        os.close(theirs)
+        shown = b""
+        while b"frontier" not in shown:
+            shown += os.read(ours, 1000)
+        os.close(ours)
+        assert process.wait(timeout=60) == 3
+    report = json.loads((missions / "report.json").read_text(encoding="utf-8"))
+    assert report["bounds"] == ["an interruption"]
+
+
+@pytest.mark.usefixtures("missions")
+def test_who_ignores_a_hangup_goes_on_ignoring_it():
+    words = ("check", "endless.mission", "--no-traces", "--max-time", "3")
+    with subprocess.Popen(
+        ["nohup", sys.executable, "-m", "bigactors", *words], stdout=subprocess.PIPE
+    ) as process:
+        time.sleep(1.5)
+        process.send_signal(signal.SIGHUP)
+        out = process.communicate(timeout=60)[0].decode()
+    assert "stopped at the time limit of 3 s" in out
+    assert "an interruption" not in out
+
+
+def test_the_signals_handlers_are_put_back(bigactors):
+    before = [signal.getsignal(each) for each in (signal.SIGTERM, signal.SIGHUP)]
+    assert bigactors("explain", "LS101")[0] == 0
+    assert [signal.getsignal(each) for each in (signal.SIGTERM, signal.SIGHUP)] == before

@@ -154,3 +154,48 @@ def test_a_name_that_is_not_utf_8_can_be_written(missions, bigactors):
     assert bigactors("check", "\udcff.mission", *words)[0] == 2
     assert json.loads((missions / "report.json").read_text(encoding="utf-8"))["mission"] == "\udcff.mission"
     assert "%FF.mission" in (missions / "report.sarif").read_text(encoding="utf-8")
+
+
+WARNED = Path(__file__).parents[1] / "corpus" / "warned" / "LS702_swapped.mission"
+
+
+def test_what_is_hardly_meant_is_told_in_every_format_and_fails_nothing(missions, bigactors):
+    (missions / "warned.mission").write_bytes(WARNED.read_bytes())
+    words = [word for name in FORMATS for word in ("--output", f"{name}:report.{name}")]
+    code, out, err = bigactors("check", "warned.mission", *words)
+    texts = {name: (missions / f"report.{name}").read_text(encoding="utf-8") for name in FORMATS}
+    assert (code, err) == (0, "")
+    said = "warned.mission:10: warning: LS702: airfield0 lies 6,941 km from everything else\n"
+    assert f"\n  {said}    hint: are latitude and longitude swapped?" in out
+    assert said in (ET.fromstring(texts["junit"].encode()).findtext(".//system-out") or "")
+    assert 'failures="0" errors="0"' in texts["junit"]
+    warnings = json.loads(texts["json"])["warnings"]
+    assert [(each["code"], each["line"], each["column"]) for each in warnings] == [
+        ("LS702", 10, 3),
+        ("LS702", 11, 3),
+    ]
+    run = json.loads(texts["sarif"])["runs"][0]
+    found = [(each["ruleId"], each["level"]) for each in run["results"] if each["ruleId"] == "LS702"]
+    assert found == [("LS702", "warning")] * 2
+    assert run["invocations"][0]["executionSuccessful"] is True
+    assert (
+        texts["github"].count("::warning file=warned.mission,line=10,endLine=10,col=3,endColumn=12,title=")
+        == 1
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [("", "LS614: the file declares nothing"), ("signature { kind A }", "LS615: there is no bigActor in it")],
+)
+def test_where_nothing_would_be_checked_there_is_no_pass(missions, bigactors, text, said):
+    (missions / "nothing.mission").write_text(text, encoding="utf-8")
+    code, out, err = bigactors(
+        "check", "nothing.mission", "--output", "junit:report.xml", "--verdict", "v.json"
+    )
+    assert (code, out) == (2, "")
+    assert said in err
+    assert 'errors="1"' in (missions / "report.xml").read_text(encoding="utf-8")
+    assert not (missions / "v.json").exists()
+    assert bigactors("run", "nothing.mission", "--unverified")[0] == 2
+    assert bigactors("show", "nothing.mission")[0] == 0

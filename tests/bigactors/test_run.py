@@ -1,8 +1,12 @@
 """What `bigactors run` and `say` refuse, and how they say it."""
 
 import os
+import signal
 import stat
+import subprocess
+import sys
 import tempfile
+import time
 from pathlib import Path
 
 import pytest
@@ -15,6 +19,7 @@ from bigactors.foreign import watched
 from bigactors.missions import open_mission
 from bigactors.mistakes import Mistake
 from bigactors.pictures.scene import palette_of
+from bigactors.recordings import open_recording
 from bigactors.sockets import folder, only_socket, socket_of
 from specs.elaboration import Variation
 
@@ -73,6 +78,34 @@ def test_a_vehicle_that_is_not_heard_ends_the_run_and_its_recording(there, capsy
     assert "nothing was verified of this run" in shown.err
     assert "0 steps replayed on oil_spill" in shown.out
     assert not list((there / "runtime" / "bigactors").iterdir())
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda each: each.name)
+def test_a_run_that_is_asked_to_end_closes_its_recording(there, number):
+    line = [
+        sys.executable,
+        "-m",
+        "bigactors",
+        "run",
+        "oil_spill",
+        UAV,
+        "--unverified",
+        "--record",
+        "run.mcap",
+    ]
+    with subprocess.Popen(line, stderr=subprocess.PIPE, text=True) as run:
+        until = time.monotonic() + 30
+        while not (there / "run.mcap").exists() or not (there / "run.mcap").stat().st_size:
+            assert time.monotonic() < until, "it did not begin in time"
+            time.sleep(0.05)
+        time.sleep(0.5)
+        run.send_signal(number)
+        told = run.communicate(timeout=30)[1]
+    assert run.returncode == 3
+    assert "interrupted: vehicles go on as they were told last" in told
+    recording = open_recording("run.mcap")
+    assert not recording.torn
+    assert [message.data for message in recording.of("end")] == [{"reason": "interrupted"}]
 
 
 @pytest.mark.usefixtures("there")

@@ -122,3 +122,9 @@ def test_what_is_thinner_than_the_grid_has_no_interior_point():
     with pytest.raises(GeometryError, match="no position on the grid of 1 cm lies inside") as caught:
         interior_point(sliver)
     assert caught.value.code == "too-thin"
+
+
+def test_areas_on_the_other_side_of_the_earth_are_far_away_both_ways():
+    bay, far = box((37.1, -8.6), (37.0, -8.7)), circle((-37.06, 171.3), 400)
+    assert distance(bay, far) == pytest.approx(distance(far, bay))
+    assert distance(bay, far) == pytest.approx(2.0e7, rel=0.01)

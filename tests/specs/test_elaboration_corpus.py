@@ -6,11 +6,12 @@ from pathlib import Path
 import pytest
 
 from specs.codes import Code
-from specs.diagnostics import MissionError
-from specs.elaboration import elaborate, load_mission
+from specs.diagnostics import MissionError, render_all
+from specs.elaboration import elaborate, load_mission, require_bigactor
 from specs.parser import parse_bytes
 
 CORPUS = Path(__file__).parents[1] / "corpus"
+MISSIONS = Path(__file__).parents[2] / "specs" / "missions"
 NOT_IN_THE_CORPUS = {"LS308"}  # depends on what is installed
 
 
@@ -36,7 +37,7 @@ BAD = [
 def message_of(path):
     source, mission = parse_bytes(path.name, path.read_bytes())
     with pytest.raises(MissionError) as caught:
-        elaborate(mission, source, path.parent)
+        require_bigactor(elaborate(mission, source, path.parent))
     return str(caught.value) + "\n"
 
 
@@ -48,6 +49,25 @@ def test_a_mistake_gives_the_expected_blocks(path):
 def test_every_code_of_the_elaborator_has_a_file_in_the_corpus():
     shown = {code for path in BAD for code in codes(expected(path))}
     assert {code.number for code in Code if is_ours(code.number)} - shown == NOT_IN_THE_CORPUS
+
+
+WARNED = sorted((CORPUS / "warned").glob("*.mission"))
+
+
+@pytest.mark.parametrize("path", WARNED, ids=lambda path: path.stem)
+def test_what_is_hardly_meant_gives_the_expected_warnings(path):
+    source, mission = parse_bytes(path.name, path.read_bytes())
+    assert render_all(elaborate(mission, source, path.parent).warnings, source) + "\n" == expected(path)
+
+
+def test_every_warning_has_a_file_in_the_corpus():
+    shown = {code for path in WARNED for code in codes(expected(path))}
+    assert shown == {code.number for code in Code if code.number.startswith("LS7")}
+
+
+@pytest.mark.parametrize("path", sorted(MISSIONS.glob("*.mission")), ids=lambda path: path.stem)
+def test_nothing_that_ships_is_warned_of(path):
+    assert load_mission(path).warnings == ()
 
 
 @pytest.mark.parametrize("name", ["everything", "rules", "figure2_whole", "empty"])

@@ -1,0 +1,32 @@
+"""Files that are their owner's alone: recordings, logs and keys, whatever the umask is and whoever made them before."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+from typing import BinaryIO, Final, cast
+
+OWNER: Final = 0o600
+
+
+def open_private(path: Path, mode: str, buffering: int = -1) -> BinaryIO:
+    """Open a file of bytes that only its owner may read and write; one that was there becomes so before it is used."""
+    return cast("BinaryIO", open(path, mode, buffering, opener=_opened))
+
+
+def others_may_read(path: Path) -> str:
+    """Return the mode of a file that others than its owner have a right to, as `chmod` writes it; else nothing."""
+    mode = stat.S_IMODE(path.stat().st_mode)
+    return f"{mode:04o}" if mode & 0o077 else ""
+
+
+def _opened(path: str, flags: int) -> int:
+    handle = os.open(path, flags, OWNER)
+    try:
+        if stat.S_ISREG(os.fstat(handle).st_mode):  # not /dev/null
+            os.fchmod(handle, OWNER)
+    except BaseException:
+        os.close(handle)
+        raise
+    return handle

@@ -1,0 +1,93 @@
+"""What lies so far from everything else that it is hardly meant: maps say how far, checks warn of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Iterable, Mapping
+from itertools import product
+from typing import Final, TypeVar
+
+from physical.frame import Position
+from physical.measure import distance
+from physical.shape import Geometry, point
+
+CELL: Final = 500_000.0
+"""Metres of the edge of the cubes into which the earth is parted: what is in neighbouring cubes is near."""
+
+RADIUS: Final = 6_371_000.0
+
+REMOTE: Final = 1_000_000.0
+"""Metres from everything else at which something is hardly meant to be."""
+
+MOST: Final = 20
+"""How many outliers are told of; each is measured against all that is none."""
+
+Key = TypeVar("Key", bound=Hashable)
+Cube = tuple[int, ...]
+
+AROUND: Final[tuple[Cube, ...]] = tuple(product((-1, 0, 1), repeat=3))
+
+
+def apart(geometry: Geometry, rest: Iterable[Geometry]) -> float:
+    """Return the metres to the nearest of the rest, infinity where there is none."""
+    return min((distance(geometry, each) for each in rest), default=math.inf)
+
+
+def outliers(geometries: Mapping[Key, Geometry]) -> dict[Key, float]:
+    """Return what lies a thousand kilometres and more from where most is, with the metres to the nearest of that.
+
+    Of two halves the one that comes first counts as most. Twenty are told of at the most.
+    """
+    parts = _parts(geometries)
+    most = max(parts, key=len, default=[])
+    rest = [geometries[key] for key in most]
+    others = [key for part in parts if part is not most for key in part]
+    # An ocean has its corners far from everything, and everything in it.
+    rest += [
+        geometries[key]
+        for key in others
+        if _is_wide(geometries[key]) and apart(geometries[key], rest) < REMOTE
+    ]
+    found = {key: apart(geometries[key], rest) for key in others[:MOST]}
+    return {key: metres for key, metres in found.items() if metres >= REMOTE}
+
+
+def is_swapped(geometry: Geometry, rest: Iterable[Geometry], metres: float) -> bool:
+    """Tell whether something so far away would be near, were its latitude the longitude and the other way about."""
+    latitude, longitude = geometry.vertices[0]
+    return abs(longitude) <= 90 and apart(point(longitude, latitude), rest) < metres / 10
+
+
+def _parts(geometries: Mapping[Key, Geometry]) -> list[list[Key]]:
+    """Return what is near each other, in the order given; by cubes, so that thousands take no time."""
+    cubes = {key: {_cube(vertex) for vertex in geometry.vertices} for key, geometry in geometries.items()}
+    holding: dict[Cube, list[Key]] = {}
+    for key, of in cubes.items():
+        for cube in of:
+            holding.setdefault(cube, []).append(key)
+    parts, seen = list[list[Key]](), set[Key]()
+    for key in geometries:
+        if key in seen:
+            continue
+        seen.add(key)
+        part = [key]
+        for near in part:  # grows while it is gone through
+            for cube in cubes[near]:
+                for shift in AROUND:
+                    found = holding.pop(tuple(map(sum, zip(cube, shift, strict=True))), [])
+                    part += [each for each in dict.fromkeys(found) if each not in seen]
+                    seen.update(found)
+        parts.append(part)
+    return parts
+
+
+def _is_wide(geometry: Geometry) -> bool:
+    return len(set(map(_cube, geometry.vertices))) > 1
+
+
+def _cube(position: Position) -> Cube:
+    """Return the cube of space that a position is in."""
+    latitude, longitude = map(math.radians, position)
+    ring = math.cos(latitude)
+    spot = (ring * math.cos(longitude), ring * math.sin(longitude), math.sin(latitude))
+    return tuple(math.floor(RADIUS * each / CELL) for each in spot)

@@ -1,0 +1,49 @@
+"""What lies far from everything else: who, how far, and whether its latitude and longitude are swapped."""
+
+import time
+
+import pytest
+
+from physical import box, circle, distance, point
+from physical.outliers import is_swapped, outliers
+
+BAY = {
+    "bay0": box((37.1, -8.6), (37.0, -8.7)),
+    "uav0": point(37.05, -8.65),
+    "gcs0": point(37.15, -8.58),
+}
+SWAPPED = circle((-8.584, 37.149), 900)
+
+
+def test_what_is_a_thousand_kilometres_off_is_an_outlier_with_its_distance():
+    found = outliers({**BAY, "airfield0": SWAPPED})
+    assert found == {"airfield0": min(distance(SWAPPED, each) for each in BAY.values())}
+    assert found["airfield0"] == pytest.approx(6_935_000, rel=0.01)
+    assert is_swapped(SWAPPED, BAY.values(), found["airfield0"])
+
+
+def test_what_belongs_together_is_no_outlier_though_it_reaches_far():
+    chain = {number: point(37.0, -8.0 + 4 * number) for number in range(40)}
+    assert outliers(chain) == {}
+    assert outliers({**BAY, "ocean0": box((60.0, 0.0), (-60.0, -60.0)), "uav1": point(0.0, -30.0)}) == {}
+    assert outliers({}) == {}
+
+
+def test_both_sides_of_the_antimeridian_are_near():
+    assert outliers({"east": point(-17.0, 179.9), "west": point(-17.0, -179.9)}) == {}
+
+
+def test_of_two_halves_the_first_is_where_the_world_is():
+    assert list(outliers({"here": point(37.0, -8.0), "there": point(-8.0, 37.0)})) == ["there"]
+
+
+def test_what_is_nowhere_near_either_way_is_not_swapped():
+    assert not is_swapped(point(60.0, 120.0), BAY.values(), 9_000_000.0)
+    assert not is_swapped(point(37.0, -8.6), {"x": point(37.0, -8.6)}.values(), 0.0)
+
+
+def test_thousands_of_vessels_take_no_time():
+    vessels = {number: point(50.0 + number / 1e4, 4.0) for number in range(20_000)}
+    began = time.perf_counter()
+    assert list(outliers({**vessels, "far": point(4.0, 50.0)})) == ["far"]
+    assert time.perf_counter() - began < 20.0
