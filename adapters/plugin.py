@@ -188,11 +188,21 @@ class Rejected:
 
 
 @dataclass(frozen=True, slots=True)
+class Doubted:
+    """The vehicle may have been taken over, or a message of it came late: nothing is told it until that is certain.
+
+    `TakenOver` follows, or `Accepted` once more; until then where it goes is no arrival.
+    """
+
+    entity: str
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
 class TakenOver:
     """The vehicle does what nobody here ordered: a pilot, another station, a fail-safe or a reboot has it.
 
-    All that it is told is refused until `GiveBack`. While this may be so, but is not certain as yet, nothing is
-    published of the vehicle: where it goes is no arrival.
+    All that it is told is refused until `GiveBack`, and where it goes is no arrival.
     """
 
     entity: str
@@ -316,7 +326,18 @@ class Failed:
 Elsewhere = Delivered | Underway | Hosts | Believes | Broken
 """What is reported of other stations."""
 
-Report = Accepted | Arrived | Rejected | TakenOver | LinkLost | LinkRestored | Trouble | Failed | Elsewhere
+Report = (
+    Accepted
+    | Arrived
+    | Rejected
+    | Doubted
+    | TakenOver
+    | LinkLost
+    | LinkRestored
+    | Trouble
+    | Failed
+    | Elsewhere
+)
 
 # --- who talks to whom ------------------------------------------------------------------------------
 
@@ -374,6 +395,7 @@ __all__ = [
     "Broken",
     "Command",
     "Delivered",
+    "Doubted",
     "Elsewhere",
     "Failed",
     "Follow",

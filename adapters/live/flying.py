@@ -50,6 +50,13 @@ def obey(turning: Turning, entity: Name, request: str, *, through: bool) -> None
         arrive(turning, entity)
 
 
+def doubt(turning: Turning, entity: Name) -> None:
+    """Note that it is not known whether a vehicle still does what it was told."""
+    order = turning.orders.get(entity)
+    if order is not None:
+        turning.orders[entity] = replace(order, obeyed=False)
+
+
 def refuse(turning: Turning, entity: Name, request: str) -> None:
     """Note that what a vehicle was told by a request is not possible."""
     for orders in (turning.orders, turning.handing):

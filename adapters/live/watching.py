@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
-from dataclasses import replace
 from ipaddress import ip_address
 
 from adapters.live.assumptions import broken_by_place, clause_of_leaving, relations
 from adapters.live.elsewhere import hear_of
-from adapters.live.flying import arrive, ask_anew, obey, refuse, renew
+from adapters.live.flying import arrive, ask_anew, doubt, obey, refuse, renew
 from adapters.live.orders import is_authority
 from adapters.live.sightings import Refusal, placement_seen, sighting_of
 from adapters.live.state import Answer, Batch, Heard, Said, Saying
@@ -23,6 +22,7 @@ from adapters.plugin import (
     Believes,
     Broken,
     Delivered,
+    Doubted,
     Failed,
     GiveBack,
     Hosts,
@@ -52,13 +52,13 @@ MOST_PORT = 65_535
 
 
 def take_in(turning: Turning, batch: Batch) -> None:
-    """Take in what was seen and reported: first who was taken over, so that nothing that they do is an arrival."""
+    """Take in what was seen and reported: first who is taken over, so that nothing that they do is an arrival."""
     for report in batch.reports:
-        if isinstance(report, TakenOver):
+        if isinstance(report, TakenOver | Doubted):
             note(turning, report)
     hear(turning, batch.heard)
     for report in batch.reports:
-        if not isinstance(report, TakenOver):
+        if not isinstance(report, TakenOver | Doubted):
             note(turning, report)
 
 
@@ -257,6 +257,8 @@ def note(turning: Turning, report: Report) -> None:
             if entity not in turning.taken:  # else that is what was said
                 message = f"{entity} refuses {request}: {reason}; the request stays pending"
                 turning.find("refused", entity, message)
+        case Doubted(entity):
+            doubt(turning, entity)
         case TakenOver(entity, _, reason):
             turning.taken[entity] = reason
             back = f"nobody here commands it until `bigactors give-back {entity}`"
@@ -290,7 +292,7 @@ def _restore(turning: Turning, entity: Name, *, rebooted: bool) -> None:
     order = turning.orders.get(entity)
     if not rebooted or order is None:
         return
-    turning.orders[entity] = order = replace(order, obeyed=False)
+    doubt(turning, entity)
     if turning.flies(entity):
         turning.commands.append(order.command)
 

@@ -23,7 +23,8 @@ class Helm:
     """What was ordered of a vehicle, and whether it was seen to be otherwise.
 
     Attributes:
-        modes: The modes of the command that it was last seen to obey; none before the first.
+        modes: The modes of the command that it was last seen to obey, none before the first; while it is otherwise, all
+            that would be as ordered.
         armed: Whether it was armed since.
         boots: How often it had booted when it was last as ordered.
         strange: Since when it is otherwise.
@@ -52,7 +53,7 @@ def watch(helm: Helm, known: Telemetry, profile: Profile, command: Command | Non
     if not why:
         return _as_ordered(helm, known, profile, command)
     if helm.strange is None:
-        return replace(helm, strange=known.beat)
+        return replace(helm, strange=known.beat, modes=_allowed(helm, profile, command))
     return replace(helm, taken=why) if known.beat - helm.strange > STRANGE else helm
 
 
@@ -84,10 +85,17 @@ def _otherwise(helm: Helm, known: Telemetry, profile: Profile, command: Command 
         return f"{booted}, and is not armed again"
     if not (helm.armed or known.armed):
         return ""
-    before = helm.modes or frozenset({profile.guided, profile.auto})  # as another run has left it
-    if known.mode in before | modes_of(command, profile):
+    if known.mode in _allowed(helm, profile, command):
         return ""
     return f"it is in {profile.mode_name(known.mode)}, by itself or told by someone else"
+
+
+def _allowed(helm: Helm, profile: Profile, command: Command | None) -> frozenset[int]:
+    """Return the modes that are as ordered; what is told while it is otherwise makes nothing of it ordered."""
+    if helm.strange is not None:
+        return helm.modes
+    before = helm.modes or frozenset({profile.guided, profile.auto})  # as another run has left it
+    return before | modes_of(command, profile)
 
 
 def _as_ordered(helm: Helm, known: Telemetry, profile: Profile, command: Command | None) -> Helm:

@@ -27,8 +27,10 @@ from adapters.mavlink.sync import Sync
 from adapters.mavlink.task import Progress, Task
 from adapters.mavlink.telemetry import Position, Telemetry, absorb, property_of
 from adapters.plugin import (
+    Accepted,
     Aged,
     Command,
+    Doubted,
     Follow,
     GiveBack,
     GoTo,
@@ -265,9 +267,19 @@ def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
         return replace(pilot, helm=Helm(boots=known.boots)), ()
     command = None if pilot.moving is None else pilot.moving.command
     helm = helms.watch(pilot.helm, known, profile, command, _undone(pilot, profile))
-    lost = bool(helm.taken) and not pilot.helm.taken
-    pilot = replace(pilot, helm=helm)
-    return _taken_over(pilot, now) if lost else (pilot, ())
+    before, pilot = pilot.helm, replace(pilot, helm=helm)
+    if helm.taken and not before.taken:
+        return _taken_over(pilot, now)
+    return pilot, tuple(_changes(pilot, before, now))
+
+
+def _changes(pilot: Pilot, before: Helm, now: float) -> Iterator[Report]:
+    """Yield that it becomes doubtful whether the vehicle does what it was told, or certain again."""
+    entity, task = pilot.craft.entity, pilot.moving
+    if before.held and not pilot.helm.held:
+        yield Doubted(entity, now)
+    elif pilot.helm.held and not before.held and task is not None and task.accepted:
+        yield Accepted(task.command.request, entity, now)
 
 
 def _undone(pilot: Pilot, profile: Profile) -> str:
@@ -369,8 +381,6 @@ def _with_height(pilot: Pilot, task: Task) -> Task:
 def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Aged, ...], tuple[Report, ...]]:
     """Publish the vehicle where anything that is shown of it has changed."""
     position, authority = pilot.known.position, pilot.known.authority
-    if pilot.helm.strange is not None and not pilot.helm.taken:
-        return pilot, (), ()  # who has the helm is to be known first
     if position is None or pilot.known.profile is None:  # a run begins when it is known what flies
         return replace(pilot, since=None), (), ()
     if pilot.since is None:

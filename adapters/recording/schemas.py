@@ -114,7 +114,17 @@ COMMAND: Final = _object(
 )
 
 REPORTS: Final = (
-    *("Accepted", "Arrived", "Rejected", "TakenOver", "LinkLost", "LinkRestored", "Trouble", "Failed"),
+    *(
+        "Accepted",
+        "Arrived",
+        "Rejected",
+        "Doubted",
+        "TakenOver",
+        "LinkLost",
+        "LinkRestored",
+        "Trouble",
+        "Failed",
+    ),
     *("Delivered", "Underway", "Hosts", "Believes", "Broken"),
 )
 """Those of a vehicle or a feed, then those of other stations."""

@@ -12,7 +12,18 @@ from adapters.mavlink.message import say
 from adapters.mavlink.pilot import Pilot
 from adapters.mavlink.profiles import COPTER, PLANE, ROVER
 from adapters.mavlink.telemetry import Position, Telemetry
-from adapters.plugin import Aged, Follow, GiveBack, GoTo, HandOver, Hold, Rejected, Return, TakenOver
+from adapters.plugin import (
+    Accepted,
+    Doubted,
+    Follow,
+    GiveBack,
+    GoTo,
+    HandOver,
+    Hold,
+    Rejected,
+    Return,
+    TakenOver,
+)
 from physical import point
 
 THERE = GoTo("r1", "uav0", AREA)
@@ -145,15 +156,26 @@ class Flown:
         return [report for report in self.reports if isinstance(report, kind)]
 
 
-def test_while_it_is_not_certain_who_has_the_helm_nothing_is_told_and_nothing_is_published():
-    flown = Flown().goes_on(GUIDED, 3)
-    flown.published.clear()
-    flown.goes_on(RTL, 4)
-    assert flown.published == flown.sent == []
+def test_while_it_is_not_certain_who_has_the_helm_it_is_doubted_and_told_nothing():
+    flown = Flown().goes_on(GUIDED, 3).goes_on(RTL, 4)
+    assert [type(report) for report in flown.reports] == [Accepted, Doubted]
+    assert flown.sent == []
     flown.goes_on(RTL, 1)
-    assert {type(each) for each in flown.published} == {Aged}
     assert [report.entity for report in flown.of(TakenOver)] == ["uav0"]
     assert [report.request for report in flown.of(Rejected)] == ["r1"]
+
+
+def test_what_was_doubted_for_one_late_heartbeat_is_accepted_again():
+    flown = Flown().goes_on(GUIDED, 3).goes_on(LOITER, 1).goes_on(GUIDED, 9)
+    assert [type(report) for report in flown.reports] == [Accepted, Doubted, Accepted]
+
+
+def test_what_is_told_while_it_is_doubted_makes_nothing_of_it_ordered():
+    flown = Flown().goes_on(GUIDED, 3).goes_on(RTL, 1)
+    flown.take(pilot.command(flown.pilot, Return("r2", "uav0"), flown.now))
+    assert flown.goes_on(RTL, 5).sent == []
+    assert len(flown.of(TakenOver)) == 1
+    assert [report.request for report in flown.of(Rejected)] == ["r2"]
 
 
 def test_a_vehicle_that_has_arrived_is_taken_over_too():

@@ -7,6 +7,7 @@ from adapters.live.turning import MOST_REPORTED
 from adapters.plugin import (
     Accepted,
     Aged,
+    Doubted,
     Gone,
     GoTo,
     HandOver,
@@ -316,6 +317,16 @@ def test_a_vehicle_that_was_taken_over_has_not_arrived_though_the_same_news_show
     ]
     run.turn(3.0, reports=[Rejected("a-1", "uav0", 3.0, "it is in RTL")])
     assert run.kinds() == ["taken over"]
+
+
+def test_a_vehicle_that_may_have_been_taken_over_arrives_once_it_is_certain_that_it_was_not():
+    run = Run(plan_of(TOUR + GO), willing=False)
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(1.0, reports=[Accepted("a-1", "uav0", 1.0)])
+    run.turn(2.0, seen("uav0", EAST, 2.0), reports=[Doubted("uav0", 2.0)])
+    assert "commit" not in run.rules
+    run.turn(3.0, reports=[Accepted("a-1", "uav0", 3.0)])
+    assert "commit" in run.rules
 
 
 def test_a_vehicle_on_which_the_mission_falls_back_does_not_arrive_on_its_way_home():
