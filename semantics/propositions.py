@@ -2,8 +2,7 @@
 
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields, is_dataclass
-from functools import cache
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from semantics.agents import Store
@@ -342,13 +341,8 @@ def watched(properties: Iterable[Property]) -> frozenset[VariableOf]:
         elif isinstance(part, tuple):
             waiting.extend(part)
         else:
-            waiting.extend(getattr(part, name) for name in _members(type(part)))
+            waiting.extend(getattr(part, name) for name in getattr(part, "__dataclass_fields__", ()))
     return frozenset(found)
-
-
-@cache
-def _members(sort: type) -> tuple[str, ...]:
-    return tuple(each.name for each in fields(sort)) if is_dataclass(sort) else ()
 
 
 def watching(c: Configuration, properties: Iterable[Property]) -> Configuration:
