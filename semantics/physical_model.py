@@ -83,6 +83,11 @@ def is_carried(placement: Placement | None) -> bool:
     return isinstance(placement, Carried)
 
 
+def is_aboard(placement: Placement | None, carriers: frozenset[Name]) -> bool:
+    """Ask whether something is carried by one of some others."""
+    return isinstance(placement, Carried) and placement.by in carriers
+
+
 def is_placed(placement: Placement | None) -> bool:
     """Ask whether something stands by itself, not in transit."""
     return isinstance(placement, Placed)
@@ -141,7 +146,13 @@ class PhysicalModel:
 
     def cargo(self, entity: Name) -> frozenset[Name]:
         """Return everything that an entity carries, at any depth."""
-        return frozenset(name for name in self.cells.read(NAMES) if entity in self.carriers(name))
+        aboard, names = frozenset({entity}), self.cells.read(NAMES)
+        while more := {name for name in names if name not in aboard and self._is_aboard(name, aboard)}:
+            aboard |= more
+        return aboard - {entity}
+
+    def _is_aboard(self, entity: Name, carriers: frozenset[Name]) -> bool:
+        return self.cells.test(placement_cell(entity), is_aboard, carriers)
 
     def position(self, entity: Name) -> Placed | None:
         """Return where an entity is: where its outermost carrier is, or was when it took off."""
@@ -181,7 +192,7 @@ class PhysicalModel:
 
     def carries(self, carrier: Name, entity: Name) -> bool:
         """Tell σ_P's `carries`."""
-        return self.carrier(entity) == carrier
+        return self._is_aboard(entity, frozenset({carrier}))
 
     def connected(self, channel: Name, entity: Name) -> bool:
         """Tell σ_P's `connected`: the entity is there, on the channel, and the channel is up."""
