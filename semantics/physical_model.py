@@ -207,7 +207,7 @@ class PhysicalModel:
         by = self.carrier(entity)
         if by is not None:
             return by
-        holders = (holder.place for holder in self._holders(entity) if self.contains(holder.place, entity))
+        holders = (holder.place for holder in self.holders(entity) if self.contains(holder.place, entity))
         return next(holders, REGION)
 
     def is_in(self, entity: Name, place: Name) -> bool:
@@ -219,14 +219,17 @@ class PhysicalModel:
             return entity in self and self.abstract_parent(entity) == place
         if place != REGION and not self._encloses(place, entity):
             return False  # most places: the others that may contain it need not be looked at
-        return self.cells.test(where, stands_in, place, self._holders(entity))
+        return self.cells.test(where, stands_in, place, self.holders(entity))
 
     def _encloses(self, place: Name, entity: Name) -> bool:
         at = None if place == entity or self.carrier(place) is not None else self.position(place)
         return at is not None and self.cells.test(placement_cell(entity), stands_within, at)
 
-    def _holders(self, entity: Name) -> "tuple[Holder, ...]":
-        """Return what may contain an entity, the smallest first; what is carried has no room of its own."""
+    def holders(self, entity: Name) -> tuple[Holder, ...]:
+        """Return what may contain an entity, in the order of A(P): the smallest first, of equal ones by name.
+
+        What is carried has no room of its own.
+        """
         places = self.setting.containers(self.setting.kind(entity))
         standing = [place for place in places if place != entity and self.carrier(place) is None]
         positions = [(place, self.position(place)) for place in standing]

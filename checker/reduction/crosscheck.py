@@ -83,6 +83,8 @@ def outside(ample: Ample, c: Configuration) -> Iterator[str]:
         yield from _Held(ample.actors, c, actor, may.now).outside()
         unheard = may.now.changes & ~ample.actors.everything.changes
         yield from (f"{actor} changes {slot}, which nobody ever does" for slot in slots.named(unheard))
+        lasting = (slot for slot in slots.named(may.now.beyond(may.ever)) if slot[0] not in RECEIVED)
+        yield from (f"{actor} may do something to {slot} now, and never does" for slot in lasting)
     for mover, step in _moves(ample.actors, c):
         yield from _beyond(ample.actors, acting, mover, step)
 
