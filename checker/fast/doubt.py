@@ -4,6 +4,7 @@ from collections import Counter
 
 from checker.exploration import Reducer, sample
 from checker.fast.engine import Space
+from checker.reduction.crosscheck import heed
 from semantics.configuration import Configuration
 from semantics.printing import print_configuration
 from semantics.successors import expand
@@ -21,6 +22,7 @@ def doubt(space: Space, count: int, reduce: Reducer | None = None) -> None:
     """
     for number in sample(space.expanded, count):
         compare(space, number)
+        heed(space.configuration(number))
         if reduce is not None:
             reduce.hold(space.configuration(number))
 

@@ -22,15 +22,16 @@ from checker.reduction.symmetry import Symmetry
 from semantics.agents import Watch, mailbox_cell, watch_cell
 from semantics.cells import MONITOR, Cell, Changes, Row, has, is_something
 from semantics.configuration import Configuration, Label, Transition
-from semantics.control import obstacle
+from semantics.control import applicable, obstacle
 from semantics.expressions import Fault
 from semantics.extension import say, spawn
-from semantics.monitor import marked
+from semantics.monitor import marked, slots_used
 from semantics.physical_model import is_aboard
 from semantics.printing import print_configuration
 from semantics.propositions import Proposition, holds
-from semantics.provenance import Dependency
+from semantics.provenance import Dependency, Key
 from semantics.queries import Fact
+from semantics.relevance import questions_of, relevant, slots_of
 from semantics.requests import CTR, FLY, READY, SND
 from semantics.rules import env, rcv_obs
 from semantics.signature import REGION, Name
@@ -85,6 +86,7 @@ def outside(ample: Ample, c: Configuration) -> Iterator[str]:
         yield from (f"{actor} changes {slot}, which nobody ever does" for slot in slots.named(unheard))
         lasting = (slot for slot in slots.named(may.now.beyond(may.ever)) if slot[0] not in RECEIVED)
         yield from (f"{actor} may do something to {slot} now, and never does" for slot in lasting)
+    yield from unheeded(c)
     for mover, step in _moves(ample.actors, c):
         yield from _beyond(ample.actors, acting, mover, step)
 
@@ -294,7 +296,11 @@ class _Held:
 
     def marks(self, changes: Changes) -> set[Slot]:
         """Return the slots of all marks that there are after some changes."""
-        return {slot_of_mark(holder, key) for holder, one in self.memory(changes) for key in one.changed}
+        return {
+            slot_of_mark(holder, key)
+            for holder, one in self.memory(changes)
+            for key in (*one.changed, *(one.own or ()))
+        }
 
     def memory(self, changes: Changes) -> Counter[tuple[Name, Dependency]]:
         """Return what is rested on after some changes, by whose memory it is: that of a message is its receiver's."""
@@ -351,6 +357,45 @@ def exchange(symmetry: Symmetry, c: Configuration) -> None:
             if found != {swap.configuration(step.target) for step in expand(c).transitions}:
                 who = " and ".join(", ".join(each.names[member]) for member in (0, other))
                 raise Drift(f"{who} are not alike, in the configuration\n{print_configuration(c)}")
+
+
+# --- what the race monitor remembers --------------------------------------------------------------------------------
+
+
+def heed(c: Configuration) -> None:
+    """Hold a configuration to what the race monitor takes for all that agents may come to ask, or use.
+
+    Raises:
+        Drift: It is not all.
+    """
+    for found in unheeded(c):
+        raise Drift(f"{found}, in the configuration\n{print_configuration(c)}")
+
+
+def unheeded(c: Configuration) -> Iterator[str]:
+    """Yield in words what agents ask or use, or what they may ask later, beyond what they may come to ask."""
+    for agent in c.alpha.names() if c.setting.monitored else ():
+        known, may_ask = _asked(c, agent), questions_of(c, agent)
+        for step in steps(c, agent):
+            if isinstance(step, Transition):
+                asked = _asked(step.target, agent) - known | questions_of(step.target, agent)
+                for key in sorted(asked - relevant(asked, may_ask)):
+                    yield f"after {step.label} '{agent}' may ask for {key}, which the race monitor forgets"
+        for request in (each.request for each in c.eta.of(agent) if isinstance(each.request, CTR | FLY)):
+            redex = request.reaction.redex
+            for match in applicable(c, agent, request.reaction):
+                used = slots_used(match.relations(redex), tuple(node for node, _ in match.closed(redex)))
+                for key in sorted(used - relevant(used, slots_of(redex))):
+                    yield f"{request} uses {key}, which the race monitor forgets"
+
+
+def _asked(c: Configuration, agent: Name) -> frozenset[Key]:
+    """Return what an agent has asked, as far as something rests on it, and what its controls may use."""
+    requests, watch = c.eta.of(agent), c.alpha.watch(agent) or Watch()
+    kept = (*watch.code, *watch.store, *watch.mailbox, *(each.rests_on for each in requests))
+    asked = {one.asked for rests_on in kept for one in rests_on if one.asked is not None}
+    used = (slots_of(each.request.reaction.redex) for each in requests if isinstance(each.request, CTR | FLY))
+    return frozenset(asked).union(*used)
 
 
 # --- what comes of a step -------------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 """What rules read and write lies within what reductions say of them, and it is noticed where it doesn't."""
 
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from test_partial_order import CHANGED, NAMES, POR, SPAWNED, VARIATIONS, atoms_o
 from checker import Engine, Keeping, Limits, Outcome, check, explore
 from checker.exploration import sample
 from checker.reduction import Ample
-from checker.reduction.crosscheck import Drift, outside
+from checker.reduction.crosscheck import Drift, outside, unheeded
 from checker.reduction.slots import NOTHING
 from semantics import Scheduler, control, propositions, strategies
 from semantics.monitor import monitored
@@ -134,6 +135,24 @@ def test_what_more_a_property_reads_is_noticed(monkeypatch):
     assert outside_of(mission, [Inside("uav0", "gate0")]) == {
         "the property 'uav0 in gate0' reads ('placement', 'uav0'), which is not taken for visible"
     }
+
+
+UNHEEDED = {
+    "what is asked": ("_asked", lambda _: (), "'a' may ask for ('in', 'uav1')"),
+    "which slots are used": ("_slots", lambda *_: frozenset(), "may ask for ('slot parent', 'uav0')"),
+}
+
+
+@pytest.mark.parametrize("forgotten", UNHEEDED)
+def test_it_is_noticed_that_the_race_monitor_forgets_what_may_be_asked(forgotten, monkeypatch):
+    what, instead, words = UNHEEDED[forgotten]
+    initial = monitored(start(CHANGED))
+    assert not list(chain(*map(unheeded, explore(initial).configurations)))
+    monkeypatch.setattr(f"semantics.relevance.{what}", instead)
+    configurations = explore(monitored(start(CHANGED))).configurations
+    assert any(words in each for c in configurations for each in unheeded(c))
+    with pytest.raises(Drift, match="which the race monitor forgets"):
+        explore(monitored(start(CHANGED)), engine=Engine.FAST, keeping=Keeping(doubted=100))
 
 
 FORGOTTEN = {
