@@ -122,6 +122,29 @@ def test_what_a_carrier_holds_may_be_put_where_the_carrier_is_at_once():
     assert run(c, "actuate").structure.physical.abstract_parent("crate") == "sea"
 
 
+def test_what_is_carried_may_be_put_into_what_carries_its_carrier():
+    c = commanding(
+        by("PUT", "crate", "ship"),
+        entities=("sea", "ship", "boat", "crate"),
+        host="boat",
+        placed={"boat": aboard("ship", "boat"), "crate": aboard("boat", "crate")},
+    )
+    assert run(c, "actuate").structure.physical.carrier("crate") == "ship"
+
+
+def test_what_is_aboard_already_may_be_put_there_where_l_is_coarser():
+    c = commanding(
+        by("MOVE", "crate", "ship"),
+        entities=("sea", "ship", "crate", "gcs0"),
+        host="gcs0",
+        placed={"crate": aboard("ship", "crate")},
+        channels={"gcs0": ("control:gcs0",), "crate": ("control:gcs0",)},
+        beliefs=Beliefs(parents={"crate": "sea"}),
+    )
+    after = run(c, "actuate").structure
+    assert (after.logical.parent("crate"), after.physical.carrier("crate")) == ("ship", "ship")
+
+
 def test_what_a_carrier_holds_cannot_be_put_where_the_carrier_is_not():
     c = commanding(
         by("PUT", "crate", "area"),
