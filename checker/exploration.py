@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from random import Random
 from typing import TYPE_CHECKING, Protocol
 
 from checker.edges import Edges
@@ -44,7 +45,8 @@ class Keeping:
         resumed: Whether it goes on from the checkpoint that is there.
         digest: What the checkpoint is of.
         every: Seconds between two checkpoints.
-        doubted: Of how many configurations the interpreter is asked once more what follows (`--paranoid`).
+        doubted: Of how many configurations it is asked once more what follows, and whether what reductions take for
+            granted is so (`--paranoid`).
         compact: How many bits of a hash stand for each configuration, where none is compared with another: some may be
             taken for others then (`--hash-compact`).
     """
@@ -135,6 +137,9 @@ class Reducer(Protocol):
     def told(self, found: "Exploration", number: int, text: str) -> str:
         """Return what is said of a visited configuration as it is said of the one that the run leads to."""
 
+    def hold(self, c: Configuration) -> None:
+        """Hold a configuration to what is taken for granted of all; raises where it is not so."""
+
 
 class Surveyed(Protocol):
     """What temporal properties ask of an exploration whose configurations are not at hand one by one."""
@@ -212,6 +217,13 @@ class Exploration:
 Report = Callable[[Progress], None]
 """What is told of the progress."""
 
+SEED = 20260
+
+
+def sample(size: int, count: int) -> list[int]:
+    """Return so many of the numbers below a size, the same in every run."""
+    return sorted(Random(SEED).sample(range(size), min(count, size)))
+
 
 def explore(  # noqa: PLR0913 - each is optional, and named where it is used
     initial: Configuration,
@@ -238,7 +250,7 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
             configurations one by one or for sets of them.
         edges: Whether every transition is kept, as temporal properties need; the fast explorer finds them again.
         reduce: What lets it visit less; by symmetry only the reference explorer can.
-        keeping: What the fast explorer keeps on the way, and what it doubts.
+        keeping: What the fast explorer keeps on the way, and what is doubted.
         cluster: With whom, on several processes or machines.
     """
     if engine is Engine.RAY:
@@ -260,7 +272,11 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
     explorer.found.edges = Edges() if edges else None
     if reduce is not None:
         explorer.reduce_by(reduce)
-    return explorer.run()
+    found = explorer.run()
+    if reduce is not None and keeping is not None:
+        for number in sample(found.expanded, keeping.doubted):
+            reduce.hold(found.configurations[number])
+    return found
 
 
 class _Explorer:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from semantics.cells import AGENTS, MONITOR, Cell, Cells, Changes
+from semantics.cells import AGENTS, MONITOR, Cell, Cells, Changes, has
 from semantics.provenance import NOTHING, Provenance
 from semantics.signature import Name
 from semantics.values import Value, order_key
@@ -48,6 +48,11 @@ def code_cell(agent: Name) -> Cell:
     return ("code", agent)
 
 
+def is_over(code: Code | None) -> bool:
+    """Ask whether nothing is left to run."""
+    return not code
+
+
 def store_cell(agent: Name) -> Cell:
     """Address an agent's variables."""
     return ("store", agent)
@@ -77,7 +82,7 @@ class Agents:
         return names
 
     def __contains__(self, agent: Name) -> bool:
-        return agent in self.names()
+        return self.cells.test(AGENTS, has, agent)
 
     def host(self, agent: Name) -> Name:
         """Return the node that an agent is hosted at."""

@@ -38,6 +38,11 @@ def is_something(value: object) -> bool:
     return value is not None
 
 
+def has(value: tuple[object, ...], member: object) -> bool:
+    """Ask whether something is among a cell's members."""
+    return member in value
+
+
 class Cells(Protocol):
     """What a rule may do with a configuration."""
 

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from physical import Geometry, band_contains, centroid, nearest_placement, translate_to
 from semantics.cells import Cells, Changes, Written
 from semantics.logical_model import LogicalModel
-from semantics.physical_model import Carried, PhysicalModel, Placed, Placement, encloses, measure
+from semantics.physical_model import Carried, PhysicalModel, Placed, Placement, encloses
 from semantics.reactions import Match, Reaction, moved, relinked
 from semantics.signature import REGION, Name
 from semantics.structure import Structure
@@ -102,7 +103,7 @@ def _reach(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carried
         return Carried(place, shape)
     if not setting.signature[setting.kind(place)].may_contain(setting.kind(node)):
         return None
-    spot = nearest_placement(shape.geometry, target.geometry, _holes(physical, node, place, target, shape))
+    spot = nearest_placement(shape.geometry, target.geometry, _holes(physical, node, place, shape))
     return None if spot is None else Placed(spot, shape.altitude)
 
 
@@ -111,18 +112,8 @@ def _shape(physical: PhysicalModel, node: Name, origin: Placed) -> Placed:
     return placement.shape if isinstance(placement, Carried) else origin
 
 
-def _holes(
-    physical: PhysicalModel, node: Name, place: Name, target: Placed, shape: Placed
-) -> tuple[Geometry, ...]:
-    """Return what would swallow a node inside a place: smaller places that may hold it, at its altitude."""
-    kind = physical.setting.kind(node)
-    others = set(physical.setting.containers(kind)) - {node, place} - physical.cargo(node)
-    standing = sorted(other for other in others if physical.carrier(other) is None)
-    found = [position for position in map(physical.position, standing) if position is not None]
-    smaller = (hole for hole in found if measure(hole.geometry) <= measure(target.geometry))
-    holes = {
-        hole.geometry
-        for hole in smaller
-        if not hole.geometry.is_point and band_contains(hole.altitude, shape.altitude)
-    }
-    return tuple(sorted(holes))
+def _holes(physical: PhysicalModel, node: Name, place: Name, shape: Placed) -> tuple[Geometry, ...]:
+    """Return what would swallow a node inside a place: the places that A(P) takes before it, at its altitude."""
+    before = takewhile(lambda holder: holder.place != place, physical.holders(node))
+    standing = (at for _, _, at in before if not at.geometry.is_point)
+    return tuple(sorted({at.geometry for at in standing if band_contains(at.altitude, shape.altitude)}))

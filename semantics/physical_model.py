@@ -83,6 +83,11 @@ def is_carried(placement: Placement | None) -> bool:
     return isinstance(placement, Carried)
 
 
+def is_aboard(placement: Placement | None, carriers: frozenset[Name]) -> bool:
+    """Ask whether something is carried by one of some others."""
+    return isinstance(placement, Carried) and placement.by in carriers
+
+
 def is_placed(placement: Placement | None) -> bool:
     """Ask whether something stands by itself, not in transit."""
     return isinstance(placement, Placed)
@@ -141,7 +146,13 @@ class PhysicalModel:
 
     def cargo(self, entity: Name) -> frozenset[Name]:
         """Return everything that an entity carries, at any depth."""
-        return frozenset(name for name in self.cells.read(NAMES) if entity in self.carriers(name))
+        aboard, names = frozenset({entity}), self.cells.read(NAMES)
+        while more := {name for name in names if name not in aboard and self._is_aboard(name, aboard)}:
+            aboard |= more
+        return aboard - {entity}
+
+    def _is_aboard(self, entity: Name, carriers: frozenset[Name]) -> bool:
+        return self.cells.test(placement_cell(entity), is_aboard, carriers)
 
     def position(self, entity: Name) -> Placed | None:
         """Return where an entity is: where its outermost carrier is, or was when it took off."""
@@ -181,7 +192,7 @@ class PhysicalModel:
 
     def carries(self, carrier: Name, entity: Name) -> bool:
         """Tell σ_P's `carries`."""
-        return self.carrier(entity) == carrier
+        return self._is_aboard(entity, frozenset({carrier}))
 
     def connected(self, channel: Name, entity: Name) -> bool:
         """Tell σ_P's `connected`: the entity is there, on the channel, and the channel is up."""
@@ -196,7 +207,7 @@ class PhysicalModel:
         by = self.carrier(entity)
         if by is not None:
             return by
-        holders = (holder.place for holder in self._holders(entity) if self.contains(holder.place, entity))
+        holders = (holder.place for holder in self.holders(entity) if self.contains(holder.place, entity))
         return next(holders, REGION)
 
     def is_in(self, entity: Name, place: Name) -> bool:
@@ -208,14 +219,17 @@ class PhysicalModel:
             return entity in self and self.abstract_parent(entity) == place
         if place != REGION and not self._encloses(place, entity):
             return False  # most places: the others that may contain it need not be looked at
-        return self.cells.test(where, stands_in, place, self._holders(entity))
+        return self.cells.test(where, stands_in, place, self.holders(entity))
 
     def _encloses(self, place: Name, entity: Name) -> bool:
         at = None if place == entity or self.carrier(place) is not None else self.position(place)
         return at is not None and self.cells.test(placement_cell(entity), stands_within, at)
 
-    def _holders(self, entity: Name) -> "tuple[Holder, ...]":
-        """Return what may contain an entity, the smallest first; what is carried has no room of its own."""
+    def holders(self, entity: Name) -> tuple[Holder, ...]:
+        """Return what may contain an entity, in the order of A(P): the smallest first, of equal ones by name.
+
+        What is carried has no room of its own.
+        """
         places = self.setting.containers(self.setting.kind(entity))
         standing = [place for place in places if place != entity and self.carrier(place) is None]
         positions = [(place, self.position(place)) for place in standing]

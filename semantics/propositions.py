@@ -5,12 +5,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from semantics.agents import Store
+from semantics.agents import Store, code_cell, is_over, store_cell
 from semantics.configuration import Configuration
 from semantics.program import VariableOf
 from semantics.signature import REGION, Name
-from semantics.statements import React
-from semantics.stepping import next_statement
+from semantics.stepping import waits
 from semantics.values import Value, show
 
 if TYPE_CHECKING:
@@ -273,12 +272,12 @@ def _about_variable(atom: VariableIs | IsBound, c: Configuration) -> bool:
         raise ValueError(
             f"'{variable}' is forgotten once nobody reads it any more: begin with watching(initial, properties)"
         )
-    return is_true_of(atom, c.alpha.store(variable.agent) if _is_agent(c, variable.agent) else ())
+    return c.test(store_cell(variable.agent), is_true_of, atom)
 
 
-def is_true_of(atom: VariableIs | IsBound, store: Store) -> bool:
-    """Tell whether an atom about a variable is true of the store in which it is kept."""
-    held = dict(store).get(atom.variable.key)
+def is_true_of(store: Store | None, atom: VariableIs | IsBound) -> bool:
+    """Ask whether an atom about a variable is true of the store in which it is kept."""
+    held = dict(store or ()).get(atom.variable.key)
     if isinstance(atom, IsBound):
         return held is not None
     if held is None:
@@ -298,8 +297,10 @@ _TRUTH: dict[type, Callable[[Any, Configuration], bool]] = {
     IsBound: _about_variable,
     Present: lambda atom, c: atom.entity in c.structure.physical,
     Known: lambda atom, c: atom.node in c.structure.logical,
-    Ended: lambda atom, c: _is_agent(c, atom.agent) and not c.alpha.code(atom.agent),
-    Waiting: lambda atom, c: _is_agent(c, atom.agent) and isinstance(next_statement(c, atom.agent), React),
+    Ended: lambda atom, c: _is_agent(c, atom.agent) and c.test(code_cell(atom.agent), is_over),
+    Waiting: lambda atom, c: (
+        _is_agent(c, atom.agent) and c.test(code_cell(atom.agent), waits, c.setting.program)
+    ),
     HostedAt: lambda atom, c: _is_agent(c, atom.agent) and c.alpha.host(atom.agent) == atom.node,
     Always: lambda atom, _: atom.value,
 }

@@ -293,7 +293,7 @@ class _Looking:
                 return name in inner or parent in inner
             case "LINKED_TO":
                 links = {link for n in inner for link in self.links_of(n)}
-                return name in inner or not links.isdisjoint(self.links_of(name))
+                return name in inner or (bool(links) and not links.isdisjoint(self.links_of(name)))
             case _:
                 return False
 

@@ -1,16 +1,17 @@
 """Between a configuration and a process: how an agent starts to compute, and how it is written back."""
 
-from semantics.agents import Store, Watch, code_cell, host_cell, mailbox_cell, store_cell, watch_cell
+from semantics.agents import Code, Store, Watch, code_cell, host_cell, mailbox_cell, store_cell, watch_cell
 from semantics.cells import AGENTS, Changes
 from semantics.computation import Process
 from semantics.configuration import Configuration
 from semantics.eta import line_cell, sends_cell
 from semantics.expressions import Scope
+from semantics.program import Program
 from semantics.provenance import NOTHING, Provenance
 from semantics.relevance import told_by
 from semantics.setting import Scheduler, Setting
 from semantics.signature import Name
-from semantics.statements import Statement
+from semantics.statements import React, Statement
 from semantics.values import Value
 
 
@@ -18,6 +19,11 @@ def next_statement(c: Configuration, a: Name) -> Statement | None:
     """Return the statement that an agent is at, None where it has ended."""
     code = c.alpha.code(a)
     return c.setting.program.statements[code[0]] if code else None
+
+
+def waits(code: Code | None, program: Program) -> bool:
+    """Ask whether code is at a `react`."""
+    return bool(code) and isinstance(program.statements[code[0]], React)  # type: ignore[index]  # not None
 
 
 def process_of(c: Configuration, a: Name) -> Process:

@@ -179,6 +179,7 @@ def _long_runs(parser: Parser) -> None:
         "--paranoid",
         metavar="N",
         type=at_least_one,
-        help="let the interpreter work out once more what follows from N configurations, and stop at a difference (not "
-        "with --engine ray)",
+        help="let the interpreter work out once more what follows from N configurations, and stop at a difference; "
+        "with --reduce, hold what rules and properties do there to what the reduction takes for granted (not with "
+        "--engine ray)",
     )

@@ -111,13 +111,13 @@ def keeping_of(options: Namespace) -> Keeping | None:
         raise Mistake("--resume goes on from a checkpoint", "say where it is: --checkpoint DIR")
     if options.checkpoint is None and options.paranoid is None and options.hash_compact is None:
         return None
-    if options.engine in ("reference", "symbolic") or options.reduce:
+    kept = options.checkpoint is not None or options.hash_compact is not None
+    if kept and (options.engine in ("reference", "symbolic") or options.reduce):
         raise Mistake(
-            "--checkpoint, --paranoid and --hash-compact are of the fast explorer",
-            "leave --engine and --reduce out",
+            "--checkpoint and --hash-compact are of the fast explorer", "leave --engine and --reduce out"
         )
-    if options.engine == "ray" and options.paranoid is not None:
-        raise Mistake("--paranoid is of the fast explorer", "leave --engine out")
+    if options.paranoid is not None and options.engine not in (None, "fast") and not options.reduce:
+        raise Mistake("--paranoid is of the fast explorer and of reductions", "leave --engine out")
     if options.hash_compact is not None and (
         options.checkpoint or options.paranoid or options.engine == "ray"
     ):

@@ -182,7 +182,7 @@ class _Explorer:
     def look_at(self, survey: GraphSurvey, inspect: tuple[Inspect, ...]) -> None:
         """Look at what was explored, as long as there is time: what was not looked at to the end has found nothing."""
         try:
-            doubt(self.space, self.keeping.doubted)
+            doubt(self.space, self.keeping.doubted, self.reduce)
             inspect_fast(survey, inspect)
         except BoundMet as bound:
             self.bounds.append(f"{bound}, in looking at what was explored")

@@ -168,7 +168,7 @@ class Choosing:
                 continue
             column = columns.all[number]
             asked += [number, len(answers)]
-            answers += [seen.question(column.value(code)) for code in range(len(column.values))]
+            answers += [seen.says(column.value(code)) for code in range(len(column.values))]
         self.seen = np.array(asked, np.int32)
         self.seen_answers = np.array(answers, np.uint8)
 

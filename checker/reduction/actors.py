@@ -8,6 +8,7 @@ alone, whatever others do; and so does a bound of all that may come of it.
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import lru_cache
 from itertools import product
 from math import prod
@@ -67,7 +68,11 @@ class Acting(NamedTuple):
 
 
 class Actors:
-    """The footprints of a mission's actors; c must be the configuration that the exploration starts in."""
+    """The footprints of a mission's actors; c must be the configuration that the exploration starts in.
+
+    Attributes:
+        everything: All that anybody may ever do.
+    """
 
     def __init__(self, c: Configuration) -> None:
         self.setting = c.setting
@@ -77,7 +82,9 @@ class Actors:
         self.roles = Roles(bounds)
         self.footprints = Footprints(bounds, self.roles)
         self._forget()
-        self.footprints.settle(joined([*map(self.clause, self.setting.environment), *self._lives(c)]))
+        everything = joined([*map(self.clause, self.setting.environment), *self._lives(c)])
+        self.footprints.settle(everything)
+        self.everything = replace(everything, merges=everything.merges & ~self.footprints.settled)
         self._forget()  # what was bounded before it was known what is settled
 
     def _forget(self) -> None:
@@ -137,8 +144,12 @@ class Actors:
         assert label.agent is not None
         if isinstance(label.about, str | Received):
             return Actor("program", label.agent)
-        ordered = self.ordered and not isinstance(label.about, SND)
-        return Actor("line", label.agent) if ordered else Actor("request", label.agent, label.about)
+        return self.serving(label.about)
+
+    def serving(self, request: Request) -> Actor:
+        """Return the actor that serves a request."""
+        in_line = self.ordered and not isinstance(request, SND)
+        return Actor("line", request.agent) if in_line else Actor("request", request.agent, request)
 
     # --- of the values of an agent's cells --------------------------------------------------------------------
 

@@ -78,13 +78,13 @@ def persistent(acting: Mapping[Actor, Acting], seeds: Iterable[Actor]) -> Iterat
         waiting = [seed]
         while waiting:
             actor = waiting.pop()
-            joining = [other for other in acting if other not in inside and _disturbed(acting, actor, other)]
+            joining = [other for other in acting if other not in inside and disturbed(acting, actor, other)]
             inside.update(joining)
             waiting += joining
         yield frozenset(inside)
 
 
-def _disturbed(acting: Mapping[Actor, Acting], actor: Actor, other: Actor) -> bool:
+def disturbed(acting: Mapping[Actor, Acting], actor: Actor, other: Actor) -> bool:
     """Tell whether another actor may ever disturb what an actor may do now.
 
     What an agent asks next is served after what stands in its line already.

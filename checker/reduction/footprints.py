@@ -75,7 +75,7 @@ class Footprints:
 
     def post(self, agent: Name, hosts: Iterable[Name], to: Name, message: Message) -> Footprint:
         """Bound `snd`: the message is put into one mailbox if hosts are linked."""
-        reads = [("host", agent), ("host", to), *([] if to in self.roles.first else [AGENTS])]
+        reads = [("host", agent), ("host", to), *([AGENTS] if self.roles.may_come(to) else [])]
         delivered = self.slots.footprint(reads, merges=self.mail(to, message))
         return delivered | self.linked(hosts, self.roles[to].hosts)
 
@@ -133,7 +133,7 @@ class Footprints:
                 gone = {entity, *self.bounds.aboard(entity)}
                 return self.slots.footprint((*self.there([entity]), *self.where(gone)), self._all_of(gone))
             case Says(message, agent):
-                reads = [] if agent in self.roles.first else [AGENTS]
+                reads = [AGENTS] if self.roles.may_come(agent) else []
                 return self.slots.footprint(reads, merges=self.mail(agent, Known(message)))
 
     def _all_of(self, names: Iterable[Name]) -> Iterator[Slot]:

@@ -18,7 +18,7 @@ from semantics.cells import MONITOR
 from semantics.configuration import Configuration
 from semantics.eta import line_cell, sends_cell
 from semantics.program import reachable
-from semantics.provenance import SLOT, Provenance
+from semantics.provenance import SLOT, Key, Provenance
 from semantics.queries import Nodes, Of, Query
 from semantics.relevance import ANY, Questions, anybodys, hosts_of, questions_in, slots_of, tells
 from semantics.requests import CTR, FLY, OBS, SND, Request
@@ -29,6 +29,14 @@ ANSWERS = "answers"
 """Marks on answers to queries; those on slots of A(P) are told apart by what they are about."""
 
 PARENT, LINKS, CHILDREN = (f"{SLOT}{kind}" for kind in ("parent", "links", "children"))
+MARKS = frozenset({ANSWERS, PARENT, LINKS, CHILDREN})
+
+
+def slot_of_mark(holder: Name, key: Key) -> Slot:
+    """Return the slot of a mark in an agent's memory."""
+    if key[0] == CHILDREN:
+        return (CHILDREN, holder)
+    return (key[0], holder, key[1]) if key[0] in (PARENT, LINKS) else (ANSWERS, holder)
 
 
 class Marks:
@@ -70,7 +78,8 @@ class Marks:
         return found
 
     def _changed(self, what: str, writes: int) -> Names:
-        return frozenset(str(slot[1]) for slot in self.footprints.slots.named(writes) if slot[0] == what)
+        slots = self.footprints.slots.named(writes)
+        return frozenset(str(slot[1]) for slot in slots if slot[0] == what) & self.bounds.names
 
     def _of_slots(self, holder: Name, moved: Names, linked: Names) -> Iterator[Slot]:
         yield from ((PARENT, holder, name) for name in moved)
@@ -131,10 +140,11 @@ class Marks:
         return self._reading(agent, questions_in(initial.setting, reach, hosts_of(initial, agent)))
 
     def told(self, agent: Name, listeners: Iterable[Name]) -> Footprint:
-        """Bound the marks in what an agent tells others."""
+        """Bound the marks in what an agent tells others; who will never be there is told nothing."""
         if agent not in self.tellers:
             return NOTHING
-        return joined(self._reading(each, anybodys(self.bounds.initial)) for each in listeners)
+        there = (each for each in listeners if each in self.roles.agents)
+        return joined(self._reading(each, anybodys(self.bounds.initial)) for each in there)
 
     def carried(self, agent: Name, request: Request, rested_on: Footprint) -> Footprint:
         """Bound the marks in what a request of an agent's rests on, given those in its memory."""

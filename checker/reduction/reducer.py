@@ -56,6 +56,19 @@ class Reduced:
         """Return the transitions to be followed."""
         return expansion.transitions if self.ample is None else self.ample.choose(c, expansion, later)
 
+    def hold(self, c: Configuration) -> None:
+        """Hold a configuration to what is taken for granted of all: footprints, what is seen, and what is alike.
+
+        Raises:
+            Drift: It is not so; a bug of ours.
+        """
+        from checker.reduction.crosscheck import crosscheck, exchange  # noqa: PLC0415  # where somebody doubts
+
+        if self.ample is not None:
+            crosscheck(self.ample, c)
+        if self.symmetry is not None:
+            exchange(self.symmetry, c)
+
     def run_to(self, found: Exploration, number: int, by: Transition | None = None) -> tuple[Transition, ...]:
         """Return a run of the rules to what a visited configuration stands for, and then `by`."""
         steps, real, renaming = self._unfold(found, number)

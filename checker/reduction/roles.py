@@ -87,6 +87,10 @@ class Roles:
         """Every agent that may ever be, sorted."""
         return tuple(sorted(self.roles))
 
+    def may_come(self, agent: Name) -> bool:
+        """Tell whether an agent that is not there may be there later: no agent ever leaves."""
+        return agent in self.roles and agent not in self.first
+
     def descendants(self, reach: Iterable[int]) -> Names:
         """Return whom these statements may spawn, and whom those may spawn, and so on."""
         return reached(self._spawned(reach), lambda agent: self._spawned(self.roles[agent].statements))

@@ -42,6 +42,11 @@ class Footprint:
             or other.merges & self.reads
         )
 
+    def beyond(self, bound: "Footprint") -> int:
+        """Return the slots that another leaves out; who writes or merges something may read it, too."""
+        reads = self.reads & ~(bound.reads | bound.changes)
+        return reads | self.merges & ~bound.changes | self.writes & ~bound.writes
+
 
 NOTHING = Footprint()
 
@@ -72,6 +77,10 @@ class Slots:
     ) -> Footprint:
         """Return the footprint over these slots."""
         return Footprint(self.bits(reads), self.bits(writes), self.bits(merges))
+
+    def has(self, bits: int, slot: Slot) -> bool:
+        """Tell whether a slot is among some bits; one that has no number is where all are."""
+        return bool(bits >> self.numbers.get(slot, len(self.numbers)) & 1)
 
     def named(self, bits: int) -> tuple[Slot, ...]:
         """Return the slots of some bits, sorted: for messages and tests."""

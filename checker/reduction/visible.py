@@ -1,17 +1,16 @@
 """What properties see: the questions about cells that decide the truth of a proposition."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 from checker.reduction.bounds import Bounds
-from semantics.agents import Store, code_cell, host_cell, store_cell
-from semantics.cells import AGENTS, Cell
+from semantics.agents import code_cell, host_cell, is_over, store_cell
+from semantics.cells import AGENTS, Cell, Question, has, is_something
 from semantics.configuration import Configuration
 from semantics.eta import line_cell, sends_cell
 from semantics.logical_model import links_cell, parent_cell
 from semantics.physical_model import channels_cell, down_cell, placement_cell
-from semantics.program import Program
 from semantics.propositions import (
     And,
     Ended,
@@ -30,23 +29,27 @@ from semantics.propositions import (
     is_true_of,
 )
 from semantics.signature import REGION, Name
-from semantics.statements import React
+from semantics.stepping import waits
 
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """One cell as far as a proposition asks for it: its value, or the answer to a question about the value.
+    """One cell as far as a proposition asks for it: its value, or the answer to a question with some constants.
 
     No question is about what an observation says.
     """
 
     cell: Cell
-    question: Callable[[Any], bool] | None = None
+    question: Question | None = None
+    constants: tuple[Any, ...] = ()
 
     def of(self, c: Configuration) -> Any:
         """Return what is seen in a configuration."""
-        value = c.read(self.cell)
-        return value if self.question is None else self.question(value)
+        return self.says(c.read(self.cell))
+
+    def says(self, value: Any) -> Any:
+        """Return what is seen of a value."""
+        return value if self.question is None else self.question(value, *self.constants)
 
 
 class Eyes:
@@ -55,7 +58,8 @@ class Eyes:
     def __init__(self, c: Configuration, formulas: Iterable[Proposition]) -> None:
         self.bounds = Bounds(c)
         self.program = c.setting.program
-        self.seen = tuple(dict.fromkeys(each for formula in formulas for each in self._sees(formula)))
+        self.formulas = tuple(formulas)
+        self.seen = tuple(dict.fromkeys(each for formula in self.formulas for each in self._sees(formula)))
 
     def differ(self, before: Configuration, after: Configuration) -> bool:
         """Tell whether two configurations look different."""
@@ -73,19 +77,19 @@ class Eyes:
             case LinkedWith(node, other, actually):
                 yield from self._links({node, other}, actually)
             case Present(node):
-                yield Seen(placement_cell(node), _is_there)
+                yield Seen(placement_cell(node), is_something)
             case Known(node):
-                yield Seen(parent_cell(node), _is_there)
+                yield Seen(parent_cell(node), is_something)
             case Ended(agent):
-                yield from (Seen(AGENTS), Seen(code_cell(agent), bool))
+                yield from (Seen(AGENTS, has, (agent,)), Seen(code_cell(agent), is_over))
             case Waiting(agent):
-                yield from (Seen(AGENTS), Seen(code_cell(agent), _Waits(self.program)))
+                yield from (Seen(AGENTS, has, (agent,)), Seen(code_cell(agent), waits, (self.program,)))
             case HostedAt(agent):
-                yield from (Seen(AGENTS), Seen(host_cell(agent)))
+                yield from (Seen(AGENTS, has, (agent,)), Seen(host_cell(agent)))
             case HasPending(agent):
-                yield from (Seen(AGENTS), Seen(line_cell(agent)), Seen(sends_cell(agent)))
+                yield from (Seen(AGENTS, has, (agent,)), Seen(line_cell(agent)), Seen(sends_cell(agent)))
             case VariableIs(variable) | IsBound(variable):
-                yield from (Seen(AGENTS), Seen(store_cell(variable.agent), _IsTrue(formula)))
+                yield Seen(store_cell(variable.agent), is_true_of, (formula,))
 
     def _places(self, node: Name, actually: bool) -> Iterator[Seen]:
         if node not in self.bounds.names or node == REGION:
@@ -98,32 +102,8 @@ class Eyes:
     def _links(self, names: Iterable[Name], actually: bool) -> Iterator[Seen]:
         for name in sorted(self.bounds.names.intersection(names)):
             if actually:
-                yield from (Seen(channels_cell(name)), Seen(placement_cell(name), _is_there))
+                yield from (Seen(channels_cell(name)), Seen(placement_cell(name), is_something))
             else:
-                yield from (Seen(links_cell(name)), Seen(parent_cell(name), _is_there))
+                yield from (Seen(links_cell(name)), Seen(parent_cell(name), is_something))
         if actually:
             yield from (Seen(down_cell(channel)) for channel in sorted(self.bounds.channels))
-
-
-def _is_there(value: Any) -> bool:
-    return value is not None
-
-
-@dataclass(frozen=True)
-class _IsTrue:
-    """Whether an atom about a variable is true of a store."""
-
-    atom: VariableIs | IsBound
-
-    def __call__(self, store: Store | None) -> bool:
-        return is_true_of(self.atom, store or ())
-
-
-@dataclass(frozen=True)
-class _Waits:
-    """Whether code is at a `react`."""
-
-    program: Program
-
-    def __call__(self, code: tuple[int, ...] | None) -> bool:
-        return bool(code) and isinstance(self.program.statements[code[0]], React)  # type: ignore[index]  # not None

@@ -121,8 +121,8 @@ class Ground:
         return None
 
     def _holes(self, node: Someone, place: Someone, target: Placed, shape: Placed) -> tuple[Geometry, ...]:
-        """Return the smaller places that never move and would swallow the node, as `drive` has them."""
-        size, south, north = area(target.geometry), *_latitudes(target.geometry)
+        """Return the places that never move and would swallow the node, as `drive` has them."""
+        size, (south, north) = (area(target.geometry), place.name), _latitudes(target.geometry)
         found = set()
         for name in self.fixed - {node.name, place.name}:
             hole = self.world.placements.get(name)
@@ -130,7 +130,7 @@ class Ground:
             if not holding or not isinstance(hole, Placed) or hole.geometry.is_point:
                 continue
             low, high = _latitudes(hole.geometry)
-            within = south <= high and low <= north and area(hole.geometry) <= size
+            within = south <= high and low <= north and (area(hole.geometry), name) < size
             if within and band_contains(hole.altitude, shape.altitude):
                 found.add(hole.geometry)
         return tuple(sorted(found)) if len(found) <= MOST_HOLES else ()

@@ -62,6 +62,7 @@ def test_a_plane_on_the_ground_loads_a_mission_begins_it_changes_its_mode_arms_a
     load = step(PLANE)
     assert isinstance(load, Load)
     assert [item.command for item in load.items] == [Cmd.WAYPOINT, Cmd.TAKEOFF, Cmd.LOITER_UNLIMITED]
+    assert [item.z for item in load.items[1:]] == [100.0, 100.0]
     loaded = {"on_board": {load.kind: load.items}}
     assert told(step(PLANE, **loaded)) == Cmd.SET_MISSION_CURRENT
     begun = loaded | {"begun": True}
@@ -77,10 +78,11 @@ def test_a_copter_changes_its_mode_arms_takes_off_and_is_sent_when_it_has_climbe
     assert told(step(COPTER)) == (Cmd.DO_SET_MODE, COPTER.guided)
     guided = {"mode": COPTER.guided}
     assert told(step(COPTER, **guided)) == Cmd.ARM_DISARM
-    assert told(step(COPTER, **guided, armed=True)) == Cmd.TAKEOFF
+    climb = step(COPTER, **guided, armed=True)
+    assert (told(climb), climb.message["param7"]) == (Cmd.TAKEOFF, 10.0)
     flying = guided | {"armed": True, "active": True}
-    assert step(COPTER, **flying, position=replace(AT, height=3.0, climb=2.0)) == Wait("it climbs")
-    assert told(step(COPTER, **flying, position=replace(AT, height=9.0, climb=2.0))) == Cmd.REPOSITION
+    assert step(COPTER, **flying, position=replace(AT, height=7.9, climb=2.0)) == Wait("it climbs")
+    assert told(step(COPTER, **flying, position=replace(AT, height=8.0, climb=2.0))) == Cmd.REPOSITION
     assert told(step(COPTER, **flying, position=replace(AT, height=3.0))) == Cmd.REPOSITION
 
 

@@ -29,7 +29,11 @@ def test_what_the_symbolic_engine_does_not_decide_is_incomplete(bigactors):
         (["--engine", "symbolic", "--reduce", "por"], "the symbolic explorer does not reduce"),
         (
             ["--engine", "symbolic", "--paranoid", "1"],
-            "--checkpoint, --paranoid and --hash-compact are of the fast explorer",
+            "--paranoid is of the fast explorer and of reductions",
+        ),
+        (
+            ["--reduce", "por", "--checkpoint", "there"],
+            "--checkpoint and --hash-compact are of the fast explorer",
         ),
         (["--spill", "there"], "--spill is for when memory ends"),
         (

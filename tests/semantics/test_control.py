@@ -68,6 +68,20 @@ def test_a_mover_is_placed_at_the_centroid_unless_a_smaller_place_would_swallow_
     assert not after.physical.contains("spill", "u0")
 
 
+@pytest.mark.parametrize(("place", "swallowed"), [("area", False), ("base", True)])
+def test_of_two_equal_places_the_first_by_name_swallows_what_goes_to_the_other(place, swallowed):
+    """What is one day where the other is: drifting places may come to be equal."""
+    c = commanding(
+        move_to(place),
+        entities=("sea", "area", "base", "u0"),
+        placed={"base": SHAPES["area"], "u0": SHAPES["gcs0"]},
+        control=Control.ATOMIC,
+    )
+    assert enabled(c) == ([] if swallowed else ["actuate"])
+    if not swallowed:
+        assert run(c, "actuate").structure.physical.abstract_parent("u0") == place
+
+
 def test_what_is_carried_leaves_no_hole_where_its_carrier_is():
     kinds = [
         Kind("Place", frozenset({"Uav", "Vessel"})),
@@ -106,6 +120,29 @@ def test_what_a_carrier_holds_may_be_put_where_the_carrier_is_at_once():
     )
     assert enabled(c) == ["actuate"]
     assert run(c, "actuate").structure.physical.abstract_parent("crate") == "sea"
+
+
+def test_what_is_carried_may_be_put_into_what_carries_its_carrier():
+    c = commanding(
+        by("PUT", "crate", "ship"),
+        entities=("sea", "ship", "boat", "crate"),
+        host="boat",
+        placed={"boat": aboard("ship", "boat"), "crate": aboard("boat", "crate")},
+    )
+    assert run(c, "actuate").structure.physical.carrier("crate") == "ship"
+
+
+def test_what_is_aboard_already_may_be_put_there_where_l_is_coarser():
+    c = commanding(
+        by("MOVE", "crate", "ship"),
+        entities=("sea", "ship", "crate", "gcs0"),
+        host="gcs0",
+        placed={"crate": aboard("ship", "crate")},
+        channels={"gcs0": ("control:gcs0",), "crate": ("control:gcs0",)},
+        beliefs=Beliefs(parents={"crate": "sea"}),
+    )
+    after = run(c, "actuate").structure
+    assert (after.logical.parent("crate"), after.physical.carrier("crate")) == ("ship", "ship")
 
 
 def test_what_a_carrier_holds_cannot_be_put_where_the_carrier_is_not():

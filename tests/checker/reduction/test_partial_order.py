@@ -436,6 +436,20 @@ PASSED = """
 BigActor a hosted_at uav0 with_behavior { let mark = gcs2 control(MOVE_HOST_TO south0 VIA mark) }
 environment { gcs2 vanishes }
 """
+APART = """
+BigActor a hosted_at gcs1 with_behavior { control(DISCONNECT_HOST_FROM gcs0) }
+BigActor b hosted_at gcs0 with_behavior {
+  migrate(gcs1) observe(CHILDREN(gate0))
+  react { case arrived => send("here", c) }
+}
+BigActor c hosted_at gcs0 with_behavior { choose { migrate(gcs1) } or { skip } react { case "here" => skip } }
+"""
+
+
+def test_two_that_may_be_at_the_same_two_hosts_may_be_at_different_ones():
+    assert compared(start(APART)) is not None
+
+
 MUTATIONS = {
     "what is passed on the way": ("there", PASSED),
     "messages that are delivered": ("mail", LATE),

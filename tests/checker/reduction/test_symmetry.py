@@ -11,12 +11,13 @@ from everything_found import everything
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from checker import Engine, Limits, Reduction, RefusedError, check, explore
+from checker import Engine, Keeping, Limits, Reduction, RefusedError, check, explore
 from checker.reduction import Reduced
+from checker.reduction.crosscheck import Drift
 from checker.reduction.renaming import Renaming
 from checker.reduction.symmetry import Symmetry
 from checker.traces import replay, to_json
-from semantics import Scheduler
+from semantics import Scheduler, control
 from semantics.configuration import Configuration
 from semantics.monitor import monitored
 from semantics.propositions import HasPending, Inside
@@ -192,6 +193,24 @@ def equivariant(initial, symmetry, most=400):
             if {each.target for each in expand(swap.configuration(c)).transitions} != after:
                 return False
     return True
+
+
+def test_a_paranoid_check_notices_that_likes_are_not_alike(monkeypatch):
+    def of_one(c, request):
+        yield from control.realisations(c, request) if request.agent == "r0" else ()
+
+    asked = mission(LOOKS)
+    monkeypatch.setattr("semantics.rules.realisations", of_one)
+    with pytest.raises(Drift, match="r0, robot0 and r1, robot1 are not alike"):
+        check(asked.initial, asked.properties, reduce=SYMMETRY, keeping=Keeping(doubted=5))
+
+
+def test_a_paranoid_check_of_likes_ends_as_another():
+    asked = mission(LOOKS, robots=3)
+    reports = (
+        check(asked.initial, asked.properties, reduce=BOTH, keeping=Keeping(doubted=n)) for n in (0, 9)
+    )
+    assert len({(each.configurations, each.transitions, each.rules["actuate"]) for each in reports}) == 1
 
 
 def orbits(initial, symmetry, most=20_000):

@@ -1,0 +1,426 @@
+"""Crosscheck: what rules do in a configuration, held to what partial-order reduction says of it by hand.
+
+Footprints and what properties see are worked out from the text, apart from the rules. Here rules and properties run
+over cells that note what is asked of them: whatever lies outside is a bug of ours.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any
+
+from checker.fast.recording import Ask, Asked, Conclusion, Recorder, Source
+from checker.fast.values import settled
+from checker.reduction.actors import Acting, Actor, Actors
+from checker.reduction.ample import Ample, disturbed
+from checker.reduction.marks import ANSWERS, MARKS, slot_of_mark
+from checker.reduction.messages import Known
+from checker.reduction.renaming import Renaming
+from checker.reduction.slots import NOTHING, Footprint, Slot
+from checker.reduction.symmetry import Symmetry
+from semantics.agents import Watch, mailbox_cell, watch_cell
+from semantics.cells import MONITOR, Cell, Changes, Row, has, is_something
+from semantics.configuration import Configuration, Label, Transition
+from semantics.control import applicable, obstacle
+from semantics.expressions import Fault
+from semantics.extension import say, spawn
+from semantics.monitor import marked, slots_used
+from semantics.physical_model import is_aboard
+from semantics.printing import print_configuration
+from semantics.propositions import Proposition, holds
+from semantics.provenance import Dependency, Key
+from semantics.queries import Fact
+from semantics.relevance import questions_of, relevant, slots_of
+from semantics.requests import CTR, FLY, READY, SND
+from semantics.rules import env, rcv_obs
+from semantics.signature import REGION, Name
+from semantics.successors import SERVING, by_clause, expand, rules_of, steps
+
+Rule = Callable[[Configuration, Any], Iterable[Transition]]
+"""A rule, given a configuration and whom it is about."""
+
+OWN = {
+    "program": frozenset({"code", "store", "mailbox", "line", "sends"}),
+    "line": frozenset({"line", "sends"}),
+    "request": frozenset({"line", "sends"}),
+    "clause": frozenset({"says"}),
+}
+"""Cells of its own that each kind of actor uses; an agent is parted into actors along them."""
+
+PRIVATE = frozenset({MONITOR}).union(*OWN.values())
+"""Cells that only their owner uses as they are; what others may come to tell by them are slots."""
+
+RECEIVED = ("mail", "fault", "ready")
+"""Slots of what an agent gets."""
+
+MEMORY = frozenset({"agents", "code", "line", "sends", MONITOR})
+"""What tells which marks matter to whom: who changes it reads the marks that may be made there."""
+
+
+NOBODY = Acting(NOTHING, NOTHING, NOTHING)
+
+
+class Drift(Exception):  # what it is
+    """What rules do is not within what is said of them: a bug of ours."""
+
+
+def crosscheck(ample: Ample, c: Configuration) -> None:
+    """Hold a configuration to what is said of it.
+
+    Raises:
+        Drift: Something lies outside; it says what, whose, and where.
+    """
+    for found in outside(ample, c):
+        raise Drift(f"{found}, in the configuration\n{print_configuration(c)}")
+
+
+def outside(ample: Ample, c: Configuration) -> Iterator[str]:
+    """Yield in words what lies outside of what is said."""
+    acting, slots = ample.actors.of(c), ample.actors.footprints.slots
+    for formula in ample.eyes.formulas:
+        yield from _unseen(ample, c, formula)
+    for actor, may in acting.items():
+        yield from _Held(ample.actors, c, actor, may.now).outside()
+        unheard = may.now.changes & ~ample.actors.everything.changes
+        yield from (f"{actor} changes {slot}, which nobody ever does" for slot in slots.named(unheard))
+        lasting = (slot for slot in slots.named(may.now.beyond(may.ever)) if slot[0] not in RECEIVED)
+        yield from (f"{actor} may do something to {slot} now, and never does" for slot in lasting)
+    yield from unheeded(c)
+    for mover, step in _moves(ample.actors, c):
+        yield from _beyond(ample.actors, acting, mover, step)
+
+
+# --- slots and cells ------------------------------------------------------------------------------------------------
+
+Told = Callable[[Any], Any]
+"""What a slot says of a cell's value."""
+
+
+def slots_over(actors: Actors, cell: Cell) -> Iterator[tuple[Slot, Told | None]]:
+    """Yield the slots that speak of a cell, each with what it says of the value; None for all of it.
+
+    Of marks it says nothing: they are sets that others add to (`slot_of_mark`).
+    """
+    reacts = actors.footprints.reacts
+    match cell:
+        case ("placement", name):
+            yield from ((cell, None), (("present", name), is_something))
+        case ("parent", name):
+            yield from ((cell, None), (("known", name), is_something))
+        case ("mailbox", agent):
+            yield from (((what, agent, n), _waking(actors, n)) for what in ("mail", "fault") for n in reacts)
+        case ("line", agent):
+            yield ("ready", agent), _observations
+            if not actors.ordered:
+                yield from ((("fault", agent, number), _observations) for number in reacts)
+        case (word, *_) if word not in PRIVATE:
+            yield cell, None
+
+
+def _waking(actors: Actors, react: int) -> Told:
+    """Return what of a mailbox may wake a `react`."""
+    return lambda mailbox: [each for each in mailbox or () if react in actors.footprints.wakes(Known(each))]
+
+
+def _observations(line: tuple[Any, ...] | None) -> Any:
+    """Return what of a line may be received."""
+    return [each for each in line or () if isinstance(each, READY)]
+
+
+def varies(actors: Actors, cell: Cell) -> bool:
+    """Tell whether anybody may ever write a cell: what nobody writes is in no footprint."""
+    changes, slots = actors.everything.changes, slots_over(actors, cell)
+    return cell[0] in PRIVATE or any(actors.footprints.slots.has(changes, slot) for slot, _ in slots)
+
+
+def recorded(actors: Actors, c: Configuration) -> tuple[Asked, Configuration]:
+    """Return what will have been asked of a configuration, and that to be asked: of nothing that never varies."""
+    assert isinstance(c.state, Row)
+    recorder = Recorder(_Whole(c.state), c.state, lambda cell: varies(actors, cell), frozenset())
+    return recorder.scopes[0], Configuration(c.setting, recorder)
+
+
+class _Whole(Source):
+    """Cells whose values are not taken apart."""
+
+    def __init__(self, row: Row) -> None:
+        self.row = row
+
+    def skeleton(self, cell: Cell) -> Any:
+        return self.row.read(cell)
+
+    def fact(self, cell: Cell, number: int, name: Name) -> Fact:
+        raise NotImplementedError  # nothing is taken apart
+
+
+def _written(step: Transition) -> Changes:
+    """Return what a recorded step writes, all of it worked out."""
+    state = step.target.state
+    assert isinstance(state, Conclusion)
+    return {cell: settled(state.read(cell)) for cell in sorted(state.changed(state))}
+
+
+# --- what properties see --------------------------------------------------------------------------------------------
+
+
+def _unseen(ample: Ample, c: Configuration, formula: Proposition) -> Iterator[str]:
+    asked, over = recorded(ample.actors, c)
+    holds(formula, over)
+    for ask in asked:
+        seen = [each for each in ample.eyes.seen if each.cell == ask.cell]
+        if not any(
+            each.question in (None, ask.question) and each.constants in ((), ask.constants) for each in seen
+        ):
+            yield f"the property '{formula}' reads {ask.cell}, which is not taken for visible"
+
+
+# --- what rules read and write --------------------------------------------------------------------------------------
+
+
+def hindered(c: Configuration, agent: Name) -> Iterator[Transition]:
+    """Yield what hinders an agent's controls, as if it were a step."""
+    for pending in c.eta.in_line(agent):
+        if isinstance(pending.request, CTR | FLY):
+            found = obstacle(c, pending.request)
+            yield Transition(Label("obstacle", agent, found.value if found else ""), c.with_({}))
+
+
+class _Held:
+    """One actor in a configuration, held to what it may do now."""
+
+    def __init__(self, actors: Actors, c: Configuration, actor: Actor, now: Footprint) -> None:
+        self.actors = actors
+        self.slots = actors.footprints.slots
+        self.actor = actor
+        self.now = now
+        self.c = _alone(actors, c, actor)
+        clause = c.setting.environment[int(actor.owner)] if actor.kind == "clause" else None
+        self.about: Any = clause or actor.owner
+        self.whose = f"'{clause.words[0]}'" if clause else f"'{actor.owner}'"
+        to = getattr(clause, "agent", None) or getattr(actor.request, "to", None)
+        self.mailbox = mailbox_cell(str(actor.owner)) if actor.kind == "program" else None
+        self.posting = {mailbox_cell(to), watch_cell(to)} if to else set()
+
+    def outside(self) -> Iterator[str]:
+        """Yield what its rules read and write beyond that."""
+        for rule in self.rules():
+            for done, things in self.of_rule(rule):
+                for each in things:
+                    yield f"{rule.__name__} of {self.whose} {done} {each}, which its footprint leaves out"
+
+    def rules(self) -> tuple[Rule, ...]:
+        """Return the rules by which it moves."""
+        if self.actor.kind == "clause":
+            return (env, say)
+        serving = self.actor.kind != "program"
+        found = (rule for rule in rules_of(self.c.setting.control) if (rule in SERVING) is serving)
+        return (*found, *([hindered] if serving else []))
+
+    def of_rule(self, rule: Rule) -> Iterator[tuple[str, Iterable[Any]]]:
+        """Yield what is read and written outside, by a rule and by the marks that its steps make."""
+        asked, over = recorded(self.actors, self.c)
+        found = self.run(rule, over)
+        written = [_written(step) for step in found]
+        beyond = [ask.cell for ask in asked if not self.may_read(rule, ask)]
+        yield "reads", [cell for cell in beyond if self.matters(rule, cell, written)]
+        for step, changes in zip(found, written, strict=True):
+            yield "writes", [each for cell in changes for each in self.unwritten(rule, cell, changes[cell])]
+            yield "keeps", [slot for slot in self.kept(changes) if not self.has(slot)]
+            known, after = set(asked), _written(marked(over, step))
+            news = (ask for ask in asked if ask not in known and ask.cell[0] not in MEMORY)
+            yield "reads", [ask.cell for ask in news if not self.may_read(rule, ask)]
+            made = self.marks(after).difference(self.marks(changes))
+            yield "marks", [slot for slot in sorted(made) if not self.slots.has(self.now.changes, slot)]
+
+    def run(self, rule: Rule, c: Configuration) -> list[Transition]:
+        """Return the steps of a rule, as far as no computation fails."""
+        found: list[Transition] = []
+        with suppress(Fault):
+            found.extend(rule(c, self.about))
+        return found
+
+    def matters(self, rule: Rule, cell: Cell, written: list[Changes]) -> bool:
+        """Tell whether what is read outside may decide anything.
+
+        Up the places of L a control looks whether it would close a circle; where no circle can be, it looks in vain.
+        So it is tried with all that L may ever believe there.
+        """
+        if cell[0] != "parent":
+            return True
+        believable = (*self.actors.footprints.bounds.believable(cell[1]), REGION)
+        others = (self.c.with_({cell: place}) for place in believable if not self.is_above(cell[1], place))
+        return any(
+            [_written(step) for step in self.run(rule, recorded(self.actors, c)[1])] != written
+            for c in others
+        )
+
+    def is_above(self, node: Name, place: Name) -> bool:
+        return node == place or node in self.c.structure.logical.ancestors(place)
+
+    def may_read(self, rule: Rule, ask: Ask) -> bool:
+        """Tell whether a question was foreseen: what an actor writes itself nobody else does."""
+        cell, value = ask.cell, self.c.read(ask.cell)
+        if ask.question is has and not self.actors.roles.may_come(ask.constants[0]):
+            return True
+        if ask.question is is_aboard and not ask.constants[0] & self.actors.footprints.bounds.carriers(
+            cell[1]
+        ):
+            return True  # nothing else ever carries it
+        if cell == self.mailbox:
+            return self.has(("mail", cell[1], *self.c.alpha.code(cell[1])[:1]))
+        if rule is rcv_obs and cell[0] == "line" and not (self.actors.ordered and _observations(value)):
+            return self.has(("ready", cell[1]))
+        if cell[0] in PRIVATE:
+            return self.is_own(cell)
+        return any(
+            self.has(slot) for slot, told in slots_over(self.actors, cell) if told in (None, ask.question)
+        )
+
+    def unwritten(self, rule: Rule, cell: Cell, value: Any) -> Iterator[Slot]:
+        """Yield what should have been foreseen of a write; a cell of somebody else's by its address."""
+        if rule is spawn and cell[-1] not in self.c.alpha:
+            return  # nobody looks at who is not there
+        old = self.c.read(cell)
+        for slot, told in slots_over(self.actors, cell):
+            changed = told(old) != told(value) if told else old != value or varies(self.actors, cell)
+            if changed and not self.slots.has(self.now.changes, slot) and not self.consumes(slot):
+                yield slot
+        if cell[0] in PRIVATE and not self.is_own(cell):
+            yield cell
+
+    def kept(self, changes: Changes) -> set[Slot]:
+        """Return the slots of what is remembered anew, passed on or forgotten: others may mark it."""
+        before, after = self.memory({}), self.memory(changes)
+        return {(ANSWERS, holder) for holder, _ in (before - after) + (after - before)}
+
+    def marks(self, changes: Changes) -> set[Slot]:
+        """Return the slots of all marks that there are after some changes."""
+        return {
+            slot_of_mark(holder, key)
+            for holder, one in self.memory(changes)
+            for key in (*one.changed, *(one.own or ()))
+        }
+
+    def memory(self, changes: Changes) -> Counter[tuple[Name, Dependency]]:
+        """Return what is rested on after some changes, by whose memory it is: that of a message is its receiver's."""
+        if not self.c.setting.monitored:
+            return Counter()
+        after = self.c.with_(changes)
+        kept = [
+            (each.to if isinstance(each, SND) else each.agent, rests_on)
+            for each, _, _, rests_on in after.eta.all()
+        ]
+        for agent in after.alpha.names():
+            watch = after.alpha.watch(agent) or Watch()
+            kept += [(agent, rests_on) for rests_on in (*watch.code, *watch.store, *watch.mailbox)]
+        there = set(self.actors.roles.agents)
+        return Counter((holder, one) for holder, rests_on in kept if holder in there for one in rests_on)
+
+    def has(self, slot: Slot) -> bool:
+        """Tell whether a slot is in the footprint."""
+        return self.slots.has(self.now.reads | self.now.changes, slot)
+
+    def consumes(self, slot: Slot) -> bool:
+        """Tell whether a slot is about what an agent itself receives: nobody else waits for that."""
+        return self.actor.kind == "program" and slot[:2] in {(what, self.actor.owner) for what in RECEIVED}
+
+    def is_own(self, cell: Cell) -> bool:
+        """Tell whether a private cell is its own, or the mailbox that it posts to."""
+        own = cell[-1] == self.actor.owner and cell[0] in OWN[self.actor.kind] | {MONITOR}
+        return own or cell in self.posting or cell == getattr(self.about, "counter", None)
+
+
+def _alone(actors: Actors, c: Configuration, actor: Actor) -> Configuration:
+    """Return the configuration without what other actors of its agent have asked for: reading that is theirs."""
+    if actor.kind not in ("line", "request"):
+        return c
+    for each in c.eta.of(str(actor.owner)):
+        if actors.serving(each.request) != actor:
+            return _alone(actors, c.with_(c.eta.removing(each)), actor)
+    return c
+
+
+# --- what is alike --------------------------------------------------------------------------------------------------
+
+
+def exchange(symmetry: Symmetry, c: Configuration) -> None:
+    """Hold a configuration to what symmetry says of it: what follows is exchanged with its likes.
+
+    Raises:
+        Drift: It is not.
+    """
+    for each in symmetry.classes:
+        for other in range(1, len(each.members)):
+            swap = Renaming(*each.moving((other, *range(1, other), 0, *range(other + 1, len(each.members)))))
+            found = {step.target for step in expand(swap.configuration(c)).transitions}
+            if found != {swap.configuration(step.target) for step in expand(c).transitions}:
+                who = " and ".join(", ".join(each.names[member]) for member in (0, other))
+                raise Drift(f"{who} are not alike, in the configuration\n{print_configuration(c)}")
+
+
+# --- what the race monitor remembers --------------------------------------------------------------------------------
+
+
+def heed(c: Configuration) -> None:
+    """Hold a configuration to what the race monitor takes for all that agents may come to ask, or use.
+
+    Raises:
+        Drift: It is not all.
+    """
+    for found in unheeded(c):
+        raise Drift(f"{found}, in the configuration\n{print_configuration(c)}")
+
+
+def unheeded(c: Configuration) -> Iterator[str]:
+    """Yield in words what agents ask or use, or what they may ask later, beyond what they may come to ask."""
+    for agent in c.alpha.names() if c.setting.monitored else ():
+        known, may_ask = _asked(c, agent), questions_of(c, agent)
+        for step in steps(c, agent):
+            if isinstance(step, Transition):
+                asked = _asked(step.target, agent) - known | questions_of(step.target, agent)
+                for key in sorted(asked - relevant(asked, may_ask)):
+                    yield f"after {step.label} '{agent}' may ask for {key}, which the race monitor forgets"
+        for request in (each.request for each in c.eta.of(agent) if isinstance(each.request, CTR | FLY)):
+            redex = request.reaction.redex
+            for match in applicable(c, agent, request.reaction):
+                used = slots_used(match.relations(redex), tuple(node for node, _ in match.closed(redex)))
+                for key in sorted(used - relevant(used, slots_of(redex))):
+                    yield f"{request} uses {key}, which the race monitor forgets"
+
+
+def _asked(c: Configuration, agent: Name) -> frozenset[Key]:
+    """Return what an agent has asked, as far as something rests on it, and what its controls may use."""
+    requests, watch = c.eta.of(agent), c.alpha.watch(agent) or Watch()
+    kept = (*watch.code, *watch.store, *watch.mailbox, *(each.rests_on for each in requests))
+    asked = {one.asked for rests_on in kept for one in rests_on if one.asked is not None}
+    used = (slots_of(each.request.reaction.redex) for each in requests if isinstance(each.request, CTR | FLY))
+    return frozenset(asked).union(*used)
+
+
+# --- what comes of a step -------------------------------------------------------------------------------------------
+
+
+def _moves(actors: Actors, c: Configuration) -> Iterator[tuple[Actor, Transition]]:
+    """Yield all steps with who takes them."""
+    for agent in c.alpha.names():
+        found = (step for step in steps(c, agent) if isinstance(step, Transition))
+        yield from ((actors.actor_of(step.label), marked(c, step)) for step in found)
+    for number, clause in enumerate(c.setting.environment):
+        yield from ((Actor("clause", number), step) for step in by_clause(c, clause))
+
+
+def _beyond(actors: Actors, acting: dict[Actor, Acting], mover: Actor, step: Transition) -> Iterator[str]:
+    """Yield what actors may do after a step that was not foreseen before it, of its mover or of those it left alone."""
+    for actor, may in actors.of(step.target).items():
+        known = acting.get(actor, NOBODY)
+        bounds = [("may ever do", may.ever, known.ever | acting[mover].ever)]
+        if mover.kind == "program" and actors.ordered and actor != Actor("line", mover.owner):
+            bounds.append(("may do aside", may.aside, known.aside | acting[mover].aside))
+        if actor in acting and actor != mover and not disturbed(acting, actor, mover):
+            bounds.append(("may do now", may.now, known.now))
+        for what, found, bound in bounds:
+            asking = replace(found, reads=found.reads & actors.everything.changes)
+            for slot in actors.footprints.slots.named(asking.beyond(bound)):
+                if what != "may do now" or slot[0] not in MARKS:
+                    yield f"after {step.label}, {actor} {what} something to {slot}, which was not foreseen"

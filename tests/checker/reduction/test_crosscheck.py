@@ -1,0 +1,188 @@
+"""What rules read and write lies within what reductions say of them, and it is noticed where it doesn't."""
+
+from dataclasses import replace
+from itertools import chain
+from pathlib import Path
+
+import pytest
+from checked_missions import load, start
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mission_texts import missions
+from test_partial_order import CHANGED, NAMES, POR, SPAWNED, VARIATIONS, atoms_of
+
+from checker import Engine, Keeping, Limits, Outcome, check, explore
+from checker.exploration import sample
+from checker.reduction import Ample
+from checker.reduction.crosscheck import Drift, outside, unheeded
+from checker.reduction.slots import NOTHING
+from semantics import Scheduler, control, propositions, strategies
+from semantics.monitor import monitored
+from semantics.propositions import Ended, HasPending, HostedAt, Inside, Known, Waiting
+from semantics.reactions import CONTROL_AUTHORITY
+from specs import MissionError
+from specs.elaboration import load_mission
+
+MISSIONS = Path(__file__).parents[3] / "specs" / "missions"
+
+
+def outside_of(initial, formulas=(), most=60, count=5):
+    """Return what lies outside in a sample of configurations, with the monitor's memory and without."""
+    found = set()
+    for begin, asked in ((initial, formulas), (monitored(initial), ())):
+        configurations = explore(begin, limits=Limits(configurations=most)).configurations
+        ample = Ample(begin, asked)
+        for number in sample(len(configurations), count):
+            found.update(outside(ample, configurations[number]))
+    return found
+
+
+@pytest.mark.parametrize("variation", VARIATIONS.values(), ids=VARIATIONS)
+@pytest.mark.parametrize("name", NAMES)
+def test_nothing_lies_outside_in_a_mission(name, variation):
+    mission = load_mission(MISSIONS / f"{name}.mission", variation)
+    formulas = [each.formula for each in mission.properties if each.kind in ("invariant", "reachable")]
+    assert outside_of(mission.initial, formulas, most=400, count=10) == set()
+
+
+GENERATED = strategies.initial_configurations(
+    schedulers=(Scheduler.PROGRAM_ORDER, Scheduler.UNORDERED), monitored=False
+)
+
+
+@given(GENERATED, st.data())
+@settings(max_examples=40)
+def test_nothing_lies_outside_in_generated_programs(initial, data):
+    assert outside_of(initial, data.draw(st.lists(atoms_of(initial), max_size=2))) == set()
+
+
+@given(missions(), st.sampled_from(["", "scheduler unordered\n"]))
+@settings(max_examples=15)
+def test_nothing_lies_outside_in_generated_missions(text, scheduler):
+    try:
+        initial = load(text + scheduler).initial
+    except MissionError:
+        return  # it is found wrong before it is run
+    assert outside_of(initial, [Inside("uav0", "gate0", actually=True), Ended("a")]) == set()
+
+
+def test_nothing_lies_outside_where_an_agent_is_spawned():
+    formulas = [Waiting("b"), HostedAt("b", "uav0"), HasPending("b"), Ended("b"), Known("uav0")]
+    assert outside_of(start(SPAWNED), formulas, most=400, count=60) == set()
+
+
+# --- the rules drift ------------------------------------------------------------------------------------------
+
+AUTHORISED = """
+BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) }
+environment { uav0 leaves control:gcs0 }
+check { deadlock_freedom }
+"""
+
+
+@pytest.fixture
+def premise(monkeypatch):
+    """Put one premise more before every control: a host that L has on a control authority must be on one in P."""
+
+    def realisations(c, request):
+        host = c.alpha.host(request.agent)
+        believed = [each for each in c.structure.logical.links(host) if each.startswith(CONTROL_AUTHORITY)]
+        if not believed or any(c.structure.physical.connected(each, host) for each in believed):
+            yield from control.realisations(c, request)
+
+    monkeypatch.setattr("semantics.rules.realisations", realisations)
+
+
+def verdict(reduce=(), **options):
+    mission = load(AUTHORISED)
+    found = check(mission.initial, mission.properties, reduce=reduce, **options).verdicts
+    return next(each.outcome for each in found if each.property.kind == "deadlock_freedom")
+
+
+def test_reductions_lose_a_violation_that_a_premise_more_makes(premise):  # noqa: ARG001  # it is there
+    assert verdict() is Outcome.VIOLATED
+    assert verdict(POR) is Outcome.HOLDS  # which is wrong, and why there is a crosscheck
+
+
+def test_a_premise_more_is_noticed(premise):  # noqa: ARG001  # it is there
+    assert outside_of(start(AUTHORISED)) == {
+        "actuate of 'a' reads ('channels', 'uav0'), which its footprint leaves out",
+    }
+
+
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_a_paranoid_check_stops_at_a_premise_more(premise, engine):  # noqa: ARG001  # it is there
+    with pytest.raises(Drift, match="actuate of 'a' reads") as found:
+        verdict(POR, engine=engine, keeping=Keeping(doubted=100))
+    assert "in the configuration" in str(found.value)
+
+
+def test_what_more_is_written_is_noticed(monkeypatch):
+    def moving_all(c, request):
+        for found in control.realisations(c, request):
+            yield replace(found, physical=found.physical | c.structure.physical.joining("uav1", frozenset()))
+
+    monkeypatch.setattr("semantics.rules.realisations", moving_all)
+    assert outside_of(start(AUTHORISED)) == {
+        "actuate of 'a' writes ('channels', 'uav1'), which its footprint leaves out",
+    }
+
+
+def test_what_more_a_property_reads_is_noticed(monkeypatch):
+    mission = start(AUTHORISED)
+    assert outside_of(mission, [Inside("uav0", "gate0")]) == set()
+    monkeypatch.setattr("semantics.propositions._believed_places", propositions._actual_places)
+    assert outside_of(mission, [Inside("uav0", "gate0")]) == {
+        "the property 'uav0 in gate0' reads ('placement', 'uav0'), which is not taken for visible"
+    }
+
+
+UNHEEDED = {
+    "what is asked": ("_asked", lambda _: (), "'a' may ask for ('in', 'uav1')"),
+    "which slots are used": ("_slots", lambda *_: frozenset(), "may ask for ('slot parent', 'uav0')"),
+}
+
+
+@pytest.mark.parametrize("forgotten", UNHEEDED)
+def test_it_is_noticed_that_the_race_monitor_forgets_what_may_be_asked(forgotten, monkeypatch):
+    what, instead, words = UNHEEDED[forgotten]
+    initial = monitored(start(CHANGED))
+    assert not list(chain(*map(unheeded, explore(initial).configurations)))
+    monkeypatch.setattr(f"semantics.relevance.{what}", instead)
+    configurations = explore(monitored(start(CHANGED))).configurations
+    assert any(words in each for c in configurations for each in unheeded(c))
+    with pytest.raises(Drift, match="which the race monitor forgets"):
+        explore(monitored(start(CHANGED)), engine=Engine.FAST, keeping=Keeping(doubted=100))
+
+
+FORGOTTEN = {
+    "what comes of a program": (
+        "actors.Actors._asked_by",
+        lambda *_: NOTHING,
+        CHANGED,
+        "which nobody ever does",
+    ),
+    "what a look adds": (
+        "footprints.Footprints.telling",
+        lambda *_: NOTHING,
+        CHANGED,
+        "writes ('ready', 'a')",
+    ),
+    "who waits for mail": (
+        "footprints.Footprints.waiting",
+        lambda *_: NOTHING,
+        CHANGED,
+        "reads ('mailbox', 'c')",
+    ),
+    "whom mail wakes": ("footprints.Footprints.mail", lambda *_: (), CHANGED, "writes ('mail', 'c'"),
+    "where entities are": ("footprints.Footprints.where", lambda *_: (), CHANGED, "reads ('placement', "),
+    "that controls mark": ("marks.Marks.made", lambda *_: NOTHING, CHANGED, "marks ("),
+    "that agents pass marks on": ("marks.Marks._of", lambda *_: NOTHING, CHANGED, "keeps ("),
+}
+
+
+@pytest.mark.parametrize("forgotten", FORGOTTEN)
+def test_a_footprint_that_leaves_something_out_is_noticed(forgotten, monkeypatch):
+    what, instead, text, words = FORGOTTEN[forgotten]
+    monkeypatch.setattr(f"checker.reduction.{what}", instead)
+    assert any(words in each for each in outside_of(start(text), most=400, count=100))
