@@ -2,6 +2,7 @@
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
+COMPILED := $(addprefix tests/checker/test_,fast_rows.py checkpoints.py long_runs.py spill.py hash_compaction.py)
 STAMP  := $(VENV)/.installed
 
 .PHONY: demo live-demo test lint types fuzz bounds bench bench-bigraphs bench-cluster docs clean
@@ -30,8 +31,9 @@ types: $(STAMP)
 fuzz: $(STAMP)  ## 100,000 mutated missions, a million mutated packets and sentences (some 25 minutes on two cores)
 	BIGACTORS_FUZZ=100000 BIGACTORS_FUZZ_PACKETS=1000000 $(BIN)/python -m pytest -n 2 -q -m fuzz
 
-bounds: $(STAMP)  ## the compiled loops with checks of bounds over all missions, cut and gone on with at many sizes
+bounds: $(STAMP)  ## the compiled loops with checks of bounds over all missions, cut and gone on with at many sizes (nightly: some 40 minutes)
 	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q -m bounds
+	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q $(COMPILED)
 
 bench: $(STAMP)  ## the explorer beside SPIN, its growth, the largest missions; writes docs/performance.md (some 25 minutes)
 	$(BIN)/python benchmarks/run.py

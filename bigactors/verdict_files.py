@@ -142,7 +142,7 @@ def licence_for(
     if data.get("seal") != _seal(data):
         raise Mistake("the verdict was changed after it was reached", _hint(name, path), path)
     properties = data.get("properties")
-    listed = properties if isinstance(properties, list) else []
+    listed = [each for each in properties if isinstance(each, dict)] if isinstance(properties, list) else []
     resting = tuple(str(each.get("name")) for each in listed if each.get("rests_on") == "environment")
     return Licence(path, data, resting, scheduler)
 

@@ -14,6 +14,7 @@ from physical.altitude import Band
 from physical.errors import PhysicalError
 from physical.shape import Geometry, point
 from physical.waypoints import MAX_CHARACTERS, MAX_ITEMS, AltitudeFrame, Command, MissionItem
+from physical.words import read_json
 
 FILE_TYPE: Final = "Plan"
 MAX_DEPTH: Final = 8
@@ -80,12 +81,7 @@ def _fail(message: str, hint: str = "", where: str = "") -> PhysicalError:
 
 
 def _document(text: str) -> Mapping[str, Any]:
-    if len(text) > MAX_CHARACTERS:
-        raise PhysicalError("too-large", f"the plan is over {MAX_CHARACTERS:,} characters")
-    try:
-        document = json.loads(text)
-    except (ValueError, RecursionError) as problem:
-        raise _fail(f"the text is not JSON: {problem}", "save it as a plan") from None
+    document = read_json(text, MAX_CHARACTERS)
     if not isinstance(document, dict) or document.get("fileType") != FILE_TYPE:
         raise _fail(f'the document has no "fileType": "{FILE_TYPE}"', "save it as a plan")
     return document

@@ -14,11 +14,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from adapters.mavlink.message import Message, say
 from adapters.private import open_private, others_may_read
-from physical import PhysicalError
+from physical import PhysicalError, read_json
 
 EPOCH: Final = 1_420_070_400
 """2015-01-01 in seconds since 1970: where time stamps count from."""
@@ -34,6 +34,7 @@ For as long a vehicle is not believed after a crash: until its own time stamps h
 """
 
 KEY_BYTES: Final = 32
+MOST_BYTES: Final = 1_000_000
 _BLOCK: Final = 13  # link id, time stamp, signature
 
 
@@ -117,7 +118,8 @@ def load(path: Path) -> Signing:
     hint = "make one: python -m adapters.mavlink.new_key FILE"
     try:
         exposed = others_may_read(path)
-        data = json.loads(path.read_text(encoding="ascii"))
+        with path.open("rb") as file:
+            data: Any = read_json(file.read(MOST_BYTES + 1), MOST_BYTES)
         key, timestamp = bytes.fromhex(data["key"]), int(data["timestamp"])
         streams = {_stream(name): int(time) for name, time in data["streams"].items()}
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as problem:

@@ -6,6 +6,7 @@ import fcntl
 import json
 import os
 import time
+import zlib
 from collections.abc import Iterator
 from contextlib import suppress
 from itertools import takewhile
@@ -16,19 +17,39 @@ from adapters.disk import writing
 from adapters.private import open_private
 from adapters.stations.entries import MOST_BYTES, Content, Entry, Posted, Took, entry_of, entry_text
 
-SCHEMA: Final = "bigactors.station/1"
+SCHEMA: Final = "bigactors.station/2"
+UNSUMMED: Final = "bigactors.station/1"
+"""Logs of earlier versions: their lines have no checksums; they are read, and written anew with them."""
+
+BEGINNING: Final = 2
+"""Lines without which there is no log: whose it is, and up to which numbers it has counted."""
+
 SPARE: Final = 10_000
 """How many entries that are superseded may stand in the file before it is written anew."""
+
+
+PASSED: Final = 1_000
+"""Numbers that are passed over where the last entry was dropped: it may have been told."""
 
 
 class JournalError(ValueError):
     """A file that is not this station's log of this mission; the message says why."""
 
 
+class ForeignLog(JournalError):
+    """A log of another station or mission, or none at all."""
+
+
 class Journal:
     """What one station has said and is still true, with its numbers; kept in a file that only grows, and is tidied.
 
-    A log that was lost begins anew above every number that it may have had: at the time in milliseconds.
+    A log that was lost begins anew above every number that it may have had: at the time in milliseconds. So it goes on
+    after a last entry that was torn or damaged, and is dropped.
+
+    Each line begins with a checksum of itself and of all before it.
+
+    Attributes:
+        dropped: What was wrong with the last line, where that was dropped.
     """
 
     def __init__(self, path: Path, station: str, digest: str) -> None:
@@ -40,10 +61,14 @@ class Journal:
         self._entries: dict[tuple[str, ...], Entry] = {}
         self._sent: dict[str, int] = {}
         self._spare = 0
+        self._sum = 0
+        self.dropped = ""
         self._file = _locked(path)
         try:
-            if not self._read():
-                self.last = time.time_ns() // 1_000_000
+            is_summed = self._read()
+            if self.dropped or not self.last:
+                self.last = max(self.last + PASSED, time.time_ns() // 1_000_000)
+            if self.dropped or not is_summed:
                 self._rewrite()
         except BaseException:
             self._file.close()
@@ -119,23 +144,45 @@ class Journal:
             self._sent[entry.content.to] = max(self.sent(entry.content.to), entry.content.index)
 
     def _read(self) -> bool:
-        """Read the file, and cut off what a killed process has left of a line."""
+        """Read the file up to its end, or to a last line that is torn or damaged; tell whether it has checksums."""
         self._file.seek(0)
-        head = self._file.readline(MOST_BYTES)
-        if not head:
-            return False
-        self._check(_parsed(head))
-        end = self._file.tell()
-        while (line := self._file.readline(2 * MOST_BYTES)).endswith(b"\n"):
-            data = _parsed(line)
+        size = os.fstat(self._file.fileno()).st_size
+        is_summed = not self._file.read(1).startswith(b"{")
+        self._file.seek(0)
+        number = 0
+        while self._file.tell() < size:
+            number += 1
             try:
-                self._take(data)
+                data = self._parsed(self._file.readline(2 * MOST_BYTES), is_summed=is_summed)
+                if number == 1:
+                    self._check(data, SCHEMA if is_summed else UNSUMMED)
+                else:
+                    self._take(data)
+            except ForeignLog:
+                raise
             except ValueError as error:
-                raise JournalError(f"{self.path}: {error}") from error
-            end = self._file.tell()
-        self._file.truncate(end)
-        self._file.seek(end)
-        return True
+                if number <= BEGINNING or self._file.tell() < size:
+                    raise JournalError(
+                        f"{self.path}:{number}: the log is damaged: {error}: "
+                        "move it away, and the station begins another above its numbers"
+                    ) from error
+                self.dropped = f"{self.path}:{number}: the last entry was dropped: {error}"
+        return is_summed and number > 0
+
+    def _parsed(self, line: bytes, *, is_summed: bool) -> Any:
+        """Return what a line says; raises ValueError where it is torn or damaged."""
+        if not line.endswith(b"\n"):
+            raise ValueError("it is torn, or longer than any entry")
+        said, text = (line[:8], line[9:-1]) if is_summed else (b"", line)
+        if is_summed:
+            found = zlib.crc32(text, self._sum)
+            if line[8:9] != b" " or said != b"%08x" % found:
+                raise ValueError("its checksum is not that of what it says")
+            self._sum = found
+        try:
+            return json.loads(text)
+        except (ValueError, RecursionError) as error:
+            raise ValueError(f"it is not JSON: {error!s:.100}") from error
 
     def _take(self, data: Any) -> None:
         match data:
@@ -145,37 +192,34 @@ class Journal:
             case _:
                 self._keep(entry_of(self.station, data))
 
-    def _check(self, head: Any) -> None:
-        if not isinstance(head, dict) or head.get("log") != SCHEMA:
-            raise JournalError(f"{self.path} is no log of a station")
+    def _check(self, head: Any, schema: str) -> None:
+        if not isinstance(head, dict) or head.get("log") != schema:
+            raise ForeignLog(f"{self.path} is no log of a station")
         for key in ("station", "mission"):
             if head.get(key) != self._head[key]:
                 what = f"{key} '{head.get(key)!s:.80}'"
-                raise JournalError(f"{self.path} is the log of {what}: move it away, or name another file")
+                raise ForeignLog(f"{self.path} is the log of {what}: move it away, or name another file")
 
     def _append(self, lines: list[str]) -> None:
+        found = []
+        for line in lines:
+            self._sum = zlib.crc32(line.encode(), self._sum)
+            found.append(f"{self._sum:08x} {line}\n")
         with writing(self.path):
-            self._file.write("".join(f"{line}\n" for line in lines).encode())
+            self._file.write("".join(found).encode())
             self._file.flush()
 
     def _rewrite(self) -> None:
         """Write the file anew with what is still true; the old one stands until the new one does."""
         part = self.path.with_name(self.path.name + ".part")
         part.unlink(missing_ok=True)
-        old, self._file = self._file, _locked(part)
+        old, self._file, self._sum = self._file, _locked(part), 0
         state = {"last": self.last, "sent": self._sent}
         lines = [json.dumps(self._head), json.dumps(state), *map(entry_text, self._entries.values())]
         self._append(lines)
         os.replace(part, self.path)
         old.close()
         self._spare = 0
-
-
-def _parsed(line: bytes) -> Any:
-    try:
-        return json.loads(line)
-    except (ValueError, RecursionError) as error:
-        raise JournalError(f"a line of the log is not JSON: {error!s:.100}") from error
 
 
 def _locked(path: Path) -> BinaryIO:

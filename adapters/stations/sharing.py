@@ -118,6 +118,8 @@ class Sharing:
         self._strangers: dict[str, set[str]] = {}
         self._authority = Authority(journal.station)
         self._troubles = Troubles(NAME)
+        if journal.dropped:
+            self._troubles.note("damaged log", journal.dropped)
         self._ahead: set[str] = set()
         self._unsaid: dict[tuple[str, ...], Entry] = {}
         self._said = journal.last

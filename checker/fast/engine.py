@@ -8,7 +8,7 @@ import os
 from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -53,7 +53,6 @@ WORTH = 1 << 12
 """From how many successors on they are stored beside the gathering of the next: handing over takes time, too."""
 
 FIRST_ROWS = 1 << 15
-MOST_ACTORS = 512
 MOST_ROWS = (1 << 31) - 1
 UNPLANTED = -1
 """What stands for a node where a tree had none."""
@@ -73,6 +72,7 @@ class Space:
         counts, met: How often each transition was followed, and how often met: the same where nothing is left out.
         learned: What was not known on the way: the row, and in which tree, at which node and for which code.
         compact: How many bits a tag has, where the table has tags instead of numbers (see `compacting`).
+        actors: How many actors a configuration may have, as far as is known: agents' two each, and the environment's.
         left: Says how many bytes of memory may be taken besides: the table grows by less where they end.
     """
 
@@ -100,6 +100,7 @@ class Space:
         self.state[TURNS] = learner.setting.scheduler is Scheduler.FCFS
         self.learned: list[tuple[int, int, int, int]] = []
         self.clauses = [learner.tree(Actor(by_clause, clause)) for clause in learner.setting.environment]
+        self.actors = len(self.clauses)
         self.counts = Growing(np.int64)
         self.met = self.counts if choosing is None else Growing(np.int64)
         self.masks = Growing(np.uint64)
@@ -330,6 +331,7 @@ class Space:
         groups = self._groups()
         agents, begins = self._agents(groups)
         trees, leaves = self.learner.trees, self.learner.leaves
+        self._take_turns(len(self.clauses) + max(end - begin for begin, end in pairwise(begins)))
         self._locate()
         self._make_masks()
         learned = (
@@ -424,13 +426,19 @@ class Space:
         self.batch, self.full = (self._batch(successors) for _ in range(2))
         self.state[GATHERED] = 0
 
+    def _take_turns(self, actors: int) -> None:
+        """Let batches have a leaf for each of so many actors; what they held must have been stored."""
+        if actors > self.actors:
+            self.actors = actors
+            self._make_batches(len(self.batch.hashes))
+
     def _batch(self, successors: int) -> kernel.Batch:
         return kernel.Batch(
             np.zeros(successors * self.packing.words, np.uint64),
             np.zeros(successors, np.uint64),
             np.zeros(successors, np.int64),
             np.zeros(successors, np.int32),
-            np.zeros(len(self.clauses) + MOST_ACTORS, np.int32),
+            np.zeros(self.actors, np.int32),
         )
 
     def _make_room(self, rows: int) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from checked_missions import load
 
-from checker import Engine, Keeping, explore
+from checker import Engine, Keeping, Limits, explore
 from checker.fast import explorer
 from checker.fast.rows import Rows
 
@@ -89,3 +89,11 @@ def test_what_is_resumed_has_room_for_rows_that_are_wider_than_at_first(tmp_path
     assert space.rows.room >= MOST
     assert len(space.rows.words) >= 2 * space.rows.room
     assert np.all(space.rows.origins[1 : space.size] < np.arange(1, space.size))
+
+
+def test_a_batch_has_room_for_what_every_agent_does():
+    world = "signature { kind Location }\nworld { p0: Location = box (37.02, -8.78) (37, -8.8) }\n"
+    agents = (f"BigActor a{k} hosted_at p0 with_behavior {{ let x = {k} }}\n" for k in range(257))
+    found = explore(load("".join(agents), world).initial, engine=Engine.FAST, limits=Limits(configurations=2))
+    assert len(found.configurations) == 2
+    assert len(found.survey.space.batch.leaves) == 2 * 257

@@ -69,7 +69,7 @@ def test_the_items_that_a_survey_stands_for_are_taken():
     ("text", "found"),
     [
         ("{", "not JSON"),
-        ("[" * 100_000, "not JSON"),
+        ("[" * 100_000, "nested too deeply"),
         ("[]", "fileType"),
         ('{"fileType": "Plan"}', "no mission"),
         (plan(home=(1, 2)), "home"),

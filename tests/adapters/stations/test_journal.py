@@ -1,6 +1,9 @@
 import json
+import os
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from test_merge import word
 
 from adapters.plugin import Aged, Gone
@@ -20,6 +23,7 @@ from adapters.stations.entries import (
 from adapters.stations.journal import Journal, JournalError
 from physical import Band, PhysicalProperty, Velocity, box
 
+MANY = int(os.environ.get("BIGACTORS_FUZZ", "0")) // 10
 EVERYTHING = PhysicalProperty(
     "a", "UAV", box((1, 2), (3, 4)), Band(1, 2), ("c", "d"), "b", 5.0, "gcs0", Velocity(1.5, 2)
 )
@@ -102,6 +106,99 @@ def test_what_a_killed_process_has_left_of_a_line_is_cut_off(opened, tmp_path):
     again.add([said("b", 2.0)])
     again.close()
     assert opened().word(("said", "b")) == said("b", 2.0)
+
+
+def full(opened):
+    """Return what a closed log knows of entities a and b, and what it has posted."""
+    journal = opened()
+    journal.add([said("a", 1.0), said("b", 1.0)])
+    journal.add([Posted("gcs1", 1, {})])
+    journal.close()
+    return journal.last
+
+
+@pytest.mark.fuzz
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=max(100, MANY))
+@given(draw=st.data())
+def test_a_line_that_was_altered_is_never_believed(opened, tmp_path, draw):
+    path = tmp_path / "x.log"
+    path.unlink(missing_ok=True)
+    last = full(opened)
+    data = bytearray(path.read_bytes())
+    at = draw.draw(st.integers(0, len(data) - 1))
+    begin = data.rindex(b"\n", 0, -1)
+    data[at] ^= draw.draw(st.integers(1, 255))
+    path.write_bytes(data)
+    lines = path.read_bytes().split(b"\n")
+    try:
+        again = opened()
+    except JournalError as error:
+        assert str(path) in str(error)  # noqa: PT017 - which of both depends on the byte
+        return
+    assert again.dropped.startswith(
+        f"{path}:{len(lines) - 1 if lines[-1] == b'' else len(lines)}: the last entry"
+    )
+    assert at >= begin
+    assert (again.word(("said", "b")) == said("b", 1.0)) == (
+        at > begin
+    )  # else two lines have become the last
+    assert again.word(("said", "a")) == said("a", 1.0)
+    assert again.waiting("gcs1") == 0
+    assert again.last > last
+    again.close()
+
+
+def test_a_damaged_last_entry_is_dropped_and_its_number_is_not_given_again(opened, tmp_path):
+    last, path = full(opened), tmp_path / "x.log"
+    path.write_bytes(path.read_bytes().replace(b'"gcs1"', b'"gcs2"'))
+    again = opened()
+    assert again.dropped == f"{path}:5: the last entry was dropped: its checksum is not that of what it says"
+    assert again.last > last
+    again.close()
+    clean = opened()
+    assert clean.dropped == ""
+    assert clean.word(("said", "b")) == said("b", 1.0)
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda lines: [*lines[:2], *lines[3:]],
+        lambda lines: [*lines[:2], lines[3], lines[2], lines[4]],
+        lambda lines: [*lines[:3], lines[2], *lines[3:]],
+        lambda lines: [*lines[:3], lines[3].replace(b'"b"', b'"c"'), lines[4]],
+        lambda lines: [*lines[:3], bytes(len(lines[3])), lines[4]],
+        lambda lines: [*lines[:3], b"x" * 2**20, lines[4]],
+    ],
+)
+def test_a_damaged_line_with_others_behind_it_names_its_place_and_what_to_do(opened, tmp_path, spoil):
+    full(opened)
+    path = tmp_path / "x.log"
+    lines = path.read_bytes().splitlines()
+    path.write_bytes(b"\n".join(spoil(lines)) + b"\n")
+    with pytest.raises(JournalError, match=r"x\.log:[345]: the log is damaged: .*: move it away"):
+        opened()
+
+
+@pytest.mark.parametrize("kept", [0.1, 0.2])
+def test_a_log_of_which_not_even_the_beginning_is_left_is_refused(opened, tmp_path, kept):
+    full(opened)
+    path = tmp_path / "x.log"
+    path.write_bytes(path.read_bytes()[: int(path.stat().st_size * kept)])
+    with pytest.raises(JournalError, match="the log is damaged"):
+        opened()
+
+
+def test_a_log_of_an_earlier_version_is_read_and_written_anew_with_checksums(opened, tmp_path):
+    last, path = full(opened), tmp_path / "x.log"
+    lines = [line.partition(" ")[2] for line in path.read_text().splitlines()]
+    path.write_text("\n".join([lines[0].replace("station/2", "station/1"), *lines[1:]]) + '\n{"torn')
+    again = opened()
+    assert again.word(("said", "b")) == said("b", 1.0)
+    assert "the last entry was dropped: it is torn" in again.dropped
+    again.close()
+    assert path.read_text().split(" ")[1] == '{"log":'
+    assert opened().last == again.last > last
 
 
 def test_only_one_run_writes_a_log(opened):

@@ -25,7 +25,7 @@ from adapters.plugin import (
     Trouble,
     Underway,
 )
-from adapters.stations.entries import Posted, Sent, Took
+from adapters.stations.entries import Broke, Posted, Sent, Took
 from adapters.stations.journal import Journal
 from adapters.stations.peers import peers_of
 from adapters.stations.sharing import Sharing
@@ -118,6 +118,26 @@ def both(names=("gcs0", "gcs1"), tls=None):
     scheme = "tls" if tls else "tcp"
     table = {name: {"connect": [f"{scheme}/127.0.0.1:{free_port()}"]} for name in names}
     return table | ({"tls": tls} if tls else {})
+
+
+def test_an_entry_of_the_log_that_was_dropped_is_told(tmp_path):
+    peers = peers_of(both(), "gcs0", tmp_path)
+    before = Node(peers, tmp_path)
+    before.journal.add([Broke("it rains", 1.0)])
+    before.journal.close()
+    path = tmp_path / "gcs0.log"
+    path.write_bytes(path.read_bytes()[:-5])
+    gcs0 = Node(peers, tmp_path)
+
+    async def sharing():
+        async with running(gcs0):
+            await until(
+                lambda: (
+                    f"damaged log: {path}:3: the last entry was dropped: it is torn" in gcs0.world.troubles()
+                )
+            )
+
+    asyncio.run(sharing())
 
 
 def test_what_one_sees_all_know_and_the_newest_counts(tmp_path):
