@@ -6,7 +6,7 @@ import pytest
 
 from bigactors.cli import main
 
-sys.path.insert(0, str(Path(__file__).parent))  # for drawn_missions
+sys.path.insert(0, str(Path(__file__).parent))  # for drawn_missions and processes
 
 HEAD = """\
 signature {

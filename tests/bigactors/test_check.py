@@ -7,6 +7,7 @@ import sys
 import time
 
 import pytest
+from processes import begun
 
 from bigactors import checking, evidence
 from bigactors.commands import check as command
@@ -221,9 +222,7 @@ def test_an_interrupted_exploration_is_incomplete_and_reports_what_it_found(numb
     ours, theirs = os.openpty()
     words = ("check", "endless.mission", "holds.mission", "--no-traces")
     shown = b""
-    with subprocess.Popen(
-        [sys.executable, "-m", "bigactors", *words], stdout=subprocess.PIPE, stderr=theirs
-    ) as process:
+    with begun([sys.executable, "-m", "bigactors", *words], stdout=subprocess.PIPE, stderr=theirs) as process:
         os.close(theirs)
         while b"frontier" not in shown:  # the exploration is under way
             shown += os.read(ours, 1000)
@@ -251,7 +250,7 @@ def test_a_terminal_that_closes_ends_an_exploration_with_what_was_found(missions
     ours, theirs = os.openpty()
 
     words = ("check", "endless.mission", "--no-traces", "--json", "report.json")
-    with subprocess.Popen(
+    with begun(
         [sys.executable, "-c", OWNING, *words],
         stdin=theirs,
         stdout=theirs,
@@ -271,9 +270,7 @@ def test_a_terminal_that_closes_ends_an_exploration_with_what_was_found(missions
 @pytest.mark.usefixtures("missions")
 def test_who_ignores_a_hangup_goes_on_ignoring_it():
     words = ("check", "endless.mission", "--no-traces", "--max-time", "3")
-    with subprocess.Popen(
-        ["nohup", sys.executable, "-m", "bigactors", *words], stdout=subprocess.PIPE
-    ) as process:
+    with begun(["nohup", sys.executable, "-m", "bigactors", *words], stdout=subprocess.PIPE) as process:
         time.sleep(1.5)
         process.send_signal(signal.SIGHUP)
         out = process.communicate(timeout=60)[0].decode()

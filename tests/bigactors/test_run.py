@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
+from processes import begun
 
 from adapters.live.loop import Ending
 from adapters.live.state import LiveState
@@ -93,7 +94,7 @@ def test_a_run_that_is_asked_to_end_closes_its_recording(there, number):
         "--record",
         "run.mcap",
     ]
-    with subprocess.Popen(line, stderr=subprocess.PIPE, text=True) as run:
+    with begun(line, stderr=subprocess.PIPE, text=True) as run:
         until = time.monotonic() + 30
         while not (there / "run.mcap").exists() or not (there / "run.mcap").stat().st_size:
             assert time.monotonic() < until, "it did not begin in time"
