@@ -119,6 +119,7 @@ def req_mgr(c: Configuration, a: Name) -> Iterator[Transition]:
     request = MGR(a, node_named(c, host))
     rests_on = resting_on(process, rests_on)
     process.leave()
+    rests_on = placed(process, rests_on)
     label = Label("req_mgr", a, f"migrate({request.host})")
     yield Transition(label, c.with_(continuing(c, process), c.eta.adding(request, rests_on)))
 
@@ -136,8 +137,7 @@ def migrate(c: Configuration, a: Name) -> Iterator[Transition]:
             continue
         if not linked(c, c.alpha.host(a), request.host):  # premise: one node, or linked
             continue
-        rests_on = placed(c.setting.program, c.alpha.code(a), pending.rests_on)
-        target = c.with_(c.alpha.hosting(a, request.host, rests_on), c.eta.removing(pending))
+        target = c.with_(c.alpha.hosting(a, request.host, pending.rests_on), c.eta.removing(pending))
         yield Transition(Label("migrate", a, request), target, served=pending)
 
 

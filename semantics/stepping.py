@@ -58,16 +58,15 @@ def _variables(process: Process) -> tuple[Store, tuple[Provenance, ...]]:
 
 
 def _watch(process: Process, store: tuple[Provenance, ...], mailbox: tuple[Provenance, ...] = ()) -> Watch:
-    host = placed(process.program, process.code, process.scope.placed)
-    return Watch(process.rests_on, store, mailbox, host)
+    return Watch(process.rests_on, store, mailbox, placed(process, process.scope.placed))
 
 
-def placed(program: Program, code: Code, provenance: Provenance) -> Provenance:
+def placed(process: Process, provenance: Provenance) -> Provenance:
     """Return what is remembered of what an agent's host was chosen by: only while what is left to run uses it."""
     tested = frozenset(each for each in provenance if each.asked is not None)
-    if not tested or not uses_host(program, code):
+    if not tested or not uses_host(process.program, process.code):
         return NOTHING
-    return tested if HOSTED in told_by(program, code) else _untold(tested)
+    return tested if HOSTED in told_by(process.program, process.code) else _untold(tested)
 
 
 def _untold(provenance: Provenance) -> Provenance:
