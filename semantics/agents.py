@@ -1,6 +1,6 @@
 """The agents α as a view over cells, and the watch that the race monitor keeps beside each."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from semantics.cells import AGENTS, MONITOR, Cell, Cells, Changes, has
 from semantics.provenance import NOTHING, Provenance
@@ -25,17 +25,19 @@ def written(variable: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """What an agent's control flow, variables and mail rest on; each part runs beside its cell.
+    """What an agent's control flow, variables, mail and host rest on; each part runs beside its cell.
 
     Attributes:
         code: For each statement that is left to run, what was tested to get there.
         store: For each variable of the store, what it was computed from.
         mailbox: For each message of the mailbox, what its sender had computed it from.
+        host: What the node that it is hosted at was chosen by.
     """
 
     code: tuple[Provenance, ...] = ()
     store: tuple[Provenance, ...] = ()
     mailbox: tuple[Provenance, ...] = ()
+    host: Provenance = NOTHING
 
 
 def host_cell(agent: Name) -> Cell:
@@ -113,9 +115,11 @@ class Agents:
         """Return the agents hosted at a node, sorted."""
         return tuple(agent for agent in self.names() if self.host(agent) == node)
 
-    def hosting(self, agent: Name, host: Name) -> Changes:
+    def hosting(self, agent: Name, host: Name, rests_on: Provenance = NOTHING) -> Changes:
         """Write host(agent) ↦ host."""
-        return {host_cell(agent): host}
+        watch = self.watch(agent)
+        changes: Changes = {host_cell(agent): host}
+        return changes if watch is None else {**changes, watch_cell(agent): replace(watch, host=rests_on)}
 
     def posting(self, agent: Name, message: Value, rests_on: Provenance = NOTHING) -> Changes:
         """Write mailbox(agent) + message."""
@@ -139,5 +143,5 @@ class Agents:
         changes: Changes = {mailbox_cell(agent): tuple(message for message, _ in mail)}
         watch = self.watch(agent)
         if watch is not None:
-            changes[watch_cell(agent)] = Watch(watch.code, watch.store, tuple(kept for _, kept in mail))
+            changes[watch_cell(agent)] = replace(watch, mailbox=tuple(kept for _, kept in mail))
         return changes

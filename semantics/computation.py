@@ -6,7 +6,7 @@ or internal.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from semantics.agents import Code, Store
@@ -135,9 +135,7 @@ class Process:
     def fork(self) -> "Process":
         """Return an independent copy."""
         scope = self.scope
-        copy = Scope(
-            scope.agent, scope.host, dict(scope.store), dict(scope.rests_on), scope.kinds, scope.kept
-        )
+        copy = replace(scope, store=dict(scope.store), rests_on=dict(scope.rests_on), used=NOTHING)
         return Process(self.program, self.code, self.rests_on, copy, list(self.shown), self.passed, self.left)
 
 

@@ -1,6 +1,6 @@
 """Expressions of the host language, and their evaluation with what the value rests on."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -99,7 +99,8 @@ class Scope:
         rests_on: What each variable was computed from; empty where nobody monitors.
         kinds: The kind of each entity.
         kept: Under which names what a variable is given is kept to the end of the run (`Program.kept`).
-        used: Grows with each variable read and each observation tested.
+        placed: What the host was chosen by.
+        used: Grows with each variable or host read and each observation tested.
     """
 
     agent: Name
@@ -108,6 +109,7 @@ class Scope:
     rests_on: dict[str, Provenance]
     kinds: Mapping[Name, str]
     kept: Mapping[str, frozenset[str]]
+    placed: Provenance = NOTHING
     used: Provenance = field(default=NOTHING)
 
     def binding(self, names: Mapping[str, Value], provenance: Provenance) -> None:
@@ -131,6 +133,7 @@ def evaluate(expression: Expression, scope: Scope) -> Value:
             scope.used |= scope.rests_on.get(name, NOTHING)
             return scope.store[name]
         case Host():
+            scope.used |= scope.placed
             return scope.host
         case Self():
             return scope.agent
@@ -366,14 +369,23 @@ OPERATORS: Mapping[str, Operator] = {
 
 def free(expression: Any) -> frozenset[str]:
     """Return the variables that an expression or a query reads."""
+    return frozenset(leaf.name for leaf in leaves(expression) if isinstance(leaf, Variable))
+
+
+def reads_host(expression: Any) -> bool:
+    """Tell whether an expression or a query reads `HOST`."""
+    return any(isinstance(leaf, Host) for leaf in leaves(expression))
+
+
+def leaves(expression: Any) -> Iterator[Expression]:
+    """Yield the constants, variables and names of which an expression or a query is made."""
     match expression:
-        case Variable(name):
-            return frozenset({name})
         case Apply(_, parts) | TupleOf(parts) | SetOf(parts):
-            return frozenset[str]().union(*map(free, parts))
+            for part in parts:
+                yield from leaves(part)
         case Either(_, first, second):
-            return free(first) | free(second)
+            yield from (*leaves(first), *leaves(second))
         case QueryOf(_, argument):
-            return free(argument)
-        case _:
-            return frozenset()
+            yield from leaves(argument)
+        case Literal() | Variable() | Host() | Self():
+            yield expression

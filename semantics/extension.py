@@ -21,6 +21,7 @@ from semantics.stepping import (
     joining,
     new_process,
     next_statement,
+    placed,
     process_of,
     resting_on,
     starting,
@@ -118,6 +119,7 @@ def req_mgr(c: Configuration, a: Name) -> Iterator[Transition]:
     request = MGR(a, node_named(c, host))
     rests_on = resting_on(process, rests_on)
     process.leave()
+    rests_on = placed(process, rests_on)
     label = Label("req_mgr", a, f"migrate({request.host})")
     yield Transition(label, c.with_(continuing(c, process), c.eta.adding(request, rests_on)))
 
@@ -135,7 +137,7 @@ def migrate(c: Configuration, a: Name) -> Iterator[Transition]:
             continue
         if not linked(c, c.alpha.host(a), request.host):  # premise: one node, or linked
             continue
-        target = c.with_(c.alpha.hosting(a, request.host), c.eta.removing(pending))
+        target = c.with_(c.alpha.hosting(a, request.host, pending.rests_on), c.eta.removing(pending))
         yield Transition(Label("migrate", a, request), target, served=pending)
 
 
@@ -154,14 +156,15 @@ def spawn(c: Configuration, a: Name) -> Iterator[Transition]:
     if len(c.alpha.names()) >= MOST_AGENTS:
         raise Fault(f"more than {MOST_AGENTS} agents")
     parent = process_of(c, a)
-    host, placed = evaluated(statement.host, parent.scope)
+    host, chosen = evaluated(statement.host, parent.scope)
     behaviour = c.setting.program.behaviours[statement.behaviour]
     bound = parent.fork()  # the parent may be running this very behaviour: its own parameters stay
     bind_parameters(bound, behaviour, statement.arguments, parent.rests_on[0])
     child = new_process(c.setting, statement.name, node_named(c, host), behaviour.body)
     for name in behaviour.parameters:
         child.scope.binding({name: bound.scope.store[name]}, handed(bound.scope.rests_on[name]))
-    child.rests_on = (resting_on(parent, deciding(placed)),) * len(child.code)
+    child.scope.placed = handed(chosen)
+    child.rests_on = (parent.rests_on[0],) * len(child.code)
     parent.leave()
     begun = starting(c.setting, statement.name, child.scope.host, child)
     label = Label("spawn", a, statement.name)

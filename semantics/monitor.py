@@ -17,6 +17,7 @@ from semantics.queries import Step, Steps, answers, denoted
 from semantics.relevance import (
     ANY,
     HEARD,
+    HOSTED,
     Questions,
     anybodys,
     meet,
@@ -25,7 +26,7 @@ from semantics.relevance import (
     slots_of,
     told_by,
 )
-from semantics.requests import CTR, FLY, SND, Request
+from semantics.requests import CTR, FLY, MGR, SND, Request
 from semantics.signature import Name
 from semantics.structure import Parent, Relation
 
@@ -207,21 +208,22 @@ def _mark_one_own(each: Dependency, own: tuple[Key, ...], asked: Questions, agai
 
 def _mark_memory(c: Configuration, holder: Name, author: Name, again: Asking) -> Changes:
     watch, mark = c.alpha.watch(holder), _mark_own if holder == author else _mark
-    if watch is None or not any((*watch.code, *watch.store, *watch.mailbox)):
+    if watch is None or not any((*watch.code, *watch.store, *watch.mailbox, watch.host)):
         return {}
     asked = questions_of(c, holder)
-    mailbox_too = holder != author or _passes_on(c, holder)
+    mailbox_too = holder != author or _passes_on(c, holder, HEARD)
 
     def marks(part: tuple[Provenance, ...]) -> tuple[Provenance, ...]:
         return tuple(mark(each, asked, again) for each in part)
 
     mailbox = marks(watch.mailbox) if mailbox_too else watch.mailbox
-    return {watch_cell(holder): Watch(marks(watch.code), marks(watch.store), mailbox)}
+    host = mark(watch.host, asked, again)
+    return {watch_cell(holder): Watch(marks(watch.code), marks(watch.store), mailbox, host)}
 
 
-def _passes_on(c: Configuration, agent: Name) -> bool:
-    """Tell whether others may be told what an agent receives."""
-    return HEARD in told_by(c.setting.program, c.alpha.code(agent))
+def _passes_on(c: Configuration, agent: Name, what: Name) -> bool:
+    """Tell whether others may be told what an agent receives (`HEARD`), or where it is hosted (`HOSTED`)."""
+    return what in told_by(c.setting.program, c.alpha.code(agent))
 
 
 def _request_cells(c: Configuration, holder: Name) -> list[Cell]:
@@ -237,8 +239,8 @@ def _mark_requests(c: Configuration, cell: Cell, author: Name, again: Asking) ->
 def _mark_request(
     c: Configuration, request: Request, rests_on: Provenance, author: Name, again: Asking
 ) -> Provenance:
-    holder = _holder(request)
-    if not rests_on or (holder == author and not _passes_on(c, author)):
+    holder, becomes = _holder(request), HOSTED if isinstance(request, MGR) else HEARD
+    if not rests_on or (holder == author and not _passes_on(c, author, becomes)):
         return rests_on
     return (_mark_own if holder == author else _mark)(rests_on, _asked_by(c, request), again)
 
@@ -261,7 +263,8 @@ def monitored(c: Configuration) -> Configuration:
     for agent in c.alpha.names():
         agents = c.alpha
         lengths = (len(agents.code(agent)), len(agents.store(agent)), len(agents.mailbox(agent)))
-        cells[watch_cell(agent)] = Watch(*((NOTHING,) * length for length in lengths))
+        code, store, mailbox = ((NOTHING,) * length for length in lengths)
+        cells[watch_cell(agent)] = Watch(code, store, mailbox)
         lines = (line_cell(agent), sends_cell(agent), QUEUE)
         cells |= {
             (MONITOR, *cell): (NOTHING,) * len(c.read(cell)) for cell in lines if c.read(cell) is not None

@@ -24,6 +24,7 @@ from semantics.expressions import (
     SetOf,
     TupleOf,
     free,
+    reads_host,
 )
 from semantics.patterns import variables
 from semantics.program import Program, expressions_of, reachable
@@ -90,6 +91,9 @@ def anybodys(c: Configuration) -> Questions:
 HEARD: Name = ""
 """Stands, among variables, for what an agent receives."""
 
+HOSTED: Name = "HOST"
+"""Stands, among variables, for where an agent is hosted."""
+
 
 def told_by(program: Program, code: Code) -> Names:
     """Return the variables whose values may get into what somebody with so much left to run tells others."""
@@ -107,26 +111,46 @@ def _told(program: Program, reach: frozenset[int]) -> Names:
         told = grown
 
 
+def uses_host(program: Program, code: Code) -> bool:
+    """Tell whether somebody with so much left to run may use its host: a control does, whatever its arguments."""
+    return _host_used(program, reachable(program, code))
+
+
+@lru_cache(maxsize=1 << 12)
+def _host_used(program: Program, reach: frozenset[int]) -> bool:
+    statements = [program.statements[number] for number in reach]
+    return any(
+        isinstance(each, ControlBy) or any(map(reads_host, expressions_of(each))) for each in statements
+    )
+
+
+def _read(expression: Expression | QueryOf) -> Names:
+    """Return the variables that an expression or a query reads, and whether it reads the host."""
+    return free(expression) | {HOSTED} if reads_host(expression) else free(expression)
+
+
 def _passed_on(program: Program, statement: Statement, told: Names) -> Names:
     """Return what a statement tells, or computes what is told from."""
     match statement:
         case Send(message, _):
-            return free(message)
-        case Spawn(_, _, _, arguments):
-            return frozenset[Name]().union(*map(free, arguments))
+            return _read(message)
+        case Spawn(_, host, _, arguments):
+            return _read(host).union(*map(_read, arguments))
+        case Migrate(host):
+            return _read(host) if HOSTED in told else frozenset()
         case Assign(variable, source) | For(source, variable, _) | ChooseFrom(variable, source, _):
-            return free(source) if variable in told else frozenset()
+            return _read(source) if variable in told else frozenset()
         case ForEach(variable, rest, _):
             return frozenset({rest} if variable in told else ())
         case Match(source, cases):
-            return free(source) if _binds(cases, told) else frozenset()
+            return _read(source) if _binds(cases, told) else frozenset()
         case React(cases):
             return frozenset({HEARD} if _binds(cases, told) else ())
         case Observe(query):
-            return free(query) if HEARD in told else frozenset()
+            return _read(query) if HEARD in told else frozenset()
         case Call(behaviour, arguments):
             given = zip(program.behaviours[behaviour].parameters, arguments, strict=True)
-            return frozenset[Name]().union(*(free(each) for name, each in given if name in told))
+            return frozenset[Name]().union(*(_read(each) for name, each in given if name in told))
         case _:
             return frozenset()
 

@@ -111,7 +111,7 @@ def req_ctr(c: Configuration, a: Name) -> Iterator[Transition]:
     make = c.setting.program.reactions[statement.name]
     reaction = make(process.scope.host, *(name_in(value) for value, _ in arguments))
     assert isinstance(reaction, Reaction)
-    rests_on = resting_on(process, *(kept for _, kept in arguments))
+    rests_on = resting_on(process, process.scope.placed, *(kept for _, kept in arguments))
     process.leave()
     label = Label("req_ctr", a, f"control({reaction})")
     yield Transition(

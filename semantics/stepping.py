@@ -8,7 +8,7 @@ from semantics.eta import line_cell, sends_cell
 from semantics.expressions import Scope
 from semantics.program import Program
 from semantics.provenance import NOTHING, Provenance
-from semantics.relevance import told_by
+from semantics.relevance import HOSTED, told_by, uses_host
 from semantics.setting import Scheduler, Setting
 from semantics.signature import Name
 from semantics.statements import React, Statement
@@ -33,6 +33,7 @@ def process_of(c: Configuration, a: Name) -> Process:
     rests_on = watch.store if watch else (NOTHING,) * len(store)
     kept = {name: each for (name, _), each in zip(store, rests_on, strict=True)}
     scope = scope_of(c.setting, a, agents.host(a), dict(store), kept)
+    scope.placed = watch.host if watch else NOTHING
     return Process(c.setting.program, code, watch.code if watch else (NOTHING,) * len(code), scope)
 
 
@@ -44,7 +45,7 @@ def continuing(c: Configuration, process: Process) -> Changes:
     changes: Changes = {code_cell(a): process.code, store_cell(a): store}
     watch = c.alpha.watch(a)
     if watch is not None:
-        changes[watch_cell(a)] = Watch(process.rests_on, rests_on, watch.mailbox)
+        changes[watch_cell(a)] = _watch(process, rests_on, watch.mailbox)
     return changes
 
 
@@ -54,6 +55,18 @@ def _variables(process: Process) -> tuple[Store, tuple[Provenance, ...]]:
     told = told_by(process.program, process.code)
     kept = zip(store, rests_on, strict=True)
     return store, tuple(each if name in told else _untold(each) for (name, _), each in kept)
+
+
+def _watch(process: Process, store: tuple[Provenance, ...], mailbox: tuple[Provenance, ...] = ()) -> Watch:
+    return Watch(process.rests_on, store, mailbox, placed(process, process.scope.placed))
+
+
+def placed(process: Process, provenance: Provenance) -> Provenance:
+    """Return what is remembered of what an agent's host was chosen by: only while what is left to run uses it."""
+    tested = frozenset(each for each in provenance if each.asked is not None)
+    if not tested or not uses_host(process.program, process.code):
+        return NOTHING
+    return tested if HOSTED in told_by(process.program, process.code) else _untold(tested)
 
 
 def _untold(provenance: Provenance) -> Provenance:
@@ -74,9 +87,7 @@ def starting(setting: Setting, a: Name, host: Name, process: Process) -> Changes
     }
     changes |= dict.fromkeys(lines, ())
     if setting.monitored:
-        changes |= {watch_cell(a): Watch(process.rests_on, rests_on)} | {
-            ("watch", *cell): () for cell in lines
-        }
+        changes |= {watch_cell(a): _watch(process, rests_on)} | {("watch", *cell): () for cell in lines}
     return changes
 
 

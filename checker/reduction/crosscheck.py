@@ -313,7 +313,9 @@ class _Held:
         ]
         for agent in after.alpha.names():
             watch = after.alpha.watch(agent) or Watch()
-            kept += [(agent, rests_on) for rests_on in (*watch.code, *watch.store, *watch.mailbox)]
+            kept += [
+                (agent, rests_on) for rests_on in (*watch.code, *watch.store, *watch.mailbox, watch.host)
+            ]
         there = set(self.actors.roles.agents)
         return Counter((holder, one) for holder, rests_on in kept if holder in there for one in rests_on)
 
@@ -392,7 +394,7 @@ def unheeded(c: Configuration) -> Iterator[str]:
 def _asked(c: Configuration, agent: Name) -> frozenset[Key]:
     """Return what an agent has asked, as far as something rests on it, and what its controls may use."""
     requests, watch = c.eta.of(agent), c.alpha.watch(agent) or Watch()
-    kept = (*watch.code, *watch.store, *watch.mailbox, *(each.rests_on for each in requests))
+    kept = (*watch.code, *watch.store, *watch.mailbox, watch.host, *(each.rests_on for each in requests))
     asked = {one.asked for rests_on in kept for one in rests_on if one.asked is not None}
     used = (slots_of(each.request.reaction.redex) for each in requests if isinstance(each.request, CTR | FLY))
     return frozenset(asked).union(*used)

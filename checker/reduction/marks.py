@@ -168,7 +168,7 @@ class Marks:
 
 
 def _is_blank(watch: Watch | None) -> bool:
-    return watch is None or not any((*watch.code, *watch.store, *watch.mailbox))
+    return watch is None or not any((*watch.code, *watch.store, *watch.mailbox, watch.host))
 
 
 def _rests(kept: tuple[Provenance, ...] | None) -> bool:

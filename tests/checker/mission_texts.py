@@ -48,13 +48,19 @@ rule swap(u: UAV) { HOST || gate0 || north0.(u | $0) -> HOST || gate0.u || north
 """
 
 
-WAYS = ("bare", "bare", "tested", "looked", "told", "heard", "reports", "trusts")
+MIGRATIONS = (
+    "if uav0 in o { migrate(uav0) }",
+    "if size(o) > 1 { migrate(uav1) }",
+    "for x in o of UAV { migrate(x) }",
+    "for x in o of Station { migrate(x) }",
+)
+WAYS = ("bare", "bare", "tested", "looked", "told", "heard", "reports", "trusts", "migrates")
 """How a control comes about."""
 
 
 @st.composite
 def bodies(draw, host, other, ways):
-    """Yield the text of a behaviour: controls, tests of what was observed, messages to the other."""
+    """Yield the text of a behaviour: controls, tests of what was observed, migrations, messages to the other."""
     lines = []
     for _ in range(draw(st.integers(1, 2))):
         control = draw(st.sampled_from(CONTROLS[host]))
@@ -66,6 +72,14 @@ def bodies(draw, host, other, ways):
         elif way == "trusts":
             lines.append(
                 f'react {{ case ("seen", x) if x => {control} case x: Observation => skip case m => skip }}'
+            )
+        elif way == "migrates":
+            goes = draw(st.sampled_from(MIGRATIONS))
+            lines.append(
+                f"observe({draw(st.sampled_from(QUERIES))}) react {{ case o: Observation => {goes} }}"
+            )
+            lines.append(
+                f"observe(PARENT(HOST)) react {{ case o: Observation => {draw(st.sampled_from(DRIVERS))} }}"
             )
         elif way == "reports":
             seen = f'("seen", {draw(st.sampled_from(TESTS))})'

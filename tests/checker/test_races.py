@@ -570,6 +570,109 @@ def test_no_race_of_told_values_is_hidden_by_ownership():
         assert STALE in kinds(verdict(text, "race_freedom"))
 
 
+# --- where an agent is hosted ---------------------------------------------------------------------------------
+
+MIGRATES = {
+    "what was chosen by an observation": "case o => migrate(first(o of UAV))",
+    "what was decided by a test": "case o => if uav1 in o { migrate(uav1) }",
+    "what a variable holds": "case o => let h = first(o of UAV) migrate(h)",
+    "where it is already": "case o => migrate(first(o of UAV)) migrate(HOST)",
+}
+TAKES_AWAY = "BigActor a hosted_at gcs1 with_behavior { control(MOVE uav1 TO north0) }\n"
+
+
+COMES = "BigActor a hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }\n"
+
+
+def migrating(case):
+    return f"""
+    BigActor b hosted_at vessel0 with_behavior {{
+      observe(CHILDREN(south0)) react {{ {case} }}
+      observe(PARENT(HOST)) react {{ case there => control(MOVE_HOST_TO gate0) }}
+    }}
+    """
+
+
+@pytest.mark.parametrize("control", ["atomic", "timed"])
+@pytest.mark.parametrize("case", MIGRATES.values(), ids=MIGRATES)
+def test_a_control_rests_on_how_its_host_came_to_be(case, control):
+    text = migrating(case) + TAKES_AWAY + f"control {control}\n"
+    assert stale(text) == {"b"}
+    assert STALE in kinds(verdict(text, "race_freedom"))
+
+
+def test_what_a_station_moves_rests_on_how_its_agent_came_there():
+    text = """
+    BigActor b hosted_at gcs0 with_behavior {
+      observe(LINKED_TO(uav1)) react { case o => migrate(first(o of Station)) }
+      observe(PARENT(HOST)) react { case there => control(MOVE uav1 TO gate0) }
+    }
+    BigActor a hosted_at uav0 with_behavior { control(DISCONNECT_HOST_FROM uav1) }
+    """
+    assert stale(text) == {"b"}
+    assert stale(text.replace("first(o of Station)", "gcs1")) == set()
+
+
+NOT_CHOSEN = {
+    "an observation that is only held": "case o => migrate(uav1)",
+    "an answer that nobody has changed": "case o => if vessel0 in o { migrate(uav1) }",
+    "a host that it has left since": "case o => migrate(first(o of UAV)) migrate(uav0)",
+}
+
+
+@pytest.mark.parametrize("case", NOT_CHOSEN.values(), ids=NOT_CHOSEN)
+def test_a_host_does_not_rest_on(case):
+    assert stale(migrating(case) + COMES) == set()
+    assert stale(migrating("case o => migrate(first(o of UAV))") + COMES) == {"b"}
+
+
+ARRIVES = "observe(PARENT(HOST)) react { case there => skip }"
+LEAVES = f"control(MOVE_HOST_TO north0) {ARRIVES}"
+TELLS_ITS_HOST = {
+    "what it has made stale before it went": ("let h = first(o of UAV)", LEAVES, "migrate(h)", "HOST"),
+    "what it made stale on its way": ("control(MOVE_HOST_TO north0) migrate(first(o of UAV))", "", "", "HOST"),
+    "what it made stale there": ("migrate(first(o of UAV))", ARRIVES, LEAVES, "HOST"),
+    "a value of it": ("migrate(first(o of UAV))", ARRIVES, LEAVES, "{HOST}"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("scheduler", ["program_order", "unordered"])
+@pytest.mark.parametrize("steps", TELLS_ITS_HOST.values(), ids=TELLS_ITS_HOST)
+def test_who_is_told_where_an_agent_is_hosted_rests_on_how_it_came_there(steps, scheduler):
+    *before, told = steps
+    text = f"""
+    BigActor b hosted_at vessel0 with_behavior {{
+      observe(CHILDREN(south0))
+      react {{ case o => {" ".join(before)} }}
+      observe(PARENT(HOST))
+      react {{ case there => send({told}, c) }}
+    }}
+    BigActor c hosted_at uav0 with_behavior {{ react {{ case h: Message if h != 0 => control(MOVE_HOST_TO gate0) }} }}
+    scheduler {scheduler}
+    """
+    assert stale(text) == {"c"}
+    word = text.replace(f"send({told}, c)", 'send("go", c)')
+    assert stale(word) == set()
+
+
+def test_what_its_spawner_has_made_stale_of_its_host_is_stale_for_who_is_spawned():
+    text = """
+    def enter() = { control(MOVE_HOST_TO gate0) }
+    BigActor a hosted_at vessel0 with_behavior {
+      observe(CHILDREN(south0))
+      react {
+        case o =>
+          let h = first(o of UAV)
+          control(MOVE_HOST_TO north0)
+          observe(PARENT(HOST))
+          react { case there => spawn c hosted_at h with_behavior enter() }
+      }
+    }
+    """
+    assert stale(text) == {"c"}
+    assert stale(text.replace("control(MOVE_HOST_TO north0)", "skip")) == set()
+
+
 # --- what had to be passed ------------------------------------------------------------------------------------
 
 PASSED = {
@@ -629,6 +732,7 @@ def remembering_everything(c):
             patch.setattr(monitor, name, lambda *_: EVERY)
         for module in (monitor, stepping):
             patch.setattr(module, "told_by", lambda *_: ALL)
+        patch.setattr(stepping, "uses_host", lambda *_: True)
         return first_races(c)
 
 
@@ -639,7 +743,13 @@ def test_what_a_mission_lets_the_monitor_forget_would_have_made_no_race(path):
 
 
 @settings(max_examples=100)
-@given(st.one_of(missions(("bare", "tested", "looked")), missions(("bare", "reports", "trusts"))))
+@given(
+    st.one_of(
+        missions(("bare", "tested", "looked")),
+        missions(("bare", "reports", "trusts")),
+        missions(("bare", "migrates", "tested")),
+    )
+)
 def test_what_the_monitor_forgets_would_have_made_no_race(text):
     try:
         c = start(text)
