@@ -47,13 +47,22 @@ def enabled_controls(enabled: Iterable[Transition]) -> list[Control]:
 def compared(
     c: Configuration, controls: list[Control]
 ) -> Iterator[tuple[Control, Control, tuple[str, str] | None]]:
-    """Yield each pair of controls with what is wrong with it: in words, and about what."""
-    for one, other in combinations(controls, 2):
-        if one[0].label.agent == other[0].label.agent and c.setting.scheduler is not Scheduler.UNORDERED:
+    """Yield each pair of controls with what is wrong with it: in words, and about what.
+
+    Of one agent there are pairs under `unordered` alone; two that are equal are served by the same transitions.
+    """
+    unordered = c.setting.scheduler is Scheduler.UNORDERED
+    twice = [(each, each) for each in controls if unordered and _is_twice(c, _request(each[0]))]
+    for one, other in (*combinations(controls, 2), *twice):
+        if one[0].label.agent == other[0].label.agent and not unordered:
             continue
         problem = conflict(one, other) or conflict(other, one) or different_ends(c, one, other)
         about = " and ".join(sorted(str(_request(each[0])) for each in (one, other)))
         yield one, other, None if problem is None else (problem, about)
+
+
+def _is_twice(c: Configuration, request: Request) -> bool:
+    return sum(each.request == request for each in c.eta.of(request.agent)) > 1
 
 
 def conflict(one: Control, other: Control) -> str | None:

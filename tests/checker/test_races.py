@@ -120,6 +120,14 @@ def test_one_agent_races_with_itself_only_where_there_is_no_line():
     assert "end differently" in control_races(MOVES_TWICE + "scheduler unordered")
 
 
+def test_two_equal_controls_of_one_agent_are_a_race_where_one_has_to_wait_for_the_other():
+    text = moves("gate0", "a", "uav0").replace("}", "control(MOVE_HOST_TO gate0) }") + "scheduler unordered\n"
+    message = "serving CTR(a, MOVE_HOST_TO gate0) disables CTR(a, MOVE_HOST_TO gate0)"
+    assert control_races(text + "control timed") == message
+    assert control_races(text) is None  # the second is the identity
+    assert control_races(moves("gate0", "a", "uav0") + "scheduler unordered\ncontrol timed") is None
+
+
 def test_one_agents_controls_that_commute_are_no_race_in_no_line_either():
     text = """
     BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) control(DISCONNECT_HOST_FROM uav1) }
