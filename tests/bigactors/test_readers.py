@@ -20,7 +20,7 @@ from bigactors.cli import main
 from bigactors.exits import Exit
 from bigactors.missions import open_mission
 from bigactors.mistakes import Mistake
-from bigactors.verdict_files import _sealed, licence_for
+from bigactors.verdict_files import _seal, licence_for
 from physical import PhysicalError, PhysicalProperty, box, point, write_geojson, write_plan, write_waypoints
 from specs.elaboration import Variation
 
@@ -234,5 +234,6 @@ def test_files_that_are_nothing_are_told(kind, data):
 @pytest.mark.parametrize("properties", [[1], [[]], [None], {}, None, "x"])
 def test_a_verdict_that_was_sealed_anew_is_no_bug_of_ours(tmp_path, properties):
     path, verdict = tmp_path / "v.json", json.loads(FILES["verdict"][0]())
-    path.write_text(json.dumps(_sealed(verdict | {"properties": properties})))
+    verdict |= {"properties": properties}
+    path.write_text(json.dumps(verdict | {"seal": _seal(verdict)}))
     assert licence_for("two_gates", str(path), two_gates()).resting == ()
