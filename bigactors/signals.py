@@ -30,4 +30,7 @@ def ending_as_ctrl_c() -> Iterator[None]:
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:  # noqa: ARG001 - as signal handlers are called
-    signal.raise_signal(signal.SIGINT)
+    handler = signal.getsignal(signal.SIGINT)
+    if not callable(handler):  # Ctrl-C is ignored where a script has started it in the background: this is not
+        raise KeyboardInterrupt
+    handler(signal.SIGINT, frame)

@@ -81,9 +81,19 @@ def test_a_vehicle_that_is_not_heard_ends_the_run_and_its_recording(there, capsy
     assert not list((there / "runtime" / "bigactors").iterdir())
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda each: each.name)
-def test_a_run_that_is_asked_to_end_closes_its_recording(there, number):
+@pytest.mark.parametrize(
+    ("number", "shell"),
+    [
+        (signal.SIGINT, ()),
+        (signal.SIGTERM, ()),
+        (signal.SIGHUP, ()),
+        (signal.SIGTERM, ("sh", "-c", "trap '' INT; exec \"$@\"", "sh")),  # as scripts start it in the background
+    ],
+    ids=["SIGINT", "SIGTERM", "SIGHUP", "SIGTERM without SIGINT"],
+)
+def test_a_run_that_is_asked_to_end_closes_its_recording(there, number, shell):
     line = [
+        *shell,
         sys.executable,
         "-m",
         "bigactors",
