@@ -351,11 +351,17 @@ class Share(Space):
         self._make_room(len(self.batch.hashes))
 
     def has_origins_in(self, boundaries: Sequence[tuple[int, ...]]) -> bool:
-        """Tell whether each row was reached from one of the layer before, given where all workers' layers begin."""
+        """Tell whether each row was reached from one of the layer before, given where all workers' layers begin.
+
+        The first configuration, the only one of its layer, is its own origin.
+        """
+        first = self.rows.origins[: self.boundaries[1]]
+        if sum(each[1] for each in boundaries) != 1 or np.any(first != self.me):
+            return False
         for layer, (begin, end) in enumerate(pairwise(self.boundaries[1:])):
             rows, workers = np.divmod(self.rows.origins[begin:end], np.uint64(self.workers))
-            first, last = (np.array([each[k] for each in boundaries], np.uint64) for k in (layer, layer + 1))
-            if not np.all((first[workers] <= rows) & (rows < last[workers])):
+            begins, ends = (np.array([each[k] for each in boundaries], np.uint64) for k in (layer, layer + 1))
+            if not np.all((begins[workers] <= rows) & (rows < ends[workers])):
                 return False
         return True
 
