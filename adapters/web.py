@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager, suppress
@@ -46,14 +47,17 @@ async def serve(handler: Handler, where: Listen) -> AsyncIterator[int]:
     web = _aiohttp().web
 
     async def answer(request: Any) -> Any:
-        status, text = _refusal(request, where) or (0, "")
-        if not status:
-            status, text = await handler(request.method, request.path, await request.read())
+        refused = _refusal(request, where)
+        body = None if refused else await _read(request)
+        if body is None:
+            status, text = refused or (400, "what is sent is not what its headers say")
+        else:
+            status, text = await handler(request.method, request.path, body)
         return web.Response(status=status, text=text + "\n")
 
     application = web.Application(client_max_size=MAX_BODY)
     application.router.add_route("*", "/{path:.*}", answer)
-    runner = web.AppRunner(application, access_log=None)
+    runner = web.AppRunner(application, access_log=None, logger=_log())
     await runner.setup()
     try:
         site = web.TCPSite(runner, where.host, where.port)
@@ -74,6 +78,15 @@ def _refusal(request: Any, where: Listen) -> tuple[int, str] | None:
         return 401, "say who you are: Authorization: Bearer TOKEN"
     if request.method == "POST" and request.content_type not in JSON:
         return 415, f"send {' or '.join(JSON)}"
+    if (request.content_length or 0) > MAX_BODY:
+        return 413, f"send at most {MAX_BODY:,} bytes"
+    return None
+
+
+async def _read(request: Any) -> bytes | None:
+    """Return a request's body, None where it is spoilt, or whoever sends it has left."""
+    with suppress(ConnectionError, *_spoilt()):
+        return await request.read()  # type: ignore[no-any-return]
     return None
 
 
@@ -127,6 +140,24 @@ async def _body(answer: Any) -> bytes:
         if len(body) > MAX_BODY:
             raise OSError(f"the answer is over {MAX_BODY:,} bytes")
     return bytes(body)
+
+
+@cache
+def _log() -> logging.Logger:
+    """Return what aiohttp logs to: mistakes of clients, which they are told themselves, are left out."""
+
+    def is_ours(record: logging.LogRecord) -> bool:
+        return not (record.exc_info and isinstance(record.exc_info[1], _spoilt()))
+
+    log = logging.getLogger(__name__)
+    log.addFilter(is_ours)
+    return log
+
+
+def _spoilt() -> tuple[type[Exception], ...]:
+    """Return what aiohttp raises where a request can't be read."""
+    aiohttp = _aiohttp()
+    return aiohttp.http_exceptions.HttpProcessingError, aiohttp.web.RequestPayloadError
 
 
 @cache

@@ -19,6 +19,7 @@ from bigactors.stations import driven, own_station
 from physical import PhysicalError
 from semantics.physical_model import Placed
 from semantics.reactions import CONTROL_AUTHORITY
+from semantics.signature import REGION
 from specs.elaboration import ElaboratedMission
 
 MOST_STATIONS = 254
@@ -113,6 +114,8 @@ def _system(name: str, given: int | None, told: str | None) -> int | None:
 def _own_names(options: Namespace, mission: ElaboratedMission, crafts: dict[str, Craft]) -> dict[str, str]:
     """Return the names that nobody else can take: of the vehicles, the stations, and places that never move.
 
+    What the mission has as no entity can't be one: its bigActors, kinds and channels, and `region`.
+
     A place of a kind that detections are told to be of can be detected: where it is otherwise, an assumption breaks.
     """
     detected = dict(options.kinds).get("detections", frozenset())
@@ -121,6 +124,8 @@ def _own_names(options: Namespace, mission: ElaboratedMission, crafts: dict[str,
         for name in sorted(mission.fixed - crafts.keys())
         if _has_border(name, mission) and mission.setting.kinds[name] not in detected
     }
+    own |= {f"{sort}:{name}": name for sort, name in mission.spans if sort in ("agent", "kind", "channel")}
+    own["place:region"] = REGION
     told = {called for _, called in options.name}  # a station may carry a transponder
     own |= {f"station:{name}": name for name in sorted(_stations_of(mission) - crafts.keys() - told)}
     for name, craft in crafts.items():

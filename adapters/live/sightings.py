@@ -12,7 +12,8 @@ from physical import Geometry, PhysicalError, PhysicalProperty, translate_to
 from semantics.configuration import Configuration
 from semantics.physical_model import Carried, PhysicalModel, Placed, Placement, encloses
 from semantics.setting import Setting
-from semantics.signature import Name
+from semantics.signature import REGION, Name
+from semantics.statements import Spawn
 
 MOST_AHEAD = 5.0
 """Seconds by which a time stamp may lie in the future: clocks differ."""
@@ -35,6 +36,10 @@ def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) ->
         return Refusal(
             said.entity, f"'{heard.plugin}' speaks of {said.entity}, which is the vehicle of '{owner}'"
         )
+    if said.entity in plan.first.alpha or said.entity in _no_entities(plan.first.setting):
+        return Refusal(
+            said.entity, f"'{heard.plugin}' speaks of {said.entity}, which the mission has as no entity"
+        )
     kind = plan.first.setting.kinds.get(said.entity) or (known.property.kind if known is not None else None)
     if kind is not None and not isinstance(said, Gone) and said.kind != kind:
         return Refusal(
@@ -51,6 +56,13 @@ def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) ->
         return None if before is None else Sighting(before, time, -math.inf)
     until = time + published.time_to_live if isinstance(published, Aged) else math.inf
     return Sighting(said, time, until) if until > now else None
+
+
+@lru_cache(maxsize=1 << 4)
+def _no_entities(setting: Setting) -> frozenset[Name]:
+    """Return names that stand for something else: the region, kinds, and bigActors that may be spawned."""
+    spawned = (each.name for each in setting.program.statements if isinstance(each, Spawn))
+    return frozenset({REGION, *setting.signature.kinds, *spawned})
 
 
 def _declared(plan: Plan, entity: Name) -> PhysicalProperty | None:

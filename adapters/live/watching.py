@@ -355,6 +355,8 @@ def _rebind(turning: Turning, saying: Saying) -> str:
         return (
             f"{saying.agent} is a vehicle, of which is said where it is heard from now on: 'is at HOST:PORT'"
         )
+    if saying.agent not in turning.lost:
+        return f"the link to {saying.agent} is not lost; it can be believed elsewhere once it is silent where it was"
     turning.commands.append(Rebind(turning.request_of("operator"), saying.agent, found[1]))
     return ""
 

@@ -18,7 +18,7 @@ from adapters.naming import NamingService
 from adapters.places import StaticPlaces
 from adapters.plugin import Aged, Gone, Trouble
 from adapters.simulated import run
-from adapters.web import Listen
+from adapters.web import Listen, serve
 from physical import PhysicalError, box, point, write_geojson, write_plan, write_waypoints
 from physical.geojson import read_geojson
 from physical.property import PhysicalProperty
@@ -360,6 +360,59 @@ def test_what_is_no_detection_is_refused(body, kind, status):
             assert world.published == []
 
     run(main())
+
+
+POST = b"POST /detections HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+
+
+async def told(port, *parts):
+    """Send a request in parts, and return the status of the answer; none where none comes within a moment."""
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    for part in parts:
+        writer.write(part)
+        await asyncio.sleep(0.1)
+    try:
+        return int((await asyncio.wait_for(reader.readline(), 0.3)).split()[1])
+    except TimeoutError:
+        return None
+    finally:
+        writer.close()
+        await asyncio.sleep(0.1)
+
+
+@pytest.mark.parametrize(
+    ("parts", "status"),
+    [
+        ([b"POST /detections HTTP/1.1\r\nContent-Length: 0\r\n\r\n"], 400),
+        ([POST + b"Content-Length: -5\r\n\r\n"], 400),
+        ([POST + b"Content-Length: 99999999999999\r\n\r\n[", b"["], 413),
+        ([POST + b"Content-Length: 1000\r\n\r\n["], None),  # and leaves
+        ([POST + b"Content-Encoding: gzip\r\nContent-Length: 2\r\n\r\n[]"], 400),
+        ([POST + b"Transfer-Encoding: chunked\r\n\r\nzz\r\n[]"], 400),
+    ],
+)
+def test_what_a_client_gets_wrong_is_told_it_and_not_logged(parts, status, caplog):
+    async def main():
+        world, plugin = World(), Detections("camera", listen=Listen(0))
+        async with running(plugin.run(world)):
+            await until(lambda: plugin.port)
+            assert await told(plugin.port, *parts) == status
+        assert world.published == []
+
+    run(main())
+    assert [record.getMessage() for record in caplog.records if record.levelname == "ERROR"] == []
+
+
+def test_a_bug_that_a_request_meets_is_logged_with_its_traceback(caplog):
+    async def bug(_method, _path, _body):
+        raise ZeroDivisionError
+
+    async def main():
+        async with serve(bug, Listen(0)) as port:
+            assert await told(port, POST + b"Content-Length: 2\r\n\r\n[]") == 500
+
+    run(main())
+    assert [record.exc_info[0] for record in caplog.records if record.exc_info] == [ZeroDivisionError]
 
 
 def test_a_detection_cannot_take_the_name_of_a_vehicle_and_a_token_is_asked_for():

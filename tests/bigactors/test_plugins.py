@@ -190,6 +190,15 @@ def test_what_is_detected_is_of_the_kind_that_the_mission_has_it_as():
         feed._naming.name("name:oilSpill0", "Drifter")
 
 
+@pytest.mark.parametrize("name", ["region", "pilot", "OilSpill", "internet"])
+def test_nothing_seen_can_take_a_name_that_the_mission_has_as_no_entity(name):
+    _, feed = plugins("--feed=detections=folder:.")
+    with pytest.raises(NameClash, match=f"name:{name} would be called {name}, as "):
+        feed._naming.name(f"name:{name}", "OilSpill")
+    with pytest.raises(Mistake, match=f"mmsi:244660274 would be called {name}, as "):
+        plugins(f"--name=mmsi:244660274={name}")
+
+
 # --- keys -----------------------------------------------------------------------------------------------
 
 

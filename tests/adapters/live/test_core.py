@@ -609,7 +609,8 @@ def test_a_channel_that_nothing_shows_to_be_joined_is_never_committed():
 
 
 def test_an_operator_says_that_a_vehicle_is_heard_from_another_address():
-    run = Run(plan_of(TOUR))
+    run = Run(plan_of(TOUR, Precautions(Fallback.CONTINUE)))
+    run.turn(0.0, reports=[LinkLost("uav0", 0.0, -5.0)])
     for number, message in enumerate(
         ("is at 127.0.0.1:5555", "is at home", "is at [::1]:99", "is at ::1", "is at 127.0.0.1:65536")
     ):
@@ -620,4 +621,15 @@ def test_an_operator_says_that_a_vehicle_is_heard_from_another_address():
         Rebind("operator-1", "uav0", "127.0.0.1:5555"),
         Rebind("operator-2", "uav0", "[::1]:99"),
     ]
-    assert run.steps == []
+    assert [str(step.transition.label) for step in run.steps] == ["⟨env : uav0 is off control:gcs0⟩"]
+
+
+def test_a_vehicle_is_believed_elsewhere_only_while_its_link_is_lost():
+    run = Run(plan_of(TOUR, Precautions(Fallback.CONTINUE)))
+    said = Saying("uav0", "is at 127.0.0.1:5555")
+    run.turn(1.0, seen("uav0", WEST, 1.0), sayings=[said])
+    run.turn(9.0, reports=[LinkLost("uav0", 9.0, 1.0)], sayings=[said])
+    run.turn(10.0, reports=[LinkRestored("uav0", 10.0)], sayings=[said])
+    no = "the link to uav0 is not lost; it can be believed elsewhere once it is silent where it was"
+    assert [answer.refusal for answer in run.answers] == [no, "", no]
+    assert run.commands == [Rebind("operator-1", "uav0", "127.0.0.1:5555")]

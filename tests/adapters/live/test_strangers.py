@@ -150,6 +150,19 @@ def test_nobody_moves_an_entity_by_calling_it_something_else():
     ]
 
 
+def test_nothing_that_is_seen_is_called_as_the_region_a_bigactor_or_a_kind_is():
+    spawns = "BigActor a hosted_at uav0 with_behavior { spawn b hosted_at uav0 with_behavior visit() }"
+    run = quiet_run(f"{TOUR}def visit() = {{ skip }}\n{spawns}")
+    before = len(run.steps)
+    names = ("region", "a", "b", "UAV")
+    run.turn(2.0, *(boat(WEST, 2.0, name) for name in names))
+    assert run.steps[before:] == []
+    assert [finding.message for finding in run.findings if finding.kind == "trouble"] == [
+        f"'ais' speaks of {name}, which the mission has as no entity" for name in names
+    ]
+    assert not run.state.seen.keys() & set(names)
+
+
 def test_a_stranger_that_is_withdrawn_at_once_was_never_there():
     run = quiet_run()
     run.turn(1.0, vessel(0), Heard("ais", Gone("mmsi0", 1.0, "ais")))
