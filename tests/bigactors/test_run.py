@@ -87,7 +87,7 @@ def test_a_vehicle_that_is_not_heard_ends_the_run_and_its_recording(there, capsy
         (signal.SIGINT, ()),
         (signal.SIGTERM, ()),
         (signal.SIGHUP, ()),
-        (signal.SIGTERM, ("sh", "-c", "trap '' INT; exec \"$@\"", "sh")),  # as scripts start it in the background
+        (signal.SIGTERM, ("sh", "-c", "trap '' INT; exec \"$@\"", "sh")),  # a script's background job
     ],
     ids=["SIGINT", "SIGTERM", "SIGHUP", "SIGTERM without SIGINT"],
 )
