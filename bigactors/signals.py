@@ -31,6 +31,6 @@ def ending_as_ctrl_c() -> Iterator[None]:
 
 def _interrupt(number: int, frame: FrameType | None) -> None:  # noqa: ARG001 - as signal handlers are called
     handler = signal.getsignal(signal.SIGINT)
-    if not callable(handler):  # ignored, as in what a script has started in the background: this signal is not
+    if not callable(handler):  # Ctrl-C is ignored, as in a script's background job: this signal is not
         raise KeyboardInterrupt
     handler(signal.SIGINT, frame)
