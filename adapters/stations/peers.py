@@ -95,9 +95,10 @@ def read_peers(path: Path, station: str) -> Peers:
     if len(data) > MOST_BYTES:
         raise _mistake(f"it has more than {MOST_BYTES:,} bytes", "a station is a few lines of it")
     try:
-        return peers_of(tomllib.loads(data.decode()), station, path.parent)
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        said = tomllib.loads(data.decode())
+    except (ValueError, RecursionError) as error:  # no TOML, no UTF-8, or a number of thousands of digits
         raise _mistake(f"it is no TOML: {error!s:.200}", "see docs/stations.md") from error
+    return peers_of(said, station, path.parent)
 
 
 def peers_of(data: Mapping[str, Any], station: str, folder: Path) -> Peers:

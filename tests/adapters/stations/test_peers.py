@@ -59,6 +59,7 @@ def test_nothing_is_scouted_and_nobody_else_is_asked(tmp_path):
         (GOOD + "[tls]\nca = 'x'", "ca, certificate and key"),
         ("[tls]\nca = 'no'\ncertificate = 'such'\nkey = 'file'", "there is no file"),
         ("[gcs0", "no TOML"),
+        ("gcs0 = " + 5_000 * "1", "no TOML"),
         ("\n".join(f"[s{n}]" for n in range(40)), "more than 32 stations"),
         ("#" * (MOST_BYTES + 1), "more than 65,536 bytes"),
     ],
