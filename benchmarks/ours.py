@@ -118,7 +118,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     began = time.monotonic()
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("mission", type=Path, metavar="FILE")
-    parser.add_argument("--engine", choices=("fast", "reference", "symbolic"), default="fast")
+    parser.add_argument("--engine", choices=("fast", "reference"), default="fast")
     parser.add_argument("--reduce", action="store_true", help="by partial order")
     parser.add_argument("--cores", type=int, help="on how many cores at most")
     parser.add_argument("--minutes", type=float, help="how long at most")

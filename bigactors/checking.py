@@ -17,7 +17,6 @@ from checker import (
     Cluster,
     ClusterError,
     Engine,
-    EngineError,
     Keeping,
     Limits,
     MachineError,
@@ -36,7 +35,6 @@ REPORTS_SCHEMA = "bigactors.reports/1"
 
 REFUSALS: dict[type[Exception], tuple[Exit, str]] = {
     CheckpointError: (Exit.MISTAKE, "leave --resume out to begin anew"),
-    EngineError: (Exit.MISTAKE, "leave --engine out"),
     ClusterError: (Exit.MISTAKE, "leave --engine ray out to check it in one process"),
     RefusedError: (Exit.MISTAKE, "check it without, or with the other reduction alone"),
     MachineError: (Exit.INCOMPLETE, "try again when less else runs here, or leave --engine out"),

@@ -62,11 +62,9 @@ def describe(name: str, progress: Progress) -> str:
     >>> describe("m", Progress(configurations=12000, transitions=30000, depth=7, frontier=450, rate=5300.2))
     'm: 12,000 configurations, depth 7, frontier 450, 5,300/s, no estimate while layers grow'
     """
-    known = f"{name}: {progress.configurations:,} configurations"
-    if progress.depth is None or progress.frontier is None:  # they are not expanded one by one
-        return known
     return (
-        f"{known}, depth {progress.depth}, frontier {progress.frontier:,}, {progress.rate:,.0f}/s, "
+        f"{name}: {progress.configurations:,} configurations, depth {progress.depth}, "
+        f"frontier {progress.frontier:,}, {progress.rate:,.0f}/s, "
         f"{describe_rest(progress)}"
     )
 

@@ -76,10 +76,8 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     initial = watching(initial, asked)
     formulas = [each.formula for each in asked if each.kind in ("invariant", "reachable")]
     reducer = reducing(initial, reduce, formulas)
-    if reducer is not None and engine in (Engine.SYMBOLIC, Engine.RAY):
-        raise RefusedError(
-            reducer.names[0], f"the {engine.value} explorer does not reduce; leave --engine out"
-        )
+    if reducer is not None and engine is Engine.RAY:
+        raise RefusedError(reducer.names[0], "the ray explorer does not reduce; leave --engine out")
     symmetric = reducer is not None and reducer.symmetry is not None
     if symmetric and engine is Engine.FAST:
         raise RefusedError(Reduction.SYMMETRY, "only the reference explorer knows it; leave --engine out")
@@ -134,7 +132,7 @@ class _Check:
         }
         asked = any(each.kind == "race_freedom" for each in self.properties)
         self.owned = asked and owned(initial)
-        self.searching = asked and not self.owned and engine is not Engine.SYMBOLIC
+        self.searching = asked and not self.owned
         self.remembered: Exploration | None = None
         self.temporal = tuple(each for each in self.properties if each.kind in TEMPORAL)
         self.decider: Decider | None = None
@@ -214,25 +212,12 @@ class _Check:
 
     def decide(self, asked: Property) -> Verdict:
         """Return the verdict on one property: what a reduction may have lost is not said to hold."""
-        beyond = self.beyond(asked)
-        if beyond is not None:
-            return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {beyond}")
         reason = self.refused(asked)
         if reason is None:
             return self.decided(asked)
         found = self.decided(asked)
         note = f"not decided under this reduction: {reason}"
         return found if found.outcome is Outcome.VIOLATED else Verdict(asked, Outcome.INCOMPLETE, note=note)
-
-    def beyond(self, asked: Property) -> str | None:
-        """Return why the engine can't decide a property, None where it can."""
-        if self.engine is not Engine.SYMBOLIC:
-            return None
-        if asked.kind in TEMPORAL:
-            return "the symbolic engine knows nothing of runs; leave --engine out"
-        if asked.kind == "race_freedom" and not self.owned:
-            return "the symbolic engine looks for no races; leave --engine out"
-        return None
 
     def decided(self, asked: Property) -> Verdict:
         """Return what the exploration says of a property."""

@@ -24,10 +24,6 @@ if TYPE_CHECKING:
     from checker.reduction.ample import Ample
 
 
-class EngineError(Exception):
-    """An engine that isn't installed, or that can't explore a mission."""
-
-
 class MachineError(Exception):
     """What the machine does not give: workers that start in time and stay, room for an engine. Nothing is decided."""
 
@@ -66,23 +62,23 @@ class Progress:
     Attributes:
         configurations: How many were met.
         transitions: How many were followed.
-        depth: The distance of those that are being expanded, where they are expanded one by one.
-        frontier: How many wait to be expanded, likewise.
+        depth: The distance of those that are being expanded.
+        frontier: How many wait to be expanded.
         rate: How many are expanded in a second.
         estimate: How many there may be in all; None while nobody can say.
     """
 
     configurations: int
     transitions: int
-    depth: int | None
-    frontier: int | None
+    depth: int
+    frontier: int
     rate: float
     estimate: Estimate | None = None
 
     @property
     def left(self) -> tuple[float, float] | None:
         """How many seconds it may go on, at least and at most, if layers and rate go on as they do."""
-        if self.estimate is None or self.frontier is None or self.rate <= 0:
+        if self.estimate is None or self.rate <= 0:
             return None
         more = self.estimate.most - self.configurations
         return self.frontier / self.rate, (self.frontier + more) / self.rate
@@ -93,7 +89,6 @@ class Engine(Enum):
 
     REFERENCE = "reference"
     FAST = "fast"
-    SYMBOLIC = "symbolic"
     RAY = "ray"
 
 
@@ -165,7 +160,7 @@ class Exploration:
     Attributes:
         configurations: In the order of discovery; the first is the initial one.
         origins: For each, the number of the one that it was first reached from (of the initial one, its own).
-        depth: How far the farthest is from the initial one; None where nobody knows.
+        depth: How far the farthest is from the initial one.
         expanded: How many of them were expanded: all, unless time ran out.
         transitions: How many transitions there are.
         rules: How many transitions each rule has.
@@ -177,12 +172,11 @@ class Exploration:
         allowed: How many transitions the visited configurations allow; more than `transitions` where it was reduced.
         reducer: What made it visit less, None where it visited everything.
         start: What it started from, where another configuration stands for it.
-        count: How many configurations were visited, where that is not how many there are in `configurations`.
     """
 
     configurations: Sequence[Configuration]
     origins: Sequence[int]
-    depth: int | None = 0
+    depth: int = 0
     expanded: int = 0
     transitions: int = 0
     rules: Counter[str] = field(default_factory=Counter)
@@ -194,12 +188,11 @@ class Exploration:
     allowed: int = 0
     reducer: Reducer | None = None
     start: Configuration | None = None
-    count: int | None = None
 
     @property
     def size(self) -> int:
         """How many configurations were visited."""
-        return len(self.configurations) if self.count is None else self.count
+        return len(self.configurations)
 
     @property
     def complete(self) -> bool:
@@ -246,8 +239,7 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
         limits: Where to stop.
         report: Called about once in `every` seconds.
         every: Seconds.
-        engine: Whether the rules are run everywhere, or once for each way in which they look at cells, and then for
-            configurations one by one or for sets of them.
+        engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
         edges: Whether every transition is kept, as temporal properties need; the fast explorer finds them again.
         reduce: What lets it visit less; by symmetry only the reference explorer can.
         keeping: What the fast explorer keeps on the way, and what is doubted.
@@ -264,10 +256,6 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
         return explore_fast(
             initial, tuple(inspect), limits or Limits(), report, every, keeping or Keeping(), reduce
         )
-    if engine is Engine.SYMBOLIC:
-        from checker.symbolic.explorer import explore_symbolic  # noqa: PLC0415  # an extra, and numba
-
-        return explore_symbolic(initial, tuple(inspect), limits or Limits(), report, every)
     explorer = _Explorer(initial, tuple(inspect), limits or Limits(), report, every)
     explorer.found.edges = Edges() if edges else None
     if reduce is not None:

@@ -40,8 +40,7 @@ NOTHING_EXAMINED = {
 
 def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[str]:
     """Yield a report line by line."""
-    size = f"{report.configurations:,} configurations, {_followed(report)} transitions"
-    size += "" if report.depth is None else f", depth {report.depth}"
+    size = f"{report.configurations:,} configurations, {_followed(report)} transitions, depth {report.depth}"
     searched = f", reduced by {' and '.join(report.reduced)}" if report.reduced else ""
     complete = "complete" if report.complete else "INCOMPLETE"
     yield f"{name}: {size}, {complete}{searched}, {report.seconds:.2f} s"

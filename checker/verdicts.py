@@ -71,7 +71,7 @@ class Report:
         verdicts: One for each property, in the mission's order.
         configurations: How many were visited, the monitor's cells not counted.
         transitions: How many transitions they have.
-        depth: The distance of the farthest; None where nobody knows.
+        depth: The distance of the farthest.
         bounds: The limits that were met; empty where everything was explored.
         rules: How many transitions each inference rule has.
         notes: What is to be known of the verdicts.
@@ -84,7 +84,7 @@ class Report:
     verdicts: tuple[Verdict, ...]
     configurations: int
     transitions: int
-    depth: int | None
+    depth: int
     bounds: tuple[str, ...] = ()
     rules: Mapping[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()

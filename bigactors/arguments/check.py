@@ -132,9 +132,9 @@ def _exploring(parser: Parser) -> None:
     group = parser.add_argument_group("exploring")
     group.add_argument(
         "--engine",
-        choices=("reference", "fast", "symbolic", "ray"),
+        choices=("reference", "fast", "ray"),
         help="how it explores; verdicts are the same (default: reference or fast, whichever is quicker for the "
-        "mission's size); symbolic, for very large missions, decides nothing of runs and races (docs/symbolic.md)",
+        "mission's size)",
     )
     group.add_argument(
         "--reduce",

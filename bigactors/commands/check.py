@@ -79,16 +79,14 @@ def limits_of(options: Namespace) -> Limits:
     if options.spill is not None:
         if options.max_memory is None:
             raise Mistake("--spill is for when memory ends", "say when that is: --max-memory SIZE")
-        if options.engine in ("reference", "symbolic", "ray") or Reduction.SYMMETRY.value in options.reduce:
+        if options.engine in ("reference", "ray") or Reduction.SYMMETRY.value in options.reduce:
             raise Mistake("--spill is of the fast explorer", "leave --engine and --reduce symmetry out")
         make_folder(options.spill)
     return Limits(most_of(options), options.max_time, memory=options.max_memory, spill=options.spill)
 
 
-def most_of(options: Namespace) -> int | None:
-    """Return how many configurations are visited at most; sets of them have no usual limit."""
-    if options.engine == "symbolic":
-        return int(options.max_configurations) if options.max_configurations else None
+def most_of(options: Namespace) -> int:
+    """Return how many configurations are visited at most."""
     symmetric = Reduction.SYMMETRY.value in options.reduce
     usual = MOST_OF_REFERENCE if options.engine == "reference" or symmetric else MOST
     return options.max_configurations or usual * (options.workers or 1)
@@ -112,7 +110,7 @@ def keeping_of(options: Namespace) -> Keeping | None:
     if options.checkpoint is None and options.paranoid is None and options.hash_compact is None:
         return None
     kept = options.checkpoint is not None or options.hash_compact is not None
-    if kept and (options.engine in ("reference", "symbolic") or options.reduce):
+    if kept and (options.engine == "reference" or options.reduce):
         raise Mistake(
             "--checkpoint and --hash-compact are of the fast explorer", "leave --engine and --reduce out"
         )

@@ -172,10 +172,3 @@ def test_a_table_is_written_between_its_markers_only():
     )
     with pytest.raises(ValueError, match="no markers"):
         tables.filled("nothing", "it", "new\n")
-
-
-def test_both_engines_are_measured_on_the_same_counts(capsys):
-    assert script("symbolic").main(["1x3+handover"]) == 0
-    _, _, *rows = (line.split(" | ") for line in capsys.readouterr().out.splitlines())
-    assert [row[1] for row in rows] == ["fast", "symbolic"]
-    assert [row[2:4] for row in rows] == [["1,434", "4,788"]] * 2

@@ -1,34 +1,15 @@
 """`--engine` and the options of long runs, on the command line."""
 
-import json
-
 import pytest
-
-
-@pytest.mark.usefixtures("missions")
-def test_the_symbolic_engine_gives_the_same_counts_without_a_depth(bigactors):
-    code, out, _ = bigactors("check", "holds.mission", "--engine", "symbolic", "--json", "-")
-    report = json.loads(out)
-    assert (report["configurations"], report["transitions"], report["depth"]) == (10, 10, None)
-    assert report["complete"]
-    assert code == 0
-
-
-@pytest.mark.usefixtures("missions")
-def test_what_the_symbolic_engine_does_not_decide_is_incomplete(bigactors):
-    code, out, _ = bigactors("check", "broken_control_race", "--engine", "symbolic", "--no-traces")
-    assert code == 3
-    assert "race_freedom       incomplete; not decided: the symbolic engine looks for no races" in out
 
 
 @pytest.mark.usefixtures("missions")
 @pytest.mark.parametrize(
     ("words", "wrong"),
     [
-        (["--engine", "symbolic", "--scheduler", "fcfs"], "the symbolic engine does not do scheduler fcfs"),
-        (["--engine", "symbolic", "--reduce", "por"], "the symbolic explorer does not reduce"),
+        (["--engine", "ray", "--reduce", "por"], "the ray explorer does not reduce"),
         (
-            ["--engine", "symbolic", "--paranoid", "1"],
+            ["--engine", "reference", "--paranoid", "1"],
             "--paranoid is of the fast explorer and of reductions",
         ),
         (
@@ -37,7 +18,7 @@ def test_what_the_symbolic_engine_does_not_decide_is_incomplete(bigactors):
         ),
         (["--spill", "there"], "--spill is for when memory ends"),
         (
-            ["--spill", "there", "--max-memory", "1G", "--engine", "symbolic"],
+            ["--spill", "there", "--max-memory", "1G", "--engine", "reference"],
             "--spill is of the fast explorer",
         ),
         (["--spill", "holds.mission", "--max-memory", "1G"], "there is a file where a folder should be"),
