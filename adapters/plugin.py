@@ -249,7 +249,7 @@ class Trouble:
 
 @dataclass(frozen=True, slots=True)
 class Delivered:
-    """A parcel has come from another station: messages for an agent, or an agent (see `semantics.parting`).
+    """A parcel has come from another station: messages for an agent, or an agent (see `semantics.state.partition`).
 
     Attributes:
         station: Whose it is.

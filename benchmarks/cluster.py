@@ -19,7 +19,7 @@ from patrol import COUNTS
 from run import Size, patrol
 
 from checker import Cluster, Engine, Exploration, Keeping, Limits, Progress, explore
-from semantics.configuration import Configuration
+from semantics.state.configuration import Configuration
 from specs import parse_bytes
 from specs.elaboration import elaborate, load_mission
 

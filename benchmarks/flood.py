@@ -34,8 +34,8 @@ from benchmarks.live import LANES, TimedRun
 from benchmarks.wire import NAMED, WARM_UP, Link, Stopwatch, mission_text, mmsi
 from bigactors.terminal import say
 from bigactors.watchers import Tape
-from semantics.precautions import Fallback, Precautions
-from semantics.setting import Control, Scheduler
+from semantics.contingencies import Fallback, Precautions
+from semantics.state.setting import Control, Scheduler
 from specs import Source
 from specs.elaboration import Variation, elaborate
 from specs.parser import parse

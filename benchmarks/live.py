@@ -23,7 +23,7 @@ from adapters.recording.writing import Recorder
 from bigactors.terminal import say
 from bigactors.watchers import Tape
 from physical import PhysicalProperty, centroid, point
-from semantics.setting import Control, Scheduler
+from semantics.state.setting import Control, Scheduler
 from specs import Source
 from specs.elaboration import Variation, elaborate
 from specs.parser import parse

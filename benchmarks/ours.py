@@ -20,7 +20,7 @@ from machine import resident
 
 if TYPE_CHECKING:
     from checker import Exploration
-    from checker.fast.engine import Space
+    from checker.engines.fast.engine import Space
     from specs.elaboration import ElaboratedMission
 
 ROOT = Path(__file__).parents[1]
@@ -128,7 +128,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if given.cores is not None:
         os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: given.cores])
     with Compiling() as compiled:
-        import checker.fast.explorer  # noqa: F401, PLC0415  # its time is measured, apart from the search's
+        import checker.engines.fast.explorer  # noqa: F401, PLC0415  # its time is measured, apart from the search's
 
         learned = _timed_learning()
         found = _explore(given, began)
@@ -154,7 +154,7 @@ class Compiling:
 
 def _timed_learning() -> list[float]:
     """Collect the seconds of each time that rules are run in Python."""
-    from checker.fast.learner import CodedSource, Learner  # noqa: PLC0415
+    from checker.engines.fast.learner import CodedSource, Learner  # noqa: PLC0415
 
     seconds, learn = [], Learner.learn
 
@@ -204,8 +204,8 @@ def _search(mission: "ElaboratedMission", given: argparse.Namespace) -> "Explora
 def _marked(mission: "ElaboratedMission", marks: list[int], began: float) -> Explored:
     """Search up to the last mark; what was learned before a mark is in the seconds of that mark only."""
     from checker import Limits  # noqa: PLC0415
-    from checker.fast.engine import Space  # noqa: PLC0415
-    from checker.fast.learner import Learner  # noqa: PLC0415
+    from checker.engines.fast.engine import Space  # noqa: PLC0415
+    from checker.engines.fast.learner import Learner  # noqa: PLC0415
 
     importing, started = time.monotonic() - began, time.monotonic()
     learner = Learner(mission.initial.setting, mission.initial.state, Limits().pending)  # type: ignore[arg-type]

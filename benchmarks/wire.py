@@ -32,7 +32,7 @@ from benchmarks.live import LANES, TimedRun
 from bigactors.terminal import say
 from bigactors.watchers import Tape
 from physical import Geometry, contains
-from semantics.setting import Control, Scheduler
+from semantics.state.setting import Control, Scheduler
 from specs import Source
 from specs.elaboration import Variation, elaborate
 from specs.parser import parse

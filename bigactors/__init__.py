@@ -50,8 +50,8 @@ if TYPE_CHECKING:
     from semantics import initial as initial
     from semantics import monitored as monitored
     from semantics import successors as successors
-    from semantics.printing import print_changes as print_changes
-    from semantics.printing import print_configuration as print_configuration
+    from semantics.state.printing import print_changes as print_changes
+    from semantics.state.printing import print_configuration as print_configuration
     from specs import Diagnostic as Diagnostic
     from specs import MissionError as MissionError
     from specs import format_mission as format_mission
@@ -73,7 +73,7 @@ HOMES: Final = {
         "Configuration", "Control", "Fault", "Label", "Property", "Scheduler", "Setting", "Transition", "expand",
         "holds", "initial", "monitored", "successors",
     ),
-    "semantics.printing": ("print_changes", "print_configuration"),
+    "semantics.state.printing": ("print_changes", "print_configuration"),
     "specs": ("Diagnostic", "MissionError", "format_mission"),
     "specs.elaboration": ("ElaboratedMission", "load_mission"),
 }  # fmt: skip

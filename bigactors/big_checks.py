@@ -3,7 +3,6 @@
 import sys
 from argparse import Namespace
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
 
@@ -17,8 +16,11 @@ from bigraphs.notation import write_big
 from bigraphs.system import System
 from bigraphs.transitions import TransitionSystem
 from bigraphs.verdicts import (
+    Decided,
     Outcome,
     Quantifier,
+    Run,
+    Step,
     Verdict,
     deadlock_verdict,
     predicate_verdict,
@@ -30,33 +32,6 @@ MARKS: Final = {
     Outcome.VIOLATED: ("✗", "red", Exit.VIOLATED),
     Outcome.INCOMPLETE: ("?", "yellow", Exit.INCOMPLETE),
 }
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """A step of a run: the rules that make it, none where nothing can happen, and the number of the state after it."""
-
-    rules: tuple[str, ...]
-    state: int
-
-
-@dataclass(frozen=True, slots=True)
-class Run:
-    """A run from the initial state; the steps from number `loop` on come again and again, unless it is None."""
-
-    steps: tuple[Step, ...]
-    loop: int | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Decided:
-    """What became of a claim, with a run that shows it where one run can; `what` says of the run what it is."""
-
-    claim: str
-    outcome: Outcome
-    run: Run | None = None
-    what: str = ""
-    note: str = ""
 
 
 def of_verdict(found: TransitionSystem, verdict: Verdict) -> Decided:

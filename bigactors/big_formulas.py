@@ -12,8 +12,8 @@ from typing import Final, cast
 from bigraphs.errors import NotationError
 from bigraphs.notation import formulas as s
 from bigraphs.system import System
-from semantics import temporal as t
-from semantics.propositions import Always, Proposition
+from semantics.properties import temporal as t
+from semantics.properties.propositions import Always, Proposition
 
 LOGICS: Final = ("ltl", "ctl")
 MOST_NESTED: Final = 32

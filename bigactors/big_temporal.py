@@ -11,21 +11,20 @@ from typing import Final, cast
 
 import numpy as np
 
-from bigactors.big_checks import Decided, Run, Step
 from bigactors.big_formulas import Occurs, parse_formula
 from bigraphs.transitions import TransitionSystem
-from bigraphs.verdicts import Outcome
-from checker.graph import STUTTER, Graph
-from checker.temporal.automaton import TooLargeError
-from checker.temporal.branching import Branching
-from checker.temporal.components import Conditions
-from checker.temporal.lassos import Lasso
-from checker.temporal.linear import shortest_counterexample
-from checker.temporal.truth import Truth
-from checker.temporal.words import is_true_on
-from semantics.configuration import Label
-from semantics.propositions import Proposition
-from semantics.temporal import Temporal
+from bigraphs.verdicts import Decided, Outcome, Run, Step
+from checker.engines.graph import STUTTER, Graph
+from checker.properties.temporal.automaton import TooLargeError
+from checker.properties.temporal.branching import Branching
+from checker.properties.temporal.components import Conditions
+from checker.properties.temporal.evaluation import is_true_on
+from checker.properties.temporal.lassos import Lasso
+from checker.properties.temporal.linear import shortest_counterexample
+from checker.properties.temporal.truth import Truth
+from semantics.properties.propositions import Proposition
+from semantics.properties.temporal import Temporal
+from semantics.state.configuration import Label
 
 NO_FAIRNESS: Final = Conditions()
 

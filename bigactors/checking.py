@@ -26,8 +26,8 @@ from checker import (
     check,
     report_json,
 )
-from checker.findings import MOST_VIOLATIONS
-from semantics.canonical import digest
+from checker.properties.findings import MOST_VIOLATIONS
+from semantics.state.canonical import digest
 from specs.elaboration import ElaboratedMission, Variation
 
 FAILURE_SCHEMA = "bigactors.failure/1"

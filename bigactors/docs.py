@@ -16,8 +16,8 @@ from bigactors.files import make_folder, write_text
 from bigactors.terminal import safe_output, say
 from semantics.extension import EXTENSION
 from semantics.extension import say as say_rule
-from semantics.parting import PASSING
 from semantics.rules import RULES, TIMED_RULES, env
+from semantics.state.partition import PASSING
 from specs import code_table
 from specs.reference import language_reference
 
@@ -32,8 +32,8 @@ RULES_HEAD = """\
 
 Above the bar of each rule stand its premises, below it the conclusion. A configuration is ⟨α | S | η⟩: the bigActors,
 the structure S = (L, P, β, γ) of the logical and the physical model, and the pending requests. The rules are the
-functions of `semantics/rules.py` and `semantics/extension.py`, between stations those of `semantics/parting.py`; this
-page is made of their docstrings.
+functions of `semantics/rules.py` and `semantics/extension.py`, between stations those of
+`semantics/state/partition.py`; this page is made of their docstrings.
 """
 
 CODES_HEAD = """\

@@ -9,7 +9,7 @@ from bigactors.mistakes import Mistake, unreadable
 from bigactors.pages import Story, trace_page
 from bigactors.pictures import PictureError, draw_configuration, draw_overview, draw_trace
 from checker import Trace
-from semantics.configuration import Configuration
+from semantics.state.configuration import Configuration
 
 MOST_PICTURES = 100
 """The longest trace of which every configuration is drawn; of longer ones there is the overview."""

@@ -9,8 +9,8 @@ from bigactors.mistakes import Mistake, suggestion
 from physical import Geometry, area, box, contains
 from physical.frame import METRES_PER_DEGREE
 from semantics.environment import Appears, Drifts
-from semantics.physical_model import Placed
-from semantics.signature import Name
+from semantics.state.physical_model import Placed
+from semantics.state.signature import Name
 from specs.elaboration import ElaboratedMission
 
 MARGIN = 500.0

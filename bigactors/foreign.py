@@ -17,7 +17,7 @@ from physical import PhysicalError, PhysicalProperty
 from physical.ais_recording import read_recording
 from physical.ais_world import physical_property
 from physical.mmsi import digits
-from semantics.precautions import Fallback, Precautions
+from semantics.contingencies import Fallback, Precautions
 from specs.elaboration import ElaboratedMission
 
 TELEMETRY = ".tlog"

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from bigactors import __version__
 from bigactors.mistakes import Mistake, suggestion
-from semantics.canonical import canonical
-from semantics.setting import Control, Scheduler
+from semantics.state.canonical import canonical
+from semantics.state.setting import Control, Scheduler
 from specs import Diagnostic, MissionError, Source
 from specs.elaboration import ElaboratedMission, Variation, load_mission, require_bigactor
 

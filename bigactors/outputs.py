@@ -14,10 +14,10 @@ from bigactors.files import check_writable, json_text, write_text
 from bigactors.missions import diagnostic_json, locate
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say_text
-from checker.annotations import annotations
-from checker.junit import junit_text
-from checker.results import Issue, Level, Result
-from checker.sarif import sarif_json
+from checker.reports.annotations import annotations
+from checker.reports.junit import junit_text
+from checker.reports.results import Issue, Level, Result
+from checker.reports.sarif import sarif_json
 from specs import parse_bytes
 from specs.elaboration import ElaboratedMission
 from specs.syntax import Check

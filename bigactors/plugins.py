@@ -17,9 +17,9 @@ from bigactors.fences import fence_of
 from bigactors.mistakes import Mistake, suggestion
 from bigactors.stations import driven, own_station
 from physical import PhysicalError
-from semantics.physical_model import Placed
-from semantics.reactions import CONTROL_AUTHORITY
-from semantics.signature import REGION
+from semantics.behaviours.reactions import CONTROL_AUTHORITY
+from semantics.state.physical_model import Placed
+from semantics.state.signature import REGION
 from specs.elaboration import ElaboratedMission
 
 MOST_STATIONS = 254

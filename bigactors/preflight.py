@@ -19,10 +19,10 @@ from bigactors.mistakes import Mistake
 from bigactors.terminal import tell
 from checker.reduction.bounds import Bounds
 from checker.reduction.roles import Roles
-from semantics.expressions import Fault
-from semantics.reactions import CONTROL_AUTHORITY, LinkTerm, NodeTerm, PlaceTerm, Reaction
-from semantics.signature import Name
-from semantics.statements import ControlBy
+from semantics.behaviours.expressions import Fault
+from semantics.behaviours.reactions import CONTROL_AUTHORITY, LinkTerm, NodeTerm, PlaceTerm, Reaction
+from semantics.behaviours.statements import ControlBy
+from semantics.state.signature import Name
 from specs.elaboration import ElaboratedMission
 
 PATIENCE = 15.0

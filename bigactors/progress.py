@@ -72,7 +72,7 @@ def describe(name: str, progress: Progress) -> str:
 def describe_rest(progress: Progress) -> str:
     """Say how much more there may be, if that can be said: a range, since nobody knows.
 
-    >>> from checker.estimate import Estimate
+    >>> from checker.engines.estimate import Estimate
     >>> describe_rest(Progress(12_000, 30_000, 7, 450, 10.0, Estimate(12_000, 13_150)))
     'up to 13,000 in all as layers fall now, 45 s to 3 min more'
     """

@@ -13,9 +13,9 @@ from bigactors.missions import as_mistake, digest_of
 from bigactors.mistakes import Mistake, unreadable
 from checker import ReplayError, Trace, replay
 from checker.traces import SCHEMA
-from semantics.configuration import Configuration
-from semantics.parting import Parting, Passage, parcel_of, parted
-from semantics.setting import Control, Scheduler
+from semantics.state.configuration import Configuration
+from semantics.state.partition import Parting, Passage, parcel_of, parted
+from semantics.state.setting import Control, Scheduler
 from specs import MissionError, Source
 from specs.elaboration import ElaboratedMission, Variation, elaborate
 from specs.parser import parse

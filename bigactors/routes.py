@@ -11,12 +11,12 @@ from bigactors.mistakes import Mistake, suggestion
 from checker import Trace
 from physical import Geometry, MobilityCommand, visited, write_plan, write_waypoints
 from physical.place_files import PLAN, WAYPOINTS
-from semantics.configuration import Configuration
 from semantics.control import Realisation, realisations
 from semantics.mobility import mobility_commands
-from semantics.physical_model import InTransit
-from semantics.requests import CTR
-from semantics.signature import Name
+from semantics.state.configuration import Configuration
+from semantics.state.physical_model import InTransit
+from semantics.state.requests import CTR
+from semantics.state.signature import Name
 
 HEIGHT = 100.0
 """Metres above home at which what has no band of its own travels."""

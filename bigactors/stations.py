@@ -21,8 +21,8 @@ from bigactors.missions import digest_of
 from bigactors.mistakes import Mistake, suggestion, unreadable
 from bigactors.recordings import Resumed
 from physical import PhysicalError
-from semantics.parting import Parting, parted, took_cell
-from semantics.plain_parcels import parcel_json
+from semantics.state.parcel_serialization import parcel_json
+from semantics.state.partition import Parting, parted, took_cell
 from specs.elaboration import ElaboratedMission
 
 

@@ -14,9 +14,9 @@ from bigactors.files import read_json
 from bigactors.missions import digest_of
 from bigactors.mistakes import Mistake
 from bigactors.signatures import check_signature, signature_json
-from semantics.canonical import digest
-from semantics.physical_model import placement_cell
-from semantics.setting import Control, Scheduler
+from semantics.state.canonical import digest
+from semantics.state.physical_model import placement_cell
+from semantics.state.setting import Control, Scheduler
 from specs.elaboration import ElaboratedMission
 
 if TYPE_CHECKING:

@@ -12,12 +12,12 @@ from physical.ais_recording import Counts, read_recording
 from physical.ais_world import world_at
 from physical.geojson import MAX_BYTES
 from physical.place_files import PLACES
-from semantics.configuration import Configuration
-from semantics.initial import initial
-from semantics.physical_model import Carried, Placed, Placement
-from semantics.program import Program
-from semantics.setting import Setting
-from semantics.signature import REGION, Kind, Signature
+from semantics.behaviours.program import Program
+from semantics.state.configuration import Configuration
+from semantics.state.initial import initial
+from semantics.state.physical_model import Carried, Placed, Placement
+from semantics.state.setting import Setting
+from semantics.state.signature import REGION, Kind, Signature
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from bigraphs.bigraph import Bigraph, Link
-from bigraphs.detours import Point
 from bigraphs.errors import BigraphError
 from bigraphs.labels import link_label, node_labels
 from bigraphs.layout import FONT, HEADER, PAD, SMALL, Box, Item, Layout, label_lines, layout
+from bigraphs.link_routing import Point
 from bigraphs.routing import Route, route
 
 if TYPE_CHECKING:

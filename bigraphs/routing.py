@@ -8,8 +8,8 @@ from math import hypot
 from typing import Final
 
 from bigraphs.bigraph import Bigraph, Link, points
-from bigraphs.detours import Curve, Obstacles, Point
 from bigraphs.layout import Box, Layout
+from bigraphs.link_routing import Curve, Obstacles, Point
 
 NORMALS: Final[Mapping[str, Point]] = {"top": (0, -1), "bottom": (0, 1), "left": (-1, 0), "right": (1, 0)}
 

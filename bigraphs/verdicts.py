@@ -92,3 +92,30 @@ def _situations(system: TransitionSystem) -> Iterator[tuple[int, Situation]]:
                 tuple(bigraphs[other] for other in after[state]),
             ),
         )
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A step of a run: the rules that make it, none where nothing can happen, and the number of the state after it."""
+
+    rules: tuple[str, ...]
+    state: int
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A run from the initial state; the steps from number `loop` on come again and again, unless it is None."""
+
+    steps: tuple[Step, ...]
+    loop: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Decided:
+    """What became of a claim, with a run that shows it where one run can; `what` says of the run what it is."""
+
+    claim: str
+    outcome: Outcome
+    run: Run | None = None
+    what: str = ""
+    note: str = ""

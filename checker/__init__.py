@@ -4,8 +4,9 @@ It knows the calculus by `semantics.successors` alone: nothing of files, vehicle
 """
 
 from checker.check import check
-from checker.cluster.crew import ClusterError
-from checker.exploration import (
+from checker.engines.choose import explore
+from checker.engines.cluster.crew import ClusterError
+from checker.engines.contract import (
     CheckpointError,
     Cluster,
     Engine,
@@ -13,12 +14,11 @@ from checker.exploration import (
     Keeping,
     MachineError,
     Progress,
-    explore,
 )
 from checker.limits import Limits
-from checker.ownership import owned
+from checker.properties.ownership import owned
 from checker.reduction import Reduction, RefusedError
-from checker.report import report_json, report_text
+from checker.reports.report import report_json, report_text
 from checker.traces import ReplayError, Step, Trace, print_loop, print_trace, replay, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
 

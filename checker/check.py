@@ -5,25 +5,32 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from checker.bounding import BoundMet, bounded
-from checker.coverage import coverage
-from checker.exploration import Cluster, Engine, Exploration, Inspect, Keeping, Progress, explore
-from checker.findings import MOST_VIOLATIONS, Collected
-from checker.inspections import Computation, DeadlockFreedom, Invariant, LocalConsistency, Reachability
+from checker.engines.choose import explore
+from checker.engines.contract import Cluster, Engine, Exploration, Inspect, Keeping, Progress
 from checker.limits import INTERRUPTION, Limits, time_met
-from checker.ownership import owned
-from checker.races import ControlRaces, StaleObservationRaces
+from checker.properties.coverage import coverage
+from checker.properties.findings import MOST_VIOLATIONS, Collected
+from checker.properties.inspections import (
+    Computation,
+    DeadlockFreedom,
+    Invariant,
+    LocalConsistency,
+    Reachability,
+)
+from checker.properties.ownership import owned
+from checker.properties.races import ControlRaces, StaleObservationRaces
+from checker.properties.visited import Visited
 from checker.reduction.reducer import Reduced, reducing
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.traces import Trace, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Violation
-from checker.visited import Visited
-from semantics.configuration import Configuration
-from semantics.monitor import monitored
-from semantics.propositions import Property, watching
-from semantics.temporal import TEMPORAL
+from semantics.properties.property import Property, watching
+from semantics.properties.temporal import TEMPORAL
+from semantics.races.monitor import monitored
+from semantics.state.configuration import Configuration
 
 if TYPE_CHECKING:
-    from checker.temporal.decide import Decider
+    from checker.properties.temporal.decide import Decider
 
 Reporter = Callable[[Progress], None]
 
@@ -244,7 +251,7 @@ class _Check:
         if self.keeping is not None and self.keeping.compact is not None:
             note = "hash compaction keeps no transitions to go along"
             return Verdict(asked, Outcome.INCOMPLETE, note=note)
-        from checker.temporal.decide import Decider  # noqa: PLC0415 - numpy and scipy take their time to load
+        from checker.properties.temporal.decide import Decider  # noqa: PLC0415 - numpy and scipy take their time to load
 
         try:
             if self.decider is None:

@@ -5,16 +5,16 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from checker.exploration import Exploration, Reducer
-from checker.inspections import is_unfair
-from semantics.canonical import digest_of_step
-from semantics.configuration import Configuration, Label, Transition
-from semantics.monitor import monitored
+from checker.engines.contract import Exploration, Reducer
+from checker.properties.inspections import is_unfair
 from semantics.observed import Sight, steps_seen
-from semantics.parting import Elsewhere
-from semantics.plain import sight_json, sight_of
-from semantics.printing import print_changes
-from semantics.requests import Received
+from semantics.races.monitor import monitored
+from semantics.state.canonical import digest_of_step
+from semantics.state.configuration import Configuration, Label, Transition
+from semantics.state.partition import Elsewhere
+from semantics.state.printing import print_changes
+from semantics.state.requests import Received
+from semantics.state.serialization import sight_json, sight_of
 from semantics.successors import expand
 
 SCHEMA = "bigactors.trace/1"

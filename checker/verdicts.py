@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
-from checker.coverage import Coverage
+from checker.properties.coverage import Coverage
 from checker.traces import Trace
-from semantics.propositions import Property
+from semantics.properties.property import Property
 
 
 class Outcome(Enum):

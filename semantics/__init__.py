@@ -4,23 +4,26 @@ It knows nothing of search, time, files, devices or the mission language. Genera
 property-based tests are in `semantics.strategies`, which needs the extra `strategies`.
 """
 
-from semantics.configuration import Configuration, Label, Transition
+from semantics.behaviours.expressions import Fault
+from semantics.behaviours.observations import Observation, Query
+from semantics.behaviours.program import Behaviour, Program
+from semantics.behaviours.queries import evaluate, overlay
+from semantics.behaviours.reactions import COMMANDS, Match, Pattern, Reaction, matches
 from semantics.control import Obstacle, obstacle
 from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
-from semantics.expressions import Fault
 from semantics.extension import EXTENSION
-from semantics.initial import Beliefs, initial
-from semantics.monitor import monitored
-from semantics.physical_model import Carried, InTransit, Placed
-from semantics.program import Behaviour, Program
-from semantics.propositions import Property, Proposition, holds
-from semantics.queries import Observation, Query, evaluate, overlay
-from semantics.reactions import COMMANDS, Match, Pattern, Reaction, matches
-from semantics.requests import CTR, FLY, MGR, OBS, READY, SND, Request
+from semantics.properties.property import Property
+from semantics.properties.propositions import Proposition, holds
+from semantics.races.monitor import monitored
 from semantics.rules import RULES, TIMED_RULES
-from semantics.setting import Control, Scheduler, Setting
-from semantics.signature import REGION, Kind, Name, Signature
-from semantics.structure import Linked, Parent, Structure
+from semantics.state.configuration import Configuration, Label, Transition
+from semantics.state.initial import Beliefs, initial
+from semantics.state.physical_model import Carried, InTransit, Placed
+from semantics.state.relations import Linked, Parent
+from semantics.state.requests import CTR, FLY, MGR, OBS, READY, SND, Request
+from semantics.state.setting import Control, Scheduler, Setting
+from semantics.state.signature import REGION, Kind, Name, Signature
+from semantics.state.structure import Structure
 from semantics.successors import Expansion, expand, successors
 
 __all__ = [

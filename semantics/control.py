@@ -4,15 +4,24 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
-from semantics.cells import Changes
-from semantics.configuration import Configuration
+from semantics.behaviours.reactions import (
+    Match,
+    Reaction,
+    is_active,
+    is_full,
+    matches,
+    moved,
+    relinked,
+    stays_forest,
+)
 from semantics.drive import Reach, drive, unloaded
-from semantics.logical_model import LogicalModel
-from semantics.physical_model import Carried, InTransit
-from semantics.reactions import Match, Reaction, is_active, is_full, matches, moved, relinked, stays_forest
-from semantics.requests import CTR, FLY
-from semantics.signature import Name
-from semantics.structure import Parent, Relation
+from semantics.state.cells import Changes
+from semantics.state.configuration import Configuration
+from semantics.state.logical_model import LogicalModel
+from semantics.state.physical_model import Carried, InTransit
+from semantics.state.relations import Parent, Relation
+from semantics.state.requests import CTR, FLY
+from semantics.state.signature import Name
 
 
 @dataclass(frozen=True, slots=True)

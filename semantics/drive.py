@@ -6,15 +6,15 @@ from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from physical import Geometry, band_contains, centroid, nearest_placement, translate_to
-from semantics.cells import Cells, Changes, Written
-from semantics.logical_model import LogicalModel
-from semantics.physical_model import Carried, PhysicalModel, Placed, Placement, encloses
-from semantics.reactions import Match, Reaction, moved, relinked
-from semantics.signature import REGION, Name
-from semantics.structure import Structure
+from semantics.behaviours.reactions import Match, Reaction, moved, relinked
+from semantics.state.cells import Cells, Changes, Written
+from semantics.state.logical_model import LogicalModel
+from semantics.state.physical_model import Carried, PhysicalModel, Placed, Placement, encloses
+from semantics.state.signature import REGION, Name
+from semantics.state.structure import Structure
 
 if TYPE_CHECKING:
-    from semantics.setting import Setting
+    from semantics.state.setting import Setting
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ def drive(
 
 def _arrives(before: PhysicalModel, node: Name, place: Name, placement: Placement) -> bool:
     """Tell whether A(P') gives a node so placed exactly this parent."""
-    after = PhysicalModel(Written(before.cells, before.placing(node, placement)), before.setting)
+    after = PhysicalModel(Written(before.cells, before.placing(node, placement)), before.sorting)
     return after.abstract_parent(node) == place
 
 
@@ -77,7 +77,7 @@ def _put_down(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carr
     here, there = physical.position(by), physical.position(place)
     if here is None or there is None or not isinstance(carried, Carried) or physical.transit(by) is not None:
         return None
-    if physical.setting.carries(place, node):
+    if physical.sorting.carries(place, node):
         together = place in physical.carriers(by) or by == place or physical.abstract_parent(place) == by
         return Carried(place, carried.shape) if together else None
     at = unloaded(carried, here)
@@ -92,7 +92,7 @@ def unloaded(carried: Carried, here: Placed) -> Placed:
 
 def _reach(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carried | None:
     """Bring what can be driven into a place, or aboard what carries it."""
-    setting = physical.setting
+    setting = physical.sorting
     origin, target = physical.position(node), None if place == REGION else physical.position(place)
     if origin is None or target is None or not setting.signature[setting.kind(node)].driven:
         return None

@@ -4,15 +4,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from semantics.cells import Cell, Changes
-from semantics.physical_model import (
+from semantics.behaviours.values import Value, show
+from semantics.state.cells import Cell, Changes
+from semantics.state.physical_model import (
     Carried,
     PhysicalModel,
     Placed,
     down_cell,
 )
-from semantics.signature import Name
-from semantics.values import Value, show
+from semantics.state.signature import Name
 
 Effect = tuple[str, Changes]
 """What happens in words, and what it writes into P."""

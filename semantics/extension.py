@@ -5,18 +5,11 @@ Written like the seven rules.
 
 from collections.abc import Iterator
 
-from semantics.cells import Changes
-from semantics.computation import bind_parameters, enter_case
-from semantics.configuration import Configuration, Label, Transition
-from semantics.environment import Clause, Says
-from semantics.expressions import Fault, evaluated, name_in
-from semantics.patterns import looks_into
-from semantics.provenance import NOTHING, deciding, handed, told_because
-from semantics.requests import MGR, SND
-from semantics.rules import Rule
-from semantics.signature import Name
-from semantics.statements import Migrate, React, Send, Spawn
-from semantics.stepping import (
+from semantics.behaviours.computation import bind_parameters, enter_case
+from semantics.behaviours.expressions import Fault, evaluated, name_in
+from semantics.behaviours.patterns import looks_into
+from semantics.behaviours.statements import Migrate, React, Send, Spawn
+from semantics.behaviours.stepping import (
     continuing,
     joining,
     new_process,
@@ -26,7 +19,14 @@ from semantics.stepping import (
     resting_on,
     starting,
 )
-from semantics.values import Value, show
+from semantics.behaviours.values import Value, show
+from semantics.environment import Clause, Says
+from semantics.races.provenance import NOTHING, deciding, handed, told_because
+from semantics.rules import Rule
+from semantics.state.cells import Changes
+from semantics.state.configuration import Configuration, Label, Transition
+from semantics.state.requests import MGR, SND
+from semantics.state.signature import Name
 
 MOST_AGENTS = 64
 """How many agents a mission may spawn."""

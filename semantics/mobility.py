@@ -1,9 +1,9 @@
 """From a reaction to mobility commands: the paper's BRR Driver (3.2.3)."""
 
 from physical import Geometry, MobilityCommand, Waypoint, rechannel, waypoint
-from semantics.configuration import Configuration
 from semantics.control import Realisation
-from semantics.physical_model import Carried, Placed, channels_cell, placement_cell
+from semantics.state.configuration import Configuration
+from semantics.state.physical_model import Carried, Placed, channels_cell, placement_cell
 
 
 def mobility_commands(c: Configuration, found: Realisation) -> tuple[MobilityCommand, ...]:

@@ -8,13 +8,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from semantics.cells import NAMES, Cell, Changes
-from semantics.configuration import Configuration, Transition
+from semantics.behaviours.reactions import moved
 from semantics.drive import Reach
 from semantics.environment import Observed
-from semantics.logical_model import links_cell, parent_cell
-from semantics.parting import Elsewhere, passing
-from semantics.physical_model import (
+from semantics.rules import commit, env
+from semantics.state.cells import NAMES, Cell, Changes
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.logical_model import links_cell, parent_cell
+from semantics.state.partition import Elsewhere, passing
+from semantics.state.physical_model import (
     Carried,
     InTransit,
     PhysicalModel,
@@ -22,10 +24,8 @@ from semantics.physical_model import (
     channels_cell,
     placement_cell,
 )
-from semantics.reactions import moved
-from semantics.requests import FLY, Request
-from semantics.rules import commit, env
-from semantics.signature import Name
+from semantics.state.requests import FLY, Request
+from semantics.state.signature import Name
 
 WRITABLE = frozenset({"placement", "channels", "left", "down"})
 """What an observation may write: P, and what the environment's clauses remember of it."""

@@ -3,8 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-from semantics.agents import Code
-from semantics.expressions import (
+from semantics.behaviours.expressions import (
     Apply,
     Either,
     Expression,
@@ -16,14 +15,13 @@ from semantics.expressions import (
     TupleOf,
     Variable,
 )
-from semantics.patterns import Anything, Elements, Exactly
-from semantics.patterns import Pattern as CasePattern
-from semantics.program import Behaviour, Program
-from semantics.reactions import (
+from semantics.behaviours.patterns import Anything, Elements, Exactly
+from semantics.behaviours.patterns import Pattern as CasePattern
+from semantics.behaviours.program import Behaviour, Program
+from semantics.behaviours.reactions import (
     COMMANDS,
 )
-from semantics.signature import Name
-from semantics.statements import (
+from semantics.behaviours.statements import (
     Assign,
     Block,
     Call,
@@ -46,7 +44,9 @@ from semantics.statements import (
     Tested,
     While,
 )
-from semantics.values import Truth, Value
+from semantics.behaviours.values import Truth, Value
+from semantics.state.agents import Code
+from semantics.state.signature import Name
 
 T = TypeVar("T")
 

@@ -6,20 +6,20 @@ given a clause of the environment instead). Above the bar of each docstring stan
 
 from collections.abc import Callable, Iterator
 
-from semantics.computation import compute, enter_case
-from semantics.configuration import Configuration, Label, Transition
+from semantics.behaviours.computation import compute, enter_case
+from semantics.behaviours.expressions import evaluated, name_in, query_of
+from semantics.behaviours.queries import answers, overlay, resolve
+from semantics.behaviours.reactions import Reaction
+from semantics.behaviours.statements import ControlBy, Observe, React, at_internal
+from semantics.behaviours.stepping import continuing, next_statement, process_of, resting_on
 from semantics.control import Realisation, commits, realisations
 from semantics.drive import Reach
 from semantics.environment import Clause, Observed, Says
-from semantics.expressions import evaluated, name_in, query_of
-from semantics.provenance import NOTHING, Dependency, deciding
-from semantics.queries import answers, overlay, resolve
-from semantics.reactions import Reaction
-from semantics.requests import CTR, FLY, OBS, READY, Received
-from semantics.setting import Control
-from semantics.signature import Name
-from semantics.statements import ControlBy, Observe, React, at_internal
-from semantics.stepping import continuing, next_statement, process_of, resting_on
+from semantics.races.provenance import NOTHING, Dependency, deciding
+from semantics.state.configuration import Configuration, Label, Transition
+from semantics.state.requests import CTR, FLY, OBS, READY, Received
+from semantics.state.setting import Control
+from semantics.state.signature import Name
 
 Rule = Callable[[Configuration, Name], Iterator[Transition]]
 

@@ -13,16 +13,10 @@ from typing import TypeVar
 from hypothesis import strategies as st
 
 from physical import Band, box, circle, point
-from semantics.agents import Code
-from semantics.configuration import Configuration
-from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
-from semantics.expressions import Fault
-from semantics.initial import Beliefs, initial
-from semantics.physical_model import Carried, Placed, Placement
-from semantics.program import Program
-from semantics.queries import All, Nodes, Of, Query
-from semantics.random_programs import AGENT_NAMES, ONE_ARGUMENT, random_program
-from semantics.reactions import (
+from semantics.behaviours.expressions import Fault
+from semantics.behaviours.observations import All, Nodes, Of, Query
+from semantics.behaviours.program import Program
+from semantics.behaviours.reactions import (
     COMMANDS,
     LinkTerm,
     LinkVariable,
@@ -35,9 +29,15 @@ from semantics.reactions import (
     move,
     move_host_to,
 )
-from semantics.setting import Control, Scheduler, Setting
-from semantics.signature import REGION, Kind, Name, Signature
-from semantics.structure import Structure
+from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
+from semantics.random_programs import AGENT_NAMES, ONE_ARGUMENT, random_program
+from semantics.state.agents import Code
+from semantics.state.configuration import Configuration
+from semantics.state.initial import Beliefs, initial
+from semantics.state.physical_model import Carried, Placed, Placement
+from semantics.state.setting import Control, Scheduler, Setting
+from semantics.state.signature import REGION, Kind, Name, Signature
+from semantics.state.structure import Structure
 from semantics.successors import successors
 
 CHANNELS = ("control:g0", "control:g1", "wifi")

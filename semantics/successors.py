@@ -4,15 +4,15 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 
-from semantics.cells import QUEUE
-from semantics.configuration import Configuration, Transition
+from semantics.behaviours.expressions import Fault
 from semantics.environment import Clause
-from semantics.expressions import Fault
 from semantics.extension import EXTENSION, migrate, say, snd
-from semantics.monitor import marked
+from semantics.races.monitor import marked
 from semantics.rules import RULES, TIMED_RULES, Rule, actuate, command, commit, env, sense
-from semantics.setting import Control, Scheduler
-from semantics.signature import Name
+from semantics.state.cells import QUEUE
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.setting import Control, Scheduler
+from semantics.state.signature import Name
 
 SERVING: frozenset[Rule] = frozenset({sense, actuate, command, commit, snd, migrate})
 """The rules that serve a pending request; the others are an agent's own next step."""

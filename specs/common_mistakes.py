@@ -15,7 +15,7 @@ from typing import Final
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
 from specs.grammar import ACTION_WORDS, QUERY_WORDS, RESERVED, SECTIONS, STATEMENTS
-from specs.situation import Situation, Word, is_keyword, line_of, open_brackets
+from specs.parse_stop import Situation, Word, is_keyword, line_of, open_brackets
 from specs.syntax.nodes import Span
 
 _GEOMETRIES: Final = frozenset({"point", "box", "polygon", "circle"})

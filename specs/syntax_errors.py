@@ -10,7 +10,7 @@ from specs.codes import Code
 from specs.common_mistakes import MISTAKES
 from specs.diagnostics import Diagnostic
 from specs.grammar import ACTION_WORDS, QUERY_WORDS, SECTIONS, STATEMENTS, Run
-from specs.situation import Situation, line_of, situation
+from specs.parse_stop import Situation, line_of, situation
 from specs.text import Prepared
 
 # Groups of words that the user knows by one name: a word only they have, that name, their words and sorts.

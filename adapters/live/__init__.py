@@ -6,7 +6,7 @@ are to be told. `LiveRun` is the loop around it. Neither knows MAVLink, AIS or a
 
 from adapters.live.core import advance, is_over, resumed, started, watch
 from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, settle
-from adapters.live.saying import NobodyListens, listening, say
+from adapters.live.operator_socket import NobodyListens, listening, say
 from adapters.live.state import Batch, Finding, Heard, LiveState, LiveStep, Plan, Saying, Turn
 
 __all__ = [

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from adapters.live.sightings import Fences, contents
 from adapters.live.state import Plan
-from semantics.configuration import Configuration
 from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Vanishes
-from semantics.physical_model import Placement
-from semantics.signature import Name
+from semantics.state.configuration import Configuration
+from semantics.state.physical_model import Placement
+from semantics.state.signature import Name
 
 Relations = tuple[frozenset[Name], frozenset[Name]]
 """What contains an entity, and what it contains."""

@@ -9,16 +9,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from adapters.live.flying import remember
+from adapters.live.ingest import answer, take_in
 from adapters.live.limits import check_limits
 from adapters.live.serving import in_turn
 from adapters.live.state import Batch, LiveState, Plan, Turn
-from adapters.live.turning import Turning
-from adapters.live.watching import answer, take_in
-from semantics.configuration import Configuration
+from adapters.live.turn import Turning
 from semantics.environment import Says
-from semantics.parting import is_parted
-from semantics.requests import READY
-from semantics.signature import Name
+from semantics.state.configuration import Configuration
+from semantics.state.partition import is_parted
+from semantics.state.requests import READY
+from semantics.state.signature import Name
 
 MOST_STEPS = 400
 """How many steps one turn takes at the most."""

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 from adapters.live.serving import in_turn
 from adapters.live.state import Waiting
-from adapters.live.turning import Turning
-from semantics.precautions import Fallback, TimeLimit
-from semantics.requests import SND
-from semantics.signature import Name
+from adapters.live.turn import Turning
+from semantics.contingencies import Fallback, TimeLimit
+from semantics.state.requests import SND
+from semantics.state.signature import Name
 
 
 def check_limits(turning: Turning) -> None:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from adapters.plugin import Follow, GoTo, HandOver
 from physical import waypoint
-from semantics.configuration import Configuration
+from semantics.behaviours.reactions import CONTROL_AUTHORITY, moved, relinked
 from semantics.control import Realisation, commits
 from semantics.mobility import passed
-from semantics.physical_model import Carried, InTransit, Placed, placement_cell
-from semantics.reactions import CONTROL_AUTHORITY, moved, relinked
-from semantics.requests import CTR, FLY
-from semantics.signature import Name
+from semantics.state.configuration import Configuration
+from semantics.state.physical_model import Carried, InTransit, Placed, placement_cell
+from semantics.state.requests import CTR, FLY
+from semantics.state.signature import Name
 
 
 def journey(

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from adapters.live.state import Pace
-from semantics.configuration import Configuration, Transition
-from semantics.eta import Pending
 from semantics.extension import migrate, rcv_msg, req_mgr, req_snd, snd, spawn
-from semantics.requests import CTR, FLY, MGR, OBS, READY, SND
 from semantics.rules import Rule, actuate, command, fun, rcv_obs, req_ctr, req_obs, sense
-from semantics.signature import Name
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.eta import Pending
+from semantics.state.requests import CTR, FLY, MGR, OBS, READY, SND
+from semantics.state.signature import Name
 
 OWN: tuple[Rule, ...] = (fun, req_obs, rcv_obs, req_ctr, req_snd, rcv_msg, req_mgr, spawn)
 """The rules by which an agent goes on by itself; they take no turn."""

@@ -9,11 +9,11 @@ from functools import lru_cache
 from adapters.live.state import Heard, Plan, Sighting
 from adapters.plugin import Aged, Gone
 from physical import Geometry, PhysicalError, PhysicalProperty, translate_to
-from semantics.configuration import Configuration
-from semantics.physical_model import Carried, PhysicalModel, Placed, Placement, encloses
-from semantics.setting import Setting
-from semantics.signature import REGION, Name
-from semantics.statements import Spawn
+from semantics.behaviours.statements import Spawn
+from semantics.state.configuration import Configuration
+from semantics.state.physical_model import Carried, PhysicalModel, Placed, Placement, encloses
+from semantics.state.setting import Setting
+from semantics.state.signature import REGION, Name
 
 MOST_AHEAD = 5.0
 """Seconds by which a time stamp may lie in the future: clocks differ."""
@@ -166,7 +166,7 @@ def contents(physical: PhysicalModel, place: Name, placement: Placement | None) 
     """Return what a place contains if it stands so; what is in transit is nowhere."""
     if not isinstance(placement, Placed) or placement.geometry.is_point:
         return frozenset()
-    setting = physical.setting
+    setting = physical.sorting
     holding = setting.signature[setting.kind(place)].contains
     among = (name for name in physical.entities() if name != place and setting.kind(name) in holding)
     positions = ((name, physical.position(name)) for name in among if physical.transit(name) is None)

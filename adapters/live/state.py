@@ -8,13 +8,13 @@ from dataclasses import dataclass, field, replace
 
 from adapters.plugin import Command, Follow, GoTo, HandOver, Published, Report
 from physical import PhysicalProperty
-from semantics.cells import Cell
-from semantics.configuration import Configuration, Transition
+from semantics.contingencies import Precautions
 from semantics.observed import Sight
-from semantics.parting import Elsewhere, Parcel
-from semantics.precautions import Precautions
-from semantics.requests import Request
-from semantics.signature import Name
+from semantics.state.cells import Cell
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.partition import Elsewhere, Parcel
+from semantics.state.requests import Request
+from semantics.state.signature import Name
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,8 +8,8 @@ from typing import Any
 from adapters.live.state import Finding, Heard, LiveStep
 from adapters.plugin import Aged, Command, Gone, Report
 from physical import Band, Geometry, PhysicalProperty
-from semantics.canonical import digest_of_step
-from semantics.plain import sight_json
+from semantics.state.canonical import digest_of_step
+from semantics.state.serialization import sight_json
 
 
 def arrival_json(heard: Heard) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from adapters.live.orders import is_authority, is_done
 from adapters.plugin import HandOver, Published
 from adapters.stations.entries import Said
 from adapters.stations.merge import channels_of
-from semantics.reactions import CONTROL_AUTHORITY
+from semantics.behaviours.reactions import CONTROL_AUTHORITY
 
 LASTING: Final = 12.0
 """Seconds after which a link has read anew whom its vehicle obeys, though one answer may be lost."""

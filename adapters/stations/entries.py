@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from adapters.plugin import Aged, Gone, Published
 from physical import PhysicalProperty, Velocity, is_word
-from semantics.plain import band_of, geometry_json, geometry_of
+from semantics.state.serialization import band_of, geometry_json, geometry_of
 
 MOST_BYTES: Final = 256 * 1024
 """The longest entry, as text."""

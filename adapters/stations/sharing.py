@@ -51,11 +51,11 @@ from adapters.stations.entries import (
 from adapters.stations.journal import Journal
 from adapters.stations.merge import MOST_ENTITIES, Merge, channels_of, on
 from adapters.stations.messages import MOST_ENTRIES, Message, fitting, read, written
-from adapters.stations.others import Other
+from adapters.stations.outgoing import believed, entered, moved, told
 from adapters.stations.peers import Peers
+from adapters.stations.remote_station import Other
 from adapters.stations.shared import Shared
 from adapters.stations.skew import measured
-from adapters.stations.telling import believed, entered, moved, told
 from adapters.troubles import Troubles
 
 NAME: Final = "stations"

@@ -2,7 +2,7 @@
 
 from argparse import Namespace
 
-from adapters.live.saying import give_back
+from adapters.live.operator_socket import give_back
 from bigactors.commands.say import heard_at
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake

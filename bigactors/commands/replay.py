@@ -20,9 +20,9 @@ from bigactors.routes import write_route
 from bigactors.terminal import is_terminal, paint, say, tell
 from bigraphs import draw_text
 from checker import ReplayError, Trace, print_loop, print_trace, replay
-from semantics.abstraction import as_it_is
-from semantics.monitor import monitored
-from semantics.printing import print_configuration
+from semantics.races.monitor import monitored
+from semantics.state.abstraction import as_it_is
+from semantics.state.printing import print_configuration
 from specs.elaboration import ElaboratedMission
 
 Open = Callable[[str], ElaboratedMission]

@@ -14,7 +14,7 @@ from typing import Any
 
 from adapters.live.core import resumed, started
 from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, settle
-from adapters.live.saying import listening
+from adapters.live.operator_socket import listening
 from adapters.live.state import Finding, LiveState, Plan, Said
 from adapters.live.watchers import Watcher
 from adapters.plugin import Plugin
@@ -33,7 +33,7 @@ from bigactors.stations import Company, company_of, parting_json
 from bigactors.terminal import paint, say, tell
 from bigactors.verdict_files import Licence, find_verdict, licence_for
 from bigactors.watchers import Log, Tape, Terminal
-from semantics.setting import Control, Scheduler
+from semantics.state.setting import Control, Scheduler
 from specs.elaboration import ElaboratedMission, Variation
 
 

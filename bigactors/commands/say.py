@@ -6,8 +6,8 @@ from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import Any
 
-from adapters.live.saying import NobodyListens
-from adapters.live.saying import say as send
+from adapters.live.operator_socket import NobodyListens
+from adapters.live.operator_socket import say as send
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.sockets import only_socket

@@ -12,9 +12,9 @@ from bigactors.missions import open_mission, opening, variation_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
 from checker import ReplayError, Trace, print_loop
-from checker.comparison import comparison_text
-from checker.lanes import lanes_of_trace, lanes_text
-from semantics.printing import print_configuration
+from checker.reports.comparison import comparison_text
+from checker.reports.lanes import lanes_of_trace, lanes_text
+from semantics.state.printing import print_configuration
 
 PAGES = (".html", ".htm")
 NARROW, WIDE = 80, 200

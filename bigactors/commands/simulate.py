@@ -10,8 +10,8 @@ from bigactors.files import json_text, write_json
 from bigactors.missions import digest_of, open_mission, variation_of
 from bigactors.terminal import say, say_text, tell
 from checker import Step, Trace, to_json
-from semantics.configuration import Configuration
-from semantics.printing import print_changes, print_configuration
+from semantics.state.configuration import Configuration
+from semantics.state.printing import print_changes, print_configuration
 from semantics.successors import Expansion, expand
 
 

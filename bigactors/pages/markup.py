@@ -2,7 +2,7 @@
 
 from html import escape
 
-from checker.results import clean
+from checker.reports.results import clean
 
 
 def text(words: object) -> str:

@@ -5,7 +5,7 @@ from typing import Final
 
 from bigactors.pictures import Panels, Picture
 from checker import Trace
-from semantics.configuration import Configuration
+from semantics.state.configuration import Configuration
 
 MOST_PICTURES: Final = 100
 """The most configurations that are drawn; of a longer trace the last ones."""

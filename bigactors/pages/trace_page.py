@@ -11,9 +11,9 @@ from bigactors.pages.story import Frame, Story, frames_of, latest
 from bigactors.pictures import Look, Picture, channels_of, look_of, shown_names
 from bigraphs import draw_text
 from bigraphs.drawing import HIGHLIGHT
-from checker.lanes import Lanes, LaneStep, lanes_of_trace
+from checker.reports.lanes import Lanes, LaneStep, lanes_of_trace
 from physical.map_style import MARK
-from semantics.printing import print_agent
+from semantics.state.printing import print_agent
 
 LARGEST: Final = 1.35
 """Pixels for a point of a picture, at the most."""

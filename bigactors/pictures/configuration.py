@@ -22,9 +22,9 @@ from bigraphs.layout import Layout, layout
 from physical.drawing import draw_map
 from physical.map_marks import draw_halo, draw_icon, draw_mark
 from physical.map_style import INK, MARK, QUIET, SQUARE, kind_shapes, shortened, text_width
-from semantics.configuration import Configuration
-from semantics.printing import print_agent
-from semantics.signature import Name
+from semantics.state.configuration import Configuration
+from semantics.state.printing import print_agent
+from semantics.state.signature import Name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,7 +12,7 @@ from bigraphs.drawing import MARGIN as BIGRAPH_MARGIN
 from bigraphs.layout import layout
 from physical.drawing import MapEntity, draw_map
 from physical.shape import Geometry
-from semantics.configuration import Configuration
+from semantics.state.configuration import Configuration
 
 MAP: Final = (600.0, 400.0)
 LATITUDES: Final = 46.0

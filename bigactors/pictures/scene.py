@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from bigraphs.bigraph import points
 from bigraphs.drawing import KINDS, LINKS
 from physical.drawing import MapEntity
-from semantics.configuration import Configuration
 from semantics.environment import Appears, Drifts
-from semantics.physical_model import Carried, InTransit
-from semantics.signature import REGION, Name
+from semantics.state.configuration import Configuration
+from semantics.state.physical_model import Carried, InTransit
+from semantics.state.signature import REGION, Name
 
 
 @dataclass(frozen=True, slots=True)

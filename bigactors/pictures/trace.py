@@ -8,9 +8,9 @@ from typing import Final
 
 from bigactors.pictures.configuration import draw_configuration
 from bigactors.pictures.page import Page, plain_style, wrapped
-from checker.lanes import Lanes, LaneStep, lanes_of
+from checker.reports.lanes import Lanes, LaneStep, lanes_of
 from physical.map_style import INK, QUIET
-from semantics.configuration import Configuration, Label
+from semantics.state.configuration import Configuration, Label
 
 MARGIN: Final = 26.0
 NUMBERS: Final = 30.0

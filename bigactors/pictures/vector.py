@@ -11,7 +11,7 @@ from html import escape
 from io import StringIO
 from typing import TYPE_CHECKING, Final
 
-from checker.results import clean
+from checker.reports.results import clean
 from physical.map_style import text_width
 
 if TYPE_CHECKING:

@@ -20,18 +20,18 @@ from checker.reduction.marks import Marks
 from checker.reduction.messages import Known, message_of
 from checker.reduction.roles import Roles
 from checker.reduction.slots import NOTHING, Footprint, joined
-from semantics.agents import Code, code_cell, host_cell
-from semantics.cells import Cell
-from semantics.configuration import Configuration, Label
+from semantics.behaviours.expressions import Fault
+from semantics.behaviours.program import reachable
+from semantics.behaviours.reactions import Reaction
+from semantics.behaviours.statements import ControlBy, Migrate, Observe, React, Send, Spawn, Statement
 from semantics.environment import Says
-from semantics.eta import line_cell, sends_cell
-from semantics.expressions import Fault
-from semantics.program import reachable
-from semantics.reactions import Reaction
-from semantics.requests import CTR, FLY, MGR, OBS, READY, SND, Received, Request
-from semantics.setting import Scheduler
-from semantics.signature import Name
-from semantics.statements import ControlBy, Migrate, Observe, React, Send, Spawn, Statement
+from semantics.state.agents import Code, code_cell, host_cell
+from semantics.state.cells import Cell
+from semantics.state.configuration import Configuration, Label
+from semantics.state.eta import line_cell, sends_cell
+from semantics.state.requests import CTR, FLY, MGR, OBS, READY, SND, Received, Request
+from semantics.state.setting import Scheduler
+from semantics.state.signature import Name
 
 Requests = tuple[Request, ...]
 

@@ -7,11 +7,11 @@ says why nothing is lost by it, and which properties it is refused for.
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from enum import Enum
 
-from checker.inspections import is_unfair
+from checker.properties.inspections import is_unfair
 from checker.reduction.actors import Acting, Actor, Actors
 from checker.reduction.visible import Eyes
-from semantics.configuration import Configuration, Transition
-from semantics.propositions import Proposition
+from semantics.properties.propositions import Proposition
+from semantics.state.configuration import Configuration, Transition
 from semantics.successors import Expansion, by_clause
 
 Later = Callable[[Transition], bool]

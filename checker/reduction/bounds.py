@@ -3,10 +3,10 @@
 from collections.abc import Callable, Iterable
 from functools import cache
 
-from semantics.configuration import Configuration
 from semantics.environment import Appears, Drops
-from semantics.physical_model import Carried, InTransit
-from semantics.signature import REGION, Name
+from semantics.state.configuration import Configuration
+from semantics.state.physical_model import Carried, InTransit
+from semantics.state.signature import REGION, Name
 
 Names = frozenset[Name]
 

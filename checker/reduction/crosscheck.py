@@ -10,8 +10,8 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from checker.fast.recording import Ask, Asked, Conclusion, Recorder, Source
-from checker.fast.values import settled
+from checker.engines.fast.recording import Ask, Asked, Conclusion, Recorder, Source
+from checker.engines.fast.skeletons import settled
 from checker.reduction.actors import Acting, Actor, Actors
 from checker.reduction.ample import Ample, disturbed
 from checker.reduction.marks import ANSWERS, MARKS, slot_of_mark
@@ -19,22 +19,22 @@ from checker.reduction.messages import Known
 from checker.reduction.renaming import Renaming
 from checker.reduction.slots import NOTHING, Footprint, Slot
 from checker.reduction.symmetry import Symmetry
-from semantics.agents import Watch, mailbox_cell, watch_cell
-from semantics.cells import MONITOR, Cell, Changes, Row, has, is_something
-from semantics.configuration import Configuration, Label, Transition
+from semantics.behaviours.expressions import Fault
+from semantics.behaviours.observations import Fact
 from semantics.control import applicable, obstacle
-from semantics.expressions import Fault
 from semantics.extension import say, spawn
-from semantics.monitor import marked, slots_used
-from semantics.physical_model import is_aboard
-from semantics.printing import print_configuration
-from semantics.propositions import Proposition, holds
-from semantics.provenance import Dependency, Key
-from semantics.queries import Fact
-from semantics.relevance import questions_of, relevant, slots_of
-from semantics.requests import CTR, FLY, READY, SND
+from semantics.properties.propositions import Proposition, holds
+from semantics.races.monitor import marked, slots_used
+from semantics.races.provenance import Dependency, Key
+from semantics.races.relevance import questions_of, relevant, slots_of
 from semantics.rules import env, rcv_obs
-from semantics.signature import REGION, Name
+from semantics.state.agents import Watch, mailbox_cell, watch_cell
+from semantics.state.cells import MONITOR, Cell, Changes, Row, has, is_something
+from semantics.state.configuration import Configuration, Label, Transition
+from semantics.state.physical_model import is_aboard
+from semantics.state.printing import print_configuration
+from semantics.state.requests import CTR, FLY, READY, SND
+from semantics.state.signature import REGION, Name
 from semantics.successors import SERVING, by_clause, expand, rules_of, steps
 
 Rule = Callable[[Configuration, Any], Iterable[Transition]]

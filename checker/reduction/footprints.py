@@ -10,13 +10,20 @@ from checker.reduction.bounds import Bounds, Names
 from checker.reduction.messages import Known, Message, wakes
 from checker.reduction.roles import Roles
 from checker.reduction.slots import NOTHING, Footprint, Slot, Slots
+from semantics.behaviours.observations import All, Nodes, Query
+from semantics.behaviours.reactions import (
+    LinkTerm,
+    NodeTerm,
+    NodeVariable,
+    PlaceTerm,
+    PlaceVariable,
+    Reaction,
+)
+from semantics.behaviours.statements import React
 from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
-from semantics.physical_model import Carried
-from semantics.queries import All, Nodes, Query
-from semantics.reactions import LinkTerm, NodeTerm, NodeVariable, PlaceTerm, PlaceVariable, Reaction
-from semantics.setting import Scheduler
-from semantics.signature import REGION, Name
-from semantics.statements import React
+from semantics.state.physical_model import Carried
+from semantics.state.setting import Scheduler
+from semantics.state.signature import REGION, Name
 
 AGENTS: Slot = ("agents",)
 

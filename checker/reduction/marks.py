@@ -1,9 +1,9 @@
 """What the race monitor's memory adds to footprints: who marks what others rest on, and who passes it on.
 
-A control marks what it changes in all that others rest on (`semantics.monitor.marked`), and in what its own agent may
-tell of. Whatever an agent does with that (test it, pass it on, forget it, ask for more) ends otherwise before a mark
-than after it, so it reads the marks that may be made there. Marks of two controls are put into sets, so they commute,
-if neither control changes what the other's marks are worked out from.
+A control marks what it changes in all that others rest on (`semantics.races.monitor.marked`), and in what its own
+agent may tell of. Whatever an agent does with that (test it, pass it on, forget it, ask for more) ends otherwise
+before a mark than after it, so it reads the marks that may be made there. Marks of two controls are put into sets, so
+they commute, if neither control changes what the other's marks are worked out from.
 """
 
 from collections.abc import Iterable, Iterator
@@ -11,19 +11,19 @@ from functools import cache
 
 from checker.reduction.bounds import Names
 from checker.reduction.footprints import Footprints
+from checker.reduction.informants import tellers
 from checker.reduction.slots import NOTHING, Footprint, Slot, joined
-from checker.reduction.tellers import tellers
-from semantics.agents import Code, Watch, watch_cell
-from semantics.cells import MONITOR
-from semantics.configuration import Configuration
-from semantics.eta import line_cell, sends_cell
-from semantics.program import reachable
-from semantics.provenance import SLOT, Key, Provenance
-from semantics.queries import Nodes, Of, Query
-from semantics.relevance import ANY, Questions, anybodys, hosts_of, questions_in, slots_of, tells
-from semantics.requests import CTR, FLY, OBS, SND, Request
-from semantics.signature import Name
-from semantics.statements import Observe
+from semantics.behaviours.observations import Nodes, Of, Query
+from semantics.behaviours.program import reachable
+from semantics.behaviours.statements import Observe
+from semantics.races.provenance import SLOT, Key, Provenance
+from semantics.races.relevance import ANY, Questions, anybodys, hosts_of, questions_in, slots_of, tells
+from semantics.state.agents import Code, Watch, watch_cell
+from semantics.state.cells import MONITOR
+from semantics.state.configuration import Configuration
+from semantics.state.eta import line_cell, sends_cell
+from semantics.state.requests import CTR, FLY, OBS, SND, Request
+from semantics.state.signature import Name
 
 ANSWERS = "answers"
 """Marks on answers to queries; those on slots of A(P) are told apart by what they are about."""

@@ -3,12 +3,12 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from semantics.expressions import Expression, Literal, TupleOf
-from semantics.patterns import Anything, Elements, Exactly, Pattern, bind
-from semantics.program import Program
-from semantics.queries import Observation
-from semantics.statements import React
-from semantics.values import Value
+from semantics.behaviours.expressions import Expression, Literal, TupleOf
+from semantics.behaviours.observations import Observation
+from semantics.behaviours.patterns import Anything, Elements, Exactly, Pattern, bind
+from semantics.behaviours.program import Program
+from semantics.behaviours.statements import React
+from semantics.behaviours.values import Value
 
 
 @dataclass(frozen=True, slots=True)

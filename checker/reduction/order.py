@@ -5,12 +5,12 @@ from dataclasses import fields, is_dataclass
 from typing import Any
 
 from checker.reduction.messages import Unknown, may_take
-from semantics.configuration import Configuration
+from semantics.behaviours.expressions import Apply, Literal
+from semantics.behaviours.patterns import Exactly
+from semantics.behaviours.statements import ChooseFrom, Display, For, ForEach, React, Send
 from semantics.environment import Says
-from semantics.expressions import Apply, Literal
-from semantics.patterns import Exactly
-from semantics.setting import Scheduler
-from semantics.statements import ChooseFrom, Display, For, ForEach, React, Send
+from semantics.state.configuration import Configuration
+from semantics.state.setting import Scheduler
 
 
 def ordered(c: Configuration) -> str | None:

@@ -3,13 +3,14 @@
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 
-from checker.exploration import Exploration
+from checker.engines.contract import Exploration
 from checker.reduction.ample import Ample, Proviso
 from checker.reduction.refusals import Reduction, refusal, refuse_partial_order, refuse_symmetry
 from checker.reduction.renaming import Renaming
 from checker.reduction.symmetry import Symmetry
-from semantics.configuration import Configuration, Transition
-from semantics.propositions import Property, Proposition
+from semantics.properties.property import Property
+from semantics.properties.propositions import Proposition
+from semantics.state.configuration import Configuration, Transition
 from semantics.successors import Expansion, expand
 
 

@@ -2,9 +2,9 @@
 
 from enum import Enum
 
-from semantics.configuration import Configuration
-from semantics.propositions import Property
-from semantics.setting import Scheduler
+from semantics.properties.property import Property
+from semantics.state.configuration import Configuration
+from semantics.state.setting import Scheduler
 
 
 class Reduction(Enum):

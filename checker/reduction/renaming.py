@@ -11,15 +11,15 @@ from functools import cached_property
 from typing import Any
 
 from physical import Geometry
-from semantics.cells import AGENTS, NAMES, Cell, Changes, Row
-from semantics.configuration import Configuration
-from semantics.physical_model import Carried, InTransit, Placed
-from semantics.program import VariableOf
-from semantics.queries import All, Nodes, Observation, Of, Swept
-from semantics.reactions import LinkVariable, Match, NodeVariable, Pattern, PlaceVariable, Reaction
-from semantics.requests import request_key
-from semantics.setting import Scheduler
-from semantics.values import Truth, order_key
+from semantics.behaviours.observations import All, Nodes, Observation, Of, Swept
+from semantics.behaviours.program import VariableOf
+from semantics.behaviours.reactions import LinkVariable, Match, NodeVariable, Pattern, PlaceVariable, Reaction
+from semantics.behaviours.values import Truth, order_key
+from semantics.state.cells import AGENTS, NAMES, Cell, Changes, Row
+from semantics.state.configuration import Configuration
+from semantics.state.physical_model import Carried, InTransit, Placed
+from semantics.state.requests import request_key
+from semantics.state.setting import Scheduler
 
 WORD = re.compile(r"[^\W\d]\w*")
 

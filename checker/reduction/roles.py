@@ -9,8 +9,7 @@ from dataclasses import dataclass, field
 
 from checker.reduction.bounds import Bounds, Names, reached
 from checker.reduction.messages import may_take, message_of
-from semantics.environment import Says
-from semantics.expressions import (
+from semantics.behaviours.expressions import (
     Apply,
     Expression,
     Host,
@@ -21,12 +20,10 @@ from semantics.expressions import (
     TupleOf,
     Variable,
 )
-from semantics.patterns import Anything, Elements, Pattern, variables
-from semantics.program import reachable
-from semantics.queries import All, Nodes, Of, Query
-from semantics.requests import MGR, SND
-from semantics.signature import REGION, Name
-from semantics.statements import (
+from semantics.behaviours.observations import All, Nodes, Of, Query
+from semantics.behaviours.patterns import Anything, Elements, Pattern, variables
+from semantics.behaviours.program import reachable
+from semantics.behaviours.statements import (
     Assign,
     Call,
     ChooseFrom,
@@ -39,7 +36,10 @@ from semantics.statements import (
     Spawn,
     Statement,
 )
-from semantics.values import Truth
+from semantics.behaviours.values import Truth
+from semantics.environment import Says
+from semantics.state.requests import MGR, SND
+from semantics.state.signature import REGION, Name
 
 
 @dataclass(slots=True)

@@ -13,15 +13,15 @@ from itertools import combinations, groupby, permutations, product
 from math import factorial, prod
 from typing import Any
 
-from checker.reduction.alike import UNLIKE_TEXTS, Pairing, Unlike, is_invariant, transposition
+from checker.reduction.automorphisms import UNLIKE_TEXTS, Pairing, Unlike, is_invariant, transposition
 from checker.reduction.order import ordered
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.reduction.renaming import Renaming, mentioned, spelled
-from semantics.cells import AGENTS, NAMES, Cell, Row
-from semantics.configuration import Configuration
-from semantics.propositions import Proposition
-from semantics.setting import Scheduler
-from semantics.signature import Name
+from semantics.properties.propositions import Proposition
+from semantics.state.cells import AGENTS, NAMES, Cell, Row
+from semantics.state.configuration import Configuration
+from semantics.state.setting import Scheduler
+from semantics.state.signature import Name
 
 MOST_ORDERS = 120
 """Orders of members of which the same is said that are tried for one configuration."""

@@ -5,13 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from checker.reduction.bounds import Bounds
-from semantics.agents import code_cell, host_cell, is_over, store_cell
-from semantics.cells import AGENTS, Cell, Question, has, is_something
-from semantics.configuration import Configuration
-from semantics.eta import line_cell, sends_cell
-from semantics.logical_model import links_cell, parent_cell
-from semantics.physical_model import channels_cell, down_cell, placement_cell
-from semantics.propositions import (
+from semantics.behaviours.stepping import waits
+from semantics.properties.propositions import (
     And,
     Ended,
     HasPending,
@@ -28,8 +23,13 @@ from semantics.propositions import (
     Waiting,
     is_true_of,
 )
-from semantics.signature import REGION, Name
-from semantics.stepping import waits
+from semantics.state.agents import code_cell, host_cell, is_over, store_cell
+from semantics.state.cells import AGENTS, Cell, Question, has, is_something
+from semantics.state.configuration import Configuration
+from semantics.state.eta import line_cell, sends_cell
+from semantics.state.logical_model import links_cell, parent_cell
+from semantics.state.physical_model import channels_cell, down_cell, placement_cell
+from semantics.state.signature import REGION, Name
 
 
 @dataclass(frozen=True, slots=True)

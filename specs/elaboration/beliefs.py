@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from semantics.configuration import Configuration
-from semantics.initial import Beliefs
-from semantics.signature import REGION
+from semantics.state.configuration import Configuration
+from semantics.state.initial import Beliefs
+from semantics.state.signature import REGION
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import a

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from semantics.expressions import Expression, Literal
-from semantics.program import Behaviour, Program
-from semantics.reactions import COMMANDS
-from semantics.statements import Loop
+from semantics.behaviours.expressions import Expression, Literal
+from semantics.behaviours.program import Behaviour, Program
+from semantics.behaviours.reactions import COMMANDS
+from semantics.behaviours.statements import Loop
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.commands import Checked

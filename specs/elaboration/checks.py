@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Final, TypeVar
 
-from semantics.program import Program
-from semantics.propositions import Property
-from semantics.setting import Control, Scheduler
+from semantics.behaviours.program import Program
+from semantics.properties.property import Property
+from semantics.state.setting import Control, Scheduler
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.bodies import Bodies

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from semantics.expressions import Fault
-from semantics.reactions import Reaction
-from semantics.signature import Name
-from semantics.values import Value, show
+from semantics.behaviours.expressions import Fault
+from semantics.behaviours.reactions import Reaction
+from semantics.behaviours.values import Value, show
+from semantics.state.signature import Name
 
 
 @dataclass(frozen=True, slots=True, eq=False)

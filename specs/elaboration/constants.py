@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from semantics.values import Truth, Value
+from semantics.behaviours.values import Truth, Value
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import shorten

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Final
 
 from physical import Geometry, PhysicalError, area, band_contains, nearest_placement
-from semantics.expressions import Expression, Host, Literal
-from semantics.physical_model import Placed
-from semantics.reactions import NodeVariable
+from semantics.behaviours.expressions import Expression, Host, Literal
+from semantics.behaviours.reactions import NodeVariable
+from semantics.state.physical_model import Placed
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.bodies import Bodies, body_key, possible_hosts

@@ -8,7 +8,7 @@ from typing import Final
 
 from physical import Geometry, PhysicalError, band_contains, drift_faces, face_at
 from semantics.environment import Drifts
-from semantics.physical_model import Carried, Placed
+from semantics.state.physical_model import Carried, Placed
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import shorten

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 from semantics.environment import Appears, Clause, Drops, Leaves, Says, Vanishes
-from semantics.physical_model import Carried, Placed
+from semantics.state.physical_model import Carried, Placed
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.constants import elaborate_constant

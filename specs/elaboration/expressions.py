@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from semantics.expressions import (
+from semantics.behaviours.expressions import (
     OPERATORS,
     Apply,
     Either,
@@ -17,7 +17,7 @@ from semantics.expressions import (
     TupleOf,
     Variable,
 )
-from semantics.values import Truth
+from semantics.behaviours.values import Truth
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import Findings

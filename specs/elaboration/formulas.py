@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from semantics.program import Program, VariableOf
-from semantics.propositions import (
+from semantics.behaviours.program import Program, VariableOf
+from semantics.behaviours.values import Value, show
+from semantics.properties.propositions import (
     ORDERS,
     Always,
     And,
@@ -25,8 +26,7 @@ from semantics.propositions import (
     VariableIs,
     Waiting,
 )
-from semantics.signature import REGION
-from semantics.values import Value, show
+from semantics.state.signature import REGION
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.bodies import Bodies

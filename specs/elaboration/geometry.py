@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from physical import Band, Geometry, PhysicalError, box, centroid, circle, point, polygon, translate_to
-from semantics.physical_model import Placed
+from semantics.state.physical_model import Placed
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import Findings

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from semantics.precautions import Fallback, Precautions, TimeLimit
+from semantics.contingencies import Fallback, Precautions, TimeLimit
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.names import Names

@@ -8,12 +8,12 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
-from semantics.configuration import Configuration
-from semantics.initial import initial
-from semantics.precautions import Precautions
-from semantics.propositions import Property, watched
-from semantics.setting import Control, Scheduler, Setting
-from semantics.signature import Name
+from semantics.contingencies import Precautions
+from semantics.properties.property import Property, watched
+from semantics.state.configuration import Configuration
+from semantics.state.initial import initial
+from semantics.state.setting import Control, Scheduler, Setting
+from semantics.state.signature import Name
 from specs import syntax as s
 from specs.codes import Code
 from specs.diagnostics import Diagnostic, MissionError, Source

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
-from semantics.reactions import COMMANDS
-from semantics.signature import REGION, Signature
+from semantics.behaviours.reactions import COMMANDS
+from semantics.state.signature import REGION, Signature
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import Findings, a

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from semantics.patterns import Anything, Elements, Exactly, Pattern
+from semantics.behaviours.patterns import Anything, Elements, Exactly, Pattern
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.constants import elaborate_constant

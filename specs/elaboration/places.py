@@ -9,7 +9,7 @@ from physical import Geometry, Place, check_places
 from physical.measure import metres_text
 from physical.outliers import is_swapped, outliers
 from semantics.environment import Appears, Clause, Drifts
-from semantics.physical_model import Carried, Placed
+from semantics.state.physical_model import Carried, Placed
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.names import Names

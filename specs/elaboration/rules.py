@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from bigraphs.notation.paper import NodeTerm as WrittenNode
 from bigraphs.notation.paper import RegionTerm, RuleTerm, SiteTerm
-from semantics.reactions import LinkTerm, LinkVariable, NodeTerm, NodeVariable, Pattern, PlaceTerm
+from semantics.behaviours.reactions import LinkTerm, LinkVariable, NodeTerm, NodeVariable, Pattern, PlaceTerm
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import a

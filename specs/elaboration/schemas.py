@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
-from semantics.expressions import Fault
-from semantics.reactions import NodeTerm, NodeVariable, Pattern, PlaceTerm, PlaceVariable, Reaction
-from semantics.signature import Name
-from semantics.values import Value, show
+from semantics.behaviours.expressions import Fault
+from semantics.behaviours.reactions import NodeTerm, NodeVariable, Pattern, PlaceTerm, PlaceVariable, Reaction
+from semantics.behaviours.values import Value, show
+from semantics.state.signature import Name
 from specs import syntax as s
 
 HOST: Final = "HOST"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from semantics.signature import Kind, Signature
+from semantics.state.signature import Kind, Signature
 from specs import syntax as s
 from specs.elaboration.names import Names
 

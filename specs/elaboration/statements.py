@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Final
 
-from semantics import statements as k
-from semantics.expressions import Expression, Variable
+from semantics.behaviours import statements as k
+from semantics.behaviours.expressions import Expression, Variable
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.expressions import (
@@ -25,7 +25,7 @@ from specs.elaboration.regions import regions_of
 from specs.elaboration.rules import elaborate_rule, word_of
 from specs.elaboration.schemas import HOST, Parameter, Schema
 from specs.elaboration.scopes import Scope, Variables
-from specs.elaboration.ways import check_way
+from specs.elaboration.via import check_way
 
 _FILLED_LATER: Final = k.Tested()
 """Keeps the place of a statement until its blocks are numbered."""

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Final
 
-from semantics import temporal as t
-from semantics.propositions import Always, Property
-from semantics.setting import Control
+from semantics.properties import temporal as t
+from semantics.properties.property import Property
+from semantics.properties.propositions import Always
+from semantics.state.setting import Control
 from semantics.successors import rules_of
 from specs import syntax as s
 from specs.codes import Code

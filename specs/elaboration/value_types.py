@@ -5,12 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Final
 
-from semantics.expressions import Apply, Either, Expression, Host, Literal, Self, SetOf, TupleOf, Variable
-from semantics.patterns import Anything, variables
-from semantics.program import Program
-from semantics.queries import Observation
-from semantics.statements import Assign, Call, ChooseFrom, ForEach, Match, React, Spawn, Statement
-from semantics.values import Truth
+from semantics.behaviours.expressions import (
+    Apply,
+    Either,
+    Expression,
+    Host,
+    Literal,
+    Self,
+    SetOf,
+    TupleOf,
+    Variable,
+)
+from semantics.behaviours.observations import Observation
+from semantics.behaviours.patterns import Anything, variables
+from semantics.behaviours.program import Program
+from semantics.behaviours.statements import Assign, Call, ChooseFrom, ForEach, Match, React, Spawn, Statement
+from semantics.behaviours.values import Truth
 
 Types = frozenset[type]
 

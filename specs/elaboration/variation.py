@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from semantics.setting import Control, Scheduler
+from semantics.state.setting import Control, Scheduler
 
 
 @dataclass(frozen=True, slots=True)

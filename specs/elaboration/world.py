@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from physical import centroid, point
-from semantics.physical_model import Carried, Placed, Placement
+from semantics.state.physical_model import Carried, Placed, Placement
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.files import Library, read_source

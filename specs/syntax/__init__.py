@@ -58,20 +58,31 @@ from specs.syntax.expressions import (
     UnaryOperation,
 )
 from specs.syntax.formulas import (
+    SIGNS,
     Connective,
+    Enabled,
     Ended,
+    Fairness,
     Formula,
     HasValue,
     HostedAt,
     Inside,
     Known,
+    LeadsTo,
     LinkedTo,
     Negation,
+    PathOperation,
+    PathPrefix,
+    PathQuantifier,
     Pending,
     Present,
+    Progress,
     Quantified,
     SameName,
+    Steps,
     Stored,
+    Taken,
+    TemporalProperty,
     Waiting,
 )
 from specs.syntax.live import Duration, Live, OnBroken, Precaution, TimeLimit
@@ -115,19 +126,6 @@ from specs.syntax.statements import (
     Spawn,
     Statement,
     While,
-)
-from specs.syntax.temporal import (
-    SIGNS,
-    Enabled,
-    Fairness,
-    LeadsTo,
-    PathOperation,
-    PathPrefix,
-    PathQuantifier,
-    Progress,
-    Steps,
-    Taken,
-    TemporalProperty,
 )
 from specs.syntax.world import (
     AltitudeBand,

@@ -7,11 +7,10 @@ from typing import TypeAlias, TypeVar
 
 from specs.syntax.actions import RuleBody
 from specs.syntax.expressions import Expression, TextLiteral
-from specs.syntax.formulas import Formula
+from specs.syntax.formulas import Formula, Progress, TemporalProperty
 from specs.syntax.live import Live
 from specs.syntax.nodes import Name, Node
 from specs.syntax.statements import Statement
-from specs.syntax.temporal import Progress, TemporalProperty
 from specs.syntax.world import Believes, Placement, Signature, World
 
 # --- rules, behaviours, bigActors

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from worlds import AREA, HOME, ROUND, World, running, until
 
-from adapters.live.saying import give_back, say
+from adapters.live.operator_socket import give_back, say
 from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.codec import Encoder
 from adapters.mavlink.command import long, set_parameter

@@ -5,7 +5,7 @@ from scripts import BENCHMARKS, script
 
 from checker import Reduction, explore
 from checker.reduction import Reduced
-from semantics.monitor import monitored
+from semantics.races.monitor import monitored
 from specs.elaboration import load_mission
 
 rendezvous = script("rendezvous")

@@ -1,15 +1,15 @@
 """A mission of two places, a UAV, a station and a vessel with its drifter, and one run of it."""
 
 from physical import box, circle, point
-from semantics.expressions import Host, Literal, QueryOf
-from semantics.initial import initial
-from semantics.patterns import Anything
-from semantics.physical_model import Carried, Placed
-from semantics.program import Program
-from semantics.reactions import COMMANDS
-from semantics.setting import Control, Setting
-from semantics.signature import Kind, Signature
-from semantics.statements import Case, ControlBy, Observe, React
+from semantics.behaviours.expressions import Host, Literal, QueryOf
+from semantics.behaviours.patterns import Anything
+from semantics.behaviours.program import Program
+from semantics.behaviours.reactions import COMMANDS
+from semantics.behaviours.statements import Case, ControlBy, Observe, React
+from semantics.state.initial import initial
+from semantics.state.physical_model import Carried, Placed
+from semantics.state.setting import Control, Setting
+from semantics.state.signature import Kind, Signature
 from semantics.successors import successors
 
 MOVERS = frozenset({"OilSpill", "UAV", "Vessel", "Station", "Drifter"})

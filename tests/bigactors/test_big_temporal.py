@@ -1,12 +1,11 @@
 import networkx as nx
 import pytest
 
-from bigactors.big_checks import Run, Step
 from bigactors.big_temporal import Decider, graph_of
 from bigraphs.examples import example_names, example_text
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system
-from bigraphs.verdicts import Outcome
+from bigraphs.verdicts import Outcome, Run, Step
 
 HOLDS, VIOLATED, INCOMPLETE = Outcome.HOLDS, Outcome.VIOLATED, Outcome.INCOMPLETE
 

@@ -10,7 +10,7 @@ from processes import begun
 
 from bigactors import checking, evidence
 from bigactors.commands import check as command
-from checker.report import MARKS
+from checker.reports.report import MARKS
 
 
 @pytest.mark.usefixtures("missions")

@@ -9,7 +9,7 @@ from jsonschema.exceptions import ValidationError
 from referencing import Registry, Resource
 
 from bigactors.checking import FAILURE_SCHEMA, REPORTS_SCHEMA
-from checker.report import SCHEMA as REPORT
+from checker.reports.report import SCHEMA as REPORT
 from checker.traces import SCHEMA as TRACE
 
 DOCS = Path(__file__).parents[2] / "docs"

@@ -7,7 +7,7 @@ import pytest
 from bigactors.missions import canonical, digest_of, locate, open_mission, shipped_missions
 from bigactors.mistakes import Mistake
 from physical import circle
-from semantics.setting import Control, Scheduler
+from semantics.state.setting import Control, Scheduler
 from specs.elaboration import Variation
 
 

@@ -15,10 +15,10 @@ from bigactors.pictures import Panels
 from bigactors.pictures.page import Page
 from bigactors.pictures.vector import svg_of
 from checker import Step, Trace
-from semantics.agents import mailbox_cell
-from semantics.initial import initial
-from semantics.program import Program
-from semantics.setting import Setting
+from semantics.behaviours.program import Program
+from semantics.state.agents import mailbox_cell
+from semantics.state.initial import initial
+from semantics.state.setting import Setting
 
 HOSTILE = "</script><img src=//evil.example/x onerror=alert(1)>&amp;\"' $x^2$"
 EMPTY = {"meta", "input", "br", "img", "link"}

@@ -15,15 +15,15 @@ from bigactors.pictures.trace import AGENT, AROUND, SERVED, rows_of
 from bigraphs.drawing import LINKS
 from bigraphs.layout import layout
 from bigraphs.routing import route
-from checker.lanes import lanes_of
+from checker.reports.lanes import lanes_of
 from physical import circle, point
 from physical.map_style import text_width
-from semantics.configuration import Label
+from semantics.behaviours.program import Program
 from semantics.environment import Appears
-from semantics.initial import Beliefs, initial
-from semantics.physical_model import Placed, channels_cell, placement_cell
-from semantics.program import Program
-from semantics.setting import Setting
+from semantics.state.configuration import Label
+from semantics.state.initial import Beliefs, initial
+from semantics.state.physical_model import Placed, channels_cell, placement_cell
+from semantics.state.setting import Setting
 
 
 def written(monkeypatch, draw, *arguments, **options):

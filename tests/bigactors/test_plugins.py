@@ -16,7 +16,7 @@ from bigactors.missions import open_mission
 from bigactors.mistakes import Mistake
 from bigactors.plugins import plugins_of
 from physical import box, contains, point
-from semantics.setting import Control, Scheduler
+from semantics.state.setting import Control, Scheduler
 from specs.elaboration import Variation
 
 LIVE = Variation(Scheduler.FCFS, Control.TIMED)

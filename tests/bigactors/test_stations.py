@@ -17,9 +17,9 @@ from bigactors.mistakes import Mistake
 from bigactors.recordings import Resumed, parting_of, trace_of
 from bigactors.stations import company_of
 from checker import ReplayError
-from semantics.parting import Parcel, Parting, enter, parted
-from semantics.plain_parcels import parcel_json
-from semantics.setting import Control, Scheduler
+from semantics.state.parcel_serialization import parcel_json
+from semantics.state.partition import Parcel, Parting, enter, parted
+from semantics.state.setting import Control, Scheduler
 from specs.elaboration import Variation
 
 STATIONS = ("gcs0", "gcs1", "gcs2")

@@ -4,6 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bigraphs.algebra import atom, close, ion, lean, merge, nest, placing, substitution
+from bigraphs.bigraph import check
 from bigraphs.canonical import canonical, equal
 from bigraphs.decomposition import take_apart
 from bigraphs.errors import BigraphError
@@ -11,7 +12,6 @@ from bigraphs.instantiation import instantiate
 from bigraphs.notation.paper_bigraphs import read_bigraph, read_rule, write_bigraph
 from bigraphs.rewriting import rewrite, successors
 from bigraphs.rules import matches, rule
-from bigraphs.wellformed import check
 
 SLOT, ONE = merge(1), merge(0)
 MOVE = (

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from checker import Limits, Report, Trace, Verdict, Violation, check
-from semantics.configuration import Configuration
+from semantics.state.configuration import Configuration
 from semantics.successors import expand
 from specs import parse_bytes
 from specs.elaboration import ElaboratedMission, elaborate

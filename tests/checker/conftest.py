@@ -1,5 +1,6 @@
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent))  # for checked_missions
-sys.path.insert(0, str(Path(__file__).parent / "cluster"))  # for local_crew
+HERE = Path(__file__).parent
+for folder in (HERE, HERE / "engines" / "cluster", HERE / "properties"):
+    sys.path.insert(0, str(folder))  # for checked_missions, local_crew, stale_by_definition

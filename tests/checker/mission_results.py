@@ -3,8 +3,8 @@
 from checked_missions import SPARE, load, moves, start
 
 from checker import Limits, Outcome, Report, Trace, Verdict, Violation, check
-from checker.results import Issue, Level, Result
-from semantics.propositions import Property
+from checker.reports.results import Issue, Level, Result
+from semantics.properties.property import Property
 
 ENTERS = moves("gate0", "a", "uav0")
 GAPS = """

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import checker.bounding
-import checker.fast.explorer
+import checker.engines.fast.explorer
 from checker import Engine, Limits, Outcome, check
 from checker.bounding import BoundMet, bounded, look
 from specs.elaboration import load_mission
@@ -69,8 +69,8 @@ def test_inner_bounds_end_with_their_block(clock):
 def test_what_was_explored_and_not_looked_at_does_not_hold(clock, monkeypatch):
     mission = load_mission(MISSIONS / "oil_spill.mission")
     whole = check(mission.initial, mission.properties, DAY, engine=Engine.FAST)
-    clock.jumps_before(monkeypatch, checker.fast.explorer, "inspect_fast")
-    clock.now = checker.fast.explorer.time.monotonic()
+    clock.jumps_before(monkeypatch, checker.engines.fast.explorer, "inspect_fast")
+    clock.now = checker.engines.fast.explorer.time.monotonic()
     report = check(mission.initial, mission.properties, DAY, engine=Engine.FAST)
     assert "the time limit of 86400 s, in looking at what was explored" in report.bounds
     assert (report.configurations, report.transitions) == (whole.configurations, whole.transitions)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from checker import Limits, ReplayError, Step, Trace, check, explore, print_trace, replay, to_json
 from checker.traces import MOST_STEPS, candidates, step_of, trace_to
-from semantics.configuration import Label
+from semantics.state.configuration import Label
 from semantics.strategies import initial_configurations
 from specs.elaboration import load_mission
 

@@ -4,16 +4,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from physical import box, circle, point
-from semantics.configuration import Configuration, Transition
-from semantics.expressions import Apply, Host, Literal, QueryOf, SetOf, TupleOf, Variable
-from semantics.initial import Beliefs, initial
-from semantics.patterns import Anything
-from semantics.physical_model import Carried, Placed, Placement
-from semantics.program import Program
-from semantics.reactions import COMMANDS
-from semantics.setting import Scheduler, Setting
-from semantics.signature import Kind, Signature
-from semantics.statements import (
+from semantics.behaviours.expressions import Apply, Host, Literal, QueryOf, SetOf, TupleOf, Variable
+from semantics.behaviours.patterns import Anything
+from semantics.behaviours.program import Program
+from semantics.behaviours.reactions import COMMANDS
+from semantics.behaviours.statements import (
     Case,
     ChooseFrom,
     ControlBy,
@@ -25,6 +20,11 @@ from semantics.statements import (
     Statement,
     Tested,
 )
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.initial import Beliefs, initial
+from semantics.state.physical_model import Carried, Placed, Placement
+from semantics.state.setting import Scheduler, Setting
+from semantics.state.signature import Kind, Signature
 from semantics.successors import successors
 
 EVERYONE = frozenset({"Place", "Spill", "Uav", "Vessel", "Crate", "Station", "Bunker"})

@@ -7,20 +7,20 @@ from small_missions import SHAPES, aboard, around, enabled, explore, mission, mo
 
 from physical import circle, point
 from semantics import strategies
+from semantics.behaviours.expressions import Literal, QueryOf
+from semantics.behaviours.patterns import Anything
+from semantics.behaviours.reactions import COMMANDS, Pattern, PlaceVariable, Reaction, moved, relinked
+from semantics.behaviours.statements import Case, ControlBy, Observe, React, Send
 from semantics.control import Obstacle, applicable, is_consistent, obstacle, realisations
 from semantics.drive import drive
 from semantics.environment import Drifts, Vanishes
-from semantics.expressions import Literal, QueryOf
-from semantics.initial import Beliefs
-from semantics.patterns import Anything
-from semantics.physical_model import Carried, InTransit, Placed
-from semantics.reactions import COMMANDS, Pattern, PlaceVariable, Reaction, moved, relinked
-from semantics.requests import CTR, FLY
 from semantics.rules import actuate, command, commit
-from semantics.setting import Control, Setting
-from semantics.signature import REGION, Kind, Signature
-from semantics.statements import Case, ControlBy, Observe, React, Send
-from semantics.structure import Linked
+from semantics.state.initial import Beliefs
+from semantics.state.physical_model import Carried, InTransit, Placed
+from semantics.state.relations import Linked
+from semantics.state.requests import CTR, FLY
+from semantics.state.setting import Control, Setting
+from semantics.state.signature import REGION, Kind, Signature
 from semantics.successors import successors
 
 TIMED = {"control": Control.TIMED}

@@ -3,7 +3,7 @@
 from small_missions import SHAPES, aboard, mission
 
 from semantics.environment import Appears, Drifts, Drops, Leaves, Vanishes
-from semantics.physical_model import InTransit
+from semantics.state.physical_model import InTransit
 
 
 def effects(c, clause):

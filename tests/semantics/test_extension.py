@@ -3,17 +3,17 @@
 import pytest
 from small_missions import GUARD, around, enabled, mission, move_to, run
 
+from semantics.behaviours.expressions import Apply, Fault, Literal, Self, Variable
+from semantics.behaviours.observations import Observation
+from semantics.behaviours.patterns import Anything, Elements, Exactly
+from semantics.behaviours.program import Behaviour, Program
+from semantics.behaviours.reactions import COMMANDS
+from semantics.behaviours.statements import Case, Display, Migrate, Observe, React, Send, Spawn
 from semantics.environment import Drops, Says
-from semantics.expressions import Apply, Fault, Literal, Self, Variable
 from semantics.extension import migrate, rcv_msg, req_mgr, req_snd, say, snd, spawn
-from semantics.initial import Beliefs
-from semantics.patterns import Anything, Elements, Exactly
-from semantics.program import Behaviour, Program
-from semantics.queries import Observation
-from semantics.reactions import COMMANDS
-from semantics.setting import Scheduler
-from semantics.statements import Case, Display, Migrate, Observe, React, Send, Spawn
-from semantics.structure import Parent
+from semantics.state.initial import Beliefs
+from semantics.state.relations import Parent
+from semantics.state.setting import Scheduler
 from semantics.successors import successors
 
 GO = Send(Literal("go"), Literal("b"))

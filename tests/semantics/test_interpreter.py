@@ -12,14 +12,14 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, pr
 from small_missions import SHAPES, around, mission
 
 from physical import point
+from semantics.behaviours.expressions import Literal
+from semantics.behaviours.patterns import Anything
+from semantics.behaviours.statements import Case, ControlBy, Observe, React
 from semantics.environment import Drifts
-from semantics.expressions import Literal
-from semantics.initial import Beliefs
-from semantics.patterns import Anything
-from semantics.physical_model import Placed
-from semantics.requests import OBS, READY
-from semantics.signature import REGION
-from semantics.statements import Case, ControlBy, Observe, React
+from semantics.state.initial import Beliefs
+from semantics.state.physical_model import Placed
+from semantics.state.requests import OBS, READY
+from semantics.state.signature import REGION
 from semantics.successors import successors
 
 AROUND = {"base": REGION, "sea": REGION, "area": "sea"}

@@ -20,18 +20,9 @@ from small_missions import (
 
 from physical import box, point
 from semantics import strategies
-from semantics.configuration import Configuration
-from semantics.control import realisations
-from semantics.environment import Drifts, Drops, Says, Vanishes
-from semantics.expressions import Apply, Fault, Literal, Variable
-from semantics.initial import Beliefs
-from semantics.patterns import Anything
-from semantics.physical_model import Placed
-from semantics.requests import CTR, FLY, OBS, READY
-from semantics.rules import actuate, command, commit, env, fun, rcv_obs, req_ctr, req_obs, sense
-from semantics.setting import Control, Scheduler
-from semantics.signature import REGION
-from semantics.statements import (
+from semantics.behaviours.expressions import Apply, Fault, Literal, Variable
+from semantics.behaviours.patterns import Anything
+from semantics.behaviours.statements import (
     Assign,
     Case,
     Choose,
@@ -43,9 +34,18 @@ from semantics.statements import (
     React,
     While,
 )
-from semantics.structure import Parent
+from semantics.behaviours.values import Truth
+from semantics.control import realisations
+from semantics.environment import Drifts, Drops, Says, Vanishes
+from semantics.rules import actuate, command, commit, env, fun, rcv_obs, req_ctr, req_obs, sense
+from semantics.state.configuration import Configuration
+from semantics.state.initial import Beliefs
+from semantics.state.physical_model import Placed
+from semantics.state.relations import Parent
+from semantics.state.requests import CTR, FLY, OBS, READY
+from semantics.state.setting import Control, Scheduler
+from semantics.state.signature import REGION
 from semantics.successors import successors
-from semantics.values import Truth
 
 
 def alone(*statements, entities=("base", "area", "u0"), code=None, **more) -> Configuration:

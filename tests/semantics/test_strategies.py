@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 
 from physical import contains
 from semantics import strategies
-from semantics.configuration import Configuration
-from semantics.expressions import Fault
-from semantics.physical_model import Placed
+from semantics.behaviours.expressions import Fault
 from semantics.random_programs import random_program
-from semantics.setting import Control, Scheduler
+from semantics.state.configuration import Configuration
+from semantics.state.physical_model import Placed
+from semantics.state.setting import Control, Scheduler
 from semantics.successors import successors
 
 

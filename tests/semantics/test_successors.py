@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 from small_missions import explore, figure_2, is_in, mission, move_to, received
 
 from semantics import strategies
-from semantics.cells import QUEUE
-from semantics.configuration import Configuration, Transition
-from semantics.expressions import Apply, Fault, Literal, QueryOf
-from semantics.patterns import Anything
-from semantics.requests import FLY, READY, Request
-from semantics.setting import Control, Scheduler
-from semantics.statements import Case, If, Migrate, Observe, React, Send
+from semantics.behaviours.expressions import Apply, Fault, Literal, QueryOf
+from semantics.behaviours.patterns import Anything
+from semantics.behaviours.statements import Case, If, Migrate, Observe, React, Send
+from semantics.state.cells import QUEUE
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.requests import FLY, READY, Request
+from semantics.state.setting import Control, Scheduler
 from semantics.successors import successors
 
 

@@ -10,14 +10,10 @@ import pytest
 
 from physical import box, centroid, circle, point, translate_to
 from physical.ais_reports import AisError
-from semantics import statements as k
-from semantics.environment import Appears, Drifts, Leaves, Says
-from semantics.expressions import Fault, Host, Literal, QueryOf, Variable
-from semantics.physical_model import Carried, Placed
-from semantics.program import VariableOf
-from semantics.propositions import And, Inside, Not, Or, VariableIs, holds
-from semantics.setting import Control, Scheduler
-from semantics.statements import (
+from semantics.behaviours import statements as k
+from semantics.behaviours.expressions import Fault, Host, Literal, QueryOf, Variable
+from semantics.behaviours.program import VariableOf
+from semantics.behaviours.statements import (
     Choose,
     For,
     ForEach,
@@ -26,6 +22,10 @@ from semantics.statements import (
     React,
     Spawn,
 )
+from semantics.environment import Appears, Drifts, Leaves, Says
+from semantics.properties.propositions import And, Inside, Not, Or, VariableIs, holds
+from semantics.state.physical_model import Carried, Placed
+from semantics.state.setting import Control, Scheduler
 from semantics.successors import successors
 from specs.diagnostics import MissionError, Source
 from specs.elaboration import elaborate, files, load_mission

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from semantics.expressions import Fault
+from semantics.behaviours.expressions import Fault
 from semantics.successors import successors
 from specs.diagnostics import MissionError
 from specs.elaboration import elaborate

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from semantics.propositions import And, Not, Or, VariableIs
-from semantics.temporal import Now, Temporal, parts
+from semantics.properties.propositions import And, Not, Or, VariableIs
+from semantics.properties.temporal import Now, Temporal, parts
 from specs.diagnostics import MissionError, Source
 from specs.elaboration import elaborate
 from specs.formatter import format_mission

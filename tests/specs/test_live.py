@@ -1,6 +1,6 @@
 from pathlib import Path
 
-from semantics.precautions import Fallback, Precautions, TimeLimit
+from semantics.contingencies import Fallback, Precautions, TimeLimit
 from specs.diagnostics import Source
 from specs.elaboration import elaborate
 from specs.parser import parse

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from semantics import temporal as t
-from semantics.propositions import Property
+from semantics.properties import temporal as t
+from semantics.properties.property import Property
 from specs import syntax as s
 from specs.diagnostics import MissionError, Source
 from specs.elaboration import elaborate

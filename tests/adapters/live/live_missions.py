@@ -6,8 +6,8 @@ from adapters.live.core import advance, started
 from adapters.live.state import Batch, Heard, Plan
 from adapters.plugin import Accepted
 from physical import PhysicalProperty, point
-from semantics.precautions import Precautions
-from semantics.setting import Control, Scheduler
+from semantics.contingencies import Precautions
+from semantics.state.setting import Control, Scheduler
 from specs.diagnostics import Source
 from specs.elaboration import Variation, elaborate
 from specs.parser import parse

@@ -3,7 +3,7 @@ from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
 from adapters.live.core import is_refused, resumed, watch
 from adapters.live.state import Batch, GivingBack, Heard, Plan, Saying
-from adapters.live.turning import MOST_REPORTED
+from adapters.live.turn import MOST_REPORTED
 from adapters.plugin import (
     Accepted,
     Aged,
@@ -20,9 +20,9 @@ from adapters.plugin import (
     TakenOver,
 )
 from physical import PhysicalProperty, polygon
-from semantics.physical_model import InTransit, Placed
-from semantics.precautions import Fallback, Precautions, TimeLimit
-from semantics.requests import FLY
+from semantics.contingencies import Fallback, Precautions, TimeLimit
+from semantics.state.physical_model import InTransit, Placed
+from semantics.state.requests import FLY
 from semantics.successors import expand
 
 GO = """

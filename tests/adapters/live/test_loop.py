@@ -7,7 +7,7 @@ from live_missions import BETWEEN, EAST, TOUR, WEST, plan_of
 
 from adapters.live.core import started
 from adapters.live.loop import LiveRun, NotAsAssumed, NotHeard, PluginFailed
-from adapters.live.saying import NobodyListens, listening, say
+from adapters.live.operator_socket import NobodyListens, listening, say
 from adapters.plugin import Accepted, Aged, GoTo, HandOver, LinkLost, Refused
 from physical import PhysicalProperty, centroid, point
 

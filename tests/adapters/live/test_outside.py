@@ -31,7 +31,7 @@ from adapters.stations.sharing import MOST_STRANGERS, Sharing
 from adapters.web import Listen
 from bigactors.watchers import Log, Tape, Terminal
 from physical import PhysicalProperty, Velocity, point
-from semantics.precautions import Fallback, Precautions
+from semantics.contingencies import Fallback, Precautions
 
 HEADER = {"mission": "tour", "text": "", "digest": "", "version": "", "verified": False, "vehicles": {}}
 STAY = (
@@ -133,7 +133,7 @@ FULL = """
 import json, resource, sys
 sys.path[:0] = ["tests/adapters/live", "tests/adapters"]
 from test_outside import on_a_full_disk
-from semantics.precautions import Fallback
+from semantics.contingencies import Fallback
 print(json.dumps(on_a_full_disk(sys.argv[1], Fallback(sys.argv[2]))))
 """
 

@@ -10,8 +10,8 @@ from adapters.plugin import LinkLost, LinkRestored, Rejected, TakenOver
 from adapters.recording.encoding import step_json
 from checker import replay
 from checker.traces import SCHEMA, candidates
-from semantics.physical_model import Placed
-from semantics.precautions import Fallback, Precautions, TimeLimit
+from semantics.contingencies import Fallback, Precautions, TimeLimit
+from semantics.state.physical_model import Placed
 
 PLAN = plan_of(
     TOUR

@@ -18,7 +18,7 @@ from adapters.recording.writing import Recorder
 from checker import ReplayError, replay, to_json
 from checker.traces import SCHEMA
 from physical import Band, PhysicalProperty, Velocity, box
-from semantics.precautions import Fallback, Precautions
+from semantics.contingencies import Fallback, Precautions
 
 from adapters.live.state import Heard  # isort: skip
 

@@ -10,7 +10,7 @@ from audited import flown_in
 from live_missions import LIVE
 from worlds import ROUND
 
-from adapters.live.saying import give_back
+from adapters.live.operator_socket import give_back
 from adapters.mavlink.command import long
 from adapters.mavlink.numbers import Cmd, Result
 from adapters.simulated import Kind, Vehicle, protocol

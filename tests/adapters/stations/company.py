@@ -15,7 +15,7 @@ from random import SystemRandom
 from adapters.recording.mcap_files import RecordingError
 from adapters.recording.reading import read_recording
 from bigactors.recordings import mission_of, trace_of
-from semantics.abstraction import as_it_is
+from semantics.state.abstraction import as_it_is
 
 WORLD = """
 signature {

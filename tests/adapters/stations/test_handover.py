@@ -10,7 +10,7 @@ from company import WORLD, Station, free_port, peers_toml, running, until
 
 from adapters.recording.reading import read_recording
 from bigactors.cli import main
-from checker.lanes import lanes_of
+from checker.reports.lanes import lanes_of
 
 MISSION = (
     "mission handover\n"

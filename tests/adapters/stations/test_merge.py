@@ -13,7 +13,7 @@ from adapters.plugin import Aged, Gone
 from adapters.stations.entries import Entry, Said
 from adapters.stations.merge import ABREAST, MOST_ENTITIES, Merge, newer
 from physical import PhysicalProperty, point
-from semantics.abstraction import as_it_is
+from semantics.state.abstraction import as_it_is
 
 NOW = 1_000.0
 PLACES = (WEST, EAST, (37.03, -8.63), (37.011, -8.612))

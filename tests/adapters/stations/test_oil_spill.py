@@ -14,7 +14,7 @@ from water import AIRFIELD, SEARCH, SPILL, Water, drifted
 from adapters.recording.reading import read_recording
 from bigactors.cli import main
 from physical import contains, point
-from semantics.abstraction import as_it_is
+from semantics.state.abstraction import as_it_is
 
 MISSION = "spill_watch"
 IDS = {"gcs0": 255, "gcs1": 254, "gcs2": 253}

@@ -30,8 +30,8 @@ from adapters.stations.journal import Journal
 from adapters.stations.peers import peers_of
 from adapters.stations.sharing import Sharing
 from physical import PhysicalError, PhysicalProperty, point
-from semantics.configuration import Label, Transition
-from semantics.parting import Parting, parted
+from semantics.state.configuration import Label, Transition
+from semantics.state.partition import Parting, parted
 
 MISSION = "sha256:mission"
 VEHICLES = {"uav0": True}

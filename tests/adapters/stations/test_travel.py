@@ -7,7 +7,7 @@ import pytest
 from company import EAST, WEST, WORLD, Cable, Station, free_port, peers_toml, running, until
 
 from bigactors.cli import main
-from checker.lanes import lanes_of
+from checker.reports.lanes import lanes_of
 
 MISSION = (
     "mission post\n"

@@ -1,10 +1,10 @@
 """All that inspections find in an exploration, to be compared between the full search and a reduced one."""
 
 from checker import Engine, Limits, explore
-from checker.findings import Collected
-from checker.inspections import Computation, DeadlockFreedom, LocalConsistency
-from checker.races import ControlRaces, StaleObservationRaces
-from semantics.propositions import holds
+from checker.properties.findings import Collected
+from checker.properties.inspections import Computation, DeadlockFreedom, LocalConsistency
+from checker.properties.races import ControlRaces, StaleObservationRaces
+from semantics.properties.propositions import holds
 
 
 class Messages(Collected):

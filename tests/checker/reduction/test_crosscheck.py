@@ -12,14 +12,15 @@ from mission_texts import missions
 from test_partial_order import CHANGED, NAMES, POR, SPAWNED, VARIATIONS, atoms_of
 
 from checker import Engine, Keeping, Limits, Outcome, check, explore
-from checker.exploration import sample
+from checker.engines.contract import sample
 from checker.reduction import Ample
 from checker.reduction.crosscheck import Drift, outside, unheeded
 from checker.reduction.slots import NOTHING
-from semantics import Scheduler, control, propositions, strategies
-from semantics.monitor import monitored
-from semantics.propositions import Ended, HasPending, HostedAt, Inside, Known, Waiting
-from semantics.reactions import CONTROL_AUTHORITY
+from semantics import Scheduler, control, strategies
+from semantics.behaviours.reactions import CONTROL_AUTHORITY
+from semantics.properties import propositions
+from semantics.properties.propositions import Ended, HasPending, HostedAt, Inside, Known, Waiting
+from semantics.races.monitor import monitored
 from specs import MissionError
 from specs.elaboration import load_mission
 
@@ -131,7 +132,7 @@ def test_what_more_is_written_is_noticed(monkeypatch):
 def test_what_more_a_property_reads_is_noticed(monkeypatch):
     mission = start(AUTHORISED)
     assert outside_of(mission, [Inside("uav0", "gate0")]) == set()
-    monkeypatch.setattr("semantics.propositions._believed_places", propositions._actual_places)
+    monkeypatch.setattr("semantics.properties.propositions._believed_places", propositions._actual_places)
     assert outside_of(mission, [Inside("uav0", "gate0")]) == {
         "the property 'uav0 in gate0' reads ('placement', 'uav0'), which is not taken for visible"
     }
@@ -148,7 +149,7 @@ def test_it_is_noticed_that_the_race_monitor_forgets_what_may_be_asked(forgotten
     what, instead, words = UNHEEDED[forgotten]
     initial = monitored(start(CHANGED))
     assert not list(chain(*map(unheeded, explore(initial).configurations)))
-    monkeypatch.setattr(f"semantics.relevance.{what}", instead)
+    monkeypatch.setattr(f"semantics.races.relevance.{what}", instead)
     configurations = explore(monitored(start(CHANGED))).configurations
     assert any(words in each for c in configurations for each in unheeded(c))
     with pytest.raises(Drift, match="which the race monitor forgets"):

@@ -11,16 +11,17 @@ from hypothesis import strategies as st
 from mission_texts import missions
 
 from checker import Engine, Limits, Outcome, Reduction, RefusedError, check, explore
-from checker.fast import engine
+from checker.engines.fast import engine
 from checker.reduction import Ample, Proviso, Reduced
 from checker.reduction.footprints import Footprints
 from checker.reduction.slots import NOTHING
 from checker.traces import replay, to_json
 from semantics import Control, Scheduler, strategies
-from semantics.monitor import monitored
-from semantics.propositions import Ended, HasPending, Inside, LinkedWith, Present, Property, Waiting
+from semantics.properties.property import Property
+from semantics.properties.propositions import Ended, HasPending, Inside, LinkedWith, Present, Waiting
+from semantics.properties.temporal import TEMPORAL
+from semantics.races.monitor import monitored
 from semantics.successors import expand
-from semantics.temporal import TEMPORAL
 from specs import MissionError
 from specs.elaboration import Variation, load_mission
 

@@ -18,10 +18,10 @@ from checker.reduction.renaming import Renaming
 from checker.reduction.symmetry import Symmetry
 from checker.traces import replay, to_json
 from semantics import Scheduler, control
-from semantics.configuration import Configuration
-from semantics.monitor import monitored
-from semantics.propositions import HasPending, Inside
-from semantics.setting import Control
+from semantics.properties.propositions import HasPending, Inside
+from semantics.races.monitor import monitored
+from semantics.state.configuration import Configuration
+from semantics.state.setting import Control
 from semantics.successors import expand
 from specs.elaboration import load_mission
 

@@ -1,0 +1,369 @@
+"""Taking the world in: sightings become `env` and `commit`, reports become findings, sayings become `say`."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from ipaddress import ip_address
+
+from adapters.live.assumptions import broken_by_place, clause_of_leaving, relations
+from adapters.live.flying import arrive, ask_anew, doubt, obey, refuse, renew
+from adapters.live.orders import is_authority
+from adapters.live.other_stations import hear_of
+from adapters.live.sightings import Refusal, placement_seen, sighting_of
+from adapters.live.state import Answer, Batch, Heard, Said, Saying
+from adapters.live.turn import Turning
+from adapters.live.unannounced import comes_in, place_strangers, remove_strangers
+from adapters.plugin import (
+    Accepted,
+    Aged,
+    Arrived,
+    Believes,
+    Broken,
+    Delivered,
+    Doubted,
+    Failed,
+    GiveBack,
+    Hosts,
+    LinkLost,
+    LinkRestored,
+    Rebind,
+    Rejected,
+    Report,
+    TakenOver,
+    Trouble,
+    Underway,
+)
+from semantics.behaviours.values import show
+from semantics.environment import Appears, Leaves, Says
+from semantics.extension import say
+from semantics.observed import Sight, happening
+from semantics.rules import env
+from semantics.state.cells import Cell
+from semantics.state.partition import is_here, station_of
+from semantics.state.physical_model import Carried, Placed, Placement, channels_cell, placement_cell
+from semantics.state.signature import REGION, Name
+
+_IS_AT = re.compile(r"is at (\[?([0-9a-fA-F:.]+)\]?:([0-9]{1,5}))")
+"""What is said of a vehicle that sends from another address than before: a number, since nobody waits for names."""
+
+MOST_PORT = 65_535
+
+
+def take_in(turning: Turning, batch: Batch) -> None:
+    """Take in what was seen and reported: first who is taken over, so that nothing that they do is an arrival."""
+    for report in batch.reports:
+        if isinstance(report, TakenOver | Doubted):
+            note(turning, report)
+    hear(turning, batch.heard)
+    for report in batch.reports:
+        if not isinstance(report, TakenOver | Doubted):
+            note(turning, report)
+
+
+def hear(turning: Turning, heard: Iterable[Heard]) -> None:
+    """Take in what plugins published: of each entity the newest. What the mission names has a step of its own."""
+    named = turning.plan.first.setting.kinds
+    changed: dict[Name, None] = {}
+    for each in heard:
+        name = _merge(turning, each)
+        if name is not None:
+            changed[name] = None
+    for entity in changed:
+        if entity in named:
+            _place(turning, entity)
+    place_strangers(turning, (entity for entity in changed if entity not in named))
+    if turning.now >= turning.expires:
+        _expire(turning)
+
+
+def _merge(turning: Turning, heard: Heard) -> Name | None:
+    published = heard.published
+    entity = published.property.entity if isinstance(published, Aged) else published.entity
+    found = sighting_of(heard, turning.seen.get(entity), turning.plan, turning.now)
+    if isinstance(found, Refusal):
+        turning.find("trouble", found.entity, found.reason, once=True)
+        return None
+    if found is None:
+        return None
+    if entity not in turning.c.setting.kinds and not comes_in(turning, heard.plugin, found):
+        return None
+    if entity not in turning.seen:
+        turning.quiet = None  # commands may wait for it to be heard
+    turning.seen[entity] = found
+    turning.expires = min(turning.expires, found.until)
+    return entity
+
+
+# --- places -------------------------------------------------------------------------------------------
+
+
+def _place(turning: Turning, entity: Name) -> None:
+    if turning.seen[entity].until <= turning.now:
+        return
+    here = turning.c.structure.physical.placement(entity)
+    if entity in turning.plan.vehicles:
+        _rechannel(turning, entity)
+    if turning.c.structure.physical.transit(entity) is not None:
+        if not isinstance(here, Carried):
+            arrive(turning, entity)
+        return
+    seen = placement_seen(turning.c, turning.shape(entity), turning.seen[entity])
+    if seen is None or seen == here or (isinstance(here, Carried) and isinstance(seen, Placed)):
+        return
+    if not _same_place(turning, entity, here, seen):
+        _move(turning, entity, here, seen)
+
+
+def _same_place(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> bool:
+    """Tell whether two points are one to A(P): where exactly a point is, nothing rests on."""
+    if not isinstance(here, Placed) or not isinstance(seen, Placed) or not seen.geometry.is_point:
+        return False
+    kind = turning.c.setting.kind(entity)
+    return here.geometry.is_point and turning.around(entity, kind, here) == turning.around(entity, kind, seen)
+
+
+def _move(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> None:
+    broken = broken_by_place(turning.plan, turning.c, entity, seen)
+    if here is None and _is_back(turning, entity, seen):
+        broken = ""
+    writes: dict[Cell, object] = {placement_cell(entity): seen}
+    if here is None:
+        writes[channels_cell(entity)] = _channels_of_newcomer(turning, entity)
+    around = sorted(turning.around(entity, turning.c.setting.kind(entity), seen))
+    verb = "appears in" if here is None else "is seen in"
+    sight = Sight(f"{entity} {verb} {', '.join(around) or REGION}", writes)
+    if turning.observe(sight, happening(turning.c, sight)):
+        if broken:
+            turning.breaks(broken, entity)
+        if not (isinstance(seen, Placed) and seen.geometry.is_point):
+            renew(turning, entity)
+
+
+def _is_back(turning: Turning, entity: Name, seen: Placement) -> bool:
+    """Tell whether an entity stands as it did before its vanishing broke an assumption: once is enough."""
+    before = turning.missing.pop(placement_cell(entity), None)
+    c = turning.c
+    return isinstance(before, Placed | Carried) and relations(c, entity, before) == relations(c, entity, seen)
+
+
+def _channels_of_newcomer(turning: Turning, entity: Name) -> tuple[Name, ...]:
+    clauses = turning.plan.first.setting.environment
+    appears = (clause for clause in clauses if isinstance(clause, Appears) and clause.entity == entity)
+    clause = next(appears, None)
+    if clause is not None:
+        return tuple(sorted(clause.channels))
+    return turning.plan.first.structure.physical.channels(entity)
+
+
+def _expire(turning: Turning) -> None:
+    """Take out of P what was not heard for longer than its time to live."""
+    old = sorted(name for name, sighting in turning.seen.items() if sighting.until <= turning.now)
+    named = turning.plan.first.setting.kinds
+    for entity in old:
+        del turning.seen[entity]
+        if entity not in named:
+            continue
+        physical = turning.c.structure.physical
+        if entity in physical and physical.transit(entity) is None and physical.carrier(entity) is None:
+            _vanish(turning, entity)
+    remove_strangers(turning, (entity for entity in old if entity not in named))
+    turning.expires = min((sighting.until for sighting in turning.seen.values()), default=math.inf)
+
+
+def _vanish(turning: Turning, entity: Name) -> None:
+    broken = broken_by_place(turning.plan, turning.c, entity, None)
+    gone = sorted({entity, *turning.c.structure.physical.cargo(entity)})
+    writes: dict[Cell, object] = {placement_cell(name): None for name in gone}
+    writes |= {channels_cell(name): () for name in gone}
+    before = turning.c.structure.physical.placement(entity)
+    sight = Sight(f"{entity} vanishes", writes)
+    if turning.observe(sight, happening(turning.c, sight)) and broken:
+        turning.missing[placement_cell(entity)] = before
+        turning.breaks(broken, entity)
+
+
+# --- channels -----------------------------------------------------------------------------------------
+
+
+def _rechannel(turning: Turning, entity: Name) -> None:
+    """Compare whose authority a vehicle was seen under with P; what a hand-over is about is left to the rules."""
+    said = frozenset(filter(is_authority, turning.seen[entity].property.channels))
+    physical = turning.c.structure.physical
+    known = frozenset(filter(is_authority, physical.links(entity)))
+    if said == known or entity not in physical:
+        return
+    if entity in turning.handing:
+        turning.quiet = None
+        return
+    for channel in sorted(known - said):
+        off_channel(turning, entity, channel, f"{entity} is not on {channel} any more")
+    for channel in sorted(said - known):
+        _on_channel(turning, entity, channel)
+
+
+def off_channel(turning: Turning, entity: Name, channel: Name, what: str) -> None:
+    """Take an entity off a channel, by the clause that says so if there is one."""
+    clause = clause_of_leaving(turning.plan, entity, channel)
+    physical = turning.c.structure.physical
+    if clause is not None:
+        found = [t for t in env(turning.c, clause) if not str(t.label).endswith("returns⟩")]
+        found = [t for t in found if "returns" not in str(t.label.about)]
+        if found:
+            turning.take(found[0], tuple(found))
+        return
+    before = physical.channels(entity)
+    kept = tuple(each for each in before if each != channel)
+    sight = Sight(f"{entity} is off {channel}", {channels_cell(entity): kept})
+    if turning.observe(sight, happening(turning.c, sight)):
+        turning.missing.setdefault(channels_cell(entity), before)
+        turning.breaks(f"{what}; the mission does not say that it leaves it, or that it drops", entity)
+
+
+def _on_channel(turning: Turning, entity: Name, channel: Name) -> None:
+    clause, physical = clause_of_leaving(turning.plan, entity, channel), turning.c.structure.physical
+    if clause is not None:
+        found = [t for t in env(turning.c, clause) if "returns" in str(t.label.about)]
+        if found:
+            turning.take(found[0], tuple(found))
+            return
+    on = tuple(sorted({*physical.channels(entity), channel}))
+    writes: dict[Cell, object] = {channels_cell(entity): on}
+    if isinstance(clause, Leaves):
+        writes[clause.left] = False
+    elif clause is not None:
+        writes["down", channel] = False
+    sight = Sight(f"{entity} is on {channel}", writes)
+    back = channel in turning.missing.get(channels_cell(entity), ())  # type: ignore[operator]
+    if turning.observe(sight, happening(turning.c, sight)) and not back:
+        turning.breaks(
+            f"{entity} is on {channel}; nobody handed it there, and nothing says that it returns", entity
+        )
+
+
+# --- reports and sayings ------------------------------------------------------------------------------
+
+
+def note(turning: Turning, report: Report) -> None:
+    """Take in what a plugin reports; nothing is committed by it."""
+    match report:
+        case Accepted(request, entity) | Arrived(request, entity):
+            obey(turning, entity, request, through=isinstance(report, Arrived))
+        case Delivered() | Underway() | Hosts() | Believes() | Broken():
+            hear_of(turning, report)
+        case Rejected(request, entity, _, reason):
+            refuse(turning, entity, request)
+            if entity not in turning.taken:  # else that is what was said
+                message = f"{entity} refuses {request}: {reason}; the request stays pending"
+                turning.find("refused", entity, message)
+        case Doubted(entity):
+            doubt(turning, entity)
+        case TakenOver(entity, _, reason):
+            turning.taken[entity] = reason
+            back = f"nobody here commands it until `bigactors give-back {entity}`"
+            turning.find("taken over", entity, f"{entity} was taken over: {reason}; {back}")
+        case LinkLost(entity, _, since):
+            _lose(turning, entity, since)
+        case LinkRestored(entity, _, rebooted):
+            _restore(turning, entity, rebooted=rebooted)
+        case Failed(source, reason):
+            turning.breaks(f"{source} fails: {reason}", source, "failed")
+        case Trouble(source, _, what, detail, count):
+            often = f" ({count:,} times)" if count > 1 else ""
+            turning.find("trouble", source, f"{source}: {what}{often}{': ' if detail else ''}{detail}")
+
+
+def _lose(turning: Turning, entity: Name, since: float) -> None:
+    if entity in turning.lost:
+        return
+    turning.lost.add(entity)
+    turning.find("lost link", entity, f"nothing was heard of {entity} for {turning.now - since:.0f} s")
+    if not turning.answers_for(entity):
+        return  # over which link another station commands it is for that to say
+    for channel in filter(is_authority, turning.c.structure.physical.links(entity)):
+        off_channel(turning, entity, channel, f"the link to {entity} over {channel} is lost")
+
+
+def _restore(turning: Turning, entity: Name, *, rebooted: bool) -> None:
+    turning.lost.discard(entity)
+    turning.quiet = None
+    turning.find("link restored", entity, f"{entity} is heard again{', rebooted' if rebooted else ''}")
+    order = turning.orders.get(entity)
+    if not rebooted or order is None:
+        return
+    doubt(turning, entity)
+    if turning.flies(entity):
+        turning.commands.append(order.command)
+
+
+def answer(turning: Turning, said: Said) -> None:
+    """Take what someone outside says, and answer it."""
+    if isinstance(said, Saying):
+        say_to(turning, said)
+    else:
+        turning.answers.append(Answer(said, _give_back(turning, said.vehicle)))
+
+
+def _give_back(turning: Turning, entity: Name) -> str:
+    """Command a vehicle again that was taken over or has refused; return why not, nothing if it is done."""
+    told = (turning.orders.get(entity), turning.handing.get(entity))
+    refused = any(order.refused for order in told if order is not None)
+    if entity not in turning.plan.vehicles:
+        return f"there is no vehicle '{entity:.60}'; there are {', '.join(sorted(turning.plan.vehicles))}"
+    if entity not in turning.taken and not refused:
+        return f"{entity} was not taken over here, and has refused nothing"
+    turning.taken.pop(entity, None)
+    turning.quiet = None
+    turning.commands.append(GiveBack(turning.request_of("give-back"), entity))
+    ask_anew(turning, entity)
+    turning.find("given back", entity, f"{entity} was given back, and is commanded again")
+    return ""
+
+
+def say_to(turning: Turning, saying: Saying) -> None:
+    """Put a message into a mailbox, if the mission says that somebody may say it, and not too often."""
+    agents = turning.c.alpha
+    if saying.agent in turning.plan.vehicles and saying.agent not in agents:
+        turning.answers.append(Answer(saying, _rebind(turning, saying)))
+        return
+    if saying.agent in agents and not is_here(turning.c, saying.agent):
+        there = station_of(turning.c, saying.agent)
+        turning.answers.append(
+            Answer(saying, f"{saying.agent} runs at {there or 'no station'}: say it there")
+        )
+        return
+    clauses = [each for each in turning.c.setting.environment if isinstance(each, Says)]
+    for clause in clauses:
+        if clause.agent == saying.agent and saying.message in (clause.message, show(clause.message)):
+            found = tuple(say(turning.c, clause))
+            if found:
+                turning.take(found[0], found)
+                turning.idle.discard(clause.agent)
+                turning.answers.append(Answer(saying))
+                return
+    left = [f"{show(each.message)} to {each.agent}" for each in clauses if turning.c.read(each.counter)]
+    who = "" if saying.agent in agents else f"there is no bigActor '{saying.agent:.60}'; "
+    what = f"what may be said now: {', '.join(left)}" if left else "nothing may be said any more"
+    turning.answers.append(Answer(saying, f"{who}the mission does not say that this is said; {what}"))
+
+
+def _rebind(turning: Turning, saying: Saying) -> str:
+    """Let a vehicle be heard from another address, as an operator says; return why not, nothing if it is told so."""
+    found = _IS_AT.fullmatch(saying.message)
+    if found is None or not _is_number(found[2]) or int(found[3]) > MOST_PORT:
+        return (
+            f"{saying.agent} is a vehicle, of which is said where it is heard from now on: 'is at HOST:PORT'"
+        )
+    if saying.agent not in turning.lost:
+        return f"the link to {saying.agent} is not lost; it can be believed elsewhere once it is silent where it was"
+    turning.commands.append(Rebind(turning.request_of("operator"), saying.agent, found[1]))
+    return ""
+
+
+def _is_number(host: str) -> bool:
+    try:
+        ip_address(host)
+    except ValueError:
+        return False
+    return True

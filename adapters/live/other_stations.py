@@ -1,0 +1,85 @@
+"""What other stations do: parcels enter, vehicles are under way, agents move, assumptions break."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from adapters.live.turn import Turning
+from adapters.plugin import Believes, Broken, Delivered, Elsewhere, Hosts, Underway
+from semantics.observed import Sight, happening
+from semantics.state.parcel_serialization import parcel_of
+from semantics.state.partition import (
+    Belief,
+    Passage,
+    Whereabouts,
+    believe,
+    enter,
+    learn,
+    objection,
+    took_cell,
+)
+from semantics.state.physical_model import InTransit, Placed, placement_cell
+from semantics.state.signature import REGION, Name
+
+
+def hear_of(turning: Turning, report: Elsewhere) -> None:
+    """Take in what another station has a part in."""
+    match report:
+        case Delivered():
+            _take_in(turning, report)
+        case Underway(entity, _, to):
+            _fly(turning, entity, to)
+        case Hosts(agent, _, host):
+            for found in learn(turning.c, agent, host):
+                turning.take(found, (found,), Whereabouts(agent, host))
+        case Believes(node, _, slot, names):
+            belief = Belief(node, slot, names)
+            for found in believe(turning.c, belief):
+                turning.take(found, (found,), belief)
+        case Broken(station, _, assumption):
+            count = len(turning.findings)
+            turning.breaks(f"at {station}: {assumption}", station)
+            turning.findings[count:] = [replace(each, elsewhere=True) for each in turning.findings[count:]]
+
+
+def _take_in(turning: Turning, delivered: Delivered) -> None:
+    """Let a parcel enter if it is the next of its station; what has entered already is passed over."""
+    station, number = delivered.station, delivered.number
+    if turning.c.read(took_cell(station)) != number - 1:
+        return
+    try:
+        parcel = parcel_of(delivered.parcel)
+    except ValueError as error:
+        _refuse(turning, station, number, str(error))
+        return
+    found = tuple(enter(turning.c, station, number, parcel))
+    if found:
+        turning.idle.discard(parcel.agent)
+        turning.take(found[0], found, Passage(parcel.agent, station, number, parcel))
+    else:
+        _refuse(turning, station, number, objection(turning.c, parcel))
+
+
+def _refuse(turning: Turning, station: str, number: int, why: str) -> None:
+    message = f"parcel {number} of {station} cannot enter, nor what comes after it: {why}"
+    turning.find("trouble", station, message, once=True)
+
+
+def _fly(turning: Turning, entity: Name, to: Name) -> None:
+    """Take in that another station has sent a vehicle, or that it has come where it was sent.
+
+    In between it is in transit here too: what it passes over is nobody's observation.
+    """
+    here = turning.c.structure.physical.placement(entity)
+    if entity in turning.orders or entity not in turning.plan.vehicles:
+        return
+    if to in turning.c.setting.kinds and isinstance(here, Placed | InTransit):
+        going = InTransit(here if isinstance(here, Placed) else here.origin, to)
+        sight = Sight(f"{entity} is sent to {to}", {placement_cell(entity): going})
+    elif not to and isinstance(here, InTransit):
+        at = turning.where_seen(entity) or here.origin
+        around = sorted(turning.around(entity, turning.c.setting.kind(entity), at))
+        sight = Sight(f"{entity} is seen in {', '.join(around) or REGION}", {placement_cell(entity): at})
+    else:
+        return
+    turning.observe(sight, happening(turning.c, sight))

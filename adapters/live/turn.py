@@ -1,0 +1,372 @@
+"""The working copy of a turn: takes steps, lets agents go on, serves their requests, gives orders."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import replace
+
+from adapters.live.orders import hand_overs, is_authority, is_done, journey, unshown
+from adapters.live.serving import PATIENCE, STEPS_PER_SECOND, in_turn, own_steps, refilled, served
+from adapters.live.sightings import Fences, placement_seen
+from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Outgoing, Pace, Plan, Turn
+from adapters.plugin import Command, HandOver, Hold, Return
+from semantics.behaviours.expressions import Fault
+from semantics.contingencies import Fallback
+from semantics.control import Realisation, obstacle, realisations
+from semantics.observed import Sight
+from semantics.state.configuration import Transition
+from semantics.state.eta import Pending
+from semantics.state.partition import (
+    HERE,
+    Elsewhere,
+    Passage,
+    is_here,
+    is_parted,
+    leave,
+    parcel_of,
+    sent_cell,
+    station_of,
+)
+from semantics.state.physical_model import Carried, Placed, Placement
+from semantics.state.requests import CTR, FLY, SND
+from semantics.state.signature import Name
+
+MOST_REPORTED = 1_000
+"""How many things may have been reported once before troubles are not any more: strangers make any number of them."""
+
+
+class Turning:
+    """A turn being made; what it gathers becomes the next state."""
+
+    def __init__(self, plan: Plan, state: LiveState, now: float) -> None:
+        self.plan = plan
+        self.now = now
+        self.before = state
+        self.c = state.configuration
+        self.seen = dict(state.seen)
+        self.expires = state.expires
+        self.orders = dict(state.orders)
+        self.handing = dict(state.handing)
+        self.lost = set(state.lost)
+        self.taken = dict(state.taken)
+        self.idle = set(state.idle)
+        self.heads = dict(state.heads)
+        self.paces = dict(state.paces)
+        self.suspended = state.suspended
+        self.grounded = set(state.grounded)
+        self.missing = dict(state.missing)
+        self.failed = set(state.failed)
+        self.reported = set(state.reported)
+        self.told = state.told
+        self.shares = dict(state.shares)
+        self.coming: set[Name] = set()  # strangers that are about to be admitted
+        self.quiet = state.quiet
+        self.last = state.last
+        self.fences = Fences(self.c)
+        self.steps: list[LiveStep] = []
+        self.commands: list[Command] = []
+        self.findings: list[Finding] = []
+        self.answers: list[Answer] = []
+        self.parcels: list[Outgoing] = []
+        self.again = math.inf
+
+    # --- what comes of it
+
+    def turn(self) -> Turn:
+        """Return what the turn came to."""
+        state = LiveState(
+            self.c,
+            self.seen,
+            self.expires,
+            self.orders,
+            self.handing,
+            frozenset(self.lost),
+            self.taken,
+            frozenset(self.idle),
+            self.quiet,
+            self.heads,
+            self.paces,
+            self.suspended,
+            frozenset(self.grounded),
+            self.missing,
+            frozenset(self.failed),
+            frozenset(self.reported),
+            self.last,
+            self.before.number + len(self.steps),
+            self.told,
+            self.shares,
+        )
+        gathered = (tuple(self.steps), tuple(self.commands), tuple(self.findings), tuple(self.answers))
+        again = None if self.again == math.inf else self.again
+        return Turn(state, *gathered, tuple(self.parcels), again)
+
+    def find(self, kind: str, about: Name, message: str, fallback: str = "", *, once: bool = False) -> bool:
+        """Report something; what is to be reported once is not again, and not at all where there is too much of it."""
+        if once:
+            full = kind == "trouble" and len(self.reported) >= MOST_REPORTED
+            if full or message in self.reported:
+                return False
+            self.reported.add(message)
+        self.findings.append(Finding(kind, about, message, self.now, fallback))
+        return True
+
+    def wake(self, at: float) -> None:
+        """Turn again at a time, though nothing may come in."""
+        self.again = min(self.again, at)
+
+    # --- steps
+
+    def take(
+        self,
+        transition: Transition,
+        alike: tuple[Transition, ...],
+        sight: Sight | Elsewhere | None = None,
+    ) -> None:
+        """Take a step; `alike` are all that could be taken by that rule here.
+
+        What it puts into an agent that runs at another station leaves at once.
+        """
+        word = str(transition.label)
+        choice = [each for each in alike if str(each.label) == word].index(transition)
+        number = self.before.number + len(self.steps) + 1
+        self.steps.append(LiveStep(number, self.c, transition, choice, sight, self.now))
+        agent, request = transition.label.agent, transition.label.about
+        if agent is not None:
+            self.idle.discard(agent)
+        if agent is not None and transition.served is not None and not isinstance(request, SND):
+            self.heads.pop(agent, None)
+        if isinstance(request, SND):
+            self.idle.discard(request.to)
+        if transition.label.rule == "spawn":
+            self.idle.discard(str(request))
+        self.c = transition.target
+        if is_parted(self.c):
+            self._forward(request.to if isinstance(request, SND) else agent)
+            if transition.label.rule == "spawn":
+                self._forward(str(request))
+
+    def _forward(self, a: Name | None) -> None:
+        """Let leave what is here of an agent that runs at another station."""
+        if a is None or a not in self.c.alpha:
+            return
+        if station_of(self.c, a) is None:
+            host = self.c.alpha.host(a)
+            message = f"no station runs what is hosted at {host}, and so {a} does not go on"
+            self.find(
+                "blocked", a, f"{message}: add {host} to the hosts of a station in the peers file", once=True
+            )
+        for left in leave(self.c, a):
+            station, parcel = str(left.label.about), parcel_of(self.c, a)
+            assert parcel is not None
+            number: int = left.target.read(sent_cell(station))
+            self.parcels.append(Outgoing(station, number, parcel))
+            self.take(left, (left,), Passage(a, station, number))
+
+    def observe(self, sight: Sight, found: Iterator[Transition]) -> bool:
+        """Take the step that an observation makes, if it makes one."""
+        alike = tuple(found)
+        if alike:
+            self.take(alike[0], alike, sight)
+        return bool(alike)
+
+    # --- going on
+
+    def go_on(self, most: int) -> None:
+        """Let every agent take a step in turn and serve one request, until nothing more can be done now."""
+        left = most
+        while left > 0:
+            taken = self._own_steps(left)
+            taken += self.serve()
+            if not taken:
+                return
+            left -= taken
+        self.wake(self.now)
+
+    def _own_steps(self, most: int) -> int:
+        """Let agents take one step each, those first who come after the last that took one."""
+        able = (a for a in self.c.alpha.names() if a not in self.idle and a not in self.failed)
+        going = [a for a in able if is_here(self.c, a)]
+        first = bisect_right(going, self.last)
+        taken = 0
+        for a in going[first:] + going[:first]:
+            if taken >= most:
+                break
+            taken += self.own_step(a)
+            self.last = a
+        return taken
+
+    def own_step(self, a: Name) -> bool:
+        """Let an agent take one step of its own, if its pace allows one."""
+        pace = refilled(self.paces.get(a), self.now)
+        if pace.tokens < 1:
+            self.wake(self.now + max(PATIENCE, (1 - pace.tokens) / STEPS_PER_SECOND))
+            return False
+        try:
+            found = own_steps(self.c, a)
+        except Fault as fault:
+            self.failed.add(a)
+            self.find("failed", a, f"the computation of {a} fails: {fault}")
+            return False
+        if not found:
+            self.idle.add(a)
+            return False
+        self.paces[a] = Pace(pace.tokens - 1, self.now)
+        self.take(found[(self.before.number + len(self.steps)) % len(found)], found)
+        return True
+
+    def serve(self) -> bool:
+        """Serve the first request that can be, in the order asked."""
+        if self.quiet is self.c:
+            return False
+        for pending in tuple(in_turn(self.c)):
+            found, held = self.allowed(pending)
+            if found:
+                self.take(found[0], found)
+                return True
+            if held and self.plan.strict:
+                return False
+        self.quiet = self.c
+        return False
+
+    def allowed(self, pending: Pending) -> tuple[tuple[Transition, ...], bool]:
+        """Return what serves a request now, and whether it only waits for a vehicle to confirm."""
+        request = pending.request
+        if isinstance(request, FLY):
+            return (), False
+        found = served(self.c, pending)
+        if not isinstance(request, CTR):
+            return found, False
+        if self.stops(request.agent):
+            return (), False
+        if not found:
+            self._blocked(request)
+            return (), False
+        way = next(way for way in realisations(self.c, request) if not (way.flying and way.waits(self.c)))
+        return self._controlled(request, way, found)
+
+    def _blocked(self, request: CTR) -> None:
+        reason = obstacle(self.c, request)
+        if reason is not None:
+            self.find("blocked", request.agent, f"{request} is {reason.value}; it stays pending", once=True)
+
+    def _controlled(
+        self, request: CTR, way: Realisation, found: tuple[Transition, ...]
+    ) -> tuple[tuple[Transition, ...], bool]:
+        """Give the orders that a control takes, and return it once it may be taken."""
+        vehicles = frozenset(self.plan.vehicles)
+        unseen = unshown(self.c, request, way, vehicles)
+        if unseen:
+            self.find("blocked", request.agent, f"{request}: {unseen}; it stays pending", once=True)
+            return (), True
+        for node, _ in way.flying:
+            if not self._hears(node):
+                return (), False
+        if way.flying:
+            for node, place in way.flying:
+                going = journey(self.c, way, node, place, self.request_of(request.agent))
+                if going is None:
+                    return (), False
+                self.orders[node] = Order(going, request.agent, self.now)
+                self.commands.append(going)
+            return found, False
+        waiting = [told for told in hand_overs(self.c, request, way, vehicles) if not self._confirmed(told)]
+        for told in waiting:
+            self._hand_over(told, request.agent)
+        if waiting:
+            return (), True
+        for told in hand_overs(self.c, request, way, vehicles):
+            self.handing.pop(told.entity, None)
+        return found, False
+
+    def _hears(self, node: Name) -> bool:
+        owner = self.plan.vehicles.get(node)
+        if owner is None or owner == self.plan.peers:
+            here = "" if owner is None else " at this station"
+            message = f"no vehicle takes commands as {node}{here}: say --vehicle {node}=..."
+            self.find("blocked", node, message, once=True)
+            return False
+        return node in self.seen and node not in self.lost and node not in self.taken
+
+    def _confirmed(self, told: HandOver) -> bool:
+        sighting = self.seen.get(told.entity)
+        return sighting is not None and is_done(told, sighting.property.channels)
+
+    def _hand_over(self, told: HandOver, agent: Name) -> None:
+        known = self.handing.get(told.entity)
+        if known is None and self._hears(told.entity):
+            command = replace(told, request=self.request_of(agent))
+            self.handing[told.entity] = Order(command, agent, self.now)
+            self.commands.append(command)
+
+    def request_of(self, agent: Name) -> str:
+        """Name one more order of an agent."""
+        self.told += 1
+        return f"{agent}-{self.told}"
+
+    # --- flights
+
+    def stops(self, agent: Name) -> bool:
+        """Tell whether no control of an agent is served any more."""
+        return self.suspended or agent in self.grounded
+
+    def flies(self, entity: Name) -> bool:
+        """Tell whether a vehicle in flight is still to do what it was told for it."""
+        order = self.orders.get(entity)
+        if order is None or self.stops(order.agent):
+            return False
+        return not order.refused and entity not in self.taken
+
+    def shape(self, entity: Name) -> Placed | None:
+        """Return the shape that the mission gives an entity."""
+        placement = self.plan.first.structure.physical.placement(entity)
+        if isinstance(placement, Carried):
+            return placement.shape
+        return placement if isinstance(placement, Placed) else None
+
+    def around(self, entity: Name, kind: str, placement: Placement | None) -> frozenset[Name]:
+        """Return what contains an entity that stands somewhere, in the world as it is now."""
+        if self.fences.c is not self.c:
+            self.fences = Fences(self.c)
+        return self.fences.holders(entity, kind, placement)
+
+    def where_seen(self, entity: Name) -> Placement | None:
+        """Return where an entity was seen last, as P would have it."""
+        sighting = self.seen.get(entity)
+        return None if sighting is None else placement_seen(self.c, self.shape(entity), sighting)
+
+    # --- falling back
+
+    def fall_back(self, fallback: Fallback, entities: tuple[Name, ...]) -> None:
+        """Tell vehicles what the mission says that they do when something went otherwise."""
+        if fallback is Fallback.CONTINUE:
+            return
+        for entity in filter(self.answers_for, entities):
+            if entity in self.taken:
+                what = f"{entity} is not told to {fallback.value}: it was taken over"
+                self.find("taken over", entity, what, once=True)
+                continue
+            request = self.request_of("fallback")
+            told = Hold(request, entity) if fallback is Fallback.HOLD else Return(request, entity)
+            self.commands.append(told)
+
+    def answers_for(self, entity: Name) -> bool:
+        """Tell whether it is ours to command a vehicle, and to say what it does unasked: no other station's."""
+        if not is_parted(self.c) or entity not in self.plan.vehicles:
+            return True
+        if self.plan.vehicles[entity] == self.plan.peers:
+            return False
+        physical = self.before.configuration.structure.physical
+        authority = set(filter(is_authority, physical.channels(entity)))
+        return not authority or not authority.isdisjoint(physical.channels(self.c.read(HERE)))
+
+    def breaks(self, assumption: str, about: Name, kind: str = "broken assumption") -> None:
+        """Say that an assumption broke, or what else ends a flight, and do what the mission says is done then."""
+        if not self.answers_for(about):
+            return
+        fallback = self.plan.precautions.on_broken
+        found = self.find(kind, about, assumption, fallback.value, once=True)
+        if found and not self.suspended:
+            self.suspended = fallback is not Fallback.CONTINUE
+            self.fall_back(fallback, tuple(sorted(self.plan.vehicles)))

@@ -1,0 +1,128 @@
+"""What nobody announced: entities that the mission does not name, seen in its places.
+
+Anybody who can send a position can make any number of them. So they are taken in by shares, and all of a turn in one
+step: a step costs as much as there are entities, and what one more costs must not grow with those that are there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from adapters.live.flying import renew
+from adapters.live.sightings import placement_seen
+from adapters.live.state import Sighting
+from adapters.live.turn import Turning
+from semantics.observed import Sight, happening
+from semantics.state.cells import NAMES, Cell
+from semantics.state.physical_model import Placed, Placement, channels_cell, placement_cell
+from semantics.state.signature import REGION, Name
+
+MOST_STRANGERS = 1_000
+"""How many of them are taken in."""
+
+SHARE = MOST_STRANGERS // 2
+"""How many of one plugin: whoever floods one feed leaves room for what the others see."""
+
+MOST_PLACES = 60
+"""How many of one plugin that may contain others: each observation compares what it sees with all of them."""
+
+
+def comes_in(turning: Turning, plugin: str, found: Sighting) -> bool:
+    """Tell whether an entity is of a kind of the mission and in one of its places, and there is room for it."""
+    entity, kind, c = found.property.entity, found.property.kind, turning.c
+    if entity in turning.coming:
+        return True
+    at = _placed(turning, found)
+    if kind not in c.setting.signature.kinds or not turning.around(entity, kind, at):
+        return False
+    is_place = not at.geometry.is_point and bool(c.setting.signature[kind].contains)
+    taken, places = turning.shares.get(plugin, (0, 0))
+    full = taken >= SHARE or sum(share for share, _ in turning.shares.values()) >= MOST_STRANGERS
+    if full or (is_place and places >= MOST_PLACES):
+        what = f"{taken:,} entities" if full else f"{places} places"
+        message = f"'{plugin}': {what} that nobody announced are taken in; others are left out"
+        turning.find("trouble", plugin, message, once=True)
+        return False
+    turning.shares[plugin] = taken + 1, places + is_place
+    turning.coming.add(entity)
+    return True
+
+
+def place_strangers(turning: Turning, entities: Iterable[Name]) -> None:
+    """Place all that were seen, in one step. What they contain is not compared: that they are there breaks enough."""
+    kinds, physical = turning.c.setting.kinds, turning.c.structure.physical
+    writes: dict[Cell, object] = {}
+    admits: dict[Name, str] = {}
+    broken: list[str] = []
+    placed: list[tuple[Name, str]] = []
+    for entity in entities:
+        sighting = turning.seen[entity]
+        here, seen = physical.placement(entity), _placed(turning, sighting)
+        if sighting.until <= turning.now or here == seen or _grows(here, seen):
+            continue
+        kind = kinds.get(entity, sighting.property.kind)
+        around, before = turning.around(entity, kind, seen), turning.around(entity, kind, here)
+        if (
+            isinstance(here, Placed)
+            and here.geometry.is_point
+            and seen.geometry.is_point
+            and around == before
+        ):
+            continue
+        writes[placement_cell(entity)] = seen
+        where = ", ".join(sorted(around))
+        placed.append(
+            (entity, f"{entity} {'appears in' if here is None else 'is seen in'} {where or REGION}")
+        )
+        if here is None:
+            writes[channels_cell(entity)] = ()
+        if entity not in kinds:
+            admits[entity] = kind
+        if entity not in kinds or (here is not None and around != before):  # one that is back is nothing new
+            broken.append(f"{entity} ({kind}) is in {where or 'none of the places'}")
+    _happen(turning, Sight(_together([words for _, words in placed]), writes, admits))
+    if broken:
+        turning.breaks(f"{_together(broken)}; the mission names no such entity", placed[0][0])
+    for entity, _ in placed:
+        if not turning.seen[entity].property.geometry.is_point:
+            renew(turning, entity)
+
+
+def remove_strangers(turning: Turning, entities: Iterable[Name]) -> None:
+    """Take out of P what is not seen any more, and what it carries, in one step."""
+    physical = turning.c.structure.physical
+    gone = {entity for entity in entities if entity in physical}
+    if not gone:
+        return
+    carried = {name for name in turning.c.read(NAMES) if not gone.isdisjoint(physical.carriers(name))}
+    writes: dict[Cell, object] = {placement_cell(name): None for name in gone | carried}
+    writes |= {channels_cell(name): () for name in gone | carried}
+    _happen(turning, Sight(_together([f"{entity} vanishes" for entity in sorted(gone)]), writes))
+
+
+def _placed(turning: Turning, sighting: Sighting) -> Placed:
+    """Return where a stranger is; who says that it is carried says nothing that could be seen."""
+    alone = replace(sighting, property=replace(sighting.property, carried_by=None))
+    at = placement_seen(turning.c, None, alone)
+    assert isinstance(at, Placed)
+    return at
+
+
+def _grows(here: Placement | None, seen: Placed) -> bool:
+    """Tell whether what came as a point is a place now, which is counted otherwise."""
+    return isinstance(here, Placed) and here.geometry.is_point and not seen.geometry.is_point
+
+
+def _happen(turning: Turning, sight: Sight) -> None:
+    if sight.writes:
+        turning.observe(sight, happening(turning.c, sight))
+
+
+def _together(words: Sequence[str]) -> str:
+    """Say what happens to several by the first.
+
+    >>> _together(["a vanishes", "b vanishes", "c vanishes"])
+    'a vanishes, and so on for 2 more'
+    """
+    return "".join(words[:1]) + (f", and so on for {len(words) - 1:,} more" if len(words) > 1 else "")

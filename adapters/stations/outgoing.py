@@ -1,0 +1,76 @@
+"""What a station tells the others of a turn of its run: what leaves, what has entered, who flies, who is where."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+
+from adapters.live.state import LiveStep, Turn
+from adapters.stations.entries import Believed, Broke, Content, Hosted, Posted, Sent, Took
+from adapters.stations.merge import Merge
+from semantics.state.canonical import written
+from semantics.state.cells import Cell
+from semantics.state.configuration import Configuration
+from semantics.state.parcel_serialization import parcel_json
+from semantics.state.partition import Passage, is_here
+
+A_MOMENT = 1e-6
+"""Seconds by which what is said of an agent is later than what was said of it before, whatever clocks say."""
+
+
+def told(turn: Turn, vehicles: Collection[str], known: Mapping[str, int]) -> Iterator[Content]:
+    """Yield what a turn tells: what others have to know before a parcel enters comes before it.
+
+    Args:
+        turn: The turn.
+        vehicles: Who may be sent somewhere.
+        known: The last numbers of the other stations that had been heard of.
+    """
+    for step in turn.steps:
+        before, after = step.source.structure.physical, step.transition.target.structure.physical
+        if step.transition.label.rule in ("command", "commit"):
+            for vehicle in sorted(vehicles):
+                if before.going_to(vehicle) != after.going_to(vehicle):
+                    yield Sent(vehicle, after.going_to(vehicle), step.time)
+    for finding in turn.findings:
+        if finding.kind == "broken assumption" and not finding.elsewhere:
+            yield Broke(finding.message, finding.time)
+    yield from (Took(station, number) for station, number in entered(turn).items())
+    for each in turn.parcels:
+        knows = tuple((name, number) for name, number in sorted(known.items()) if name != each.station)
+        yield Posted(each.station, each.number, parcel_json(each.parcel), knows)
+
+
+def believed(turn: Turn, merge: Merge) -> Iterator[Believed]:
+    """Yield what a turn has written into L, each later than what was known to be there before."""
+    steps: dict[Cell, LiveStep] = {}
+    for step in turn.steps:
+        if step.transition.label.rule in ("sense", "actuate", "commit"):
+            cells = written(step.source, step.transition.target)
+            steps |= dict.fromkeys((cell for cell in cells if cell[0] in ("parent", "links")), step)
+    for (slot, node), step in sorted(steps.items(), key=lambda item: item[0]):
+        last, logical = merge.belief(slot, node), step.transition.target.structure.logical
+        parent = logical.parent(node)
+        nested = () if parent is None else (parent,)
+        after = last.content.time + A_MOMENT if last and isinstance(last.content, Believed) else step.time
+        yield Believed(node, slot, nested if slot == "parent" else logical.links(node), max(step.time, after))
+
+
+def entered(turn: Turn) -> dict[str, int]:
+    """Return up to which parcel of each station all have entered with a turn."""
+    seen = (step.sight for step in turn.steps)
+    passed = [each for each in seen if isinstance(each, Passage) and each.parcel is not None]
+    return {each.station: each.number for each in passed}
+
+
+def moved(c: Configuration, merge: Merge, now: float) -> Iterator[Hosted]:
+    """Yield where agents that run here are hosted, where the stations know otherwise.
+
+    Whoever has an agent has heard from whom it came all that was said of it before: so what is said last is the latest.
+    """
+    for agent in c.alpha.names():
+        home = merge.home(agent)
+        known = home.content if home is not None else None
+        host = c.alpha.host(agent)
+        if is_here(c, agent) and not (isinstance(known, Hosted) and known.host == host):
+            after = known.time + A_MOMENT if isinstance(known, Hosted) else now
+            yield Hosted(agent, host, max(now, after))

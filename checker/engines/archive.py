@@ -1,0 +1,90 @@
+"""Archives: plain data and arrays in one file, with a digest of all that it holds.
+
+The digest detects accidents and alterations by hand. It is no seal: who can write there can work out another. So
+whoever reads an archive still holds each number to what it may be.
+"""
+
+import json
+import os
+import re
+from collections.abc import Mapping, Sequence
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from checker.engines.contract import CheckpointError
+
+FIRST = re.compile(rb"bigactors archive 1 ([0-9a-f]{64}) ([0-9]{1,9})\n")
+MOST_FIRST, MOST_ABOUT = 128, 1 << 27
+"""Bytes of the first line, and of the plain data."""
+
+Kinds = Mapping[str, type[np.generic]]
+"""The arrays of an archive, in their order, and what numbers each has."""
+
+
+def write_archive(path: Path, head: dict[str, Any], kinds: Kinds, arrays: Sequence[NDArray[Any]]) -> None:
+    """Write plain data and arrays in the place of those before: what is there is always whole.
+
+    Raises:
+        OSError: They can't be written there.
+    """
+    rows = [
+        np.ascontiguousarray(array, kind).ravel() for kind, array in zip(kinds.values(), arrays, strict=True)
+    ]
+    about = json.dumps({"head": head, "lengths": [len(each) for each in rows]}).encode()
+    found = sha256(about)
+    for each in rows:
+        found.update(each.view(np.uint8).data)
+    partial = path.with_suffix(".partial")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with partial.open("wb") as file:
+        file.write(b"bigactors archive 1 %s %d\n" % (found.hexdigest().encode(), len(about)))
+        file.write(about)
+        for each in rows:
+            file.write(each.view(np.uint8).data)
+        file.flush()
+        os.fsync(file.fileno())
+    partial.replace(path)
+
+
+def read_archive(path: Path, schema: str, kinds: Kinds) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+    """Return the plain data and the arrays of a file that `write_archive` wrote.
+
+    Raises:
+        CheckpointError: It is none, is not what was written, or is of another schema.
+    """
+    try:
+        if not path.is_file():
+            raise ValueError("it is no file")
+        with path.open("rb") as file:
+            return _read(file, schema, kinds)
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        raise CheckpointError(f"{path}: this is no checkpoint: {error}") from error
+
+
+def _read(file: BinaryIO, schema: str, kinds: Kinds) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+    first = FIRST.fullmatch(file.readline(MOST_FIRST))
+    if first is None or int(first[2]) > MOST_ABOUT:
+        raise ValueError("it does not begin like one")
+    about = file.read(int(first[2]))
+    data = json.loads(about)
+    head, lengths = data["head"], data["lengths"]
+    if not isinstance(head, dict) or head.get("schema") != schema:
+        raise ValueError(f"it is not of the schema {schema}")
+    if len(lengths) != len(kinds) or not all(type(each) is int and each >= 0 for each in lengths):
+        raise ValueError("it has other arrays")
+    told = sum(count * np.dtype(kind).itemsize for kind, count in zip(kinds.values(), lengths, strict=True))
+    rest = os.fstat(file.fileno()).st_size - file.tell()
+    if told != rest:
+        raise ValueError(f"its arrays take {told:,} bytes, and {rest:,} are there")
+    found, arrays = sha256(about), {}
+    for (name, kind), count in zip(kinds.items(), lengths, strict=True):
+        arrays[name] = np.empty(count, kind)
+        file.readinto(arrays[name].view(np.uint8).data)  # type: ignore[attr-defined]  # a file that was opened has it
+        found.update(arrays[name].view(np.uint8).data)
+    if found.hexdigest().encode() != first[1]:
+        raise ValueError("its digest is not that of what it holds: it was altered")
+    return head, arrays

@@ -1,0 +1,261 @@
+"""Explore with a crew of workers, layer by layer, up to the same bounds as one process.
+
+Whoever leads knows how far each worker has come and where checkpoints are, and no configurations. When a worker is
+lost, all go back to the last checkpoint that all have written; the way from there is the same once more.
+"""
+
+import time
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+from checker.engines.cluster.checkpoints import Latest, read_latest, write_latest
+from checker.engines.cluster.crew import Crew, LostError
+from checker.engines.cluster.lookup import Configurations, Found, Origins, Survey, look_at_each
+from checker.engines.cluster.merging import is_mergeable, merge
+from checker.engines.cluster.numbering import Places
+from checker.engines.cluster.shard import Standing
+from checker.engines.contract import (
+    CheckpointError,
+    Exploration,
+    Inspect,
+    Keeping,
+    MachineError,
+    Progress,
+    Report,
+)
+from checker.limits import INTERRUPTION, Limits, crowd_met, limit_met, memory_met, time_met
+from semantics.state.configuration import Configuration
+
+MOST_LOSSES = 5
+"""How often workers may be lost between two checkpoints."""
+
+ROUND = 1 << 14
+"""Rows that each worker expands between two exchanges, for each worker that there is: so parcels stay as large."""
+
+Answer = TypeVar("Answer")
+
+
+class Expedition:
+    """An exploration by a crew.
+
+    Attributes:
+        crew: The workers.
+        initial: Where it starts.
+        folder: Where checkpoints are, None for nowhere.
+        latest: The last one.
+        layer: How far the rows that are expanded are from the first.
+        standings: How far each worker has come.
+        bounds: What has ended it early.
+        is_lost: Whether a worker has died since all began.
+        is_whole: Whether nothing is on its way between workers.
+        is_kept: Whether the last checkpoint is of where they are.
+    """
+
+    def __init__(
+        self,
+        crew: Crew,
+        initial: Configuration,
+        limits: Limits,
+        report: Report | None = None,
+        every: float = 0.5,
+        keeping: Keeping | None = None,
+    ) -> None:
+        self.crew = crew
+        self.initial = initial
+        self.limits = limits
+        self.report = report
+        self.every = every
+        self.keeping = keeping or Keeping()
+        self.digest = f"{self.keeping.digest}, {limits.configurations}, {limits.pending}"
+        self.folder = self._folder()
+        self.latest = self._resumed()
+        self.layer = 0
+        self.standings: list[Standing] = []
+        self.bounds: list[str] = []
+        self.is_lost = True
+        self.is_whole = self.is_kept = False
+        self.losses = 0
+        self.began = time.monotonic() - (self.latest.seconds if self.latest else 0.0)
+        self.reported = self.kept = time.monotonic()
+
+    def _folder(self) -> Path | None:
+        """Return where checkpoints are kept: the search for stale observations has its own."""
+        name = "monitored" if self.initial.setting.monitored else "exploration"
+        if self.keeping.folder is None:
+            return None
+        folder = Path(self.keeping.folder).resolve() / f"{name}-ray"  # workers may be in other folders
+        folder.mkdir(parents=True, exist_ok=True)
+        return folder
+
+    def _resumed(self) -> Latest | None:
+        if self.folder is None or not self.keeping.resumed:
+            return None
+        return read_latest(self.folder, self.digest, self.crew.size)
+
+    # --- all the way ----------------------------------------------------------------------------------------------
+
+    def run(self, inspect: tuple[Inspect, ...]) -> Exploration:
+        """Visit everything that is reachable, and let inspections have found what there is."""
+        found = Found(self.crew, self.surely, self.initial.setting)
+        together = tuple(each for each in inspect if is_mergeable(each))
+        parts = self.surely(lambda: self.crew.every("inspect", together))
+        summaries = self.surely(lambda: self.crew.every("summary"))
+        found.places = places = Places.of([boundaries for boundaries, _ in summaries])
+        found.expanded = [standing.expanded for standing in self.standings]
+        found.crowded = any(standing.crowded for standing in self.standings)
+        for number, inspection in enumerate(together):
+            merge(inspection, [part[number] for part in parts], places)
+        look_at_each(found, [each for each in inspect if each not in together])
+        rules: Counter[str] = Counter()
+        for _, counts in summaries:
+            rules.update(counts)
+        return Exploration(
+            Configurations(found),
+            Origins(found),
+            places.depth,
+            sum(found.expanded),
+            rules.total(),
+            rules,
+            sorted(self.bounds + self.met()),
+            time.monotonic() - self.began,
+            sum(standing.runs for standing in self.standings),
+            survey=Survey(found),
+            allowed=rules.total(),
+        )
+
+    def surely(self, ask: Callable[[], Answer]) -> Answer:
+        """Ask the crew when all is explored; if a worker is lost, explore once more what is lost with it."""
+        while True:
+            try:
+                self.visit_all()
+                return ask()
+            except LostError as lost:
+                self.is_lost = True
+                self.losses += 1
+                if self.losses > MOST_LOSSES:
+                    often = f"workers were lost {self.losses} times without a checkpoint between"
+                    raise MachineError(f"{often}: {lost}") from lost
+
+    def met(self) -> list[str]:
+        """Return the bounds that left something out."""
+        most = self.limits.configurations
+        cut = [limit_met(most)] if most is not None and any(each.cut for each in self.standings) else []
+        crowded = any(each.crowded for each in self.standings)
+        return cut + ([crowd_met(self.limits.pending)] if crowded else [])
+
+    # --- rounds ---------------------------------------------------------------------------------------------------
+
+    def visit_all(self) -> None:
+        """Go on until all is explored, or a bound is met."""
+        if self.is_lost:
+            self.begin()
+        if self.is_done():
+            return
+        try:
+            while not self.is_done():
+                self.go_round()
+        except KeyboardInterrupt:
+            self.bounds.append(INTERRUPTION)
+            self.standings = self.crew.every("halt", self.layer)
+        if self.is_whole:
+            self.save()
+
+    def is_done(self) -> bool:
+        """Tell whether there is nothing to be expanded, or a bound was met."""
+        return bool(self.bounds) or all(each.expanded == each.size for each in self.standings)
+
+    def begin(self) -> None:
+        """Begin, or go back to the last checkpoint."""
+        if self.bounds and not self.is_kept:
+            raise MachineError("a worker was lost when a bound was met, and where they were was not kept")
+        self.crew.revive()
+        if self.latest is None:
+            self.layer, self.standings = 0, self.crew.every("start")
+        else:
+            self.layer = self.latest.layer
+            self.standings = self.load(self.latest.number)
+        self.is_lost, self.is_whole = False, True
+
+    def go_round(self) -> None:
+        """Let each worker expand some rows, and the others take what is theirs, unless a bound is met."""
+        self.look_at_bounds(time.monotonic() - self.began)
+        if self.bounds:
+            return
+        if all(each.expanded == each.end for each in self.standings):
+            self.layer += 1
+        before = [each.size for each in self.standings]
+        self.is_whole = self.is_kept = False
+        self.standings = self.crew.exchange("expand", "take", self.layer, ROUND * self.crew.size)
+        self.trim(before)
+        self.is_whole = True
+        now = time.monotonic()
+        if self.report is not None and now - self.reported >= self.every:
+            self.report(self.progress(now - self.began))
+            self.reported = now
+        if now - self.kept >= self.keeping.every:
+            self.save()
+
+    def trim(self, before: list[int]) -> None:
+        """Give up what is beyond the limit of configurations, of that which came last."""
+        most = self.limits.configurations
+        sizes = [each.size for each in self.standings]
+        excess = 0 if most is None else sum(sizes) - most
+        if excess <= 0:
+            return
+        for worker in reversed(range(len(sizes))):
+            given_up = min(excess, sizes[worker] - before[worker])
+            sizes[worker] -= given_up
+            excess -= given_up
+        self.standings = self.crew.every("keep", tuple(sizes))
+
+    def look_at_bounds(self, seconds: float) -> None:
+        """Note whether time, or some worker's memory, has come to its end."""
+        limits = self.limits
+        if limits.seconds is not None and seconds + limits.spent > limits.seconds:
+            self.bounds.append(time_met(limits.seconds))
+        elif limits.memory is not None and max(each.memory for each in self.standings) > limits.memory:
+            self.bounds.append(memory_met(limits))
+
+    def progress(self, seconds: float) -> Progress:
+        """Return how far all have come."""
+        size, expanded, transitions = (
+            sum(getattr(each, name) for each in self.standings)
+            for name in ("size", "expanded", "transitions")
+        )
+        return Progress(size, transitions, self.layer, size - expanded, expanded / max(seconds, 1e-9))
+
+    # --- checkpoints ----------------------------------------------------------------------------------------------
+
+    def save(self) -> None:
+        """Let all workers write a checkpoint, if one is wanted; the one before is removed when all have."""
+        if self.folder is None:
+            return
+        before = self.latest.number if self.latest else 0
+        self.crew.every("save", str(self.folder), before + 1, self.digest)
+        self.latest = Latest(before + 1, self.layer, time.monotonic() - self.began)
+        write_latest(self.folder, self.latest, self.digest, self.crew.size)
+        self.crew.every("drop", str(self.folder), before)
+        self.losses, self.is_kept = 0, True
+        self.kept = time.monotonic()
+
+    def load(self, number: int) -> list[Standing]:
+        """Let all workers go back to a checkpoint, and tell each other what they have forgotten."""
+        self.crew.every("load", str(self.folder), number, self.digest)
+        known: list[tuple[int, int]] = []
+        while True:
+            recalled = self.crew.exchange("recall", "hear")
+            if not any(missing for missing, _ in recalled):
+                standings = self.crew.every("go_on")
+                boundaries = tuple(each for each, _ in self.crew.every("summary"))
+                if not all(self.crew.every("fits", self.layer, boundaries)):
+                    raise CheckpointError(
+                        f"{self.folder}: the workers' parts of this checkpoint don't fit together"
+                    )
+                return standings
+            if recalled == known:
+                raise CheckpointError(
+                    f"{self.folder}: what is learned from this checkpoint is not what was learned"
+                )
+            known = recalled

@@ -1,0 +1,190 @@
+"""What was found by a crew: configurations, where they came from, and the graph, asked of whoever has them."""
+
+from abc import abstractmethod
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from typing import Any, TypeVar, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from checker.engines.cluster.crew import Crew
+from checker.engines.cluster.numbering import Places
+from checker.engines.contract import Inspect
+from checker.engines.graph import Graph
+from semantics.properties.propositions import Proposition
+from semantics.state.configuration import Configuration, Label
+from semantics.state.requests import Request
+from semantics.state.setting import Setting
+from semantics.successors import expand
+
+BLOCK = 1 << 16
+"""Rows of each worker whose transitions are asked for at once."""
+
+Value = TypeVar("Value")
+
+
+class Found:
+    """The rows of a crew that has explored.
+
+    Attributes:
+        crew: The workers.
+        surely: Asks the crew, and once more where a worker was lost.
+        setting: The mission.
+        places: Which row has which number.
+        expanded: How many rows of each worker were expanded.
+        crowded: Whether some of them were not followed.
+    """
+
+    def __init__(self, crew: Crew, surely: Callable[[Callable[[], Any]], Any], setting: Setting) -> None:
+        self.crew = crew
+        self.surely = surely
+        self.setting = setting
+        self.places = Places((), (0,))
+        self.expanded: list[int] = []
+        self.crowded = False
+
+    def one(self, worker: int, method: str, *arguments: Any) -> Any:
+        """Return what a worker answers."""
+        return self.surely(lambda: self.crew.one(worker, method, *arguments))
+
+    def every(self, method: str, *arguments: Any) -> list[Any]:
+        """Return what each worker answers."""
+        found: list[Any] = self.surely(lambda: self.crew.every(method, *arguments))
+        return found
+
+    def spread(self, values: Sequence[NDArray[np.bool_]]) -> NDArray[np.bool_]:
+        """Return by number what each worker says of its rows."""
+        found = np.zeros(len(self.places), np.bool_)
+        for worker, told in enumerate(values):
+            found[self.places.all_of(worker, np.arange(len(told), dtype=np.int64))] = told
+        return found
+
+
+class Numbered(Sequence[Value]):
+    """Something of each configuration, by its number."""
+
+    def __init__(self, found: Found) -> None:
+        self.found = found
+
+    def __len__(self) -> int:
+        return len(self.found.places)
+
+    @overload
+    def __getitem__(self, number: int) -> Value: ...
+
+    @overload
+    def __getitem__(self, number: slice) -> Sequence[Value]: ...
+
+    def __getitem__(self, number: int | slice) -> Value | Sequence[Value]:
+        if isinstance(number, slice):
+            return [self[each] for each in range(*number.indices(len(self)))]
+        return self.at(*self.found.places.find(range(len(self))[number]))
+
+    @abstractmethod
+    def at(self, worker: int, row: int) -> Value:
+        """Return it of a worker's row."""
+
+
+class Configurations(Numbered[Configuration]):
+    """The configurations, each sent for where it is looked at."""
+
+    def at(self, worker: int, row: int) -> Configuration:
+        """Return the configuration of a row."""
+        [cells] = self.found.one(worker, "rows", [row])
+        return Configuration(self.found.setting, cells)
+
+
+class Origins(Numbered[int]):
+    """For each configuration the one that it was first reached from."""
+
+    def at(self, worker: int, row: int) -> int:
+        """Return the number of the row that one was reached from."""
+        return self.found.places.number(*self.found.one(worker, "origin", row))
+
+
+def look_at_each(found: Found, inspections: Iterable[Inspect]) -> None:
+    """Let inspections look at every configuration that was expanded: those that workers can't be asked for."""
+    looking = tuple(inspections)
+    configurations = Configurations(found)
+    for number in range(len(found.places) if looking else 0):
+        worker, row = found.places.find(number)
+        if row < found.expanded[worker]:
+            c = configurations[number]
+            expansion = expand(c)
+            for each in looking:
+                each(number, c, expansion)
+
+
+class Survey:
+    """What temporal properties ask of an exploration: all of it is gathered where they are decided."""
+
+    def __init__(self, found: Found) -> None:
+        self.found = found
+
+    def valuation(self, asked: Iterable[Proposition]) -> dict[Proposition, NDArray[np.bool_]]:
+        """Return where each proposition is true."""
+        formulas = tuple(dict.fromkeys(asked))
+        told = self.found.every("truths", formulas)
+        return {
+            formula: self.found.spread([each[rank] for each in told]) for rank, formula in enumerate(formulas)
+        }
+
+    def pending(self) -> dict[Request, NDArray[Any]]:
+        """Return for each request the configurations in which it is pending, in their order."""
+        gathered: dict[Request, list[NDArray[np.int64]]] = {}
+        for worker, told in enumerate(self.found.every("pending")):
+            for request, rows in told.items():
+                numbers = self.found.places.all_of(worker, rows.astype(np.int64))
+                gathered.setdefault(request, []).append(numbers)
+        return {request: np.sort(np.concatenate(parts)) for request, parts in gathered.items()}
+
+    def graph(self) -> Graph:
+        """Return every transition of the configurations that were expanded, in the order of the rules."""
+        found, size = self.found, len(self.found.places)
+        labels: dict[Label, int] = {}
+        parts = [(np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int64))]
+        for first in range(0, max(found.expanded, default=0), BLOCK):
+            answers, edges = found.surely(partial(self._edges, first))
+            parts += [self._gathered(worker, told, answers, labels) for worker, told in enumerate(edges)]
+        sources, actions, targets = (np.concatenate(each) for each in zip(*parts, strict=True))
+        order = np.argsort(sources, kind="stable")
+        sources, actions, targets = sources[order], actions[order], targets[order]
+        there = targets >= 0
+        cut_off = self._unfollowed(sources)
+        cut_off[sources[~there]] = True
+        starts = np.concatenate(([0], np.cumsum(np.bincount(sources[there], minlength=size))))
+        return Graph(
+            starts.astype(np.int64),
+            targets[there].astype(np.int32),
+            actions[there],
+            tuple(labels),
+            cut_off if cut_off.any() else None,
+        )
+
+    def _unfollowed(self, sources: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Return which configurations were not followed; those that are crowded have no transitions."""
+        found = self.found
+        rows = zip(found.places.begins, found.expanded, strict=True)
+        missing = ~found.spread([np.arange(begins[-1]) < expanded for begins, expanded in rows])
+        if found.crowded:
+            missing |= np.bincount(sources, minlength=len(missing)) == 0
+        return missing
+
+    def _edges(self, first: int) -> tuple[list[Any], list[Any]]:
+        return self.found.crew.exchange("point", "find", first, BLOCK), self.found.crew.every("edges")
+
+    def _gathered(
+        self, worker: int, edges: tuple[Any, ...], answers: list[Any], labels: dict[Label, int]
+    ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int64]]:
+        """Return a worker's transitions in numbers that are everybody's."""
+        places = self.found.places
+        rows, actions, owners, own, told = edges
+        targets = np.full(len(rows), -1, np.int64)
+        for owner in range(len(answers)):
+            of_owner = np.flatnonzero(owners == owner)
+            reached = own[of_owner] if owner == worker else answers[owner][worker]
+            known = reached >= 0
+            targets[of_owner[known]] = places.all_of(owner, reached[known])
+        numbers = np.array([labels.setdefault(label, len(labels)) for label in told], np.int32)
+        return places.all_of(worker, rows), numbers[actions], targets

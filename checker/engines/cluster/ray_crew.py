@@ -1,0 +1,290 @@
+"""A crew of Ray actors: the only file that knows Ray.
+
+Parcels go from actor to actor through Ray's object store; whoever leads sees only their references. An actor that dies
+is started anew by Ray, and knows nothing then: calls say which crew they are meant for, so that none is answered by one
+that has forgotten.
+"""
+
+import os
+import shutil
+import signal
+import socket
+import tempfile
+import threading
+import time
+import weakref
+from dataclasses import replace
+from functools import lru_cache
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+from checker.engines.cluster.crew import ClusterError, LostError
+from checker.engines.cluster.explorer import Expedition
+from checker.engines.cluster.transfer import WORKERS_AT_MOST
+from checker.engines.cluster.worker import Worker
+from checker.engines.contract import (
+    CheckpointError,
+    Cluster,
+    Exploration,
+    Inspect,
+    Keeping,
+    MachineError,
+    Report,
+)
+from checker.limits import Limits
+from semantics.state.configuration import Configuration
+
+PATIENCE = 120.0
+"""Seconds in which Ray must have started an actor, or started it anew."""
+
+STORE = 512 << 20
+"""Bytes of the object store of a cluster of one's own: what is on its way at once."""
+
+ROOMS = ("bigraphs", "physical", "semantics", "checker")
+
+
+class ForgottenError(Exception):
+    """An actor was started anew since it joined a crew."""
+
+
+class Process:
+    """A Ray actor: it works in any number of crews.
+
+    Attributes:
+        joined: By the name of each crew, its worker there, and how often the crew was revived.
+    """
+
+    def __init__(self) -> None:
+        self.joined: dict[str, tuple[Worker, int]] = {}
+
+    def join(self, crew: str, revived: int, *worker: Any) -> str:
+        """Join a crew as the worker that is described, unless it is one; return which checker it is that runs here."""
+        known = self.joined.get(crew)
+        self.joined[crew] = Worker(*worker) if known is None else known[0], revived
+        return edition()
+
+    def call(self, crew: str, revived: int, method: str, *arguments: Any) -> Any:
+        """Return what the worker of a crew answers."""
+        worker, joined = self.joined.get(crew, (None, -1))
+        if joined != revived:
+            raise ForgottenError
+        return getattr(worker, method)(*arguments)
+
+    def leave(self, crew: str) -> None:
+        """Leave a crew."""
+        self.joined.pop(crew, None)
+
+
+@lru_cache(maxsize=4)
+def processes(node: str, workers: int) -> tuple[Any, ...]:  # noqa: ARG001  # of each Ray cluster there are others
+    """Return so many actors, spread over the machines of the cluster; the same where they were had before."""
+    # Ray doesn't repeat calls: what an actor knew is gone, and only all together can go back.
+    options = {"num_cpus": 0, "max_restarts": -1, "max_task_retries": 0, "scheduling_strategy": "SPREAD"}
+    actor = load_ray().remote(Process).options(**options)
+    return tuple(actor.remote() for _ in range(workers))
+
+
+class RayCrew:
+    """Actors that explore one mission together.
+
+    Attributes:
+        name: What tells crews apart.
+        revived: How often it was revived.
+    """
+
+    def __init__(self, initial: Configuration, pending: int, workers: int) -> None:
+        self.ray = load_ray()
+        self.name = uuid4().hex
+        self.revived = 0
+        self.about = (initial, pending)
+        self.actors = processes(self.ray.get_runtime_context().get_node_id(), workers)
+        weakref.finalize(self, _leave, self.ray, self.actors, self.name)
+
+    @property
+    def size(self) -> int:
+        """How many there are."""
+        return len(self.actors)
+
+    def one(self, worker: int, method: str, *arguments: Any) -> Any:
+        """Return what one of them answers."""
+        return self._got([self.actors[worker].call.remote(self.name, self.revived, method, *arguments)])[0]
+
+    def every(self, method: str, *arguments: Any) -> list[Any]:
+        """Return what each of them answers."""
+        return self._got(
+            [actor.call.remote(self.name, self.revived, method, *arguments) for actor in self.actors]
+        )
+
+    def exchange(self, giving: str, taking: str, *arguments: Any) -> list[Any]:
+        """Let each of them give something for every one, then take what it was given; return the answers to that."""
+        given = [
+            actor.call.options(num_returns=self.size).remote(self.name, self.revived, giving, *arguments)
+            for actor in self.actors
+        ]
+        taken = [
+            actor.call.remote(self.name, self.revived, taking, *(each[worker] for each in given))
+            for worker, actor in enumerate(self.actors)
+        ]
+        return self._got(taken)
+
+    def _got(self, references: list[Any]) -> list[Any]:
+        errors = self.ray.exceptions
+        try:
+            found: list[Any] = self.ray.get(references)
+        except (
+            errors.RayActorError,
+            errors.ObjectLostError,
+            errors.OutOfMemoryError,
+            ForgottenError,
+        ) as lost:
+            raise LostError(str(lost).strip().splitlines()[0] if str(lost) else "a worker was lost") from lost
+        except errors.RayTaskError as error:
+            if isinstance(error.cause, CheckpointError):
+                raise error.cause from None  # it says all; where in a worker it was raised is of no interest
+            raise
+        return found
+
+    def revive(self) -> None:
+        """Wait until all actors are there, and let them join anew.
+
+        Raises:
+            ClusterError: Some run something else.
+            MachineError: Some are not there in time.
+        """
+        self.revived += 1
+        deadline = time.monotonic() + PATIENCE
+        editions = {self._join(worker, deadline) for worker in range(self.size)}
+        if editions != {edition()}:
+            raise ClusterError(
+                "the machines of the cluster run another version of the checker: install the same on all"
+            )
+
+    def _join(self, worker: int, deadline: float) -> str:
+        errors = self.ray.exceptions
+        while True:
+            reference = self.actors[worker].join.remote(
+                self.name, self.revived, *self.about, worker, self.size
+            )
+            try:
+                joined: str = self.ray.get(reference, timeout=max(0.0, deadline - time.monotonic()))
+                return joined
+            except errors.ActorUnschedulableError as error:
+                raise MachineError(f"worker {worker} can't be placed: {error}") from error
+            except (errors.RayActorError, errors.GetTimeoutError) as error:
+                if isinstance(error, errors.GetTimeoutError) or time.monotonic() > deadline:
+                    raise MachineError(
+                        f"worker {worker} could not be started within {PATIENCE:g} s: {error}"
+                    ) from error
+                time.sleep(0.1)
+
+
+def _leave(ray: Any, actors: tuple[Any, ...], crew: str) -> None:
+    if ray.is_initialized():
+        for actor in actors:
+            actor.leave.remote(crew)
+
+
+def load_ray() -> Any:
+    """Return the Ray library, that tells nobody that it is used.
+
+    Raises:
+        ClusterError: It is not installed.
+    """
+    os.environ["RAY_USAGE_STATS_ENABLED"] = "0"
+    try:
+        import ray  # noqa: PLC0415  # an extra, and slow to load
+    except ImportError as error:
+        raise ClusterError("--engine ray needs Ray: pip install 'bigactors[cluster]'") from error
+    return ray
+
+
+def connect(cluster: Cluster) -> None:
+    """Join the Ray cluster that is meant, unless this process is in one; without an address, start one here alone.
+
+    Raises:
+        ClusterError: There is none at the address, or Ray is not installed.
+        MachineError: None could be started here.
+    """
+    if _is_here(cluster.address):
+        os.environ["RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER"] = "0"  # so it listens on the loopback address alone
+    ray = load_ray()
+    if ray.is_initialized():
+        return
+    if cluster.address not in (None, "auto"):
+        _reach(str(cluster.address))
+    before = signal.getsignal(signal.SIGTERM)
+    quiet = {"include_dashboard": False, "log_to_driver": False, "logging_level": "error"}
+    try:
+        if cluster.address is None:
+            ray.init(num_cpus=cluster.workers, object_store_memory=STORE, **quiet)
+        else:
+            ray.init(address=cluster.address, log_to_driver=False, logging_level="error")
+    except Exception as error:  # Ray raises plain ones where it is not up in time
+        if cluster.address is None:
+            raise MachineError(f"no Ray cluster could be started here: {error}") from error
+        raise ClusterError(f"there is no Ray cluster at {cluster.address}: {error}") from error
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, before)  # Ray has put its own there, which leaves at once
+    if cluster.address is None and not ray.util.get_node_ip_address().startswith("127."):
+        ray.shutdown()
+        raise ClusterError("Ray was loaded before and would listen to others: let the checker load it")
+
+
+def _is_here(address: str | None) -> bool:
+    return address is None or address.startswith(("127.", "localhost:"))
+
+
+def _reach(address: str) -> None:
+    """See whether anybody listens at an address: Ray itself would try for minutes."""
+    host, colon, port = address.rpartition(":")
+    if not colon or not host or not port.isdecimal() or int(port) > 65535:
+        raise ClusterError(f"'{address:.60}' is no address of a Ray cluster: it should be HOST:PORT, or auto")
+    try:
+        socket.create_connection((host.strip("[]"), int(port)), timeout=5).close()
+    except OSError as error:
+        raise ClusterError(f"there is no Ray cluster at {address}: {error}") from error
+
+
+def explore_with_ray(  # noqa: PLR0913, PLR0917  # as `explore`
+    initial: Configuration,
+    inspect: tuple[Inspect, ...],
+    limits: Limits,
+    report: Report | None,
+    every: float,
+    keeping: Keeping | None,
+    cluster: Cluster,
+) -> Exploration:
+    """Visit everything that is reachable (see `checker.engines.choose.explore`).
+
+    Where no folder is named for checkpoints, a cluster of one's own keeps them in a temporary one.
+
+    Raises:
+        ClusterError: There is no cluster, or it can't be worked with as it is asked for.
+        MachineError: It does not start, or workers are lost again and again.
+        CheckpointError: There is none to go on from, or it is of something else.
+    """
+    if not 2 <= cluster.workers <= WORKERS_AT_MOST:
+        raise ClusterError(f"--engine ray takes 2 to {WORKERS_AT_MOST} workers; one is --engine fast")
+    connect(cluster)
+    crew = RayCrew(initial, limits.pending, cluster.workers)
+    keeping = keeping or Keeping()
+    if keeping.doubted:
+        raise ClusterError("only the fast explorer can be doubted: --paranoid goes with --engine fast")
+    if keeping.folder is None and cluster.address is None:
+        folder = tempfile.mkdtemp(prefix="bigactors-")
+        weakref.finalize(crew, shutil.rmtree, folder, ignore_errors=True)
+        keeping = replace(keeping, folder=folder)
+    return Expedition(crew, initial, limits, report, every, keeping).run(inspect)
+
+
+@lru_cache(maxsize=1)
+def edition() -> str:
+    """Return a digest of all that explores: workers that differ in it may learn different rules."""
+    root = Path(__file__).parents[2]
+    found = sha256()
+    for path in sorted(path for room in ROOMS for path in (root / room).rglob("*.py")):
+        found.update(path.relative_to(root).as_posix().encode())
+        found.update(path.read_bytes())
+    return found.hexdigest()

@@ -1,0 +1,202 @@
+"""What one worker answers: rounds, surveys of its rows, edges, and checkpoints. It has numbers of its own for rows."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from checker.engines.cluster import checkpoints
+from checker.engines.cluster.shard import Shard, Standing
+from checker.engines.cluster.transfer import Parcel
+from checker.engines.contract import Inspect
+from checker.engines.fast import kernel as loops
+from checker.engines.fast.graph import general, pending_in_space
+from checker.engines.fast.inspecting import inspect_fast, truths
+from checker.engines.fast.kernel import AT, GATHERED
+from checker.engines.fast.survey import Survey
+from checker.properties.inspections import Invariant
+from checker.properties.vacuity import asked, atoms_of
+from checker.properties.visited import Visited
+from semantics.properties.propositions import Proposition
+from semantics.state.cells import Row
+from semantics.state.configuration import Configuration, Label
+from semantics.state.requests import Request
+
+Edges = tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int64], tuple[Label, ...]]
+"""Of some transitions the rows they leave, the numbers of their labels, whose rows they lead to, and to which of one's
+own (-1: another's); and the labels."""
+
+
+class Worker:
+    """One of the processes that explore together.
+
+    Attributes:
+        shard: Its rows, and what it learned.
+    """
+
+    def __init__(self, initial: Configuration, pending: int, me: int, workers: int) -> None:
+        self.initial = initial
+        self.shard = Shard(initial, pending, me, workers)
+        self.loading: checkpoints.Loading | None = None
+        self.pointed: Edges | None = None
+
+    # --- rounds ---------------------------------------------------------------------------------------------------
+
+    def start(self) -> Standing:
+        """Begin anew with the initial configuration."""
+        self.shard.start()
+        return self.shard.standing()
+
+    def expand(self, layer: int, most: int) -> tuple[Parcel, ...]:
+        """Expand some rows of a layer."""
+        return self.shard.expand(layer, most)
+
+    def take(self, *parcels: Parcel) -> Standing:
+        """Take in what was sent."""
+        return self.shard.take(*parcels)
+
+    def halt(self, layer: int) -> Standing:
+        """Return how far it has come, in a layer that all have begun."""
+        self.shard.enter(layer)
+        return self.shard.standing()
+
+    def keep(self, sizes: tuple[int, ...]) -> Standing:
+        """Keep so many rows; for each worker there is a number."""
+        return self.shard.keep(sizes[self.shard.me])
+
+    # --- checkpoints ----------------------------------------------------------------------------------------------
+
+    def save(self, folder: str, number: int, digest: str) -> None:
+        """Write a checkpoint."""
+        checkpoints.save(self.shard, Path(folder), number, digest)
+
+    def drop(self, folder: str, number: int) -> None:
+        """Remove a checkpoint, if there is one."""
+        checkpoints.path_of(Path(folder), number, self.shard.me).unlink(missing_ok=True)
+
+    def load(self, folder: str, number: int, digest: str) -> None:
+        """Begin to go back to a checkpoint."""
+        self.loading = checkpoints.Loading(self.shard, Path(folder), number, digest)
+
+    def recall(self) -> tuple[Parcel, ...]:
+        """Learn again what can be learned by now, and tell the others what is new."""
+        assert self.loading is not None
+        self.loading.recall()
+        return self.shard.parcels(always=True)
+
+    def hear(self, *parcels: Parcel) -> tuple[int, int]:
+        """Take in what the others have recalled; return what is missing, and how many values are known."""
+        assert self.loading is not None
+        self.shard.hear(parcels)
+        return self.loading.missing(), len(self.shard.keys.keys)
+
+    def go_on(self) -> Standing:
+        """Take in the rows of the checkpoint, now that all their values are known."""
+        assert self.loading is not None
+        self.loading.finish()
+        self.loading = None
+        return self.shard.standing()
+
+    def fits(self, layer: int, boundaries: tuple[tuple[int, ...], ...]) -> bool:
+        """Tell whether what it went back to fits to a layer, and to where all workers' layers begin."""
+        whole = all(
+            len(each) == layer + 3 for each in boundaries
+        )  # layers as far as that, its end, and the next's
+        return whole and self.shard.has_origins_in(boundaries)
+
+    # --- what was found -------------------------------------------------------------------------------------------
+
+    def summary(self) -> tuple[tuple[int, ...], dict[str, int]]:
+        """Return where its layers begin and end, and how many transitions each rule has."""
+        return self.shard.boundaries, dict(self.shard.rules())
+
+    def rows(self, numbers: list[int]) -> list[Row]:
+        """Return some of its configurations' cells."""
+        return [self.shard.row(number) for number in numbers]
+
+    def origin(self, row: int) -> tuple[int, int]:
+        """Return the worker and the row that a row was first reached from."""
+        row, worker = divmod(int(self.shard.rows.origins[row]), self.shard.workers)
+        return worker, row
+
+    def inspect(self, inspections: tuple[Inspect, ...]) -> tuple[Inspect, ...]:
+        """Return inspections that have looked at its rows."""
+        shard = self.shard
+        inspect_fast(Survey(shard), inspections)
+        for each in inspections:
+            if isinstance(each, Visited):
+                each.happened |= shard.happened_before
+            if isinstance(each, Invariant) and shard.expanded and each.valuations.still is not None:
+                each.valuations.still = {} if self._answers_as_first(each.formula) else None
+        return inspections
+
+    def _answers_as_first(self, formula: Proposition) -> bool:
+        atoms = tuple(atoms_of(formula))
+        return asked(atoms, self.initial) == asked(atoms, self.shard.configuration(0))
+
+    # --- what temporal properties ask -----------------------------------------------------------------------------
+
+    def truths(self, formulas: Iterable[Proposition]) -> list[NDArray[np.bool_]]:
+        """Return where propositions are true."""
+        survey = Survey(self.shard)
+        return [truths(survey, each, self.shard.size) for each in formulas]
+
+    def pending(self) -> dict[Request, NDArray[Any]]:
+        """Return where each request is pending."""
+        return pending_in_space(Survey(self.shard))
+
+    def point(self, first: int, most: int) -> tuple[Parcel, ...]:
+        """Find the transitions of some rows; send each worker those of its rows that they lead to."""
+        shard = self.shard
+        until = min(first + most, shard.expanded)
+        shard.state[AT], found = min(first, until), []
+        while shard.state[AT] < until:
+            known = loops.gather(shard.model, shard.rows.words, shard.batch, shard.state, until)
+            found.append(self._point())
+            if not known:
+                shard.go_on()
+        self.pointed = self._edges(found)
+        return shard.parcels()
+
+    def _point(self) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
+        shard, count = self.shard, int(self.shard.state[GATHERED])
+        shard.state[GATHERED] = 0
+        batch, width = shard.batch, shard.packing.words
+        owners = shard.owners_of(batch.words, batch.origins[:count])
+        targets = self._found(count)
+        targets[owners != shard.me] = -1
+        others = np.flatnonzero(owners != shard.me)
+        shard.outbox.add(batch.words.reshape(-1, width)[others], batch.origins[others], owners[others])
+        return batch.origins[:count].copy(), batch.steps[:count].copy(), owners, targets
+
+    def _found(self, count: int) -> NDArray[np.int64]:
+        """Return which of its rows each of the batch is, less than 0 where it is none."""
+        shard, found = self.shard, np.zeros(count, np.int64)
+        loops.look_up(shard.rows.words, shard.table.room, shard.batch, found, shard.state)
+        return found
+
+    def _edges(self, found: Sequence[tuple[NDArray[Any], ...]]) -> Edges:
+        numbers: dict[Label, int] = {}
+        learner = self.shard.learner
+        action_of = np.zeros(len(learner.leaves.rule), np.int32)
+        for step, label in learner.steps.items():
+            action_of[step] = numbers.setdefault(general(label), len(numbers))
+        nothing = (np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int32), np.zeros(0, np.int64))
+        rows, steps, owners, targets = (np.concatenate(each) for each in zip(nothing, *found, strict=True))
+        return rows, action_of[steps], owners, targets, tuple(numbers)
+
+    def find(self, *parcels: Parcel) -> list[NDArray[np.int64]]:
+        """Return for each worker which of one's own rows those in its parcel are, less than 0 where they are none."""
+        self.shard.hear(parcels)
+        found = []
+        for peer, parcel in enumerate(parcels):
+            parts = [self._found(len(rows)) for rows in self.shard.translated(peer, parcel)]
+            found.append(np.concatenate([np.zeros(0, np.int64), *parts]))
+        return found
+
+    def edges(self) -> Edges:
+        """Return the transitions that were found last."""
+        assert self.pointed is not None
+        return self.pointed

@@ -1,0 +1,213 @@
+"""What engines share: what is asked of an exploration, what lets it visit less, and what it has found."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from random import Random
+from typing import TYPE_CHECKING, Protocol
+
+from checker.engines.edges import Edges
+from checker.engines.estimate import Estimate
+from semantics.properties.propositions import Proposition
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.requests import Request
+from semantics.successors import Expansion
+
+if TYPE_CHECKING:
+    from checker.engines.graph import Bools, Graph, Numbers
+    from checker.reduction.ample import Ample
+
+
+class MachineError(Exception):
+    """What the machine does not give: workers that start in time and stay, room for an engine. Nothing is decided."""
+
+
+class CheckpointError(Exception):
+    """A checkpoint that can't be read, or that is of something else."""
+
+
+@dataclass(frozen=True, slots=True)
+class Keeping:
+    """What is kept of an exploration, and what is doubted.
+
+    Attributes:
+        folder: Where checkpoints are written; None for nowhere.
+        resumed: Whether it goes on from the checkpoint that is there.
+        digest: What the checkpoint is of.
+        every: Seconds between two checkpoints.
+        doubted: Of how many configurations it is asked once more what follows, and whether what reductions take for
+            granted is so (`--paranoid`).
+        compact: How many bits of a hash stand for each configuration, where none is compared with another: some may be
+            taken for others then (`--hash-compact`).
+    """
+
+    folder: str | None = None
+    resumed: bool = False
+    digest: str = ""
+    every: float = 60.0
+    doubted: int = 0
+    compact: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far an exploration has come.
+
+    Attributes:
+        configurations: How many were met.
+        transitions: How many were followed.
+        depth: The distance of those that are being expanded.
+        frontier: How many wait to be expanded.
+        rate: How many are expanded in a second.
+        estimate: How many there may be in all; None while nobody can say.
+    """
+
+    configurations: int
+    transitions: int
+    depth: int
+    frontier: int
+    rate: float
+    estimate: Estimate | None = None
+
+    @property
+    def left(self) -> tuple[float, float] | None:
+        """How many seconds it may go on, at least and at most, if layers and rate go on as they do."""
+        if self.estimate is None or self.rate <= 0:
+            return None
+        more = self.estimate.most - self.configurations
+        return self.frontier / self.rate, (self.frontier + more) / self.rate
+
+
+class Engine(Enum):
+    """How configurations are expanded; the results are the same."""
+
+    REFERENCE = "reference"
+    FAST = "fast"
+    RAY = "ray"
+
+
+@dataclass(frozen=True, slots=True)
+class Cluster:
+    """With whom `Engine.RAY` explores.
+
+    Attributes:
+        workers: How many processes, from 2 on.
+        address: The Ray cluster that is joined (`auto` for the one of this machine); None for one of its own, here.
+    """
+
+    workers: int = 2
+    address: str | None = None
+
+
+class Reducer(Protocol):
+    """What lets an exploration visit less: see `checker.reduction`."""
+
+    @property
+    def ample(self) -> "Ample | None":
+        """What chooses the transitions that are followed, None where all are."""
+
+    @property
+    def putting_off(self) -> bool:
+        """Whether steps are put off: then a trace need not be a shortest one."""
+
+    def representative(self, c: Configuration) -> Configuration:
+        """Return the configuration that stands for one."""
+
+    def choose(
+        self, c: Configuration, expansion: Expansion, later: Callable[[Transition], bool]
+    ) -> tuple[Transition, ...]:
+        """Return the transitions to be followed; `later` tells of one whether its target is yet to be expanded."""
+
+    def run_to(
+        self, found: "Exploration", number: int, by: Transition | None = None
+    ) -> tuple[Transition, ...]:
+        """Return a run of the rules to what a visited configuration stands for, and then `by`."""
+
+    def told(self, found: "Exploration", number: int, text: str) -> str:
+        """Return what is said of a visited configuration as it is said of the one that the run leads to."""
+
+    def hold(self, c: Configuration) -> None:
+        """Hold a configuration to what is taken for granted of all; raises where it is not so."""
+
+
+class Surveyed(Protocol):
+    """What temporal properties ask of an exploration whose configurations are not at hand one by one."""
+
+    def graph(self) -> "Graph":
+        """Return every transition of the configurations that were expanded."""
+
+    def valuation(self, asked: Iterable[Proposition]) -> "Mapping[Proposition, Bools]":
+        """Return where each proposition is true."""
+
+    def pending(self) -> "Mapping[Request, Numbers]":
+        """Return for each request the configurations in which it is pending, in their order."""
+
+
+Inspect = Callable[[int, Configuration, Expansion], None]
+"""What looks at each configuration as it is expanded, given its number."""
+
+
+@dataclass(slots=True)
+class Exploration:
+    """What was explored.
+
+    Attributes:
+        configurations: In the order of discovery; the first is the initial one.
+        origins: For each, the number of the one that it was first reached from (of the initial one, its own).
+        depth: How far the farthest is from the initial one.
+        expanded: How many of them were expanded: all, unless time ran out.
+        transitions: How many transitions there are.
+        rules: How many transitions each rule has.
+        bounds: The limits that were met; empty where the exploration is complete.
+        seconds: How long it took.
+        rule_runs: How often an actor's rules were run in Python, where they were learned.
+        edges: Every transition, where they were asked for and the reference explorer kept them.
+        survey: What explorers with rows can be asked; None of the reference explorer.
+        allowed: How many transitions the visited configurations allow; more than `transitions` where it was reduced.
+        reducer: What made it visit less, None where it visited everything.
+        start: What it started from, where another configuration stands for it.
+    """
+
+    configurations: Sequence[Configuration]
+    origins: Sequence[int]
+    depth: int = 0
+    expanded: int = 0
+    transitions: int = 0
+    rules: Counter[str] = field(default_factory=Counter)
+    bounds: list[str] = field(default_factory=list)
+    seconds: float = 0.0
+    rule_runs: int | None = None
+    edges: Edges | None = None
+    survey: Surveyed | None = None
+    allowed: int = 0
+    reducer: Reducer | None = None
+    start: Configuration | None = None
+
+    @property
+    def size(self) -> int:
+        """How many configurations were visited."""
+        return len(self.configurations)
+
+    @property
+    def complete(self) -> bool:
+        """Whether everything reachable was visited."""
+        return not self.bounds
+
+    def path(self, number: int) -> tuple[int, ...]:
+        """Return the numbers of the configurations on a shortest path to one, both ends included."""
+        path = [number]
+        while path[-1] > 0:
+            path.append(int(self.origins[path[-1]]))
+        return tuple(reversed(path))
+
+
+Report = Callable[[Progress], None]
+"""What is told of the progress."""
+
+SEED = 20260
+
+
+def sample(size: int, count: int) -> list[int]:
+    """Return so many of the numbers below a size, the same in every run."""
+    return sorted(Random(SEED).sample(range(size), min(count, size)))

@@ -1,0 +1,155 @@
+"""Checkpoints: everything from which an exploration goes on after its process was killed.
+
+Rows, origins and counts are saved as they are. What was learned is not: it is learned again from the rows at which it
+was learned, in the same order, so that nothing in a checkpoint is ever evaluated. A digest of all columns tells whether
+that came to the same.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from checker.engines.archive import Kinds, read_archive, write_archive
+from checker.engines.contract import CheckpointError
+from checker.engines.fast.columns import Packing
+from checker.engines.fast.engine import Space
+from checker.engines.fast.kernel import CROWDS, CUT, EXPANDED, LIMIT, SIZE
+from semantics.state.canonical import canonical
+
+SCHEMA = "bigactors.checkpoint/2"
+KEPT = (EXPANDED, SIZE, CUT, CROWDS)
+"""What of the loops' state goes on; the rest follows from the mission."""
+
+KINDS: Final[Kinds] = {
+    "rows": np.uint64,
+    "origins": np.uint32,
+    "counts": np.int64,
+    "packing": np.uint64,
+    "learned": np.int64,
+    "state": np.int64,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Journey:
+    """How far the exploration had come.
+
+    Attributes:
+        depth: The distance of what is being expanded.
+        layer_end: Where that layer ends.
+        seconds: How long it took.
+        layers: How large each layer is, up to that one.
+    """
+
+    depth: int
+    layer_end: int
+    seconds: float
+    layers: tuple[int, ...] = (1,)
+
+    @property
+    def is_sound(self) -> bool:
+        """Tell whether its numbers fit together."""
+        sizes = (*self.layers, self.depth, self.layer_end)
+        whole = all(type(each) is int and each >= 0 for each in sizes) and is_time(self.seconds)
+        return whole and len(self.layers) == self.depth + 1 and sum(self.layers) == self.layer_end
+
+
+def is_time(seconds: object) -> bool:
+    """Tell whether something is a number of seconds."""
+    return type(seconds) in {int, float} and 0 <= seconds < math.inf  # type: ignore[operator]  # a number
+
+
+def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
+    """Write a checkpoint in the place of the one before: what is there is always whole.
+
+    Raises:
+        OSError: It can't be written there.
+    """
+    columns = space.learner.columns.all
+    head = {
+        "schema": SCHEMA,
+        "digest": digest,
+        "limit": int(space.state[LIMIT]),
+        "words": space.packing.words,
+        "depth": journey.depth,
+        "layer_end": journey.layer_end,
+        "seconds": journey.seconds,
+        "layers": journey.layers,
+        "columns": _digest_of_columns(space),
+    }
+    arrays = (
+        space.rows.words[: space.size * space.packing.words],
+        space.rows.origins[: space.size],
+        space.counts.used,
+        space.packing.columns[: 3 * len(columns)],
+        np.array(space.learned, np.int64),
+        space.state[list(KEPT)],
+    )
+    write_archive(path, head, KINDS, arrays)
+
+
+def resume(space: Space, digest: str, path: Path) -> Journey:
+    """Let a new space go on where a checkpoint was written.
+
+    Raises:
+        CheckpointError: It is damaged, or of another mission, variation, limit or version.
+    """
+    head, arrays = read_archive(path, SCHEMA, KINDS)
+    if head.get("digest") != digest or head.get("limit") != int(space.state[LIMIT]):
+        raise CheckpointError(f"{path}: this checkpoint is of another mission, variation, limit or version")
+    try:
+        journey = Journey(head["depth"], head["layer_end"], head["seconds"], tuple(head["layers"]))
+        _check(arrays, journey, int(space.state[LIMIT]))
+        learned = arrays["learned"].reshape(-1, 4).tolist()
+        space.restore(Packing(head["words"], arrays["packing"]), arrays["rows"], arrays["origins"], learned)
+        _check_counts(space, arrays["counts"], arrays["state"])
+        space.counts.used[:] = arrays["counts"]
+        space.state[list(KEPT)] = arrays["state"]
+    except (ValueError, IndexError, KeyError, TypeError) as error:
+        raise CheckpointError(f"{path}: this checkpoint is damaged: {error}") from error
+    if _digest_of_columns(space) != head["columns"]:
+        raise CheckpointError(f"{path}: what is learned from this checkpoint is not what was learned")
+    return journey
+
+
+def _check(arrays: dict[str, NDArray[Any]], journey: Journey, limit: int) -> None:
+    """Hold what is read of a search to what any search keeps; raises ValueError."""
+    origins = arrays["origins"]
+    expanded, size, cut, crowded = map(int, arrays["state"])
+    if not journey.is_sound or size != len(origins):
+        raise ValueError("its layers and rows do not fit together")
+    begin = journey.layer_end - journey.layers[-1]
+    if not begin <= expanded <= journey.layer_end <= size <= limit:
+        raise ValueError("it has come to no row of its last layer")
+    if cut < 0 or (cut and size != limit) or not 0 <= crowded <= expanded:
+        raise ValueError("it left out what it can't have left out")
+    before = origins[1:] < np.arange(1, size, dtype=np.uint32)
+    if origins[0] or np.any(origins[1:] < origins[:-1]) or not np.all(before) or origins[-1] > expanded:
+        raise ValueError("some row was reached from a later one")
+
+
+def _check_counts(space: Space, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:
+    """Hold counts to what they may be: each row takes a transition once at the most; raises ValueError."""
+    expanded, size = int(state[0]), int(state[1])
+    if len(counts) != len(space.learner.leaves.rule) or np.any(counts < 0) or np.any(counts > expanded):
+        raise ValueError("its transitions were not taken so often")
+    if int(counts.sum()) < size - 1:
+        raise ValueError("it has more rows than transitions")
+
+
+def _digest_of_columns(space: Space) -> str:
+    found = sha256()
+    for line in _lines(space):
+        found.update(line.encode("utf-8", "surrogatepass"))
+    return found.hexdigest()
+
+
+def _lines(space: Space) -> Iterator[str]:
+    for column in space.learner.columns.all:
+        yield canonical((column.place, tuple(column.values)))

@@ -1,0 +1,256 @@
+"""Columns: the cells of configurations as small integers, packed into words of 64 bits.
+
+Each cell has a column, and each observation that a cell's value holds has one more for each mobile name. The values
+that a column was found to take are interned in the order in which they were met; as many bits are set apart for it as
+they need. Growing beyond them asks for a new packing.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from checker.engines.fast.skeletons import Family, Hole, holes, put_together, taken_apart
+from semantics.behaviours.observations import NOTHING_SEEN
+from semantics.state.cells import NAMES, Cell, Row
+from semantics.state.signature import Name
+
+WORD = 64
+
+
+class _Absent:
+    def __reduce__(self) -> str:
+        return "ABSENT"  # there is one in each process
+
+    def __repr__(self) -> str:
+        return "absent"
+
+
+ABSENT = _Absent()
+"""What a column holds where the configuration has no such cell (an agent that was not spawned yet)."""
+
+Place = tuple[Cell, int, Name] | tuple[Cell]
+"""What a column is of: a cell's skeleton, or what the hole of that number says of a name."""
+
+
+class Column:
+    """The values that a column takes, by code; what is said of one name has the same codes in every column."""
+
+    __slots__ = ("codes", "place", "values")
+
+    def __init__(self, place: Place, first: Any, alike: "Column | None" = None) -> None:
+        self.place = place
+        self.values: list[Any] = [first] if alike is None else alike.values
+        self.codes: dict[Any, int] = {first: 0} if alike is None else alike.codes
+
+    def value(self, code: int) -> Any:
+        """Return what a rule reads, None where there is no such cell."""
+        value = self.values[code]
+        return None if value is ABSENT else value
+
+    def code(self, value: Any) -> int:
+        """Return the code of a value, a new one where it was never met."""
+        known = self.codes.get(value)
+        if known is None:
+            known = self.codes[value] = len(self.values)
+            self.values.append(value)
+        return known
+
+
+Writes = list[tuple[int, int]]
+"""Columns with the codes that they get."""
+
+
+class Columns:
+    """All columns of an exploration.
+
+    Attributes:
+        mobile: The names that an observation has columns for.
+        apart: The names about which a rule's conclusion is worked out apart: those, and agents.
+    """
+
+    def __init__(self, mobile: frozenset[Name], agents: frozenset[Name] = frozenset()) -> None:
+        self.mobile = mobile
+        self.apart = mobile | agents
+        self.names = tuple(sorted(mobile))
+        self.all: list[Column] = []
+        self.numbers: dict[Place, int] = {}
+        self.holes: dict[Cell, int] = {}
+        self.about = {name: Column((NAMES, 0, name), NOTHING_SEEN) for name in self.names}
+
+    def __len__(self) -> int:
+        return len(self.all)
+
+    def number(self, place: Place) -> int:
+        """Return the number of a column; one that is new holds *absent*, or nothing seen, everywhere so far."""
+        found = self.numbers.get(place)
+        if found is None:
+            found = self._add(place, ABSENT)
+        return found
+
+    def _add(self, place: Place, first: Any) -> int:
+        self.numbers[place] = len(self.all)
+        alike = self.about[place[2]] if len(place) == 3 else None
+        self.all.append(Column(place, first, alike))
+        return self.numbers[place]
+
+    def start(self, cell: Cell, value: Any) -> None:
+        """Make the columns of a cell that every configuration has, beginning with its first value."""
+        skeleton, families = taken_apart(value, self.mobile)
+        self._add((cell,), skeleton)
+        self.dig(cell, len(families))
+
+    def dig(self, cell: Cell, count: int) -> bool:
+        """Make the columns of a cell's first holes; tell whether there were fewer before."""
+        before = self.holes.get(cell, 0)
+        for number in range(before, count):
+            for name in self.names:
+                self.number((cell, number, name))
+        self.holes[cell] = max(before, count)
+        return before < count
+
+    def of_hole(self, cell: Cell, number: int) -> list[tuple[Name, int]]:
+        """Return the column of each mobile name in one hole of a cell."""
+        return [(name, self.numbers[cell, number, name]) for name in self.names]
+
+    def cells(self) -> Iterator[tuple[Cell, int]]:
+        """Yield each cell with the column of its skeleton."""
+        return ((place[0], number) for place, number in self.numbers.items() if len(place) == 1)
+
+    # --- whole configurations -----------------------------------------------------------------------------------
+
+    def codes(self, row: Row) -> list[int]:
+        """Return the code of each column for a row; columns and codes are made where they are missing."""
+        found: dict[int, int] = {}
+        for cell, value in row.items():
+            skeleton, families = taken_apart(value, self.mobile)
+            number = self.number((cell,))
+            found[number] = self.all[number].code(skeleton)
+            self.dig(cell, len(families))
+            for hole, family in enumerate(families):
+                for name, column in self.of_hole(cell, hole):
+                    found[column] = self.all[column].code(family.get(name, NOTHING_SEEN))
+        absent = (number for number, column in enumerate(self.all) if len(column.place) == 1)
+        found |= {number: self.all[number].code(ABSENT) for number in absent if number not in found}
+        return [found.get(number, 0) for number in range(len(self.all))]
+
+    def row(self, codes: Iterable[int]) -> Row:
+        """Return the row that codes stand for."""
+        given = list(codes)
+        cells = ((cell, self.all[number].values[given[number]]) for cell, number in self.cells())
+        return Row.of({c: self._whole(c, value, given) for c, value in cells if value is not ABSENT})
+
+    def _whole(self, cell: Cell, skeleton: Any, codes: list[int]) -> Any:
+        if not self.holes.get(cell):
+            return skeleton
+
+        def family_at(hole: Hole) -> Family:
+            told = {name: self.all[n].values[codes[n]] for name, n in self.of_hole(cell, hole.number)}
+            said = {name: fact for name, fact in told.items() if fact != NOTHING_SEEN}
+            return dict(sorted({**dict(hole.still), **said}.items()))
+
+        return put_together(skeleton, family_at)
+
+    def holes_of(self, number: int, code: int) -> tuple[Hole, ...]:
+        """Return the holes of a skeleton by its column and code."""
+        return tuple(holes(self.all[number].values[code]))
+
+
+@dataclass(frozen=True, slots=True)
+class Packing:
+    """Where each column stands in a row of so many words.
+
+    Attributes:
+        words: How many words a row has.
+        columns: For each column three numbers: its word, its shift there, and the mask of its unshifted code.
+    """
+
+    words: int
+    columns: NDArray[np.uint64]
+
+    @property
+    def word(self) -> NDArray[np.int64]:
+        """The word of each column."""
+        return self.columns[::3].astype(np.int64)
+
+    @property
+    def shift(self) -> NDArray[np.uint64]:
+        """The shift of each column within its word."""
+        return self.columns[1::3]
+
+    @property
+    def mask(self) -> NDArray[np.uint64]:
+        """The mask of each column's code, unshifted."""
+        return self.columns[2::3]
+
+    def holds(self, sizes: Sequence[int]) -> bool:
+        """Tell whether every column has bits for as many values."""
+        return bool(np.all(np.array(sizes, np.uint64) - np.uint64(1) <= self.mask))
+
+    @property
+    def is_sound(self) -> bool:
+        """Tell whether columns stand within words, and no two in each other's bits."""
+        if type(self.words) is not int or self.words < 1 or len(self.columns) % 3:
+            return False
+        taken = [0] * min(self.words, len(self.mask) or 1)
+        for word, shift, mask in self.columns.reshape(-1, 3).tolist():
+            if word >= len(taken) or shift >= WORD or mask & (mask + 1):
+                return False
+            bits = mask << shift
+            if bits >> WORD or taken[word] & bits:
+                return False
+            taken[word] |= bits
+        return len(taken) == self.words
+
+    def extended(self, sizes: Sequence[int]) -> "Packing":
+        """Return the packing with the columns that are new: as long as they have one value, they take no bits."""
+        missing = len(sizes) - len(self.mask)
+        if not missing:
+            return self
+        return Packing(self.words, np.concatenate([self.columns, np.zeros(3 * missing, np.uint64)]))
+
+
+def packing(sizes: Sequence[int], words: int = 1) -> Packing:
+    """Pack columns of so many values each: the widest first, each into the first word that has room for it.
+
+    A row takes at least so many words. What is left of a word is spread over its columns, so that they may grow.
+    """
+    bits = [max(size - 1, 0).bit_length() for size in sizes]
+    rows: list[list[int]] = [[] for _ in range(words)]
+    room = [WORD] * words
+    for number in sorted(range(len(bits)), key=lambda n: -bits[n]):
+        at = next((word for word, free in enumerate(room) if free >= bits[number]), len(room))
+        if at == len(room):
+            rows.append([])
+            room.append(WORD)
+        rows[at].append(number)
+        room[at] -= bits[number]
+    columns = np.zeros((len(sizes), 3), np.uint64)
+    for word, (numbers, free) in enumerate(zip(rows, room, strict=True)):
+        growing = [number for number in numbers if bits[number]]
+        shift = 0
+        for place, number in enumerate(numbers):
+            spare = (free + len(growing) - 1 - place) // len(growing) if number in growing else 0
+            wide = bits[number] + min(spare, 1 if len(growing) > 1 else free)
+            columns[number] = word, shift % WORD, (1 << wide) - 1
+            shift += wide
+    return Packing(len(rows), columns.ravel())
+
+
+def shifts(old: Packing, new: Packing) -> NDArray[np.uint64]:
+    """Return how the bits of a row move from one packing to another: five numbers for all that move alike.
+
+    These are the old word, the new word, the mask of the bits in the old word, and how far they are shifted left, then
+    right.
+    """
+    masks: dict[tuple[int, int, int], int] = {}
+    for column in np.flatnonzero(old.mask):
+        far = int(new.shift[column]) - int(old.shift[column])
+        way = (int(old.word[column]), int(new.word[column]), far)
+        masks[way] = masks.get(way, 0) | int(old.mask[column]) << int(old.shift[column])
+    found = [
+        (source, target, mask, max(far, 0), max(-far, 0)) for (source, target, far), mask in masks.items()
+    ]
+    return np.array(found, np.uint64).ravel()

@@ -1,0 +1,45 @@
+"""Cross-check (`--paranoid`): the interpreter is asked once more what follows from a sample of configurations."""
+
+from collections import Counter
+
+from checker.engines.contract import Reducer, sample
+from checker.engines.fast.engine import Space
+from checker.reduction.crosscheck import heed
+from semantics.state.configuration import Configuration
+from semantics.state.printing import print_configuration
+from semantics.successors import expand
+
+
+class Disagreement(Exception):  # what it is
+    """What was learned does not lead where the rules lead: a bug of ours."""
+
+
+def crosscheck(space: Space, count: int, reduce: Reducer | None = None) -> None:
+    """Compare what was learned with the rules on some configurations, and what is said of the rules with what they do.
+
+    Raises:
+        Disagreement: There is a difference; it says where.
+    """
+    for number in sample(space.expanded, count):
+        compare(space, number)
+        heed(space.configuration(number))
+        if reduce is not None:
+            reduce.hold(space.configuration(number))
+
+
+def compare(space: Space, number: int) -> None:
+    """Compare the successors of one configuration, with how often and by which rule each is reached."""
+    c = space.configuration(number)
+    learned: Counter[tuple[str, Configuration]] = Counter()
+    left_out = 0
+    for _, steps, targets in space.edges(range(number, number + 1)):
+        for step, target in zip(steps, targets, strict=True):
+            if target < 0:
+                left_out += 1  # beyond the limit of configurations, or put off
+            else:
+                learned[space.learner.steps[int(step)].rule, space.configuration(int(target))] += 1
+    ruled = Counter((t.label.rule, t.target) for t in expand(c).transitions)
+    unexpected = left_out > 0 and not space.was_cut and space.choosing is None
+    if learned - ruled or (ruled - learned).total() != left_out or unexpected:
+        wrong = ", ".join(sorted({rule for rule, _ in (learned - ruled) + (ruled - learned)}))
+        raise Disagreement(f"configuration {number}: {wrong}\n{print_configuration(c)}")

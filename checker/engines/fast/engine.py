@@ -1,0 +1,481 @@
+"""The fast explorer: breadth-first like the reference, over packed rows and learned trees.
+
+It visits the same configurations in the same order and stops at the same bounds.
+"""
+
+import math
+import os
+from collections import Counter
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from itertools import accumulate, pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from checker.bounding import look
+from checker.engines.fast import kernel
+from checker.engines.fast.arrays import Growing
+from checker.engines.fast.columns import Packing, packing, shifts
+from checker.engines.fast.kernel import (
+    ALPHA,
+    AT,
+    CODE,
+    CROWDS,
+    CUT,
+    EXPANDED,
+    GATHERED,
+    LIMIT,
+    NODE,
+    PROBED,
+    SIZE,
+    TREE,
+    TURNS,
+    WORDS,
+)
+from checker.engines.fast.learner import Actor, CodedSource, Learner
+from checker.engines.fast.pages import Pages
+from checker.engines.fast.rows import Rows
+from checker.engines.fast.table import bits_for, most_in, rebuild, slots_for, slots_within, write_numbers
+from checker.engines.fast.trees import RECORD
+from semantics.state.cells import AGENTS, Row
+from semantics.state.configuration import Configuration
+from semantics.state.setting import Scheduler
+from semantics.state.signature import Name
+from semantics.successors import by_clause, moves, served
+
+BATCH = 1 << 15
+"""Successors that a batch has room for; it is stored when half of that is gathered."""
+
+WORTH = 1 << 12
+"""From how many successors on they are stored beside the gathering of the next: handing over takes time, too."""
+
+FIRST_ROWS = 1 << 15
+MOST_ROWS = (1 << 31) - 1
+UNPLANTED = -1
+"""What stands for a node where a tree had none."""
+
+
+if TYPE_CHECKING:
+    from checker.engines.fast.partial_order import Choosing
+
+
+class Space:
+    """The configurations reached so far, as rows, and how far their expansion has come.
+
+    Attributes:
+        learner: What is known of the rules.
+        packing: Where each column stands in a row.
+        rows: The configurations, packed, each with the one that it was first reached from; the first is its own.
+        counts, met: How often each transition was followed, and how often met: the same where nothing is left out.
+        learned: What was not known on the way: the row, and in which tree, at which node and for which code.
+        compact: How many bits a tag has, where the table has tags instead of numbers (see `compacting`).
+        actors: How many actors a configuration may have, as far as is known: agents' two each, and the environment's.
+        left: Says how many bytes of memory may be taken besides: the table grows by less where they end.
+    """
+
+    ORIGIN: type[np.generic] = np.uint32
+
+    def __init__(
+        self,
+        learner: Learner,
+        limit: int | None,
+        choosing: "Choosing | None" = None,
+        compact: int | None = None,
+    ) -> None:
+        self.learner = learner
+        self.left: Callable[[], float] = lambda: math.inf
+        self.choosing = choosing
+        self.compact = compact
+        self.state = np.zeros(kernel.STATE, np.int64)
+        self.walked = np.zeros(kernel.STATE, np.int64)
+        self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
+        self.beside = ThreadPoolExecutor(1) if cores() > 1 else None
+        self.storing: Future[int] | None = None
+        self.packing: Packing
+        self.batch: kernel.Batch
+        self.full: kernel.Batch
+        self.state[TURNS] = learner.setting.scheduler is Scheduler.FCFS
+        self.learned: list[tuple[int, int, int, int]] = []
+        self.clauses = [learner.tree(Actor(by_clause, clause)) for clause in learner.setting.environment]
+        self.actors = len(self.clauses)
+        self.counts = Growing(np.int64)
+        self.met = self.counts if choosing is None else Growing(np.int64)
+        self.masks = Growing(np.uint64)
+        self.located = 0
+        self.rows = Rows(1, FIRST_ROWS, self.ORIGIN)
+        self.table = Pages(np.uint32, 1)
+        self._add_first()
+        self._make_room(BATCH)
+        self._see()
+
+    @property
+    def size(self) -> int:
+        """How many configurations there are."""
+        return int(self.state[SIZE])
+
+    @property
+    def expanded(self) -> int:
+        """How many of them were expanded."""
+        return int(self.state[EXPANDED])
+
+    @property
+    def probed(self) -> int:
+        """How many tags were compared with those of rows that were new."""
+        return int(self.state[PROBED])
+
+    @property
+    def was_cut(self) -> bool:
+        """Whether the limit left configurations out."""
+        return bool(self.state[CUT])
+
+    @property
+    def is_crowded(self) -> bool:
+        """Whether some were not followed, because an agent has too much pending."""
+        return bool(self.state[CROWDS])
+
+    @property
+    def spilled(self) -> bool:
+        """Whether rows and origins are in files."""
+        return self.rows.spilled
+
+    @property
+    def bytes_used(self) -> int:
+        """How many bytes rows, origins and the visited set take; of room that was never written, nothing."""
+        return self.rows.held(self.size) + self.table.room.nbytes
+
+    def rules(self, *, followed: bool = True) -> Counter[str]:
+        """Return how many transitions each rule has: those that were followed, or all."""
+        names = {number: name for name, number in self.learner.rules.items()}
+        found: Counter[str] = Counter()
+        counts = self.counts.used if followed else self.met.used
+        for step in np.flatnonzero(counts):
+            found[names[int(self.learner.leaves.rule.room[step])]] += int(counts[step])
+        return found
+
+    def row(self, number: int) -> Row:
+        """Return the cells of a configuration."""
+        return self.learner.columns.row(self.codes(number))
+
+    def configuration(self, number: int) -> Configuration:
+        """Return a configuration."""
+        return Configuration(self.learner.setting, self.row(number))
+
+    def codes(self, number: int) -> list[int]:
+        """Return the code of each column in a row."""
+        at, where = number * self.packing.words, self.packing
+        words = self.rows.words[at : at + where.words]
+        return [int(code) for code in (words[where.word] >> where.shift) & where.mask]
+
+    # --- expanding ------------------------------------------------------------------------------------------------
+
+    def advance(self, until: int) -> None:
+        """Expand rows up to a number, learning what is not known on the way."""
+        self.state[AT], self.state[GATHERED] = self.expanded, 0
+        try:
+            while self.state[AT] < until or not self._stored():
+                known = kernel.gather(self.model, self.rows.words, self.batch, self.state, until)
+                if self._stored():
+                    self._hand_over()
+                    if not known and self._stored():
+                        self._miss()
+        finally:
+            if self.storing is not None:  # something has stopped it
+                self.storing.result()
+                self.storing = None
+
+    def _hand_over(self) -> None:
+        """Let what was gathered be stored, and another batch take what comes next."""
+        gathered, self.state[GATHERED] = int(self.state[GATHERED]), 0
+        self._make_room(gathered)
+        self.batch, self.full = self.full, self.batch
+        if self.beside is not None and gathered >= WORTH:
+            self.storing = self.beside.submit(self._store, gathered, int(self.state[AT]))
+        else:
+            missed = self._store(gathered, int(self.state[AT]))
+            self.storing = Future()
+            self.storing.set_result(missed)
+
+    def _store(self, gathered: int, at: int) -> int:
+        """Store what was gathered of the rows before one; return the first row whose actors are not known, if any."""
+        arrays = (self.rows.words, self.rows.origins, self.table.room, self.full, gathered, at)
+        if self.choosing is not None:
+            from checker.engines.fast.ample import store_reduced  # noqa: PLC0415  # compiled where something is reduced
+
+            counts = (self.met.room, self.counts.room, self.state, self.walked)
+            return int(store_reduced(self.model, self.choosing.members, *arrays, *counts))
+        if self.compact is None:
+            kernel.store(*arrays, self.counts.room, self.state)
+            return kernel.ALL_KNOWN
+        from checker.engines.fast.compacting import store_tags  # noqa: PLC0415  # compiled where it is wanted
+
+        store_tags(*arrays, self.counts.room, self.state, self.compact)
+        return kernel.ALL_KNOWN
+
+    def _stored(self) -> bool:
+        """Wait until what was handed over is stored; if not all was known, learn that, and go back to there."""
+        if self.storing is None:
+            return True
+        missed = self.storing.result()
+        self.storing = None
+        if missed == kernel.ALL_KNOWN:
+            return True
+        self.state[AT], self.state[GATHERED] = missed, 0
+        self._learn(missed, self.walked)
+        return False
+
+    def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
+        """Return the leaf that each row leads to in a tree, learning what is not known on the way."""
+        found = np.zeros(len(rows), np.int32)
+        done = 0
+        while done < len(rows):
+            look()
+            done += kernel.classify(self.model, self.rows.words, rows[done:], tree, found[done:], self.state)
+            if done < len(rows):
+                self._learn(int(rows[done]), self.state)
+        return found
+
+    def edges(self, rows: range) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int64]]]:
+        """Yield the transitions of rows that were expanded, some at a time: origins, steps, and targets (< 0: none)."""
+        self.state[AT] = rows.start
+        while self.state[AT] < rows.stop:
+            look()
+            known = kernel.gather(self.model, self.rows.words, self.batch, self.state, rows.stop)
+            count, self.state[GATHERED] = int(self.state[GATHERED]), 0
+            targets = np.zeros(count, np.int64)
+            kernel.look_up(self.rows.words, self.table.room, self.batch, targets, self.state)
+            yield self.batch.origins[:count].copy(), self.batch.steps[:count].copy(), targets
+            if not known:
+                self._miss()
+
+    def _miss(self) -> None:
+        look()  # everything that was gathered is stored
+        if self.state[NODE] == kernel.WIDE:
+            self._make_batches(2 * len(self.batch.hashes))
+            self._see()
+        else:
+            self._learn(int(self.state[AT]), self.state)
+
+    def _learn(self, row: int, walked: NDArray[np.int64]) -> None:
+        """Learn what was not known of a row, as it was noted where a walk ended."""
+        unknown = (row, int(walked[TREE]), int(walked[NODE]), int(walked[CODE]))
+        self.learned.append(unknown)
+        self._learn_from(self.codes(row), *unknown[1:])
+        self._see()
+
+    def _learn_from(self, codes: list[int], tree: int, node: int, code: int) -> None:
+        """Learn what was not known at a node of a tree, from the codes of a row that came there."""
+        learner = self.learner
+        if node >= 0:
+            column = learner.columns.all[learner.trees.column_of(node)]
+            if learner.trees.settle(node, code, column):
+                return
+        learner.learn(tree, CodedSource(learner.columns, codes))
+
+    def restore(
+        self,
+        where: Packing,
+        words: NDArray[np.uint64],
+        origins: NDArray[np.uint32],
+        learned: list[list[int]],
+    ) -> None:
+        """Go on from the rows of another space of the same mission, learning again what that had learned.
+
+        Raises:
+            ValueError, IndexError: They are not rows of such a space.
+        """
+        if not where.is_sound or len(words) != len(origins) * where.words:
+            raise ValueError("its columns stand nowhere in its rows")
+        first, rows = self.codes(0), words.reshape(len(origins), where.words)
+        for row, tree, node, code in learned:
+            if not 0 <= row < len(rows):
+                raise ValueError("it learned from no row")
+            self.learned.append((row, tree, node, code))
+            self._learn_again(
+                ((rows[row][where.word] >> where.shift) & where.mask).tolist(), tree, node, code
+            )
+            self._agents(self._groups())  # plants the trees of agents that are new, in the same order
+        sizes = np.array([len(column.values) for column in self.learner.columns.all], np.int64)
+        begins = np.concatenate(([0], np.cumsum(sizes)))
+        if len(where.mask) != len(sizes) or not kernel.mark_used(
+            words, where.words, where.columns, begins, np.zeros(begins[-1], np.bool_)
+        ):
+            raise ValueError("it has other columns, or values that they do not take")
+        self._pack_as(where, BATCH)
+        self.rows.reserve(len(origins))
+        self.rows.words[: len(words)] = words
+        self.rows.origins[: len(origins)] = origins
+        self.state[SIZE] = len(origins)
+        begun = self.codes(0)
+        if begun[: len(first)] != first or any(begun[len(first) :]):
+            raise ValueError("it begins elsewhere")
+        self._rebuild(slots_for(len(origins)))
+        self._make_room(BATCH)
+        self._see()
+
+    def _learn_again(self, codes: list[int], tree: int, node: int, code: int) -> None:
+        """Learn from a row of another space what that had learned there; raises ValueError where it can't have."""
+        trees = self.learner.trees
+        if not (0 <= tree < len(trees.root) and UNPLANTED <= node < len(trees.asks)):
+            raise ValueError("it learned of what no rule asks")
+        try:
+            self._learn_from(codes, tree, node, code)
+        except Exception as error:  # rules may do anything where a row is no configuration
+            raise ValueError(f"a rule does not run on its rows: {type(error).__name__}: {error}") from error
+
+    def _see(self) -> None:
+        """Let the loops see what is known now."""
+        self._pack()
+        groups = self._groups()
+        agents, begins = self._agents(groups)
+        trees, leaves = self.learner.trees, self.learner.leaves
+        self._take_turns(len(self.clauses) + max(end - begin for begin, end in pairwise(begins)))
+        self._locate()
+        self._make_masks()
+        learned = (
+            trees.root,
+            trees.nodes,
+            trees.next,
+            leaves.leaves,
+            leaves.steps,
+            leaves.copies,
+            leaves.part,
+        )
+        actors = (np.array(numbers, np.int32) for numbers in (begins, agents, self.clauses))
+        self.model = kernel.Model._make(
+            (*(each.room for each in learned), self.masks.room, self.packing.columns, *actors)
+        )
+        if self.choosing is not None:
+            self.choosing.see(groups, self.packing, len(self.batch.hashes))
+
+    def _locate(self) -> None:
+        """Let inner nodes that are new know where their columns stand; all of them where the packing is."""
+        nodes = self.learner.trees.nodes
+        kernel.locate(nodes.used, self.packing.columns, self.located)
+        self.located = len(nodes) // RECORD
+
+    def _make_masks(self) -> None:
+        """Work out what the transitions that are new keep and set; all of them where the packing is."""
+        leaves, width = self.learner.leaves, 2 * self.packing.words
+        known = self.masks.size // width
+        self.masks.extend((len(leaves.rule) - known) * width)
+        for counts in (self.counts, self.met):
+            counts.extend(len(leaves.rule) - len(counts))
+        kernel.make_masks(
+            self.masks.used,
+            leaves.steps.room,
+            leaves.writes.room,
+            self.packing.columns,
+            self.packing.words,
+            known,
+        )
+
+    def _groups(self) -> list[tuple[Name, ...]]:
+        """Return the agents that there are, for each value of the cell that says so."""
+        learner = self.learner
+        self.state[ALPHA] = -1
+        if AGENTS not in learner.varying:
+            return [learner.still.read(AGENTS)]
+        self.state[ALPHA] = number = learner.columns.numbers[(AGENTS,)]
+        return learner.columns.all[number].values
+
+    def _agents(self, groups: list[tuple[Name, ...]]) -> tuple[list[int], list[int]]:
+        """Return the trees of the agents, group by group, and where each group begins."""
+        learner = self.learner
+        trees = [
+            [learner.tree(Actor(rules, a)) for rules in (served, moves) for a in group] for group in groups
+        ]
+        return [tree for group in trees for tree in group], [0, *accumulate(map(len, trees))]
+
+    def _pack(self) -> None:
+        """Pack the rows anew where a column has outgrown its bits; the batch is empty of rows that matter."""
+        sizes = [len(column.values) for column in self.learner.columns.all]
+        self.packing = self.packing.extended(sizes)
+        if self.packing.holds(sizes):
+            return
+        old, new = self.packing, packing(sizes, self.packing.words)
+        self._pack_as(new, len(self.batch.hashes))
+        kernel.repack(self.rows.words, self.size, shifts(old, new), old.words, new.words)
+        self._rebuild(len(self.table.room))
+
+    def _pack_as(self, where: Packing, successors: int) -> None:
+        """Let rows, and batches for so many successors, be of another packing; what stands in rows is not moved.
+
+        Raises:
+            OSError: There is no room for wider rows; nothing has changed.
+        """
+        self.rows.widen(where.words)
+        self.packing, self.state[WORDS] = where, where.words
+        self.masks.size = self.located = 0
+        self._make_batches(successors)
+
+    # --- room -----------------------------------------------------------------------------------------------------
+
+    def _add_first(self) -> None:
+        codes = self.learner.columns.codes(self.learner.still)
+        where = packing([len(column.values) for column in self.learner.columns.all])
+        self._pack_as(where, BATCH)
+        for word, shift, code in zip(where.word, where.shift, codes, strict=True):
+            self.rows.words[word] |= np.uint64(code) << shift
+        self.state[SIZE] = 1
+
+    def _make_batches(self, successors: int) -> None:
+        """Make two empty batches; what they held must have been stored."""
+        self.batch, self.full = (self._batch(successors) for _ in range(2))
+        self.state[GATHERED] = 0
+
+    def _take_turns(self, actors: int) -> None:
+        """Let batches have a leaf for each of so many actors; what they held must have been stored."""
+        if actors > self.actors:
+            self.actors = actors
+            self._make_batches(len(self.batch.hashes))
+
+    def _batch(self, successors: int) -> kernel.Batch:
+        return kernel.Batch(
+            np.zeros(successors * self.packing.words, np.uint64),
+            np.zeros(successors, np.uint64),
+            np.zeros(successors, np.int64),
+            np.zeros(successors, np.int32),
+            np.zeros(self.actors, np.int32),
+        )
+
+    def _make_room(self, rows: int) -> None:
+        """Make room for so many new rows."""
+        wanted = min(self.size + rows, int(self.state[LIMIT]))
+        self.rows.reserve(wanted)
+        if most_in(len(self.table.room)) < wanted:
+            self._rebuild(self._slots(wanted))
+
+    def _slots(self, rows: int) -> int:
+        """Return how many slots the next table has: for half as many rows more, or for a few where memory ends."""
+        table = self.table.room
+        left, row = self.left() + table.nbytes, 0 if self.spilled else 8 * self.packing.words + 4
+        within = min(slots_for(rows), slots_within(left, self.size, row, table.itemsize))
+        return max(int(within), slots_for(rows) * 3 // 4)
+
+    def spill(self, folder: Path) -> None:
+        """Let rows and origins go over to files in a folder; the table, which is looked up at random, stays in memory.
+
+        Raises:
+            OSError: There is no such folder, or no room in it.
+        """
+        self.rows.spill(folder, self.size)
+
+    def _rebuild(self, slots: int) -> None:
+        self.table = Pages(np.uint32, 1)  # give the old one back before the next is taken
+        rows = (self.rows.words, self.size, self.packing.words)
+        if self.compact is None:
+            self.table = Pages(np.uint32, slots)
+            rebuild(*rows, self.table.room, write_numbers, bits_for(len(self.table.room)))
+            return
+        from checker.engines.fast.compacting import write_tags  # noqa: PLC0415  # compiled where it is wanted
+
+        self.table = Pages(np.uint32 if self.compact <= 32 else np.uint64, slots)
+        rebuild(*rows, self.table.room, write_tags, self.compact)
+
+
+def cores() -> int:
+    """Return how many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

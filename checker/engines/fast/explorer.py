@@ -1,0 +1,278 @@
+"""Explore with learned trees, up to the same bounds as the reference explorer."""
+
+import errno
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, overload
+
+from checker.bounding import BoundMet, bounded
+from checker.engines.contract import Exploration, Inspect, Keeping, Progress, Reducer, Report
+from checker.engines.estimate import estimate
+from checker.engines.fast.checkpoint import Journey, resume, save
+from checker.engines.fast.crosscheck import crosscheck
+from checker.engines.fast.engine import Space
+from checker.engines.fast.graph import GraphSurvey
+from checker.engines.fast.inspecting import inspect_fast
+from checker.engines.fast.learner import Learner
+from checker.limits import (
+    INTERRUPTION,
+    Limits,
+    crowd_met,
+    is_full,
+    limit_met,
+    memory_left,
+    memory_met,
+    omission_met,
+    time_met,
+)
+from semantics.state.configuration import Configuration
+
+if TYPE_CHECKING:
+    from checker.engines.fast.partial_order import Choosing
+
+CHUNK = 1 << 15
+"""Configurations that are expanded between two looks at the clock."""
+
+EXPLORING = 0.5
+"""What part of the time is for exploring: to look at what was explored takes as long again."""
+
+
+class Origins(Sequence[int]):
+    """For each configuration the one that it was first reached from."""
+
+    def __init__(self, space: Space) -> None:
+        self.space = space
+
+    def __len__(self) -> int:
+        return self.space.size
+
+    @overload
+    def __getitem__(self, number: int) -> int: ...
+
+    @overload
+    def __getitem__(self, number: slice) -> Sequence[int]: ...
+
+    def __getitem__(self, number: int | slice) -> int | Sequence[int]:
+        if isinstance(number, slice):
+            return [self[each] for each in range(*number.indices(len(self)))]
+        return int(self.space.rows.origins[range(len(self))[number]])
+
+
+class Configurations(Sequence[Configuration]):
+    """The configurations of a space, each made anew where it is looked at."""
+
+    def __init__(self, space: Space) -> None:
+        self.space = space
+
+    def __len__(self) -> int:
+        return self.space.size
+
+    @overload
+    def __getitem__(self, number: int) -> Configuration: ...
+
+    @overload
+    def __getitem__(self, number: slice) -> Sequence[Configuration]: ...
+
+    def __getitem__(self, number: int | slice) -> Configuration | Sequence[Configuration]:
+        if isinstance(number, slice):
+            return [self[each] for each in range(*number.indices(len(self)))]
+        return self.space.configuration(range(len(self))[number])
+
+
+def explore_fast(  # noqa: PLR0913, PLR0917  # as `explore`
+    initial: Configuration,
+    inspect: tuple[Inspect, ...],
+    limits: Limits,
+    report: Report | None,
+    every: float,
+    keeping: Keeping,
+    reduce: Reducer | None = None,
+) -> Exploration:
+    """Visit everything that is reachable (see `checker.engines.choose.explore`).
+
+    Raises:
+        CheckpointError: There is none to go on from, or it is of something else.
+    """
+    return _Explorer(initial, limits, report, every, keeping, reduce).run(inspect)
+
+
+class _Explorer:
+    def __init__(
+        self,
+        initial: Configuration,
+        limits: Limits,
+        report: Report | None,
+        every: float,
+        keeping: Keeping,
+        reduce: Reducer | None,
+    ) -> None:
+        self.limits = limits
+        self.report = report
+        self.every = every
+        self.keeping = keeping
+        self.learner = Learner(initial.setting, initial.state, limits.pending)  # type: ignore[arg-type]  # a stored one
+        self.reduce = reduce
+        self.space = Space(self.learner, limits.configurations, self.choosing(), keeping.compact)
+        self.space.left = self.left
+        self.journey = Journey(0, 1, 0.0)
+        self.layers = [1]
+        self.bounds: list[str] = []
+        self.exploring = 1.0
+
+    def choosing(self) -> "Choosing | None":
+        """Return what chooses the transitions that are followed, None where all are."""
+        ample = None if self.reduce is None else self.reduce.ample
+        if ample is None:
+            return None
+        from checker.engines.fast.partial_order import Choosing  # noqa: PLC0415  # compiled where something is reduced
+
+        return Choosing(self.learner, ample)
+
+    @property
+    def checkpoint(self) -> Path | None:
+        """Where the checkpoint is, if one is kept: the search for stale observations has one of its own."""
+        name = "monitored.checkpoint" if self.learner.setting.monitored else "exploration.checkpoint"
+        return None if self.keeping.folder is None else Path(self.keeping.folder) / name
+
+    def run(self, inspect: tuple[Inspect, ...]) -> Exploration:
+        began = time.monotonic()
+        self.exploring = EXPLORING if inspect or self.keeping.doubted else 1.0
+        path = self.checkpoint
+        if path is not None and self.keeping.resumed and path.exists():
+            self.journey = resume(self.space, self.keeping.digest, path)
+            self.layers = list(self.journey.layers)
+        began -= self.journey.seconds
+        with bounded(self.limits if self.limits.spill is None else replace(self.limits, memory=None), began):
+            self.visit(began)
+        self.keep(time.monotonic() - began)
+        space, configurations = self.space, Configurations(self.space)
+        survey = GraphSurvey(space)
+        with bounded(self.limits_of_looking(), began):
+            self.look_at(survey, inspect)
+        rules = space.rules()
+        return Exploration(
+            configurations,
+            Origins(space),
+            self.journey.depth,
+            space.expanded,
+            sum(rules.values()),
+            rules,
+            sorted(self.bounds + self.met()),
+            time.monotonic() - began,
+            self.learner.runs,
+            survey=survey,
+            allowed=int(space.met.used.sum()),
+            reducer=self.reduce,
+        )
+
+    def visit(self, began: float) -> None:
+        """Explore until the end, or until a bound is met."""
+        try:
+            self.visit_all(began)
+        except BoundMet as bound:
+            self.bounds.append(str(bound))
+        except (OSError, MemoryError) as error:
+            self.bounds.append(self.end_of_room(error))
+        except KeyboardInterrupt:
+            self.bounds.append(INTERRUPTION)
+
+    def look_at(self, survey: GraphSurvey, inspect: tuple[Inspect, ...]) -> None:
+        """Look at what was explored, as long as there is time: what was not looked at to the end has found nothing."""
+        try:
+            crosscheck(self.space, self.keeping.doubted, self.reduce)
+            inspect_fast(survey, inspect)
+        except BoundMet as bound:
+            self.bounds.append(f"{bound}, in looking at what was explored")
+        except (OSError, MemoryError) as error:
+            self.bounds.append(f"{self.end_of_room(error)}, in looking at what was explored")
+
+    def end_of_room(self, error: OSError | MemoryError) -> str:
+        """Return which room has come to its end: the memory that the system gives, or that in files."""
+        if isinstance(error, MemoryError) or error.errno == errno.ENOMEM:
+            return "the end of the memory that there is"
+        return f"the end of the room in {self.limits.spill or 'memory'}: {error.strerror}"
+
+    def limits_of_looking(self) -> Limits:
+        """Return the limits; memory that came to its end, with files or without, is enough to look at what is there."""
+        full = memory_met(self.limits) in self.bounds or self.space.spilled
+        return replace(self.limits, memory=None) if full else self.limits
+
+    def keep(self, seconds: float) -> None:
+        """Write a checkpoint, if one is wanted; where it can't be written, the exploration ends with what it has."""
+        path = self.checkpoint
+        if path is None:
+            return
+        journey = replace(self.journey, seconds=seconds, layers=tuple(self.layers))
+        try:
+            save(self.space, journey, self.keeping.digest, path)
+        except OSError as error:
+            unkept = f"a checkpoint that can't be written to {path}: {error.strerror}"
+            self.bounds += [] if unkept in self.bounds else [unkept]
+
+    def met(self) -> list[str]:
+        most = self.limits.configurations
+        cut = [limit_met(most)] if self.space.was_cut and most is not None else []
+        crowded = [crowd_met(self.limits.pending)] if self.space.is_crowded else []
+        return cut + crowded + self.omitted()
+
+    def omitted(self) -> list[str]:
+        """Return how likely something was left out by hash compaction."""
+        bits = self.space.compact
+        if bits is None:
+            return []
+        from checker.engines.fast.compacting import omission  # noqa: PLC0415  # compiled where it is wanted
+
+        return [omission_met(bits, omission(self.space.probed, self.space.size, bits))]
+
+    def visit_all(self, started: float) -> None:
+        reported = kept = time.monotonic()
+        while self.space.expanded < self.space.size:
+            self.advance()
+            now = time.monotonic()
+            if self.is_over(now - started):
+                return
+            if self.report is not None and now - reported >= self.every:
+                self.report(self.progress(now - started))
+                reported = now
+            if now - kept >= self.keeping.every:
+                self.keep(now - started)
+                kept = time.monotonic()
+
+    def advance(self) -> None:
+        """Expand some rows of a layer; begin the next one where it ends."""
+        space, end = self.space, self.journey.layer_end
+        space.advance(min(space.expanded + CHUNK, end))
+        if space.expanded == end and space.size > end:
+            self.layers.append(space.size - end)
+            self.journey = Journey(self.journey.depth + 1, space.size, self.journey.seconds)
+
+    def is_over(self, seconds: float) -> bool:
+        """Tell whether time or memory has come to its end, and note it."""
+        most = self.limits.seconds
+        if most is not None and seconds + self.limits.spent > self.exploring * most:
+            self.bounds.append(time_met(most))
+        elif is_full(self.limits) and not self.makes_room():
+            self.bounds.append(memory_met(self.limits))
+        return bool(self.bounds)
+
+    def left(self) -> float:
+        """Return how many bytes of memory may be taken yet: any number, as long as rows may go over to files."""
+        may_spill = self.limits.spill is not None and not self.space.spilled
+        return math.inf if may_spill else memory_left(self.limits)
+
+    def makes_room(self) -> bool:
+        """Let rows go over to files, if that is wanted and not done yet; tell whether it made room."""
+        if self.limits.spill is None or self.space.spilled:
+            return False
+        self.space.spill(Path(self.limits.spill))
+        return not is_full(self.limits)
+
+    def progress(self, seconds: float) -> Progress:
+        space = self.space
+        rate = space.expanded / max(seconds, 1e-9)
+        transitions = int(space.counts.used.sum())
+        frontier, guess = space.size - space.expanded, estimate(self.layers)
+        return Progress(space.size, transitions, self.journey.depth, frontier, rate, guess)

@@ -1,0 +1,88 @@
+"""What temporal properties ask of a fast exploration: its graph, where propositions are true, what is pending where."""
+
+from collections.abc import Hashable, Iterable
+from functools import partial
+
+import numpy as np
+
+from checker.engines.fast.inspecting import truths
+from checker.engines.fast.survey import Survey
+from checker.engines.graph import Graph
+from semantics.behaviours.observations import Observation
+from semantics.properties.propositions import Proposition
+from semantics.state.configuration import Configuration, Label
+from semantics.state.requests import Received, Request
+from semantics.state.signature import Name
+
+
+class GraphSurvey(Survey):
+    """A survey that can be asked for the graph."""
+
+    def graph(self) -> Graph:
+        """Return every transition of the configurations that were expanded."""
+        return graph_of_space(self)
+
+    def valuation(self, asked: Iterable[Proposition]) -> dict[Proposition, np.ndarray]:
+        """Return where each proposition is true."""
+        return {each: truths(self, each, self.space.size) for each in dict.fromkeys(asked)}
+
+    def pending(self) -> dict[Request, np.ndarray]:
+        """Return for each request the configurations in which it is pending, in their order."""
+        return pending_in_space(self)
+
+
+def graph_of_space(survey: Survey) -> Graph:
+    """Return every transition of the configurations that were expanded, in the order of the rules.
+
+    A `rcv_obs` is labelled without what it receives: that is known only where somebody looks.
+    """
+    space, size = survey.space, survey.space.size
+    found = [(np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int64))]
+    found += space.edges(range(survey.size))
+    origins, steps, targets = (np.concatenate(each) for each in zip(*found, strict=True))
+    numbers: dict[Label, int] = {}
+    action_of = np.zeros(len(space.learner.leaves.rule), np.int32)
+    for step, label in space.learner.steps.items():
+        action_of[step] = numbers.setdefault(general(label), len(numbers))
+    there = targets >= 0
+    partial_rows = np.arange(size) >= survey.size
+    partial_rows[origins[~there]] = True
+    if space.is_crowded:
+        partial_rows |= _without_steps(origins, size)
+    starts = np.concatenate(([0], np.cumsum(np.bincount(origins[there], minlength=size))))
+    return Graph(
+        starts.astype(np.int64),
+        targets[there].astype(np.int32),
+        action_of[steps[there]],
+        tuple(numbers),
+        partial_rows if partial_rows.any() else None,
+    )
+
+
+def _without_steps(origins: np.ndarray, size: int) -> np.ndarray:
+    """Return the configurations without a transition: what is crowded isn't told apart from what is at its end."""
+    return np.asarray(np.bincount(origins, minlength=size) == 0)
+
+
+def general(label: Label) -> Label:
+    """Return a label without what is received."""
+    about = Received(Observation.of()) if isinstance(label.about, Received) else label.about
+    return Label(label.rule, label.agent, about)
+
+
+def pending_in_space(survey: Survey) -> dict[Request, np.ndarray]:
+    """Return for each request the configurations in which it is pending, in their order."""
+    space = survey.space
+    found: dict[Request, list[np.ndarray]] = {}
+    for a in survey.agents():
+        tree = space.learner.question(partial(_requests, a))
+        for rows in survey.blocks(space.size):
+            leaves = space.classify(tree, rows)
+            for leaf in np.unique(leaves):
+                for request in space.learner.answers[int(leaf)]:  # type: ignore[attr-defined]  # a tuple
+                    found.setdefault(request, []).append(rows[leaves == leaf])
+    return {request: np.unique(np.concatenate(rows)) for request, rows in found.items()}
+
+
+def _requests(a: Name, c: Configuration) -> Hashable:
+    return tuple(dict.fromkeys(each.request for each in c.eta.of(a))) if a in c.alpha else ()

@@ -1,0 +1,372 @@
+"""The compiled loops: walk the trees over the frontier, keep the exact visited set.
+
+Rows are packed words (see `columns.Packing`), and found again by a table (see `table`). Successors are gathered, and
+their places there and the rows found are touched one after another before any is compared: what these loops wait for
+is memory, which answers many questions at once.
+"""
+
+# mypy: disable-error-code="return-value, assignment, arg-type"
+# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from checker.engines.fast.leaves import (
+    ALIKE,
+    COPIES,
+    COPIES_END,
+    CROWDED,
+    END,
+    FIRST,
+    FLAGS,
+    LEAF,
+    PAIR,
+    PARTS,
+    PARTS_END,
+    STEP,
+    TURN,
+    WRITES,
+    WRITES_END,
+)
+from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed, touch
+from checker.engines.fast.trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
+
+Ints = NDArray[np.int32]
+State = NDArray[np.int64]
+
+
+class Model(NamedTuple):
+    """Everything learned, as the loops see it.
+
+    Attributes:
+        root, nodes, next: See `Trees`.
+        leaves, steps, copies, part: See `Leaves`.
+        masks: For each transition and word the bits that it keeps, then those that it sets.
+        columns: For each column its word, shift and mask.
+        agents_from, agents, clauses: Trees, the agents' in groups: one for each value of the cell that names them.
+    """
+
+    root: Ints
+    nodes: Words
+    next: Ints
+    leaves: Ints
+    steps: Ints
+    copies: Ints
+    part: Ints
+    masks: Words
+    columns: Words
+    agents_from: Ints
+    agents: Ints
+    clauses: Ints
+
+
+class Batch(NamedTuple):
+    """Successors that were not looked up yet: their words, hash, origin, and the transition that led there."""
+
+    words: Words
+    hashes: Words
+    origins: State
+    steps: Ints
+    leaves: Ints
+
+
+AT, SIZE, LIMIT, WORDS, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED, PROBED, TOUCHED = (
+    range(15)
+)
+"""What stands where in the loops' state: the row that comes next, how many rows there are and may be, words a row,
+whether requests wait for their turn, the column that says which agents there are (-1: always the same), how many
+successors are gathered, what was not known, whether rows were left out or not followed, up to which row all successors
+are stored, how many tags were compared, and nothing of meaning."""
+
+STATE = 15
+BLOCK = 1 << 12
+"""Successors that are looked up at once: what is touched for them fits a core's own cache."""
+
+WIDE = -2
+"""What stands in the place of a node where one row has more successors than a batch holds."""
+
+ALL_KNOWN = -1
+"""What stands for a row at which something was not known, where there is none."""
+
+PLACE, MOVE = 3, 5
+
+# Indices are unsigned in the inner loops: of signed ones numba asks whether they count from the end.
+_RECORD, _LOW, _WIDTH, _BASE, _WORD, _SHIFT, _MASK = map(
+    np.uint64, (RECORD, LOW, WIDTH, BASE, WORD, SHIFT, MASK)
+)
+
+
+@njit(cache=True, inline="always")
+def code_at(words: Words, at: int, columns: Words, column: int) -> int:
+    """Return the code of a column in the row that begins there."""
+    where = PLACE * column
+    return np.int64((words[at + np.int64(columns[where])] >> columns[where + 1]) & columns[where + 2])
+
+
+@njit(cache=True, inline="always")
+def walk(words: Words, at: int, start: int, nodes: Words, leads: Ints, state: State) -> int:
+    """Return the reference to the leaf that a row leads to from some reference on, 0 where it is not known."""
+    begin = np.uint64(at)
+    reference = np.int64(start)
+    record, code = np.uint64(0), np.uint64(0)
+    while reference > 0:
+        record = _RECORD * np.uint64(reference - 1)
+        code = (words[begin + nodes[record + _WORD]] >> nodes[record + _SHIFT]) & nodes[record + _MASK]
+        inside = code - nodes[record + _LOW]
+        reference = np.int64(0)
+        if inside < nodes[record + _WIDTH]:
+            reference = np.int64(leads[nodes[record + _BASE] + inside])
+    if reference == 0:
+        state[NODE] = -1 if start == 0 else np.int64(record // _RECORD)
+        state[CODE] = np.int64(code)
+    return reference
+
+
+@njit(cache=True, inline="always")
+def conclude(words: Words, at: int, masks: Words, step: int, target: Words, to: int, width: int) -> None:
+    """Write what a transition writes over what stands in the target."""
+    wide, source, goal = np.uint64(width), np.uint64(at), np.uint64(to)
+    keep = wide * np.uint64(2 * step)
+    put = keep + wide
+    for j in range(wide):
+        target[goal + j] = (words[source + j] & masks[keep + j]) | masks[put + j]
+
+
+@njit(cache=True, inline="always")
+def copy_columns(
+    words: Words, at: int, columns: Words, copies: Ints, begin: int, end: int, target: Words, to: int
+) -> None:
+    """Copy what a transition copies from column to column."""
+    for k in range(begin, end):
+        code = np.uint64(code_at(words, at, columns, copies[PAIR * k + 1]))
+        where = PLACE * copies[PAIR * k]
+        word, shift, mask = to + np.int64(columns[where]), columns[where + 1], columns[where + 2]
+        target[word] = (target[word] & ~(mask << shift)) | (code << shift)
+
+
+@njit(cache=True)
+def first_turn(all_leaves: Ints, steps: Ints, leaves: Ints, actors: int) -> int:
+    """Return the first turn of the queue that is enabled, -1 where none is."""
+    found = np.int64(-1)
+    for k in range(actors):
+        leaf = LEAF * leaves[k]
+        for step in range(all_leaves[leaf + FIRST], all_leaves[leaf + END]):
+            turn = np.int64(steps[STEP * step + TURN])
+            if turn >= 0 and (found < 0 or turn < found):
+                found = turn
+    return found
+
+
+@njit(cache=True)
+def is_repeated(target: Words, taken: Ints, steps: Ints, began: int, end: int, step: int, width: int) -> bool:
+    """Tell whether a row leads to the same under the same label already."""
+    for other in range(began, end):
+        if steps[STEP * taken[other] + ALIKE] == steps[STEP * step + ALIKE]:
+            same = True
+            for k in range(width):
+                same = same and target[other * width + k] == target[end * width + k]
+            if same:
+                return True
+    return False
+
+
+@njit(cache=True, nogil=True)
+def store(
+    words: Words, origins: Any, table: Any, batch: Batch, gathered: int, at: int, counts: State, state: State
+) -> None:
+    """Look up what was gathered of the rows before `at`: what is new becomes a row, with where it was reached from.
+
+    There must be room for so many new rows. It may run beside `gather`: they touch nothing of each other's.
+    """
+    target, hashes, reached_from, taken = batch.words, batch.hashes, batch.origins, batch.steps
+    width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
+    bits = np.uint32(bits_for(len(table)))
+    for begin in range(0, gathered, BLOCK):
+        end = min(begin + BLOCK, gathered)
+        state[TOUCHED] = touch(words, table, hashes, begin, end, width)
+        for k in range(begin, end):
+            counts[taken[k]] += 1
+            found = find(words, table, target, k, hashes[k], width, bits)
+            if found >= 0:
+                continue
+            if size >= limit:
+                state[CUT] += 1
+                continue
+            for j in range(width):
+                words[size * width + j] = target[k * width + j]
+            origins[size] = reached_from[k]
+            table[-found - 1] = entry_of(hashes[k], size, bits)
+            size += 1
+    state[SIZE] = size
+    state[EXPANDED] = at
+
+
+@njit(cache=True, nogil=True)
+def gather(  # one loop, so that its arrays are taken out of their tuples only once
+    m: Model, words: Words, batch: Batch, state: State, until: int
+) -> bool:
+    """Gather the successors of rows up to a number, or until half of the batch is full; False at what is not known.
+
+    A row's successors are gathered each once: first what its agents are served, then what they do themselves, then what
+    the environment does.
+    """
+    root, nodes, leads, columns, copies, parts = m.root, m.nodes, m.next, m.columns, m.copies, m.part
+    agents_from, agents, clauses = m.agents_from, m.agents, m.clauses
+    all_leaves, steps, masks = m.leaves, m.steps, m.masks
+    target, hashes, origins = batch.words, batch.hashes, batch.origins
+    taken, leaves = batch.steps, batch.leaves
+    width, known = state[WORDS], True
+    while known and state[AT] < until and state[GATHERED] <= len(hashes) // 2:
+        row = state[AT]
+        at = row * width
+        first, last = np.int64(0), np.int64(len(agents))
+        if state[ALPHA] >= 0:
+            group = code_at(words, at, columns, state[ALPHA])
+            first, last = np.int64(agents_from[group]), np.int64(agents_from[group + 1])
+        count = last - first + len(clauses)
+        flags = np.int64(0)
+        for k in range(count):
+            tree = agents[first + k] if first + k < last else clauses[first + k - last]
+            reference = walk(words, at, root[tree], nodes, leads, state)
+            if reference == 0:
+                state[TREE] = tree
+                known = False
+                break
+            leaves[k] = -reference - 1
+            flags |= all_leaves[LEAF * (-reference - 1) + FLAGS]
+        end = state[GATHERED]
+        if known and flags & CROWDED:
+            state[CROWDS] += 1
+        elif known:
+            turn = first_turn(all_leaves, steps, leaves, last - first) if state[TURNS] else np.int64(-1)
+            began = end
+            for k in range(count):
+                leaf = LEAF * leaves[k]
+                for step in range(all_leaves[leaf + FIRST], all_leaves[leaf + END]):
+                    record = STEP * step
+                    if steps[record + TURN] >= 0 and steps[record + TURN] != turn:
+                        continue
+                    if end == len(hashes):
+                        state[NODE] = WIDE
+                        known = False
+                        break
+                    to = end * width
+                    conclude(words, at, masks, step, target, to, width)
+                    begin, stop = steps[record + COPIES], steps[record + COPIES_END]
+                    if begin < stop:
+                        copy_columns(words, at, columns, copies, begin, stop, target, to)
+                    for part in range(steps[record + PARTS], steps[record + PARTS_END]):
+                        tree = parts[part]
+                        reference = walk(words, at, root[tree], nodes, leads, state)
+                        if reference == 0:
+                            state[TREE] = tree
+                            known = False
+                            break
+                        own = all_leaves[LEAF * (-reference - 1) + FIRST]
+                        conclude(target, to, masks, own, target, to, width)
+                    if not known:
+                        break
+                    if steps[record + ALIKE] >= 0 and is_repeated(
+                        target, taken, steps, began, end, step, width
+                    ):
+                        continue
+                    hashes[end] = hashed(target, to, width)
+                    origins[end] = row
+                    taken[end] = step
+                    end += 1
+                if not known:
+                    break
+        if known:
+            state[GATHERED] = end
+            state[AT] += 1
+    return known
+
+
+@njit(cache=True)
+def classify(m: Model, words: Words, rows: State, tree: int, found: Ints, state: State) -> int:
+    """Note the leaf that each of some rows leads to in a tree; return how many were led, all where it knows all."""
+    root, nodes, leads = m.root, m.nodes, m.next
+    width = state[WORDS]
+    done = np.int64(0)
+    for k in range(len(rows)):
+        reference = walk(words, rows[k] * width, root[tree], nodes, leads, state)
+        if reference == 0:
+            state[TREE] = tree
+            break
+        found[k] = -reference - 1
+        done += 1
+    return done
+
+
+@njit(cache=True)
+def look_up(words: Words, table: Any, batch: Batch, targets: Any, state: State) -> None:
+    """Note the row that each successor of the batch is."""
+    target, hashes = batch.words, batch.hashes
+    width = state[WORDS]
+    bits = np.uint32(bits_for(len(table)))
+    for begin in range(0, len(targets), BLOCK):
+        end = min(begin + BLOCK, len(targets))
+        state[TOUCHED] = touch(words, table, hashes, begin, end, width)
+        for k in range(begin, end):
+            targets[k] = find(words, table, target, k, hashes[k], width, bits)
+
+
+@njit(cache=True)
+def repack(words: Words, size: int, moves: Words, old_width: int, new_width: int) -> None:
+    """Pack rows anew in their place, from the last to the first: a row of the new packing is not shorter.
+
+    What moves is told by `columns.shifts`.
+    """
+    packed = np.zeros(new_width, np.uint64)
+    for row in range(size - 1, -1, -1):
+        packed[:] = 0
+        for k in range(0, len(moves), MOVE):
+            bits = words[row * old_width + np.int64(moves[k])] & moves[k + 2]
+            packed[np.int64(moves[k + 1])] |= (bits << moves[k + 3]) >> moves[k + 4]
+        for k in range(new_width):
+            words[row * new_width + k] = packed[k]
+
+
+@njit(cache=True)
+def locate(nodes: Words, columns: Words, first: int) -> None:
+    """Note where the columns stand that inner nodes ask, from a first node on."""
+    for record in range(RECORD * first, len(nodes), RECORD):
+        where = PLACE * np.int64(nodes[record + COLUMN])
+        nodes[record + WORD] = columns[where]
+        nodes[record + SHIFT] = columns[where + 1]
+        nodes[record + MASK] = columns[where + 2]
+
+
+@njit(cache=True)
+def make_masks(masks: Words, steps: Ints, writes: Ints, columns: Words, width: int, first: int) -> None:
+    """Work out for each transition, from a first one on, which bits of each word it keeps, and which it sets."""
+    for step in range(first, len(masks) // (2 * width)):
+        at = 2 * width * step
+        for k in range(width):
+            masks[at + k] = ~np.uint64(0)
+            masks[at + width + k] = np.uint64(0)
+        for k in range(steps[STEP * step + WRITES], steps[STEP * step + WRITES_END]):
+            where = PLACE * writes[PAIR * k]
+            word, shift, mask = np.int64(columns[where]), columns[where + 1], columns[where + 2]
+            masks[at + word] &= ~(mask << shift)
+            masks[at + width + word] &= ~(mask << shift)
+            masks[at + width + word] |= np.uint64(writes[PAIR * k + 1]) << shift
+
+
+@njit(cache=True)
+def mark_used(words: Words, width: int, columns: Words, begins: State, used: Any) -> bool:
+    """Mark the values that some row has, column by column; False where a code is none of its column."""
+    for row in range(len(words) // width):
+        for column in range(len(begins) - 1):
+            mask = columns[PLACE * column + 2]
+            code = np.int64(0)
+            if mask != 0:
+                word = words[row * width + np.int64(columns[PLACE * column])]
+                code = np.int64((word >> columns[PLACE * column + 1]) & mask)
+            if code < 0 or code >= begins[column + 1] - begins[column]:
+                return False
+            used[begins[column] + code] = True
+    return True

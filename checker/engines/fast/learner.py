@@ -1,0 +1,282 @@
+"""The learner: runs rules once for each way in which they look at cells, and lets the trees know.
+
+An actor is what serves an agent's requests, or what the agent does itself, or a clause of the environment. Each has a
+tree whose leaves hold its transitions. What a transition writes name by name (a pointwise definition) is learned in a
+tree for each mobile name, walked by itself: the answers of one observation do not multiply.
+"""
+
+from collections.abc import Callable, Hashable, Iterable
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from checker.engines.fast.columns import Columns
+from checker.engines.fast.leaves import ALIKE, CROWDED, NO_TURN, STEP, UNLIKE, Effect, Leaves, Step
+from checker.engines.fast.recording import Ask, Asked, Recorder, Source
+from checker.engines.fast.skeletons import settled
+from checker.engines.fast.trees import Trees
+from checker.engines.fast.writing import Concluded, Relearn, Writing
+from semantics.behaviours.expressions import Fault
+from semantics.behaviours.observations import Fact, agent_key
+from semantics.behaviours.statements import Migrate, Spawn
+from semantics.environment import Clause
+from semantics.races.monitor import marked
+from semantics.state.agents import mailbox_cell
+from semantics.state.cells import Cell, Row
+from semantics.state.configuration import Configuration, Label, Transition
+from semantics.state.physical_model import Carried
+from semantics.state.requests import Received
+from semantics.state.setting import Setting
+from semantics.state.signature import Name
+from semantics.successors import served, turn_of
+
+Found = list[Transition | Fault]
+
+
+class Actor(NamedTuple):
+    """Some rules, and whom they are about."""
+
+    rules: Callable[[Configuration, Any], Iterable[Transition | Fault]]
+    about: Name | Clause
+
+
+Question = Callable[[Configuration], Hashable]
+"""A pure function of a configuration: its tree tells rows apart by the answer."""
+
+PREDICTED = ("code", "store", "line")
+"""What varies in every mission; that other cells do is found out when something is written there."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PartOf:
+    """What the tree of a part is about.
+
+    Attributes:
+        recorder: What the rules of the leaf were recorded with; it may look at any configuration that comes there.
+        concluded: The transition of the leaf.
+        name: About whom the part is.
+    """
+
+    recorder: Recorder
+    concluded: Concluded
+    name: Name
+
+
+@dataclass(slots=True)
+class Known:
+    """A label that was met: its number, the actor that had it first, and the transitions that have it."""
+
+    number: int
+    first: Actor
+    steps: list[int] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class CodedSource(Source):
+    """A configuration given by the codes of its columns."""
+
+    columns: Columns
+    codes: list[int]
+
+    def skeleton(self, cell: Cell) -> Any:
+        """Return the skeleton of a cell's value, None where there is no such cell."""
+        return self._value((cell,))
+
+    def fact(self, cell: Cell, number: int, name: Name) -> Fact:
+        """Return what a hole of a cell says of a mobile name."""
+        fact: Fact = self._value((cell, number, name))
+        return fact
+
+    def code(self, number: int) -> int:
+        """Return the code of a column; one that was made since holds its first."""
+        return self.codes[number] if number < len(self.codes) else 0
+
+    def _value(self, place: Any) -> Any:
+        number = self.columns.number(place)
+        return self.columns.all[number].value(self.code(number))
+
+
+@dataclass(slots=True)
+class Learner:
+    """What is known of a mission's rules.
+
+    Attributes:
+        setting: The mission.
+        still: The initial configuration's cells: what never varies has its value there.
+        pending: How many requests or messages an agent may have before it is not followed further.
+        runs: How many times an actor's rules were run in Python.
+        owners: What each tree is about.
+        taken: For each tree the cells that were taken to be never written.
+        answers: What a question is answered with, leaf by leaf.
+        reads: For each leaf of an actor what was asked of which column to come there, with the answer.
+        steps: The label of each transition, as it was when it was learned.
+        whose: The actor of each transition.
+    """
+
+    setting: Setting
+    still: Row
+    pending: int
+    columns: Columns = field(init=False)
+    writing: Writing = field(init=False)
+    trees: Trees = field(default_factory=Trees)
+    leaves: Leaves = field(default_factory=Leaves)
+    owners: list[Actor | PartOf | Question] = field(default_factory=list)
+    taken: list[set[Cell]] = field(default_factory=list)
+    planted: dict[Actor, int] = field(default_factory=dict)
+    varying: set[Cell] = field(default_factory=set)
+    rules: dict[str, int] = field(default_factory=dict)
+    labels: dict[Hashable, Known] = field(default_factory=dict)
+    steps: dict[int, Label] = field(default_factory=dict)
+    whose: dict[int, Actor] = field(default_factory=dict)
+    answers: dict[int, Hashable] = field(default_factory=dict)
+    reads: dict[int, tuple[tuple[int, Ask, Any], ...]] = field(default_factory=dict)
+    runs: int = 0
+
+    def __post_init__(self) -> None:
+        mobile = mobile_names(self.setting, self.still)
+        self.columns = Columns(mobile, agents_of(self.setting, self.still))
+        self.writing = Writing(self.columns, self.still, self.varying)
+        for cell, value in self.still.items():
+            self.columns.start(cell, value)
+            if cell[0] in PREDICTED or (cell[0] in ("placement", "parent") and cell[-1] in mobile):
+                self.varying.add(cell)
+
+    def tree(self, actor: Actor) -> int:
+        """Return the number of an actor's tree."""
+        if actor not in self.planted:
+            self.planted[actor] = self._plant(actor)
+        return self.planted[actor]
+
+    def question(self, question: Question) -> int:
+        """Return the number of a new tree for a question."""
+        return self._plant(question)
+
+    def _plant(self, owner: Actor | PartOf | Question) -> int:
+        self.owners.append(owner)
+        self.taken.append(set())
+        return self.trees.plant()
+
+    def learn(self, tree: int, source: CodedSource) -> None:
+        """Run the rules of a tree's actor on a configuration, and let the tree know what they asked and wrote."""
+        owner = self.owners[tree]
+        self.runs += 1
+        try:
+            if isinstance(owner, PartOf):
+                owner.recorder.source = source  # it agrees on all that the rules themselves asked
+                self._learn_part(tree, owner, source)
+                return
+            recorder = Recorder(source, self.still, self.varying.__contains__, self.columns.mobile)
+            if isinstance(owner, Actor):
+                self._learn_root(tree, owner, recorder, source)
+            else:
+                self._learn_answer(tree, owner, recorder, source)
+        except Relearn as news:
+            self.forget(news.cell)
+
+    def forget(self, cell: Cell | None = None) -> None:
+        """Forget what was learned by taking a cell to be never written; everything where none is named."""
+        for tree, taken in enumerate(self.taken):
+            if cell is None or cell in taken:
+                self.trees.forget(tree)
+
+    def _learn_root(self, tree: int, actor: Actor, recorder: Recorder, source: CodedSource) -> None:
+        c = Configuration(self.setting, recorder)
+        found = [step if isinstance(step, Fault) else marked(c, step) for step in actor.rules(c, actor.about)]
+        concluded = [self.writing.conclude(step) for step in found if isinstance(step, Transition)]
+        is_full = actor.rules is served and is_crowded(c, str(actor.about), self.pending)
+        parts = [[self._plant(PartOf(recorder, each, name)) for name in each.apart] for each in concluded]
+        for each, trees in zip(concluded, parts, strict=True):
+            each.effect.parts = trees
+        leaf = self.leaves.add(self._steps(actor, concluded), CROWDED if is_full else 0)
+        self.whose |= dict.fromkeys(self.leaves.steps_of(leaf), actor)
+        self.reads[leaf] = tuple((self._column(ask), ask, said) for ask, said in recorder.scopes[0].items())
+        self._grow(tree, recorder.scopes[0], recorder.taken, leaf, source)
+        for part in (part for trees in parts for part in trees):
+            owner = self.owners[part]
+            assert isinstance(owner, PartOf)
+            self._learn_part(part, owner, source)
+
+    def _learn_answer(self, tree: int, question: Question, recorder: Recorder, source: CodedSource) -> None:
+        answer = settled(question(Configuration(self.setting, recorder)))
+        leaf = self.leaves.add(())
+        self.answers[leaf] = answer
+        self._grow(tree, recorder.scopes[0], recorder.taken, leaf, source)
+
+    def _column(self, ask: Ask) -> int:
+        return self.columns.number((ask.cell,) if ask.hole is None else (ask.cell, *ask.hole))
+
+    def _learn_part(self, tree: int, part: PartOf, source: CodedSource) -> None:
+        writes, asked = part.recorder.apart(lambda: self.writing.part(part.concluded, part.name))
+        self._grow(tree, asked, part.recorder.taken, self.leaves.add([Step(Effect(writes))]), source)
+
+    def _grow(self, tree: int, asked: Asked, taken: set[Cell], leaf: int, source: CodedSource) -> None:
+        self.taken[tree] |= taken
+        path: list[tuple[Ask, Any]] = []
+        columns = []
+        for ask, answer in asked.items():
+            number = self._column(ask)
+            columns.append((self.columns.all[number], number))
+            path.append((ask, source.code(number) if ask.question is None else answer))
+        self.trees.grow(tree, path, leaf, columns)
+
+    def _steps(self, actor: Actor, concluded: list[Concluded]) -> list[Step]:
+        keys = [_key(each.step) for each in concluded]
+        return [
+            Step(
+                each.effect,
+                self._rule(each.step),
+                _turn(each.step),
+                self._alike(actor, key, keys, number),
+            )
+            for number, (key, each) in enumerate(zip(keys, concluded, strict=True), len(self.leaves.rule))
+            if self.steps.setdefault(number, each.step.label)
+        ]
+
+    def _rule(self, step: Transition) -> int:
+        return self.rules.setdefault(step.label.rule, len(self.rules))
+
+    def _alike(self, actor: Actor, key: Hashable, beside: list[Hashable], number: int) -> int:
+        """Number a label that two transitions of one configuration may have: of one leaf, or of two clauses."""
+        known = self.labels.setdefault(key, Known(len(self.labels), actor))
+        if known.first != actor:  # whatever has it already must be compared, too
+            for other in known.steps:
+                self.leaves.steps.room[STEP * other + ALIKE] = known.number
+        known.steps.append(number)
+        return known.number if known.first != actor or beside.count(key) > 1 else UNLIKE
+
+
+def _turn(step: Transition) -> int:
+    turn = turn_of(step)
+    return NO_TURN if turn is None else turn
+
+
+def _key(step: Transition) -> Hashable:
+    """Return what tells two labels of a configuration apart; receiving equal observations ends alike."""
+    label = step.label
+    return (label.rule, label.agent, None if isinstance(label.about, Received) else label.about, step.shown)
+
+
+def mobile_names(setting: Setting, first: Row) -> frozenset[Name]:
+    """Return who may move, come or go: of whom an observation says something else from time to time."""
+    driven = {name for name, kind in setting.kinds.items() if setting.signature[kind].driven}
+    around = {clause.entity for clause in setting.environment if hasattr(clause, "entity")}
+    aboard = {cell[-1] for cell, value in first.items() if isinstance(value, Carried)}
+    agents: set[Name] = set()
+    if any(isinstance(statement, Migrate | Spawn) for statement in setting.program.statements):
+        agents = set(map(agent_key, agents_of(setting, first)))
+    return frozenset(driven | around | aboard | agents)
+
+
+def agents_of(setting: Setting, first: Row) -> frozenset[Name]:
+    """Return every agent that there may ever be."""
+    spawned = (each.name for each in setting.program.statements if isinstance(each, Spawn))
+    return frozenset((*(cell[-1] for cell, _ in first.items() if cell[0] == "host"), *spawned))
+
+
+def is_crowded(c: Configuration, a: Name, most: int) -> bool:
+    """Tell whether an agent has more pending requests or messages than are explored."""
+    return len(c.eta.of(a)) > most or c.test(mailbox_cell(a), is_longer, most)
+
+
+def is_longer(value: tuple[object, ...] | None, most: int) -> bool:
+    """Ask whether a cell holds more than so many."""
+    return value is not None and len(value) > most

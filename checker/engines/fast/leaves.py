@@ -1,0 +1,125 @@
+"""Leaves as arrays: the transitions that follow from what was asked, with what each writes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from checker.engines.fast.arrays import Growing
+from checker.engines.fast.columns import Writes
+
+CROWDED = 1
+"""A leaf of an agent that has more pending than is explored."""
+
+NO_TURN = -1
+UNLIKE = -1
+
+LEAF, STEP, PAIR = 4, 8, 2
+"""Numbers that a leaf has: its first transition, the end of them, its flags, and one to spare.
+
+A transition has: its turn, the number of its label, where its copies, its parts and its writes begin and end.
+A write has a column and its code; a copy has the column that gets and the one that gives.
+"""
+
+FIRST, END, FLAGS, _SPARE = range(LEAF)
+TURN, ALIKE, COPIES, COPIES_END, PARTS, PARTS_END, WRITES, WRITES_END = range(STEP)
+
+
+@dataclass(slots=True)
+class Effect:
+    """What one transition, or one part of it, writes.
+
+    Attributes:
+        writes: Columns with the codes that they get.
+        copies: Columns with those that they get their codes from.
+        parts: The trees whose leaves write the rest, each by itself.
+    """
+
+    writes: Writes
+    copies: list[tuple[int, int]] = field(default_factory=list)
+    parts: list[int] = field(default_factory=list)
+
+
+class Step(NamedTuple):
+    """One transition of a leaf.
+
+    Attributes:
+        effect: What it writes.
+        rule: The number of its rule.
+        turn: Where that stands in the queue, `NO_TURN` where it waits for none.
+        alike: The number of its label, where another transition of the same configuration may have it too.
+    """
+
+    effect: Effect
+    rule: int = 0
+    turn: int = NO_TURN
+    alike: int = UNLIKE
+
+
+class Leaves:
+    """All leaves of an exploration: `LEAF` numbers a leaf, `STEP` a transition, `PAIR` a write or copy.
+
+    Attributes:
+        rule: For each transition the number of its rule.
+        part: Trees of parts.
+    """
+
+    __slots__ = ("copies", "leaves", "part", "rule", "steps", "writes")
+
+    def __init__(self) -> None:
+        self.leaves = Growing(np.int32)
+        self.steps = Growing(np.int32)
+        self.writes = Growing(np.int32)
+        self.copies = Growing(np.int32)
+        self.part = Growing(np.int32)
+        self.rule = Growing(np.int32)
+
+    def add(self, steps: Sequence[Step], flags: int = 0) -> int:
+        """Add a leaf and return its number."""
+        first = len(self.rule)
+        for step in steps:
+            self._add(step)
+        return self.leaves.append(first, len(self.rule), flags, 0) // LEAF
+
+    def steps_of(self, leaf: int) -> range:
+        """Return the numbers of a leaf's transitions."""
+        return range(*map(int, self.leaves.room[LEAF * leaf + FIRST : LEAF * leaf + END + 1]))
+
+    def _add(self, step: Step) -> None:
+        begins = [len(each) // PAIR for each in (self.copies, self.writes)]
+        parts = len(self.part)
+        for pairs, all_of in ((step.effect.copies, self.copies), (step.effect.writes, self.writes)):
+            for pair in pairs:
+                all_of.append(*pair)
+        self.part.append(*step.effect.parts)
+        ends = [len(each) // PAIR for each in (self.copies, self.writes)]
+        self.rule.append(step.rule)
+        self.steps.append(
+            step.turn, step.alike, begins[0], ends[0], parts, len(self.part), begins[1], ends[1]
+        )
+
+    def columns_of(self, step: int) -> frozenset[int]:
+        """Return the columns that a transition writes, or copies, or copies from."""
+        record = self.steps.room[STEP * step : STEP * (step + 1)]
+        copied = self.copies.room[PAIR * record[COPIES] : PAIR * record[COPIES_END]]
+        written = self.writes.room[PAIR * record[WRITES] : PAIR * record[WRITES_END] : PAIR]
+        return frozenset((*copied.tolist(), *written.tolist()))
+
+    def parts_of(self, step: int) -> list[int]:
+        """Return the trees of a transition's parts."""
+        record = self.steps.room[STEP * step : STEP * (step + 1)]
+        parts: list[int] = self.part.room[record[PARTS] : record[PARTS_END]].tolist()
+        return parts
+
+    def codes_of(self, step: int) -> dict[int, int]:
+        """Return the codes that a transition writes at once, by column."""
+        record = self.steps.room[STEP * step : STEP * (step + 1)]
+        room = self.writes.room[PAIR * record[WRITES] : PAIR * record[WRITES_END]].tolist()
+        return dict(zip(room[::2], room[1::2], strict=True))
+
+    def copies_of(self, step: int) -> dict[int, int]:
+        """Return the columns that a transition copies, by the column that gets them."""
+        record = self.steps.room[STEP * step : STEP * (step + 1)]
+        room = self.copies.room[PAIR * record[COPIES] : PAIR * record[COPIES_END]].tolist()
+        return dict(zip(room[::2], room[1::2], strict=True))

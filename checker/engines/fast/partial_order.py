@@ -1,0 +1,205 @@
+"""Partial-order reduction for the compiled loops: footprints as words, actors as numbers, told by trees of their own.
+
+What is chosen is what `checker.reduction.ample` chooses, configuration for configuration.
+"""
+
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from checker.engines.fast.ample import AGENTS_OWN, FAIR, MOST_HERE, PARTS, RECORD, Members
+from checker.engines.fast.arrays import Growing
+from checker.engines.fast.columns import Packing
+from checker.engines.fast.learner import Learner
+from checker.engines.fast.leaves import LEAF
+from checker.properties.inspections import never_ends
+from checker.reduction.actors import Acting, Actor
+from checker.reduction.ample import Ample
+from checker.reduction.slots import Footprint
+from checker.reduction.visible import Seen
+from semantics.state.configuration import Configuration, Label
+from semantics.state.signature import Name
+
+WORD = 64
+NOBODY = -1
+
+
+class Here(NamedTuple):
+    """What a tree tells: actors of one agent, or of one clause, with what they may do."""
+
+    actors: tuple[tuple[Actor, Acting], ...]
+
+
+class Choosing:
+    """What the loops know of a mission's actors; it grows as more is learned.
+
+    Attributes:
+        members: That, as the loops see it.
+    """
+
+    members: Members
+
+    def __init__(self, learner: Learner, ample: Ample) -> None:
+        self.learner = learner
+        self.ample = ample
+        self.agents: dict[Name, int] = {}
+        actors = ample.actors
+        self.clauses = [
+            learner.question(_of_clause(ample, number)) for number in range(len(actors.setting.environment))
+        ]
+        self.numbers: dict[Actor, int] = {}
+        self.footprints: dict[Footprint, int] = {}
+        self.begins = Growing(np.int32)
+        self.actors = Growing(np.int32)
+        self.step_actor = Growing(np.int32)
+        self.step_flags = Growing(np.int32)
+        self.stride = self.width = 0
+        self.looked: tuple[object, ...] = ()
+
+    def see(self, groups: Iterable[tuple[Name, ...]], where: Packing, successors: int) -> None:
+        """Take in what was learned since; groups are the agents that there are, for each value of their cell."""
+        trees = [[*map(self._agent, group), *self.clauses] for group in groups]
+        begins = np.cumsum([0, *map(len, trees)])
+        self._take_leaves()
+        self._take_steps()
+        self._take_footprints()
+        self._look(where)
+        self.members = Members(
+            begins.astype(np.int32),
+            np.array([tree for group in trees for tree in group], np.int32),
+            self.begins.room,
+            self.actors.room,
+            self.words,
+            self.disturbed,
+            self.step_actor.room,
+            self.step_flags.room,
+            self.seen_masks,
+            self.seen_whole,
+            self.seen,
+            self.seen_answers,
+            np.zeros(MOST_HERE, np.int32),
+            np.zeros(MOST_HERE, np.uint64),
+            np.zeros(successors, np.int32),
+            np.zeros(MOST_HERE, np.uint64),
+            np.zeros(MOST_HERE, np.int64),
+        )
+
+    # --- actors -----------------------------------------------------------------------------------------------------
+
+    def _agent(self, agent: Name) -> int:
+        if agent not in self.agents:
+            self.agents[agent] = self.learner.question(_of_agent(self.ample, agent))
+        return self.agents[agent]
+
+    def _number(self, actor: Actor) -> int:
+        return self.numbers.setdefault(actor, len(self.numbers))
+
+    def _footprint(self, footprint: Footprint) -> int:
+        return self.footprints.setdefault(footprint, len(self.footprints))
+
+    def _take_leaves(self) -> None:
+        for leaf in range(len(self.begins) // 2, len(self.learner.leaves.leaves) // LEAF):
+            told = self.learner.answers.get(leaf)
+            begin = len(self.actors)
+            for actor, acting in told.actors if isinstance(told, Here) else ():
+                behind = actor.kind == "line"
+                self.actors.append(
+                    self._number(actor),
+                    *map(self._footprint, acting),
+                    self._number(Actor("program", actor.owner)) if behind else NOBODY,
+                )
+            self.begins.append(begin // RECORD, len(self.actors) // RECORD)
+
+    def _take_steps(self) -> None:
+        learner = self.learner
+        for number in range(len(self.step_actor), len(learner.leaves.rule)):
+            whose = learner.whose.get(number)
+            if whose is None:  # a part of a transition
+                self.step_actor.append(NOBODY)
+                self.step_flags.append(0)
+                continue
+            label = learner.steps[number]
+            self.step_actor.append(self._number(self._actor(label, whose.about)))
+            self.step_flags.append(_flags(label, learner))
+
+    def _actor(self, label: Label, about: Any) -> Actor:
+        if label.agent is not None:
+            return self.ample.actors.actor_of(label)
+        return Actor("clause", self.ample.actors.setting.environment.index(about))
+
+    def _take_footprints(self) -> None:
+        slots = max(1, -(-len(self.ample.actors.footprints.slots.numbers) // WORD))
+        count = len(self.footprints)
+        if count > self.stride or slots > self.width:
+            self.stride, self.width = max(64, 2 * count), slots
+            self.words = np.zeros(self.stride * PARTS * slots, np.uint64)
+            self.disturbed = np.zeros(self.stride * self.stride, np.uint8)
+            self.written = 0
+        for footprint, number in list(self.footprints.items())[self.written :]:
+            at = number * PARTS * slots
+            self.words[at : at + PARTS * slots] = [
+                word
+                for bits in (footprint.reads, footprint.writes, footprint.merges)
+                for word in _words(bits, slots)
+            ]
+        self.written = count
+
+    # --- what properties see ----------------------------------------------------------------------------------------
+
+    def _look(self, where: Packing) -> None:
+        """Work out which bits of a row properties look at, and what questions make of codes."""
+        columns = self.learner.columns
+        looks = [(seen, number) for seen in self.ample.eyes.seen for number in self._columns(seen)]
+        looked = (id(where), *((number, len(columns.all[number].values)) for _, number in looks))
+        if looked == self.looked:
+            return
+        self.looked = looked
+        self.kept = where  # so that no other has its identity
+        self.seen_masks = np.zeros(where.words, np.uint64)
+        self.seen_whole = np.zeros(where.words, np.uint64)
+        asked: list[int] = []
+        answers: list[bool] = []
+        for seen, number in looks:
+            bits = where.mask[number] << where.shift[number]
+            self.seen_masks[where.word[number]] |= bits
+            if seen.question is None:
+                self.seen_whole[where.word[number]] |= bits
+                continue
+            column = columns.all[number]
+            asked += [number, len(answers)]
+            answers += [seen.says(column.value(code)) for code in range(len(column.values))]
+        self.seen = np.array(asked, np.int32)
+        self.seen_answers = np.array(answers, np.uint8)
+
+    def _columns(self, seen: Seen) -> list[int]:
+        """Return the columns of a cell: of its skeleton, and where the value counts, of what its holes say."""
+        columns = self.learner.columns
+        number = columns.numbers.get((seen.cell,))
+        holes = range(columns.holes.get(seen.cell, 0) if seen.question is None else 0)
+        said = [column for hole in holes for _, column in columns.of_hole(seen.cell, hole)]
+        return said if number is None else [number, *said]
+
+
+def _flags(label: Label, learner: Learner) -> int:
+    if label.agent is None:
+        return 0
+    return AGENTS_OWN | (0 if never_ends(learner.setting, label.about) else FAIR)
+
+
+def _words(bits: int, count: int) -> list[int]:
+    return [(bits >> (WORD * k)) & ((1 << WORD) - 1) for k in range(count)]
+
+
+def _of_agent(ample: Ample, agent: Name) -> Callable[[Configuration], Here]:
+    def told(c: Configuration) -> Here:
+        return Here(tuple(ample.actors.of_agent(c, agent).items()))
+
+    return told
+
+
+def _of_clause(ample: Ample, number: int) -> Callable[[Configuration], Here]:
+    def told(c: Configuration) -> Here:
+        return Here(tuple(ample.actors.of_clause(c, number).items()))
+
+    return told

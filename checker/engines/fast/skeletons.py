@@ -1,0 +1,94 @@
+"""Values taken apart: what an observation says of whoever moves stands in a column for each, apart from the rest.
+
+A cell's value becomes a *skeleton*, in which each observation is a numbered hole that still holds what it says of
+those who never move, and a fact for each mobile name. Which names are mobile is settled once for a mission, so equal
+values come apart alike. So an observation over twelve vehicles is twelve small values, not one of thousands.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from semantics.behaviours.observations import NOTHING_SEEN, Fact, Observation, Swept
+from semantics.state.requests import READY, SND
+from semantics.state.signature import Name
+
+
+@dataclass(frozen=True, slots=True)
+class Hole:
+    """Where an observation stands in a skeleton.
+
+    Attributes:
+        number: Which observation of the value, from 0.
+        still: What it says of names that are not mobile, sorted.
+        swept: What it looked through to the end.
+    """
+
+    number: int
+    still: tuple[tuple[Name, Fact], ...]
+    swept: Swept
+
+
+Family = Mapping[Name, Fact]
+
+
+def taken_apart(value: Any, mobile: frozenset[Name]) -> tuple[Any, tuple[Family, ...]]:
+    """Return the skeleton of a value, and for each hole the family of what was said there."""
+    families: list[Family] = []
+
+    def dig(seen: Observation) -> Hole:
+        families.append(seen.family)
+        told = ((name, seen.fact(name)) for name in sorted(set(seen.family) - mobile))
+        still = tuple((name, fact) for name, fact in told if fact != NOTHING_SEEN)
+        return Hole(len(families) - 1, still, seen.swept)
+
+    return _mapped(_mapped(value, frozenset, settled), Observation, dig), tuple(families)
+
+
+def put_together(skeleton: Any, family_at: Callable[[Hole], Family]) -> Any:
+    """Return the value of a skeleton; `family_at` gives what is said in a hole."""
+    return _mapped(skeleton, Hole, lambda hole: Observation(family_at(hole), hole.swept))
+
+
+def settled(value: Any) -> Any:
+    """Return a value in which every observation says what it says, whoever it had to ask."""
+    return _mapped(value, Observation, lambda seen: Observation(dict(seen.facts), seen.swept), sets=True)
+
+
+def holes(skeleton: Any) -> Iterator[Hole]:
+    """Yield the holes of a skeleton, in the order of their numbers."""
+    match skeleton:
+        case Hole():
+            yield skeleton
+        case tuple():
+            for part in skeleton:
+                yield from holes(part)
+        case READY():
+            yield from holes(skeleton.observation)
+        case SND():
+            yield from holes(skeleton.message)
+
+
+def _mapped(value: Any, kind: type, change: Callable[[Any], Any], *, sets: bool = False) -> Any:
+    """Return a value with its parts of a kind changed, the same object where there are none.
+
+    Members of sets have no place of their own: they are left alone unless `sets` is said.
+    """
+    if isinstance(value, kind):
+        return change(value)
+    match value:
+        case READY():
+            return replace(value, observation=_mapped(value.observation, kind, change, sets=sets))
+        case SND():
+            message = _mapped(value.message, kind, change, sets=sets)
+            return value if message is value.message else replace(value, message=message)
+        case tuple() if type(value) is tuple:
+            parts = tuple(_mapped(part, kind, change, sets=sets) for part in value)
+            return value if all(map(_same, parts, value)) else parts
+        case frozenset() if sets:
+            return frozenset(_mapped(part, kind, change, sets=sets) for part in value)
+    return value
+
+
+def _same(one: object, other: object) -> bool:
+    return one is other

@@ -1,0 +1,102 @@
+"""Surveys: what all rows answer to a question, each different answer with how many give it and who first."""
+
+from collections.abc import Callable, Hashable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from checker.engines.fast.engine import Space
+from checker.engines.fast.learner import Actor
+from semantics.state.cells import AGENTS
+from semantics.state.configuration import Configuration
+from semantics.state.signature import Name
+
+BLOCK = 1 << 18
+"""Rows that are classified at once: what is worked out of them takes some fifty bytes each."""
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """One answer.
+
+    Attributes:
+        value: What was answered.
+        count: By how many configurations.
+        first: By which first.
+    """
+
+    value: Any
+    count: int
+    first: int
+
+
+class Survey:
+    """Puts questions to the configurations that were expanded."""
+
+    def __init__(self, space: Space) -> None:
+        self.space = space
+        self.size = space.expanded
+
+    def agents(self) -> tuple[Name, ...]:
+        """Return every agent that there ever is, sorted."""
+        learner = self.space.learner
+        groups = [learner.still.read(AGENTS)]
+        if AGENTS in learner.varying:
+            column = learner.columns.all[learner.columns.numbers[(AGENTS,)]]
+            groups = [column.value(code) for code in range(len(column.values))]
+        return tuple(sorted({agent for group in groups for agent in group}))
+
+    def answers(self, question: Callable[[Configuration], Hashable]) -> list[Answer]:
+        """Return each answer once, in the order in which they were first given."""
+        found: dict[Hashable, Answer] = {}
+        tree = self.space.learner.question(question)
+        for rows, leaves in self.leaves(tree):
+            for leaf, first, count in distinct(leaves):
+                value = self.space.learner.answers[leaf]
+                before = found.get(value)
+                start = int(rows[first]) if before is None else min(before.first, int(rows[first]))
+                found[value] = Answer(value, count + (0 if before is None else before.count), start)
+        return sorted(found.values(), key=lambda answer: answer.first)
+
+    def blocks(self, size: int | None = None) -> Iterator[NDArray[np.int64]]:
+        """Yield the numbers of the expanded configurations, or of the first so many, block by block."""
+        end = self.size if size is None else size
+        for begin in range(0, end, BLOCK):
+            yield np.arange(begin, min(begin + BLOCK, end), dtype=np.int64)
+
+    def leaves(self, tree: int) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int32]]]:
+        """Yield rows with the leaf that each leads to in a tree, block by block."""
+        return ((rows, self.space.classify(tree, rows)) for rows in self.blocks())
+
+    def where(self, question: Callable[[Configuration], bool], size: int | None = None) -> NDArray[np.bool_]:
+        """Return for each expanded configuration, or for the first so many, whether it answers yes."""
+        return self.where_with_change(question, size)[0]
+
+    def where_with_change(
+        self, question: Callable[[Configuration], bool], size: int | None = None
+    ) -> tuple[NDArray[np.bool_], bool]:
+        """Return where the answer is yes, and whether what was asked for it is not the same everywhere."""
+        tree, learner = self.space.learner.question(question), self.space.learner
+        found = [np.zeros(0, np.bool_)]
+        met: set[int] = set()
+        for rows in self.blocks(size):
+            leaves = self.space.classify(tree, rows)
+            known = np.unique(leaves)
+            met.update(map(int, known))
+            yes = np.zeros(int(known.max()) + 1, np.bool_)
+            yes[known] = [bool(learner.answers[int(leaf)]) for leaf in known]
+            found.append(yes[leaves])
+        return np.concatenate(found), len(met) > 1
+
+    def of_actor(self, actor: Actor) -> int:
+        """Return the tree of an actor."""
+        return self.space.learner.tree(actor)
+
+
+def distinct(leaves: NDArray[np.int32]) -> Iterator[tuple[int, int, int]]:
+    """Yield each leaf with where it stands first and how often."""
+    values, firsts, counts = np.unique(leaves, return_index=True, return_counts=True)
+    for value, first, count in zip(values, firsts, counts, strict=True):
+        yield int(value), int(first), int(count)

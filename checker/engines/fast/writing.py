@@ -1,0 +1,123 @@
+"""What a transition writes, as columns and codes: at once, by copying, or name by name."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from checker.engines.fast.columns import Columns, Place, Writes
+from checker.engines.fast.leaves import Effect
+from checker.engines.fast.recording import Conclusion, Heard, Pointwise
+from checker.engines.fast.skeletons import Family, taken_apart
+from checker.engines.fast.trees import LearningError
+from semantics.behaviours.observations import NOTHING_SEEN
+from semantics.state.cells import Cell, Changes, Row, merged
+from semantics.state.configuration import Transition
+from semantics.state.signature import Name
+
+
+class Relearn(Exception):
+    """A cell was taken for what never varies (or the number of its holes: None): what was learned so must go."""
+
+    def __init__(self, cell: Cell | None = None) -> None:
+        super().__init__(cell)
+        self.cell = cell
+
+
+@dataclass(slots=True)
+class Concluded:
+    """A transition with what it writes.
+
+    Attributes:
+        step: The transition.
+        effect: What it writes whomever it is about.
+        said: What is said name by name in holes: the cell, the hole's number, the family.
+        families: What is written name by name.
+        apart: The names about which that is worked out apart.
+    """
+
+    step: Transition
+    effect: Effect = field(default_factory=lambda: Effect([]))
+    said: list[tuple[Cell, int, Family]] = field(default_factory=list)
+    families: tuple[Mapping[Name, Changes], ...] = ()
+    apart: tuple[Name, ...] = ()
+
+
+@dataclass(slots=True)
+class Writing:
+    """Turns conclusions into writes.
+
+    Attributes:
+        columns: All columns.
+        still: The first configuration: what a cell that never varies holds.
+        varying: The cells that were written so far.
+    """
+
+    columns: Columns
+    still: Row
+    varying: set[Cell]
+
+    def conclude(self, step: Transition) -> Concluded:
+        """Return what a transition writes.
+
+        Raises:
+            Relearn: It writes a cell that was taken for what never varies.
+        """
+        found = Concluded(step)
+        state = step.target.state
+        if not isinstance(state, Conclusion):
+            return found
+        found.families = state.families
+        for cell, value in (state.changes | merged(self._about_still(state))).items():
+            self._write(cell, value, found)
+        about = {name for _, _, family in found.said for name in self.columns.mobile.intersection(family)}
+        about.update(name for family in state.families for name in family if name in self.columns.apart)
+        found.apart = tuple(sorted(about))
+        return found
+
+    def part(self, found: Concluded, name: Name) -> Writes:
+        """Return what a transition writes about one name."""
+        writes = [
+            self._coded((cell, number, name), family[name])
+            for cell, number, family in found.said
+            if name in self.columns.mobile and name in family
+        ]
+        inner = Concluded(found.step)
+        for cell, value in merged(family[name] for family in found.families if name in family).items():
+            self._write(cell, value, inner)
+        if inner.said or inner.effect.copies:
+            raise LearningError(f"what {found.step.label} writes about {name} has parts of its own")
+        return writes + inner.effect.writes
+
+    def _about_still(self, state: Conclusion) -> Iterator[Changes]:
+        apart = self.columns.apart
+        return (family[name] for family in state.families for name in family if name not in apart)
+
+    def _write(self, cell: Cell, value: Any, found: Concluded) -> None:
+        skeleton, families = taken_apart(value, self.columns.mobile)
+        if cell not in self.varying:
+            if cell in self.still.layout.index and self.still.read(cell) == value:
+                return
+            self.varying.add(cell)
+            raise Relearn(cell)
+        found.effect.writes.append(self._coded((cell,), skeleton))
+        if self.columns.dig(cell, len(families)):
+            raise Relearn
+        for number in range(self.columns.holes.get(cell, 0)):
+            self._say(cell, number, families[number] if number < len(families) else {}, found)
+
+    def _say(self, cell: Cell, number: int, family: Family, found: Concluded) -> None:
+        here = self.columns.of_hole(cell, number)
+        if isinstance(family, Heard):
+            there = dict(self.columns.of_hole(family.cell, family.hole.number))
+            found.effect.copies += [(column, there[name]) for name, column in here if column != there[name]]
+            return
+        if isinstance(family, Pointwise):
+            found.said.append((cell, number, family))
+        at_once = {} if isinstance(family, Pointwise) else family
+        found.effect.writes += [
+            self._coded((cell, number, name), at_once.get(name, NOTHING_SEEN)) for name, _ in here
+        ]
+
+    def _coded(self, place: Place, value: Any) -> tuple[int, int]:
+        number = self.columns.number(place)
+        return number, self.columns.all[number].code(value)

@@ -1,0 +1,1 @@
+"""Properties: what is asked of configurations and runs, whichever engine visits them."""

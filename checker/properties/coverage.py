@@ -1,0 +1,198 @@
+"""Coverage: which statements, branches and clauses of a mission were ever reached; one answer to *why did it pass*.
+
+A pure function of the mission and of what was visited, whatever explored it.
+"""
+
+from collections.abc import Iterable, Iterator, Set
+from dataclasses import dataclass
+
+from checker.properties.visited import Visited, moment_of, passages
+from semantics.behaviours.computation import STEPPED, Passage
+from semantics.behaviours.program import Program
+from semantics.behaviours.statements import (
+    Block,
+    Choose,
+    ChooseFrom,
+    ControlBy,
+    For,
+    ForEach,
+    If,
+    Loop,
+    Match,
+    React,
+    Statement,
+    Tested,
+    While,
+    branches,
+)
+from semantics.state.configuration import Configuration
+from semantics.state.signature import Name
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """How many of them were reached."""
+
+    reached: int
+    of: int
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """Something that no run reaches.
+
+    Attributes:
+        line: Where it begins, from 1; 0 where that is not known.
+        sort: `statement`, `branch`, `behaviour`, `rule` or `clause`.
+        message: What is to be said of it.
+    """
+
+    line: int
+    sort: str
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """What was reached of a mission's text.
+
+    Attributes:
+        complete: Whether everything reachable was visited: else a gap is no more than what was not reached so far.
+        statements: How many of the statements.
+        branches: How many of the cases, alternatives and outcomes of tests.
+        rules: How many of the mission's own rules.
+        clauses: How many of the environment's clauses.
+        lines: The lines of which something was reached, in order.
+        unreached: The lines with statements, cases or clauses of which nothing was.
+        gaps: Where runs never go, from the top of the text; what lies within one is not told again.
+    """
+
+    complete: bool
+    statements: Tally
+    branches: Tally
+    rules: Tally
+    clauses: Tally
+    lines: tuple[int, ...]
+    unreached: tuple[int, ...]
+    gaps: tuple[Gap, ...]
+
+
+def coverage(initial: Configuration, visited: Visited, *, complete: bool) -> Coverage:
+    """Return what was reached of a mission that begins so."""
+    setting = initial.setting
+    found = reached(initial, visited)
+    happened = [not visited.happened.isdisjoint(clause.words) for clause in setting.environment]
+    clauses = tuple(zip(setting.clause_lines, happened, strict=False))
+    lines = [*found.lines(), *clauses]
+    met = {line for line, was in lines if was}
+    starts = [initial.alpha.code(a) for a in initial.alpha.names()]
+    missing = (Gap(line, "clause", "this never happens") for line, was in clauses if not was)
+    gaps = {*found.gaps(starts), *found.idle(), *missing}
+    return Coverage(
+        complete,
+        Tally(len(found.written & found.numbers), len(found.written)),
+        Tally(len(found.taken), len(found.branches)),
+        Tally(len(found.rules & found.used), len(found.rules)),
+        Tally(sum(happened), len(happened)),
+        tuple(sorted(met - {0})),
+        tuple(sorted({line for line, _ in lines} - met - {0})),
+        tuple(sorted(gaps, key=lambda gap: (gap.line, gap.sort, gap.message))),
+    )
+
+
+def passed_over(c: Configuration, a: Name) -> frozenset[Passage]:
+    """Return what an agent's computation passes over from a configuration on, in one step."""
+    return frozenset(passages(c.setting, moment_of(c, a)))
+
+
+def reached(initial: Configuration, visited: Visited) -> "Reached":
+    """Return what was reached of the program: where agents stood, and what they passed."""
+    setting = initial.setting
+    computed = {passage for moment in visited.moments for passage in passages(setting, moment)}
+    passed = computed | visited.passed
+    stood = {code[0] for codes in visited.codes.values() for code in codes if code}
+    stepped = {number for number, branch in passed if branch == STEPPED}
+    taken = frozenset(passage for passage in passed if passage[1] != STEPPED)
+    return Reached(setting.program, _with_loops(setting.program, stood | stepped), taken)
+
+
+def _with_loops(program: Program, reached: Set[int]) -> frozenset[int]:
+    """Add the loops that were entered: their jumps belong to the step that they stand before."""
+    found = set(reached)
+    loops = [(number, s) for number, s in enumerate(program.statements) if isinstance(s, Loop) and s.body]
+    for number, loop in reversed(loops):  # inner ones have the higher numbers
+        if loop.body[0] in found:
+            found.add(number)
+    return frozenset(found)
+
+
+class Reached:
+    """A program, and the numbers and branches of its statements that were reached."""
+
+    def __init__(self, program: Program, numbers: frozenset[int], taken: frozenset[Passage]) -> None:
+        self.program, self.numbers, self.taken = program, numbers, taken
+        statements = program.statements
+        self.written = frozenset(n for n, s in enumerate(statements) if not isinstance(s, Tested | ForEach))
+        self.branches = [(n, rank) for n, s in enumerate(statements) for rank in range(len(branches(s)))]
+        self.rules = frozenset(name for sort, name in program.declared if sort == "rule")
+        at = (statements[number] for number in numbers)
+        self.used = frozenset(each.name for each in at if isinstance(each, ControlBy))
+
+    def lines(self) -> list[tuple[int, bool]]:
+        """Return the lines of statements and of cases with whether they were reached."""
+        program = self.program
+        stated = [(program.line(number), number in self.numbers) for number in sorted(self.written)]
+        begun = [(line, branch in self.taken) for branch, line in sorted(program.branch_lines.items())]
+        return stated + begun
+
+    def gaps(self, starts: Iterable[Block]) -> Iterator[Gap]:
+        """Yield the gaps of agents' bodies and of behaviours."""
+        for start in starts:
+            yield from self.within(start)
+        for name, behaviour in sorted(self.program.behaviours.items()):
+            if behaviour.body and behaviour.body[0] not in self.numbers:
+                line = self.program.declared.get(("behaviour", name), self.program.line(behaviour.body[0]))
+                yield Gap(line, "behaviour", f"behaviour '{name}' is never run")
+            else:
+                yield from self.within(behaviour.body)
+
+    def idle(self) -> Iterator[Gap]:
+        """Yield the mission's rules that no control that is reached names."""
+        for name in self.rules - self.used:
+            yield Gap(self.program.declared["rule", name], "rule", f"rule '{name}' is never used")
+
+    def within(self, block: Block) -> Iterator[Gap]:
+        """Yield the gaps of a block: what follows its first statement that is never reached is not told again."""
+        for number in block:
+            if number not in self.numbers:
+                yield Gap(self.program.line(number), "statement", "this is never reached")
+                return
+            statement = self.program.statements[number]
+            if not isinstance(statement, Loop):
+                yield from self.below(number, statement)
+            else:
+                yield from self.within(statement.body)
+
+    def below(self, number: int, statement: Statement) -> Iterator[Gap]:
+        """Yield the gaps of a statement's branches."""
+        if isinstance(statement, For):
+            yield from self.below(statement.each, self.program.statements[statement.each])
+        for rank, block in enumerate(branches(statement)):
+            if (number, rank) in self.taken:
+                yield from self.within(block)
+            else:
+                yield self.untaken(number, statement, rank)
+
+    def untaken(self, number: int, statement: Statement, rank: int) -> Gap:
+        """Return the gap of a branch: of a case at its line, of a test's outcome at the test's."""
+        if isinstance(statement, React | Match | Choose):
+            sort = "alternative" if isinstance(statement, Choose) else "case"
+            return Gap(self.program.branch_line(number, rank), "branch", f"this {sort} is never taken")
+        message = {
+            (If, 0): "this condition is never true",
+            (If, 1): "this condition is never false",
+            (While, 0): "this condition is never true",
+            (ForEach, 0): "there is never anything to go through",
+            (ChooseFrom, 0): "there is never anything to choose from",
+        }[type(statement), rank]
+        return Gap(self.program.line(number), "branch", message)

@@ -1,0 +1,208 @@
+"""Race-freedom by ownership, without a search: the paper's sufficient condition, over-approximated from the text.
+
+No agent may write a slot that another's redex, missing site or tested observation may read or write. `children` is no
+slot of its own: it stands for the parents that a missing site reads, so that two who write it don't interfere.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from semantics.behaviours.expressions import (
+    Apply,
+    Either,
+    Expression,
+    Host,
+    Literal,
+    QueryOf,
+    SetOf,
+    TupleOf,
+    Variable,
+)
+from semantics.behaviours.program import expressions_of, reachable
+from semantics.behaviours.reactions import Pattern, Reaction, Term
+from semantics.behaviours.statements import ControlBy, Display, Migrate, Observe, Send, Spawn, Statement
+from semantics.races.relevance import instances
+from semantics.state.configuration import Configuration
+from semantics.state.setting import Scheduler
+from semantics.state.signature import Name
+
+ANY = "*"
+"""Stands for every name."""
+
+Slot = tuple[str, Name]
+"""`("parent", n)`, `("links", n)` or `("children", n)`."""
+
+ANYTHING: frozenset[Slot] = frozenset((kind, ANY) for kind in ("parent", "links", "children"))
+
+
+@dataclass(frozen=True, slots=True)
+class Footprint:
+    """What one agent may write, and what its controls may rest on."""
+
+    agent: Name
+    writes: frozenset[Slot]
+    reads: frozenset[Slot]
+
+
+def owned(c: Configuration) -> bool:
+    """Tell whether a mission is race-free by ownership; c must be its first configuration: nothing is pending yet."""
+    footprints = [footprint(c, a) for a in c.alpha.names()]
+    texts = [_Text(c, a) for a in c.alpha.names()]
+    if any(isinstance(s, Spawn) for text in texts for s in text.statements):
+        return False  # the spawned are not there yet to be looked at
+    if any(isinstance(s, Send) for text in texts for s in text.statements):
+        tested = frozenset[Slot]().union(*(text.tested for text in texts))  # a message carries tests along
+        footprints = [
+            Footprint(f.agent, f.writes, f.reads | tested if f.writes else f.reads) for f in footprints
+        ]
+    if c.setting.scheduler is Scheduler.UNORDERED and any(f.writes for f in footprints):
+        return False  # an agent may race with itself
+    return not any(interferes(one, other) for one in footprints for other in footprints if one != other)
+
+
+def interferes(one: Footprint, other: Footprint) -> bool:
+    """Tell whether one may write what another may read or write."""
+    owned_by_other = {slot for slot in other.writes if slot[0] != "children"}  # children follow from parents
+    return any(_overlaps(write, slot) for write in one.writes for slot in other.reads | owned_by_other)
+
+
+def _overlaps(one: Slot, other: Slot) -> bool:
+    return one[0] == other[0] and (ANY in (one[1], other[1]) or one[1] == other[1])
+
+
+def footprint(c: Configuration, agent: Name) -> Footprint:
+    """Return what an agent may write and read, from its text alone."""
+    text = _Text(c, agent)
+    if text.reactions is None:
+        return Footprint(agent, ANYTHING, ANYTHING)
+    writes = frozenset[Slot]().union(*(text.writes(reaction) for reaction in text.reactions))
+    reads = frozenset[Slot]().union(*(text.redex(reaction) for reaction in text.reactions))
+    return Footprint(agent, writes, reads | text.tested if text.reactions else frozenset())
+
+
+class _Text:
+    """All that one agent's behaviour may lead to."""
+
+    def __init__(self, c: Configuration, agent: Name) -> None:
+        self.c = c
+        self.agent = agent
+        self.program = c.setting.program
+
+    @cached_property
+    def statements(self) -> tuple[Statement, ...]:
+        """The statements that the agent may come to."""
+        reach = reachable(self.program, self.c.alpha.code(self.agent))
+        return tuple(self.program.statements[number] for number in sorted(reach))
+
+    @cached_property
+    def host(self) -> Name:
+        """The agent's host, `ANY` if it may migrate."""
+        migrates = any(isinstance(statement, Migrate) for statement in self.statements)
+        return ANY if migrates else self.c.alpha.host(self.agent)
+
+    def name(self, expression: Expression) -> Name:
+        """Return the name that an expression stands for, `ANY` where that isn't known from the text."""
+        if isinstance(expression, Host):
+            return self.host
+        known = isinstance(expression, Literal) and isinstance(expression.value, str)
+        return str(expression.value) if known and isinstance(expression, Literal) else ANY
+
+    @cached_property
+    def reactions(self) -> tuple[Reaction, ...] | None:
+        """The reactions that the agent may request, whatever its arguments may name; None if too many."""
+        controls = [statement for statement in self.statements if isinstance(statement, ControlBy)]
+        setting = self.c.setting
+        hosts = frozenset(setting.kinds) if self.host == ANY else frozenset({self.host})
+        found = [instances(setting, each, hosts) for each in controls]
+        if any(each is None for each in found):
+            return None
+        return tuple(reaction for each in found for reaction in each or ())
+
+    def writes(self, reaction: Reaction) -> frozenset[Slot]:
+        """Return the slots that a reaction may change.
+
+        What may contain something may take anything along. What carries something decides where its cargo can be put.
+        """
+        before, after = reaction.redex, reaction.reactum
+        moved = {self._term(node) for node, _ in set(after.parents) - set(before.parents)}
+        linked = {self._term(node) for _, node in set(after.links) ^ set(before.links)}
+        places = {("children", ANY)} if moved else set()
+        slots = {("parent", node) for node in moved} | {("links", node) for node in linked} | places
+        return frozenset(slots.union(*map(self._along, moved)))
+
+    def _along(self, node: Name) -> set[Slot]:
+        """Return what may be elsewhere, or may no longer be put down, once a node has moved."""
+        setting = self.c.setting
+        if node == ANY or setting.signature[setting.kind(node)].contains:
+            return {("parent", ANY)}
+        carried, waiting = set[Name](), [node]
+        while waiting:
+            carrier = waiting.pop()
+            cargo = {name for name in setting.kinds if setting.carries(carrier, name)} - carried
+            carried |= cargo
+            waiting += sorted(cargo)
+        if any(setting.signature[setting.kind(name)].contains for name in carried):
+            return {("parent", ANY)}
+        return {("parent", name) for name in carried}
+
+    def redex(self, reaction: Reaction) -> frozenset[Slot]:
+        """Return the slots that a redex uses, missing sites included, and those that say where its places are."""
+        pattern: Pattern = reaction.redex
+        pairs = (*pattern.parents, *reaction.reactum.parents)
+        parents = {("parent", self._term(node)) for node, _ in pattern.parents}
+        parents |= {("parent", place) for _, place in pairs if isinstance(place, str)}
+        if any(self.c.setting.signature[kind].passive for kind in self.c.setting.kinds.values()):
+            parents = {
+                ("parent", ANY)
+            }  # nothing reacts inside of what is passive: all places around are read
+        links = {("links", self._term(node)) for _, node in pattern.links}
+        return frozenset(parents | links | {("children", self._term(node)) for node in pattern.closed})
+
+    def _term(self, term: Name | Term) -> Name:
+        return term if isinstance(term, str) else ANY
+
+    @cached_property
+    def tested(self) -> frozenset[Slot]:
+        """The slots that the agent's tests of observations may read."""
+        tests = [test for statement in self.statements for test in self._tests(statement)]
+        if not tests:
+            return frozenset()
+        asked: set[Slot] = set()
+        for statement in self.statements:
+            if isinstance(statement, Observe):
+                asked |= set(self._asked(statement.query, tests))
+        return frozenset(asked)
+
+    def _tests(self, statement: Statement) -> Iterator[Name]:
+        """Yield the name that each use of a variable's value asks for: `ANY` unless it is `name in variable`."""
+        if isinstance(statement, Display):
+            return
+        for expression in expressions_of(statement):
+            yield from self._asks(expression)
+
+    def _asks(self, expression: Expression) -> Iterator[Name]:
+        match expression:
+            case Apply("in", (item, Variable(_))):
+                yield self.name(item)
+            case Apply(_, parts) | TupleOf(parts) | SetOf(parts):
+                for part in parts:
+                    yield from self._asks(part)
+            case Either(_, first, second):
+                yield from (*self._asks(first), *self._asks(second))
+            case Variable(_):
+                yield ANY
+
+    def _asked(self, query: QueryOf, tests: list[Name]) -> Iterator[Slot]:
+        """Yield the slots that decide whether the tested names are shown."""
+        inner = query.argument
+        names = tests if query.operator == "CHILDREN" else [ANY]
+        kind = "links" if query.operator == "LINKED_TO" else "parent"
+        if query.operator == "PARENT" and not isinstance(inner, QueryOf) and inner is not None:
+            names = [self.name(inner)]
+        if query.operator is not None or inner is None:
+            yield from ((kind, name) for name in names)
+        if inner is None:
+            yield ("links", ANY)
+        if isinstance(inner, QueryOf):
+            yield from self._asked(inner, tests)

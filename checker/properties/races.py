@@ -1,0 +1,149 @@
+"""Race-freedom (semantics.md, check 2): control races in a configuration, stale-observation races at a transition."""
+
+from collections.abc import Iterable, Iterator
+from itertools import combinations
+
+from checker.properties.findings import MOST_VIOLATIONS, Collected, Finding
+from semantics.control import applicable
+from semantics.races.monitor import CONTROLS, slots_used, stale_tests
+from semantics.races.provenance import Dependency
+from semantics.rules import TIMED_RULES, actuate
+from semantics.state.cells import MONITOR
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.eta import Pending
+from semantics.state.requests import CTR, FLY, Request
+from semantics.state.setting import Scheduler
+from semantics.successors import Expansion
+
+
+class ControlRaces:
+    """Two enabled controls, where serving one disables the other, or the two orders end differently."""
+
+    def __init__(self, most: int = MOST_VIOLATIONS) -> None:
+        self.collected = Collected(most)
+
+    def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
+        """Look at every pair of controls that are enabled, apart from the scheduler's turn."""
+        for one, other, problem in compared(c, enabled_controls(expansion.enabled)):
+            if problem is None:
+                self.collected.looked(number, one[0])
+            else:
+                self.collected.add(_race(number, problem, one, other))
+
+
+Control = list[Transition]
+"""The transitions that serve one pending control."""
+
+
+def enabled_controls(enabled: Iterable[Transition]) -> list[Control]:
+    """Return the enabled controls, each with its transitions."""
+    served: dict[tuple[object, int], Control] = {}
+    for transition in enabled:
+        if transition.label.rule in CONTROLS and transition.served is not None:
+            served.setdefault((transition.served.cell, transition.served.position), []).append(transition)
+    return list(served.values())
+
+
+def compared(
+    c: Configuration, controls: list[Control]
+) -> Iterator[tuple[Control, Control, tuple[str, str] | None]]:
+    """Yield each pair of controls with what is wrong with it: in words, and about what.
+
+    Of one agent there are pairs under `unordered` alone; two that are equal are served by the same transitions.
+    """
+    unordered = c.setting.scheduler is Scheduler.UNORDERED
+    twice = [(each, each) for each in controls if unordered and _is_twice(c, _request(each[0]))]
+    for one, other in (*combinations(controls, 2), *twice):
+        if one[0].label.agent == other[0].label.agent and not unordered:
+            continue
+        problem = conflict(one, other) or conflict(other, one) or different_ends(c, one, other)
+        about = " and ".join(sorted(str(_request(each[0])) for each in (one, other)))
+        yield one, other, None if problem is None else (problem, about)
+
+
+def _is_twice(c: Configuration, request: Request) -> bool:
+    return sum(each.request == request for each in c.eta.of(request.agent)) > 1
+
+
+def conflict(one: Control, other: Control) -> str | None:
+    """Return in words that serving one control disables another, None where it doesn't."""
+    request = _request(other[0])
+    for transition in one:
+        if not list(serving(transition.target, request)):
+            return f"serving {_request(transition)} disables {request}"
+    return None
+
+
+def different_ends(c: Configuration, one: Control, other: Control) -> str | None:
+    """Return in words that the two orders end differently, None where they don't; η's order aside."""
+    ends = [_ends(one, _request(other[0])), _ends(other, _request(one[0]))]
+    cells = sorted({cell for end in ends for after in end for cell in after.state.changed(c.state)})
+    counted = [cell for cell in cells if cell[0] != MONITOR]
+    if len({frozenset(tuple(map(after.read, counted)) for after in end) for end in ends}) == 1:
+        return None
+    return f"{_request(one[0])} and {_request(other[0])} end differently in the two orders"
+
+
+def _ends(first: Control, then: Request) -> list[Configuration]:
+    return [after.target for transition in first for after in serving(transition.target, then)]
+
+
+def serving(c: Configuration, request: Request) -> Iterator[Transition]:
+    """Yield the transitions that serve a control, apart from the scheduler's turn."""
+    for rule in (actuate, *TIMED_RULES):
+        for transition in rule(c, request.agent):
+            if transition.served is not None and transition.served.request == request:
+                yield transition
+
+
+def _request(transition: Transition) -> Request:
+    assert transition.served is not None
+    return transition.served.request
+
+
+def _race(number: int, problem: tuple[str, str], one: Control, other: Control) -> Finding:
+    enabled = f"enabled here: {one[0].label} and {other[0].label}"
+    return Finding("control race", problem[0], number, details=(enabled,), subject=problem[1])
+
+
+class StaleObservationRaces:
+    """A control that rests on a test whose answer another agent's control has changed since it was observed."""
+
+    def __init__(self, most: int = MOST_VIOLATIONS) -> None:
+        self.collected = Collected(most)
+
+    def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
+        """Look at every control that is served; c must be monitored."""
+        for transition in expansion.by_agents:
+            pending = transition.served
+            if transition.label.rule not in CONTROLS or pending is None:
+                continue
+            stale = is_stale(c, pending)
+            if not stale:
+                self.collected.looked(number, transition)
+                continue
+            asked = " ".join(stale[0].asked or ())
+            changed = "that answer" if stale[0].stale else "a relation that it uses"
+            message = (
+                f"{pending.request} rests on '{asked}' of observe({stale[0].query}), "
+                f"and another agent has changed {changed} since it was sensed"
+            )
+            found = Finding(
+                "stale-observation race", message, number, transition, subject=str(pending.request)
+            )
+            self.collected.add(found)
+
+
+def is_stale(c: Configuration, pending: Pending) -> tuple[Dependency, ...]:
+    """Return what a control rests on that others have changed since it was observed."""
+    return stale_tests(pending.request, pending.rests_on, used_slots(c, pending))
+
+
+def used_slots(c: Configuration, pending: Pending) -> frozenset[tuple[str, ...]]:
+    """Return the slots that the redex of a pending control uses, in whichever match."""
+    request = pending.request
+    assert isinstance(request, CTR | FLY)
+    redex = request.reaction.redex
+    found = [request.match] if isinstance(request, FLY) else applicable(c, request.agent, request.reaction)
+    used = (slots_used(m.relations(redex), tuple(node for node, _ in m.closed(redex))) for m in found)
+    return frozenset[tuple[str, ...]]().union(*used)

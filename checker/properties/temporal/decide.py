@@ -1,0 +1,219 @@
+"""Verdicts on the temporal properties of a mission, from the edges that an exploration kept."""
+
+from collections.abc import Iterable, Iterator
+
+from checker.engines.contract import Exploration
+from checker.engines.graph import Graph, graph_of
+from checker.properties.temporal.automaton import TooLargeError
+from checker.properties.temporal.branching import Branching
+from checker.properties.temporal.components import Conditions
+from checker.properties.temporal.evaluation import is_true_on
+from checker.properties.temporal.fairness import EACH_RULE_AND_REQUEST, classes, conditions_of, optional
+from checker.properties.temporal.lassos import Lasso
+from checker.properties.temporal.linear import shortest_counterexample
+from checker.properties.temporal.progress import Pending, Progress, Starved, owed, pending_requests
+from checker.properties.temporal.truth import Truth, Valuation, valuation
+from checker.properties.temporal.vacuity import Judged, is_judged, judge_branching, judge_linear
+from checker.properties.vacuity import atoms_of
+from checker.traces import Trace, replay, step_of, to_json
+from checker.verdicts import Outcome, Verdict, Violation
+from semantics.properties.property import Property
+from semantics.properties.propositions import Proposition
+from semantics.properties.temporal import Fairness, Now, atoms
+
+
+def kept_graph(found: Exploration) -> Graph:
+    """Return the graph of an exploration."""
+    if found.survey is not None:
+        return found.survey.graph()
+    assert found.edges is not None
+    return graph_of(found.edges, len(found.configurations))
+
+
+def where_true(found: Exploration, propositions: list[Proposition]) -> Valuation:
+    """Return where propositions are true."""
+    if found.survey is not None:
+        return found.survey.valuation(propositions)
+    return valuation(found.configurations, propositions)
+
+
+def where_pending(found: Exploration) -> Pending:
+    """Return where each request is pending."""
+    if found.survey is not None:
+        return found.survey.pending()
+    return pending_requests(found.configurations)
+
+
+class Decider:
+    """Decides the temporal properties of one exploration; what they share is computed once."""
+
+    def __init__(self, found: Exploration, properties: Iterable[Property]) -> None:
+        self.found = found
+        self.setting = found.configurations[0].setting
+        kept = kept_graph(found)
+        self.graph: Graph = kept.total(optional(kept.labels, self.setting.arriving))
+        asked = (atom for each in properties if each.temporal is not None for atom in atoms(each.temporal))
+        propositions = [atom.proposition for atom in asked if isinstance(atom, Now)]
+        if is_judged(self.graph):  # part by part
+            propositions = [atom for each in propositions for atom in atoms_of(each)]
+        self.truth = Truth(self.graph, where_true(found, propositions))
+
+    def decide(self, asked: Property) -> Verdict:
+        """Return the verdict on a property; what is not violated holds only where everything was explored."""
+        match asked.kind:
+            case "ltl":
+                return self.linear(asked)
+            case "ctl":
+                return self.branching(asked)
+            case _:
+                return self.progress(asked)
+
+    # --- linear time
+
+    def linear(self, asked: Property) -> Verdict:
+        """Return the verdict on what is claimed of every fair run."""
+        assert asked.temporal is not None
+        try:
+            lasso = shortest_counterexample(
+                self.graph, self.truth, asked.temporal, self.conditions(asked.fairness)
+            )
+        except TooLargeError as error:
+            return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {error}; split the formula")
+        note, remarks = self.note(asked.fairness), tuple(self.empty(asked.fairness))
+        if lasso is None:
+            outcome, judged = self.unless_violated(), Judged()
+            if outcome is Outcome.HOLDS:
+                fairness = self.conditions(asked.fairness)
+                judged = judge_linear(self.truth, asked.temporal, fairness, self.setting.kinds)
+            return Verdict(
+                asked,
+                outcome,
+                examined=self.graph.size,
+                witness=None if judged.witness is None else self.trace(judged.witness),
+                note=note,
+                remarks=(*remarks, *judged.remarks),
+            )
+        message = f"false{'' if lasso.loop else ', whatever follows'}: {asked.temporal}"
+        if lasso.loop and is_true_on(lasso, asked.temporal, self.truth):
+            raise AssertionError(f"the counterexample is none: {asked.temporal}")
+        violation = Violation(asked.kind, message, self.trace(lasso), tuple(self.pauses(lasso)))
+        return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
+
+    # --- branching time
+
+    def branching(self, asked: Property) -> Verdict:
+        """Return the verdict on what is claimed of the tree of fair runs."""
+        formula = asked.temporal
+        assert formula is not None
+        tree = Branching(self.graph, self.truth, self.conditions(asked.fairness))
+        surely, perhaps = bool(tree.where(formula)[0]), bool(tree.where(formula, perhaps=True)[0])
+        note, remarks = self.note(asked.fairness), tuple(self.empty(asked.fairness))
+        if perhaps:
+            outcome, witness = self.unless_violated(), tree.evidence(formula) if surely else None
+            if outcome is Outcome.HOLDS:
+                judged = judge_branching(tree, formula, self.setting.kinds)
+                remarks += judged.remarks
+                witness = judged.witness or witness
+            return Verdict(
+                asked,
+                outcome,
+                examined=int(tree.where(formula).sum()),
+                witness=None if witness is None else self.trace(witness),
+                note=note,
+                remarks=remarks,
+            )
+        lasso = tree.evidence(formula, claimed=False)
+        details = tuple(self.pauses(lasso))
+        if not len(lasso):
+            details = ("no single run shows it: it is about all that may follow",)
+        violation = Violation(asked.kind, f"false at c0: {formula}", self.trace(lasso), details)
+        return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
+
+    # --- progress
+
+    def progress(self, asked: Property) -> Verdict:
+        """Return the verdict on whether every request is served."""
+        arriving = self.setting.arriving
+        pending = owed(where_pending(self.found), arriving)
+        fairness = self.conditions((*EACH_RULE_AND_REQUEST, *asked.fairness))
+        progress = Progress(self.graph, pending, fairness, arriving)
+        starved, count = progress.starved()
+        note = self.note(asked.fairness, "weak fairness of each rule and request")
+        violations = sorted(map(self.violation, starved), key=lambda violation: len(violation.trace))
+        outcome = Outcome.VIOLATED if violations else self.unless_violated()
+        witness = progress.served() if outcome is Outcome.HOLDS else None
+        nothing = self.found.complete and not pending
+        empty = ("vacuous: nothing is ever requested",) if nothing else ()
+        return Verdict(
+            asked,
+            outcome,
+            tuple(violations),
+            count,
+            len(pending) - count,
+            witness=None if witness is None else self.trace(witness),
+            note=note,
+            different=count,
+            remarks=(*self.empty(asked.fairness), *empty),
+        )
+
+    def violation(self, starved: Starved) -> Violation:
+        """Return a request that is never served as a violation."""
+        request = starved.request
+        sort = type(request).__name__
+        details = [f"it waits behind {fly}, which need not arrive" for fly in starved.behind]
+        if starved.now_and_then:
+            details.append(
+                "now and then it could be served, but not all the time: only strong fairness serves it"
+            )
+        elif not details:
+            details.append("nothing that would serve it is enabled from then on")
+        message, trace = f"{request} is never served", self.trace(starved.run)
+        return Violation(f"unserved {sort}", message, trace, tuple(details), str(request))
+
+    # --- what they share
+
+    def conditions(self, declared: Iterable[Fairness]) -> Conditions:
+        """Return what fair runs do infinitely often."""
+        return conditions_of(declared, self.graph, self.setting.arriving)
+
+    def note(self, declared: tuple[Fairness, ...], *always: str) -> str:
+        """Return what is assumed."""
+        assumed = (*always, *map(str, declared))
+        return f"under {' and '.join(assumed)}" if assumed else ""
+
+    def empty(self, declared: tuple[Fairness, ...]) -> Iterator[str]:
+        """Yield what of it is about nothing; what was not explored may have it."""
+        for each in declared if self.found.complete else ():
+            if not any(True for _ in classes(each, self.graph.labels, self.setting.arriving)):
+                yield f"{each} is about no step that ever is"
+
+    def unless_violated(self) -> Outcome:
+        """Return what it means that nothing speaks against a property."""
+        return Outcome.HOLDS if self.found.complete else Outcome.INCOMPLETE
+
+    def pauses(self, lasso: Lasso) -> Iterator[str]:
+        """Yield where a run stays for a moment only: in a trace that is no step."""
+        edges = (*lasso.stem, *lasso.loop)
+        steps = [self.graph.actions[edge] >= 0 for edge in edges]
+        for at, is_step in enumerate(steps):
+            if not is_step and any(steps[at:]):
+                yield f"it stays at c{sum(steps[:at])} for a moment before it goes on"
+
+    def trace(self, lasso: Lasso) -> Trace:
+        """Return a run as a trace, replayed through the rules; staying is no step."""
+        stem, loop = ([e for e in edges if self.graph.actions[e] >= 0] for edges in (lasso.stem, lasso.loop))
+        stays = lasso.loop or (lasso.stem and self.graph.actions[lasso.stem[-1]] < 0)
+        configurations = self.found.configurations
+        steps = (
+            step_of(
+                configurations[self.graph.sources[edge]],
+                self.graph.labels[self.graph.actions[edge]],
+                configurations[self.graph.targets[edge]],
+            )
+            for edge in (*stem, *loop)
+        )
+        shortest = lasso.shortest and self.found.reducer is None
+        trace = Trace(configurations[0], tuple(steps), len(stem) if stays else None, shortest)
+        if replay(trace.initial, to_json(trace, "", "")) != trace:
+            raise AssertionError("the rules do not replay a run that they gave")
+        return trace

@@ -1,0 +1,143 @@
+"""Directed graphs as arrays, and breadth-first search over whole layers of them."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from checker.bounding import look
+from checker.engines.graph import Bools, Numbers
+from checker.properties.temporal.effort import Effort
+
+Indices = NDArray[np.int64]
+
+
+class Arrows(Protocol):
+    """What is searched: compressed sparse rows, as `checker.engines.graph.Graph` is."""
+
+    @property
+    def starts(self) -> Numbers:
+        """Where the edges of each node begin, and after the last where they end."""
+
+    @property
+    def targets(self) -> Numbers:
+        """Where each edge leads."""
+
+    @property
+    def sources(self) -> Numbers:
+        """Where each edge comes from."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """A graph in compressed sparse rows, its edges sorted by their sources."""
+
+    starts: Numbers
+    targets: Numbers
+
+    @cached_property
+    def sources(self) -> Numbers:
+        """Where each edge comes from."""
+        nodes = np.arange(len(self.starts) - 1, dtype=self.targets.dtype)
+        return np.repeat(nodes, np.diff(self.starts))
+
+
+def rows_of(sources: Numbers, targets: Numbers, nodes: int) -> Rows:
+    """Return the rows of edges that are sorted by their sources."""
+    counts = np.bincount(sources, minlength=nodes)
+    return Rows(np.concatenate((np.zeros(1, dtype=np.int64), np.cumsum(counts))), targets)
+
+
+def reversed_rows(arrows: Arrows) -> Rows:
+    """Return the graph with every edge turned round."""
+    order = np.argsort(arrows.targets, kind="stable")
+    return rows_of(arrows.targets[order], arrows.sources[order], len(arrows.starts) - 1)
+
+
+def leaving(arrows: Arrows, nodes: Numbers) -> Indices:
+    """Return the edges that leave the nodes, node by node."""
+    first = arrows.starts[nodes].astype(np.int64)
+    counts = arrows.starts[nodes + 1].astype(np.int64) - first
+    before = np.cumsum(counts) - counts
+    return np.repeat(first - before, counts) + np.arange(counts.sum(), dtype=np.int64)
+
+
+def reaching(backwards: Rows, goal: Bools, through: Bools) -> Bools:
+    """Return the nodes from which a path through some nodes leads to the goal, given the graph turned round."""
+    found = goal.copy()
+    frontier: Numbers = np.flatnonzero(found)
+    while len(frontier):
+        look()
+        before = backwards.targets[leaving(backwards, frontier)]
+        new = before[through[before] & ~found[before]]
+        found[new] = True
+        frontier = np.unique(new)
+    return found
+
+
+def shortest(
+    arrows: Arrows, start: int, goal: Bools, through: Bools | None = None, by: Bools | None = None
+) -> tuple[int, ...] | None:
+    """Return the edges of a shortest path whose last edge is one of the goal's; None where there is none.
+
+    Args:
+        arrows: The graph.
+        start: Where the path begins.
+        goal: The edges of which one is to be taken.
+        through: The nodes that it may come to, all if not given.
+        by: The edges that it may take, all if not given.
+    """
+    parents = np.full(len(arrows.starts) - 1, -1, dtype=np.int64)
+    seen = np.zeros(len(parents), dtype=np.bool_)
+    seen[start] = True
+    frontier: Numbers = np.array([start])
+    while len(frontier):
+        look()
+        edges = leaving(arrows, frontier)
+        if by is not None:
+            edges = edges[by[edges]]
+        if through is not None:
+            edges = edges[through[arrows.targets[edges]]]
+        hits = edges[goal[edges]]
+        if len(hits):
+            return _path(arrows, parents, int(hits[0]))
+        frontier = _discovered(arrows, edges, seen, parents)
+    return None
+
+
+def distances(arrows: Arrows, start: int, most: int, effort: Effort, through: Bools | None = None) -> Numbers:
+    """Return how far each node is from one, -1 where that is more than so many edges.
+
+    Raises:
+        Exhausted: More would have to be looked at than the effort allows.
+    """
+    found = np.full(len(arrows.starts) - 1, -1, dtype=np.int64)
+    found[start] = 0
+    frontier: Numbers = np.array([start])
+    for distance in range(1, most + 1):
+        edges = leaving(arrows, frontier)
+        effort.spend(len(edges))
+        targets = arrows.targets[edges]
+        new = targets[(found[targets] < 0) & (True if through is None else through[targets])]
+        found[new] = distance
+        frontier = np.unique(new)
+    return found
+
+
+def _discovered(arrows: Arrows, edges: Indices, seen: Bools, parents: Indices) -> Numbers:
+    """Note the first edge that leads to each new node, and return these nodes in that order."""
+    fresh = edges[~seen[arrows.targets[edges]]]
+    reached = arrows.targets[fresh]
+    parents[reached[::-1]] = fresh[::-1]  # of several the last that is written stays, so the first edge
+    seen[reached] = True
+    new: Numbers = reached[parents[reached] == fresh]
+    return new
+
+
+def _path(arrows: Arrows, parents: Indices, last: int) -> tuple[int, ...]:
+    path = [last]
+    while (before := int(parents[arrows.sources[path[-1]]])) >= 0:
+        path.append(before)
+    return tuple(reversed(path))

@@ -1,0 +1,122 @@
+"""Lassos: a way to a fair component, and a cycle in it that is fair."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from checker.engines.graph import Bools, Numbers
+from checker.properties.temporal.components import Conditions
+from checker.properties.temporal.digraph import Arrows, Rows, rows_of, shortest
+
+MOST_ENTRIES: Final = 16
+MOST_EDGES: Final = 1_000_000
+"""A cycle is looked for at so many entries to fair components, the nearest first, and the shortest lasso is taken; at
+fewer where that means to search more than so many edges, and at one at least."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lasso:
+    """The edges of a run: `stem`, and then `loop` again and again; without a loop whatever may follow.
+
+    Attributes:
+        stem: How it begins.
+        loop: What it repeats.
+        shortest: Whether it is known that no other run that shows the same has fewer edges.
+    """
+
+    stem: tuple[int, ...]
+    loop: tuple[int, ...] = ()
+    shortest: bool = field(default=False, compare=False)
+
+    def __len__(self) -> int:
+        return len(self.stem) + len(self.loop)
+
+
+@dataclass(frozen=True, eq=False)
+class Component:
+    """A fair component as a graph of its own: its nodes and edges, by their numbers in the whole."""
+
+    nodes: Numbers
+    edges: Numbers
+    rows: Rows
+    conditions: Conditions
+
+
+def component_of(
+    arrows: Arrows, components: Numbers, node: int, conditions: Conditions, by: Bools | None = None
+) -> Component:
+    """Return the component that a node is in."""
+    inside = components == components[node]
+    nodes = np.flatnonzero(inside)
+    allowed = inside[arrows.sources] & inside[arrows.targets]
+    edges = np.flatnonzero(allowed if by is None else allowed & by)
+    numbers = np.cumsum(inside) - 1
+    sources, targets = (numbers[ends[edges]] for ends in (arrows.sources, arrows.targets))
+    return Component(nodes, edges, rows_of(sources, targets, len(nodes)), conditions.over(nodes, edges))
+
+
+def fair_cycle(part: Component, entry: int) -> tuple[int, ...]:
+    """Return the edges of a short cycle through a node of a fair component, which meets the conditions.
+
+    Each of them that the shortest cycle doesn't meet is met by a detour to where it is met nearest.
+    """
+    start = int(np.searchsorted(part.nodes, entry))
+    home = part.rows.targets == start
+    path: tuple[int, ...] = ()
+    while True:
+        at = int(part.rows.targets[path[-1]]) if path else start
+        back = () if path and at == start else shortest(part.rows, at, home)
+        assert back is not None  # the component is strongly connected
+        goal = _unmet(part, (*path, *back))
+        if not goal.any():
+            return tuple(int(part.edges[edge]) for edge in (*path, *back))
+        detour = shortest(part.rows, at, goal)
+        assert detour is not None  # the component is fair
+        path += detour
+
+
+def fair_cycles(
+    arrows: Arrows, components: Numbers, conditions: Conditions
+) -> Iterator[tuple[int, tuple[int, ...]]]:
+    """Yield entries to fair components, those of smaller numbers first, each with a cycle."""
+    entries = np.flatnonzero(components >= 0)[:MOST_ENTRIES]
+    parts: dict[int, Component] = {}
+    searched = 0
+    for entry in map(int, entries):
+        number = int(components[entry])
+        if number not in parts:
+            parts[number] = component_of(arrows, components, entry, conditions)
+        searched += len(parts[number].edges)
+        if searched > MOST_EDGES and entry != entries[0]:
+            return
+        yield entry, fair_cycle(parts[number], entry)
+
+
+def _unmet(part: Component, cycle: tuple[int, ...]) -> Bools:
+    """Return the edges by which some condition is met that a cycle doesn't meet."""
+    taken = np.array(cycle, dtype=np.int64)
+    visited = part.rows.targets[taken]
+    found = np.zeros(len(part.edges), dtype=np.bool_)
+    for recurrent in part.conditions.recurrent:
+        if not recurrent[taken].any():
+            found |= recurrent
+    for each in part.conditions.strong:
+        if each.enabled[visited].any() and not each.taken[taken].any():
+            found |= each.taken
+    return found
+
+
+def tightened(lasso: Lasso) -> Lasso:
+    """Return the same run written shorter: the loop not repeated in itself, nor begun before it is entered."""
+    stem, loop = list(lasso.stem), list(lasso.loop)
+    if not loop:
+        return lasso
+    period = next(
+        n for n in range(1, len(loop) + 1) if len(loop) % n == 0 and loop[:n] * (len(loop) // n) == loop
+    )
+    loop = loop[:period]
+    while stem and stem[-1] == loop[-1]:
+        loop = [stem.pop(), *loop[:-1]]
+    return Lasso(tuple(stem), tuple(loop))

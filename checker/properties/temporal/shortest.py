@@ -1,0 +1,82 @@
+"""Shortest lassos: whether a run can be told in fewer steps than it was found with, if that is soon decided."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from checker.engines.graph import Bools, Graph, Numbers
+from checker.properties.temporal.bounded_product import nearby
+from checker.properties.temporal.components import Conditions, fair_components
+from checker.properties.temporal.cycles import shortest_cycle
+from checker.properties.temporal.digraph import distances, shortest
+from checker.properties.temporal.effort import Effort, Exhausted
+from checker.properties.temporal.lassos import Lasso
+from checker.properties.temporal.tight_automaton import tight
+from checker.properties.temporal.truth import Truth
+from semantics.properties.temporal import Temporal
+
+
+def shortest_false(
+    graph: Graph, truth: Truth, formulas: Iterable[Temporal], fairness: Conditions, known: Lasso
+) -> Lasso:
+    """Return a shortest lasso on which one of some formulas is false, given one; it says whether it surely is."""
+    if graph.partial is not None:
+        return known
+    effort, best = Effort(), known
+    try:
+        for formula in formulas:
+            best = _shorter_false(graph, truth, formula, fairness, best, effort) or best
+    except Exhausted:
+        return best
+    return replace(best, shortest=True)
+
+
+def _shorter_false(
+    graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions, known: Lasso, effort: Effort
+) -> Lasso | None:
+    automaton = tight(formula)
+    near = nearby(graph, automaton, truth, len(known) - 2, effort)
+    product = near.product
+    conditions = product.conditions(automaton.promises, fairness)
+    components = fair_components(product, conditions)
+    found = shortest_cycle(product, near.depths, components, conditions, len(known), effort)
+    if found is None:
+        return None
+    node, cycle = found
+    return Lasso(product.way_to(node), tuple(int(product.edges[edge]) for edge in cycle))
+
+
+def shortest_run(  # noqa: PLR0913  # each says one thing of the search
+    graph: Graph,
+    components: Numbers,
+    conditions: Conditions,
+    known: Lasso,
+    *,
+    start: int = 0,
+    through: Bools | None = None,
+    by: Bools | None = None,
+) -> Lasso:
+    """Return a shortest lasso to a fair component, given one; it says whether it surely is.
+
+    Args:
+        graph: The graph.
+        components: The fair components.
+        conditions: What its loop meets.
+        known: A lasso.
+        start: Where it begins.
+        through: The configurations that it may come to, all if not given.
+        by: The edges that its loop may take, all if not given.
+    """
+    if graph.partial is not None:
+        return known
+    effort = Effort()
+    try:
+        depths = distances(graph, start, len(known) - 2, effort, through)
+        found = shortest_cycle(graph, depths, components, conditions, len(known), effort, by)
+    except Exhausted:
+        return known
+    if found is None:
+        return replace(known, shortest=True)
+    node, loop = found
+    stem = () if node == start else shortest(graph, start, graph.targets == node, through)
+    assert stem is not None  # it has a depth
+    return Lasso(stem, loop, shortest=True)

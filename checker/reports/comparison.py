@@ -1,0 +1,103 @@
+"""Two traces side by side: where they part, which steps they share after that, and how their ends differ."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from difflib import SequenceMatcher
+from typing import Final
+
+from checker.traces import Step, Trace
+from semantics.state.differences import Difference, differences
+
+MOST_ALIGNED: Final = 1_000
+"""How many steps of each trace are aligned after they part: what it costs grows with the square."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Steps beside each other, by their numbers from 1; None where only the other trace has one."""
+
+    one: int | None
+    other: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """How two traces differ.
+
+    Attributes:
+        shared: How many steps they have in common from the start.
+        pairs: The steps after that, aligned by their labels; of each trace `MOST_ALIGNED` at the most.
+        beyond: How many steps more each trace has.
+        ends: What differs between the last configurations, from the one to the other; None where they are of missions
+            with different entities.
+    """
+
+    shared: int
+    pairs: tuple[Pair, ...]
+    beyond: tuple[int, int]
+    ends: tuple[Difference, ...] | None
+
+
+def compare(one: Trace, other: Trace) -> Comparison:
+    """Return how two traces differ."""
+    ways = [_ways(trace.steps) for trace in (one, other)]
+    both = min(map(len, ways))
+    shared = next((n for n in range(both) if ways[0][n] != ways[1][n]), both)
+    kinds = [trace.initial.setting.kinds for trace in (one, other)]
+    ends = (one.configurations[-1], other.configurations[-1])
+    differ = differences(*ends) if dict(kinds[0]) == dict(kinds[1]) else None
+    rests = [each[shared : shared + MOST_ALIGNED] for each in ways]
+    left, right = (max(0, len(each) - shared - MOST_ALIGNED) for each in ways)
+    return Comparison(shared, tuple(_aligned(rests[0], rests[1], shared)), (left, right), differ)
+
+
+def _ways(steps: Sequence[Step]) -> list[tuple[str, int]]:
+    return [(str(step.label), step.choice) for step in steps]
+
+
+def _aligned(one: list[tuple[str, int]], other: list[tuple[str, int]], after: int) -> Iterator[Pair]:
+    matcher = SequenceMatcher(
+        None, [label for label, _ in one], [label for label, _ in other], autojunk=False
+    )
+    for what, start, end, first, last in matcher.get_opcodes():
+        if what == "equal":
+            ranks = zip(range(start, end), range(first, last), strict=True)
+            yield from (Pair(after + a + 1, after + b + 1) for a, b in ranks)
+            continue
+        yield from (Pair(after + a + 1, None) for a in range(start, end))
+        yield from (Pair(None, after + b + 1) for b in range(first, last))
+
+
+def comparison_text(one: Trace, other: Trace, names: tuple[str, str]) -> Iterator[str]:
+    """Yield line by line how two traces differ; `<` marks what only the first has, `>` what only the other."""
+    found = compare(one, other)
+    steps = f"{found.shared:,} {'step' if found.shared == 1 else 'steps'}"
+    yield f"< {names[0]}: {len(one):,} steps"
+    yield f"> {names[1]}: {len(other):,} steps"
+    if not found.pairs:
+        yield f"they are the same: {steps}"
+        return
+    yield f"the same for {steps}, up to c{found.shared}; then"
+    for pair in found.pairs:
+        yield _pair(pair, one, other)
+    if any(found.beyond):
+        yield f"  and {found.beyond[0]:,} steps more of the first, {found.beyond[1]:,} of the second, not compared"
+    yield from _ends(found)
+
+
+def _pair(pair: Pair, one: Trace, other: Trace) -> str:
+    sign = "=" if pair.one and pair.other else "<" if pair.one else ">"
+    number, trace = (pair.one, one) if pair.one else (pair.other, other)
+    assert number is not None
+    beside = f" (c{pair.other} there)" if pair.one and pair.other and pair.one != pair.other else ""
+    return f"  {sign} c{number - 1} --{trace.steps[number - 1].label}--> c{number}{beside}"
+
+
+def _ends(found: Comparison) -> Iterator[str]:
+    if found.ends is None:
+        yield "their ends are not compared: the missions have different entities"
+    elif not found.ends:
+        yield "they end in the same configuration"
+    else:
+        yield "at the end of the second, not as at the end of the first:"
+        yield from (f"  {each}" for each in found.ends)

@@ -1,0 +1,121 @@
+"""Lanes: a trace with each step in its actor's lane, and beside it only what it changed."""
+
+import textwrap
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+from checker.traces import Trace
+from semantics.state.configuration import Configuration, Label
+from semantics.state.differences import Difference, differences
+from semantics.state.signature import Name
+
+ENVIRONMENT: Final = "environment"
+
+SERVING: Final = frozenset({"sense", "actuate", "command", "commit", "snd", "migrate"})
+"""Rules that serve a request: what they do happens between the agent that asked and the world."""
+
+NARROWEST: Final = 24
+NUMBERS: Final = 6
+
+
+@dataclass(frozen=True, slots=True)
+class LaneStep:
+    """One step.
+
+    Attributes:
+        number: That of the configuration after it.
+        lane: Where it stands in `Lanes.names`: an agent's lane or the environment's.
+        label: What it is called.
+        changes: What it changed.
+    """
+
+    number: int
+    lane: int
+    label: Label
+    changes: tuple[Difference, ...]
+
+    @property
+    def serves(self) -> bool:
+        """Whether it serves a request, and is no step of the agent's program."""
+        return self.label.rule in SERVING
+
+    @property
+    def about(self) -> str:
+        """What the label says beside the rule and the lane."""
+        return str(self.label.about)
+
+
+@dataclass(frozen=True, slots=True)
+class Lanes:
+    """A trace in lanes.
+
+    Attributes:
+        names: What each lane is called: the agents, then the environment where it does anything.
+        steps: The steps, from the first.
+        loop: The number of the configuration from which the run repeats for ever, where it does: the last is the same.
+    """
+
+    names: tuple[Name, ...]
+    steps: tuple[LaneStep, ...]
+    loop: int | None = None
+
+    @property
+    def end(self) -> str:
+        """How the run goes on for ever, empty where it doesn't."""
+        if self.loop is None:
+            return ""
+        if self.loop == len(self.steps):
+            return f"c{self.loop}, for ever"
+        return f"↻ c{len(self.steps)} is c{self.loop}: from there on again and again"
+
+
+def lanes_of(
+    configurations: Sequence[Configuration], labels: Sequence[Label], loop: int | None = None
+) -> Lanes:
+    """Return a run in lanes; there is one label fewer than configurations."""
+    agents = tuple(sorted({a for c in configurations for a in c.alpha.names()}))
+    around = any(label.agent is None for label in labels)
+    steps = []
+    for number, (label, (before, after)) in enumerate(zip(labels, pairwise(configurations), strict=True), 1):
+        lane = len(agents) if label.agent is None else agents.index(label.agent)
+        steps.append(LaneStep(number, lane, label, differences(before, after)))
+    return Lanes((*agents, *([ENVIRONMENT] if around else [])), tuple(steps), loop)
+
+
+def lanes_of_trace(trace: Trace) -> Lanes:
+    """Return a trace in lanes."""
+    return lanes_of(trace.configurations, [step.label for step in trace.steps], trace.loop)
+
+
+def lanes_text(lanes: Lanes, width: int = 100) -> Iterator[str]:
+    """Yield lanes line by line, as columns of a page that is so wide, or wider where there are many."""
+    columns = max(1, len(lanes.names))
+    each = max(NARROWEST, (width - NUMBERS) // columns)
+    yield _row("", [name[: each - 2] for name in lanes.names], each)
+    yield _row("", ["─" * (each - 2)] * columns, each)
+    for step in lanes.steps:
+        lines = [piece for line in _lines(step) for piece in _wrapped(line, each - 2)]
+        for rank, line in enumerate(lines):
+            cells = ["│"] * columns
+            cells[step.lane] = line
+            yield _row(f"c{step.number}" if rank == 0 else "", cells, each)
+    if lanes.end:
+        yield lanes.end
+
+
+def _lines(step: LaneStep) -> Iterator[str]:
+    yield f"● {step.label.rule}"
+    if step.about:
+        yield f"  {step.about}"
+    yield from (f"  {change}" for change in step.changes)
+
+
+def _wrapped(line: str, width: int) -> list[str]:
+    indent = " " * (len(line) - len(line.lstrip()) + 2)
+    return textwrap.wrap(line, width, subsequent_indent=indent, drop_whitespace=True) or [""]
+
+
+def _row(number: str, cells: list[str], width: int) -> str:
+    return f"{number:<{NUMBERS}}{''.join(f'{cell:<{width}}' for cell in cells)}".rstrip()

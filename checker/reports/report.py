@@ -1,0 +1,164 @@
+"""Reports as text for people and as plain data for machines."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from checker.limits import cut
+from checker.reports.coverage_report import coverage_json
+from checker.traces import Trace, print_length, print_trace, to_json
+from checker.verdicts import Outcome, Report, Verdict, Violation
+from semantics.state.setting import Control
+from semantics.successors import rules_of
+
+SCHEMA = "bigactors.report/1"
+"""The version of the report's schema (docs/json.md)."""
+
+MARKS = {Outcome.HOLDS: "✓", Outcome.VIOLATED: "✗", Outcome.INCOMPLETE: "?"}
+
+UNITS = {
+    "local_consistency": (" control next in line", " controls next in line"),
+    "race_freedom": (" control or pair of controls", " controls and pairs of controls"),
+    "deadlock_freedom": (" configuration at rest", " configurations at rest"),
+    "arrival": (" end of a flight", " ends of flights"),
+    "computation": (" internal step", " internal steps"),
+    "invariant": (" configuration", " configurations"),
+    "ltl": (" configuration", " configurations"),
+    "ctl": (" configuration", " configurations"),
+    "progress": (" request", " requests"),
+}
+"""What is examined for each kind of property, one and several; of what is to be reachable, configurations with it."""
+
+OF_RUNS = ("ltl", "ctl")
+"""Kinds of properties of which one violation is looked for, and not how many there are."""
+
+NOTHING_EXAMINED = {
+    "deadlock_freedom": "some bigActor can always move",
+    "computation": "no bigActor computes anything that could fail",
+}
+"""What it means that nothing was examined, where that is no shortcoming."""
+
+
+def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[str]:
+    """Yield a report line by line."""
+    size = f"{report.configurations:,} configurations, {_followed(report)} transitions, depth {report.depth}"
+    searched = f", reduced by {' and '.join(report.reduced)}" if report.reduced else ""
+    complete = "complete" if report.complete else "INCOMPLETE"
+    yield f"{name}: {size}, {complete}{searched}, {report.seconds:.2f} s"
+    for bound in report.bounds:
+        yield f"  {cut(bound)}"
+    width = max((len(verdict.property.name) for verdict in report.verdicts), default=0)
+    for verdict in report.verdicts:
+        yield from _verdict(verdict, width, traces=traces)
+    yield "  rules: " + (", ".join(f"{rule} {count:,}" for rule, count in report.rules.items()) or "none")
+    yield from (f"  note: {note}" for note in report.notes)
+
+
+def _followed(report: Report) -> str:
+    if not report.reduced:
+        return f"{report.transitions:,}"
+    return f"{report.transitions:,} of {report.allowed:,}"
+
+
+def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
+    line = f"  {MARKS[verdict.outcome]} {verdict.property.name:<{width}}  {verdict.outcome.value}"
+    remarks = [verdict.note, *verdict.remarks, *_sizes(verdict)]
+    yield line + "".join(f"; {remark}" for remark in remarks if remark)
+    for violation in verdict.violations:
+        yield from _violation(violation, traces=traces)
+
+
+def _sizes(verdict: Verdict) -> Iterator[str]:
+    if verdict.outcome is Outcome.VIOLATED:
+        if verdict.violations and verdict.property.kind not in OF_RUNS:
+            yield _found(verdict)
+    elif verdict.witness is not None and verdict.examined:
+        yield f"{_examined(verdict)}, a witness of {_steps(len(verdict.witness))}"
+    elif verdict.outcome is Outcome.INCOMPLETE:
+        yield "not found so far" if verdict.property.kind == "reachable" else "nothing against it so far"
+    elif verdict.examined and verdict.property.kind not in OF_RUNS:
+        yield _examined(verdict)  # no witness was looked for: that is not to say that nothing was examined
+    elif verdict.property.kind in NOTHING_EXAMINED:
+        yield NOTHING_EXAMINED[verdict.property.kind]
+
+
+def _found(verdict: Verdict) -> str:
+    shown = len(verdict.violations)
+    if verdict.count == 1:
+        return "found once"
+    times = f"found {verdict.count:,} times"
+    if verdict.different <= 1:
+        return times
+    if verdict.different == shown:
+        return f"{times}, {shown} different"
+    return f"{times}, {verdict.different:,} different, of which {shown} are shown"
+
+
+def _examined(verdict: Verdict) -> str:
+    one, many = UNITS.get(verdict.property.kind, ("", ""))
+    return f"examined {verdict.examined:,}{one if verdict.examined == 1 else many}"
+
+
+def _steps(count: int) -> str:
+    return "1 step" if count == 1 else f"{count:,} steps"
+
+
+def _violation(violation: Violation, *, traces: bool) -> Iterator[str]:
+    yield f"      {violation.kind}: {violation.message}"
+    yield from (f"        {detail}" for detail in violation.details)
+    yield f"      {print_length(violation.trace)}{':' if traces else ''}"
+    if traces:
+        yield from (f"        {line}" for line in print_trace(violation.trace))
+
+
+def report_json(name: str, digest: str, report: Report, control: Control) -> dict[str, Any]:
+    """Return a report as plain data; the schema is documented in docs/json.md."""
+    silent = [rule.__name__ for rule in rules_of(control) if rule.__name__ not in report.rules]
+    return {
+        "schema": SCHEMA,
+        "mission": name,
+        "digest": digest,
+        "complete": report.complete,
+        "bounds": list(report.bounds),
+        "configurations": report.configurations,
+        "transitions": report.transitions,
+        "depth": report.depth,
+        "reduced": list(report.reduced),
+        "transitions_allowed": report.allowed,
+        "exit_code": report.exit_code,
+        "properties": [_property_json(name, digest, verdict) for verdict in report.verdicts],
+        "rules": dict(report.rules),
+        "rules_never_used": silent,
+        "coverage": None if report.coverage is None else coverage_json(report.coverage),
+        "notes": list(report.notes),
+        "seconds": round(report.seconds, 3),
+    }
+
+
+def _property_json(name: str, digest: str, verdict: Verdict) -> dict[str, Any]:
+    def trace(run: Trace | None) -> dict[str, Any] | None:
+        return None if run is None else to_json(run, name, digest)
+
+    return {
+        "name": verdict.property.name,
+        "kind": verdict.property.kind,
+        "line": verdict.property.line,
+        "verdict": verdict.outcome.value,
+        "trace": trace(verdict.violations[0].trace if verdict.violations else None),
+        "violations": [
+            {
+                "kind": v.kind,
+                "subject": v.subject,
+                "message": v.message,
+                "details": list(v.details),
+                "shortest": v.trace.shortest,
+                "trace": trace(v.trace),
+            }
+            for v in verdict.violations
+        ],
+        "different": verdict.different,
+        "count": verdict.count,
+        "examined": verdict.examined,
+        "witness": trace(verdict.witness),
+        "note": verdict.note,
+        "remarks": list(verdict.remarks),
+    }

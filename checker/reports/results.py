@@ -1,0 +1,200 @@
+"""Results of several missions in the shape that other programs' formats share: what there is to say, and where."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+from checker.limits import cut
+from checker.properties.coverage import Gap
+from checker.reports.coverage_report import coverage_text, line_text
+from checker.reports.lines import violation_line
+from checker.reports.report import report_text
+from checker.traces import Trace, print_length, print_trace
+from checker.verdicts import Outcome, Report, Verdict, Violation
+
+
+class Level(Enum):
+    """How grave an issue is: something is wrong, looks wrong, was not decided, or bigactors itself failed."""
+
+    WRONG = "wrong"
+    WARNING = "warning"
+    INCOMPLETE = "incomplete"
+    BUG = "internal error"
+
+
+@dataclass(frozen=True, slots=True)
+class Issue:
+    """One thing to say of a mission, at its place.
+
+    Attributes:
+        level: How grave it is.
+        rule: What it was found by: the kind of a property, the code of a mistake.
+        title: It in a few words.
+        message: In a sentence.
+        line: Where it belongs in the mission, from 1; 0 where that is not known. The others alike.
+        asked: The line of the property, where there is one.
+        identity: What makes it the same issue in another run, though lines have moved.
+        details: More lines.
+        trace: A run that ends in it.
+    """
+
+    level: Level
+    rule: str
+    title: str
+    message: str
+    line: int = 0
+    column: int = 0
+    end_line: int = 0
+    end_column: int = 0
+    asked: int = 0
+    identity: tuple[str, ...] = ()
+    details: tuple[str, ...] = ()
+    trace: Trace | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What came of one mission.
+
+    Attributes:
+        name: The mission as the user gave it.
+        file: Its file, from the working directory where it lies inside.
+        report: What was found; None where it was not explored.
+        failures: Why it was not.
+        check_line: The line of its `check` section, 1 without one: where properties belong that nobody wrote.
+        text: What the mission says, to quote its lines.
+        cautions: What it says that is hardly meant.
+    """
+
+    name: str
+    file: str
+    report: Report | None = None
+    failures: tuple[Issue, ...] = ()
+    check_line: int = 1
+    text: str = ""
+    cautions: tuple[Issue, ...] = ()
+
+    def issues(self) -> tuple[Issue, ...]:
+        """Return all that there is to say, in the mission's order."""
+        if self.report is None:
+            return self.failures
+        decided = (issue for verdict in self.report.verdicts for issue in self.issues_of(verdict))
+        return (*decided, *self.undecided(), *self.warnings())
+
+    def issues_of(self, verdict: Verdict) -> Iterator[Issue]:
+        """Yield what speaks against a property: nothing exactly where it holds."""
+        if verdict.outcome is Outcome.VIOLATED:
+            yield from (self._violation(verdict, each) for each in verdict.violations)
+            if not verdict.violations:
+                yield self._without_trace(verdict, Level.WRONG, verdict.note or "nothing satisfies it")
+        elif verdict.outcome is Outcome.INCOMPLETE:
+            yield self._without_trace(verdict, Level.INCOMPLETE, self._cut_off())
+
+    def undecided(self) -> Iterator[Issue]:
+        """Yield that a bound was met, where no verdict says so: what was cut off never reads as a success."""
+        if self.report is None or self.report.complete:
+            return
+        if all(verdict.outcome is Outcome.HOLDS for verdict in self.report.verdicts):
+            rule, title = "exploration", "exploration incomplete"
+            yield Issue(
+                Level.INCOMPLETE, rule, title, self._cut_off(), self.check_line, identity=("incomplete",)
+            )
+
+    def warnings(self) -> Iterator[Issue]:
+        """Yield what is hardly meant, what holds and says less than it seems to, and what no run reaches."""
+        if self.report is None:
+            return
+        yield from self.cautions
+        for verdict in self.report.verdicts:
+            for remark in verdict.remarks:
+                yield self._remark(verdict, remark)
+        covered = self.report.coverage
+        for gap in covered.gaps if covered is not None and covered.complete else ():
+            yield self._gap(gap)
+
+    def line_of(self, verdict: Verdict) -> int:
+        """Return the line that asks for a property."""
+        return verdict.property.line or self.check_line
+
+    def _cut_off(self) -> str:
+        bounds = map(cut, self.report.bounds if self.report else ())
+        return "; ".join(["not decided", *bounds])
+
+    def _violation(self, verdict: Verdict, violation: Violation) -> Issue:
+        asked = verdict.property
+        return Issue(
+            Level.WRONG,
+            asked.kind,
+            f"{asked.name} violated: {violation.kind}",
+            violation.message,
+            violation_line(violation) or self.line_of(verdict),
+            asked=self.line_of(verdict),
+            identity=(asked.kind, asked.name, violation.kind, *filter(None, [violation.subject])),
+            details=violation.details,
+            trace=violation.trace,
+        )
+
+    def _remark(self, verdict: Verdict, remark: str) -> Issue:
+        asked, line = verdict.property, self.line_of(verdict)
+        identity = (asked.kind, asked.name, remark)
+        return Issue(Level.WARNING, "vacuity", f"{asked.name} holds", remark, line, identity=identity)
+
+    def _gap(self, gap: Gap) -> Issue:
+        quoted = line_text(self.text, gap.line).strip()
+        identity = (gap.sort, gap.message, quoted)
+        details = (quoted,) if quoted else ()
+        return Issue(
+            Level.WARNING,
+            "coverage",
+            "not covered",
+            gap.message,
+            gap.line,
+            identity=identity,
+            details=details,
+        )
+
+    def _without_trace(self, verdict: Verdict, level: Level, message: str) -> Issue:
+        asked, line = verdict.property, self.line_of(verdict)
+        title = f"{asked.name} {verdict.outcome.value}"
+        identity = (asked.kind, asked.name, verdict.outcome.value)
+        return Issue(level, asked.kind, title, message, line, asked=line, identity=identity)
+
+
+def issue_text(issue: Issue) -> str:
+    """Return an issue with its details and its trace as lines of text."""
+    lines = [issue.message, *(f"  {detail}" for detail in issue.details)]
+    if issue.trace is not None:
+        lines.append(f"{print_length(issue.trace)}:")
+        lines += [f"  {line}" for line in print_trace(issue.trace)]
+    return "\n".join(lines)
+
+
+def caution_text(name: str, caution: Issue) -> Iterator[str]:
+    """Yield what a mission says that is hardly meant, as it stands in a report."""
+    yield f"  {name}:{caution.line}: warning: {caution.rule}: {caution.message}"
+    yield from (f"    {detail}" for detail in caution.details)
+
+
+def result_text(result: Result) -> str:
+    """Return the report of a result without its traces; empty where there is none."""
+    if result.report is None:
+        return ""
+    lines = [
+        *report_text(result.name, result.report, traces=False),
+        *(line for caution in result.cautions for line in caution_text(result.name, caution)),
+    ]
+    if result.report.coverage is not None:
+        lines += coverage_text(result.name, result.report.coverage, result.text)
+    return "\n".join(lines)
+
+
+def clean(text: str) -> str:
+    r"""Put U+FFFD in the place of what XML 1.0 cannot hold, of the other control characters and of lone surrogates.
+
+    >>> clean("a\x1b[31m\tb\n\ud800")
+    'a�[31m\tb\n�'
+    """
+    return re.sub(
+        "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]", "\N{REPLACEMENT CHARACTER}", text
+    )

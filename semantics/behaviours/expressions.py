@@ -1,0 +1,391 @@
+"""Expressions of the host language, and their evaluation with what the value rests on."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from semantics.behaviours.observations import All, Nodes, Observation, Of, Query
+from semantics.behaviours.values import LARGEST_NUMBER, MOST_PARTS, Truth, Value, in_order, parts, show
+from semantics.races.provenance import EVERYTHING, NOTHING, Key, Provenance, asking
+from semantics.state.signature import Name
+
+
+class Fault(Exception):
+    """An agent's computation fails or diverges: the mission's mistake, found on the way that leads there.
+
+    Attributes:
+        agent: Whose computation.
+        diverges: Whether it reaches no command, instead of failing.
+    """
+
+    def __init__(self, message: str, *, diverges: bool = False) -> None:
+        super().__init__(message)
+        self.agent: Name = ""
+        self.diverges = diverges
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """A constant."""
+
+    value: Value
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """The value of a variable."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Host:
+    """`HOST`: the node that the agent is hosted at now."""
+
+
+@dataclass(frozen=True, slots=True)
+class Self:
+    """`SELF`: the agent's own name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Apply:
+    """An operator of `OPERATORS` applied to arguments."""
+
+    operator: str
+    arguments: tuple["Expression", ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Either:
+    """`a or b` (`stop_at` true) and `a and b` (`stop_at` false): the second is evaluated only where it matters."""
+
+    stop_at: bool
+    first: "Expression"
+    second: "Expression"
+
+
+@dataclass(frozen=True, slots=True)
+class TupleOf:
+    """A tuple."""
+
+    items: tuple["Expression", ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SetOf:
+    """A set."""
+
+    items: tuple["Expression", ...]
+
+
+@dataclass(frozen=True, slots=True)
+class QueryOf:
+    """A query with expressions at its leaves; `operator` None stands for the nodes that the expression names."""
+
+    operator: str | None
+    argument: "Expression | QueryOf | None"
+
+
+Expression = Literal | Variable | Host | Self | Apply | Either | TupleOf | SetOf
+
+
+@dataclass(slots=True)
+class Scope:
+    """What an expression may read, and what its evaluation has rested on so far.
+
+    Attributes:
+        store: Variables.
+        rests_on: What each variable was computed from; empty where nobody monitors.
+        kinds: The kind of each entity.
+        kept: Under which names what a variable is given is kept to the end of the run (`Program.kept`).
+        placed: What the host was chosen by.
+        used: Grows with each variable or host read and each observation tested.
+    """
+
+    agent: Name
+    host: Name
+    store: dict[str, Value]
+    rests_on: dict[str, Provenance]
+    kinds: Mapping[Name, str]
+    kept: Mapping[str, frozenset[str]]
+    placed: Provenance = NOTHING
+    used: Provenance = field(default=NOTHING)
+
+    def binding(self, names: Mapping[str, Value], provenance: Provenance) -> None:
+        """Give variables values that rest on something."""
+        self.rests_on.update(dict.fromkeys(names, provenance))
+        for name, value in names.items():
+            self.store[name] = value
+            self.store.update(dict.fromkeys(self.kept.get(name, ()), value))
+
+
+def evaluate(expression: Expression, scope: Scope) -> Value:
+    """Return the value of an expression.
+
+    Raises:
+        Fault: An operator was given what it doesn't take.
+    """
+    match expression:
+        case Literal(value):
+            return value
+        case Variable(name):
+            scope.used |= scope.rests_on.get(name, NOTHING)
+            return scope.store[name]
+        case Host():
+            scope.used |= scope.placed
+            return scope.host
+        case Self():
+            return scope.agent
+        case TupleOf(items):
+            return _small(tuple(evaluate(item, scope) for item in items))
+        case SetOf(items):
+            return _small(frozenset(evaluate(item, scope) for item in items))
+        case Either(stop_at, first, second):
+            value = truth(evaluate(first, scope))
+            return Truth.of(value) if value is stop_at else Truth.of(truth(evaluate(second, scope)))
+        case Apply(operator, arguments):
+            return _apply(OPERATORS[operator], operator, arguments, scope)
+
+
+def evaluated(expression: Expression, scope: Scope) -> tuple[Value, Provenance]:
+    """Return the value of an expression with what it rests on."""
+    before, scope.used = scope.used, NOTHING
+    value = evaluate(expression, scope)
+    provenance, scope.used = scope.used, before | scope.used
+    return value, provenance
+
+
+def _apply(operator: "Operator", name: str, arguments: tuple[Expression, ...], scope: Scope) -> Value:
+    before, scope.used = scope.used, NOTHING
+    values = [evaluate(argument, scope) for argument in arguments]
+    keys = tuple(operator.asks(*values)) if scope.used else ()
+    scope.used = before | asking(scope.used, keys)
+    try:
+        return operator.apply(scope, *values)
+    except (TypeError, ValueError, KeyError, IndexError) as error:
+        shown = ", ".join(map(show, values))
+        raise Fault(f"'{name}' can't be computed of ({shown}): {error}") from error
+
+
+def _small(value: Value) -> Value:
+    if parts(value) > MOST_PARTS:
+        raise Fault(f"a value has more than {MOST_PARTS} parts")
+    return value
+
+
+def truth(value: Value) -> bool:
+    """Return the Python boolean of a truth value.
+
+    Raises:
+        Fault: It is another value.
+    """
+    if isinstance(value, Truth):
+        return bool(value)
+    raise Fault(f"a test needs true or false, not {show(value)}")
+
+
+def query_of(template: QueryOf, scope: Scope) -> Query:
+    """Return the query with `HOST`, variables and other expressions resolved.
+
+    Raises:
+        Fault: A leaf is no name and no set of names.
+    """
+    argument = template.argument
+    if argument is None:
+        return All()
+    if isinstance(argument, QueryOf):
+        return Of(str(template.operator), query_of(argument, scope))
+    leaf = Nodes(names_in(evaluate(argument, scope)))
+    return leaf if template.operator is None else Of(template.operator, leaf)
+
+
+def names_in(value: Value) -> tuple[Name, ...]:
+    """Return the names that a value stands for: itself, or its members.
+
+    Raises:
+        Fault: It stands for none.
+    """
+    members = in_order(value) if isinstance(value, frozenset) else (value,)
+    if not all(isinstance(member, str) for member in members):
+        raise Fault(f"a name was expected, not {show(value)}")
+    return tuple(str(member) for member in members)
+
+
+def name_in(value: Value) -> Name:
+    """Return the one name that a value stands for.
+
+    Raises:
+        Fault: It stands for none or several.
+    """
+    names = names_in(value)
+    if len(names) != 1:
+        raise Fault(f"one name was expected, not {show(value)}")
+    return names[0]
+
+
+# --- operators ------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Operator:
+    """One operator or function of the language.
+
+    Attributes:
+        arity: How many arguments it takes.
+        summary: One line for the reference page.
+        apply: Its meaning, given the scope and the values.
+        asks: What it asks of the observations among its arguments.
+    """
+
+    arity: int
+    summary: str
+    apply: Callable[..., Value]
+    asks: Callable[..., tuple[Key, ...]] = lambda *_: (EVERYTHING,)
+
+
+def _members(value: Value) -> frozenset[Value]:
+    if isinstance(value, Observation):
+        return frozenset(value.shown) | frozenset(value.agents)
+    if isinstance(value, frozenset):
+        return value
+    raise TypeError("a set or an observation was expected")
+
+
+def _number(value: Value) -> int:
+    if isinstance(value, int):
+        return value
+    raise TypeError("a number was expected")
+
+
+def _bounded(number: int) -> int:
+    if abs(number) >= LARGEST_NUMBER:
+        raise ValueError(f"a number has more than {len(str(LARGEST_NUMBER)) - 1} digits")
+    return number
+
+
+def _seen(value: Value) -> Observation:
+    if isinstance(value, Observation):
+        return value
+    raise TypeError("an observation was expected")
+
+
+def _add(_: Scope, a: Value, b: Value) -> Value:
+    return a | _members(b) if isinstance(a, frozenset) else _bounded(_number(a) + _number(b))
+
+
+def _subtract(_: Scope, a: Value, b: Value) -> Value:
+    return _bounded(_number(a) - _number(b)) if isinstance(a, int) else _members(a) - _members(b)
+
+
+def _of_kind(scope: Scope, value: Value, kind: Value) -> Value:
+    return frozenset(item for item in _members(value) if scope.kinds.get(str(item)) == kind)
+
+
+def _first(_: Scope, value: Value) -> Value:
+    members = in_order(_members(value))
+    if not members:
+        raise ValueError("the set is empty")
+    return members[0]
+
+
+def _element(_: Scope, value: Value, index: Value) -> Value:
+    if not isinstance(value, tuple) or not 0 <= _number(index) < len(value):
+        raise IndexError("no such element")
+    return value[_number(index)]
+
+
+def _compare(holds: Callable[[int, int], bool]) -> Callable[..., Value]:
+    return lambda _, a, b: Truth.of(holds(_number(a), _number(b)))
+
+
+def _linked(_: Scope, a: Value, b: Value, seen: Value) -> Value:
+    observation = _seen(seen)
+    return Truth.of(bool(observation.links(str(a)) & observation.links(str(b))))
+
+
+def _keys(*kinds: str) -> Callable[..., tuple[Key, ...]]:
+    return lambda *values: tuple((kind, str(value)) for kind, value in zip(kinds, values, strict=False))
+
+
+OPERATORS: Mapping[str, Operator] = {
+    "in": Operator(
+        2,
+        "whether a name is in a set or was shown in an observation",
+        lambda _, x, y: Truth.of(x in (y if isinstance(y, Observation) else _members(y))),
+        _keys("in"),
+    ),
+    "==": Operator(
+        2, "whether two values are the same", lambda _, x, y: Truth.of(type(x) is type(y) and x == y)
+    ),
+    "!=": Operator(
+        2, "whether two values differ", lambda _, x, y: Truth.of(type(x) is not type(y) or x != y)
+    ),
+    "<": Operator(2, "whether a number is less than another", _compare(lambda a, b: a < b)),
+    "<=": Operator(2, "whether a number is at most another", _compare(lambda a, b: a <= b)),
+    ">": Operator(2, "whether a number is more than another", _compare(lambda a, b: a > b)),
+    ">=": Operator(2, "whether a number is at least another", _compare(lambda a, b: a >= b)),
+    "+": Operator(2, "the sum of two numbers, the union of two sets", _add),
+    "-": Operator(2, "the difference of two numbers or sets", _subtract),
+    "not": Operator(1, "the contrary of a truth value", lambda _, x: Truth.of(not truth(x))),
+    "of": Operator(2, "the members of a kind", _of_kind),
+    "union": Operator(2, "the members of either set", lambda _, a, b: _members(a) | _members(b)),
+    "minus": Operator(
+        2,
+        "the members of the first set that are not in the second",
+        lambda _, a, b: _members(a) - _members(b),
+    ),
+    "intersect": Operator(2, "the members of both sets", lambda _, a, b: _members(a) & _members(b)),
+    "size": Operator(1, "how many members a set or an observation has", lambda _, a: len(_members(a))),
+    "empty": Operator(
+        1, "whether a set or an observation has no member", lambda _, a: Truth.of(not _members(a))
+    ),
+    "nodes": Operator(
+        1, "the nodes that an observation shows, as a set", lambda _, a: frozenset(_seen(a).shown)
+    ),
+    "agents": Operator(
+        1, "the agents that an observation shows, as a set", lambda _, a: frozenset(_seen(a).agents)
+    ),
+    "kind": Operator(1, "the kind of an entity, as a text", lambda scope, a: scope.kinds[str(a)]),
+    "parent": Operator(
+        2,
+        "the place in which an observation saw a node",
+        lambda _, x, o: _seen(o).parent(str(x)) or "unknown",
+        _keys("parent"),
+    ),
+    "children": Operator(
+        2,
+        "the nodes that an observation saw in a place",
+        lambda _, x, o: _seen(o).children(str(x)),
+        _keys("children"),
+    ),
+    "linked": Operator(
+        3, "whether an observation saw two nodes on one link", _linked, _keys("links", "links")
+    ),
+    "first": Operator(1, "the first member of a set, in the order of names", _first),
+    "element": Operator(2, "one element of a tuple, counted from 0", _element),
+}
+
+
+def free(expression: Any) -> frozenset[str]:
+    """Return the variables that an expression or a query reads."""
+    return frozenset(leaf.name for leaf in leaves(expression) if isinstance(leaf, Variable))
+
+
+def reads_host(expression: Any) -> bool:
+    """Tell whether an expression or a query reads `HOST`."""
+    return any(isinstance(leaf, Host) for leaf in leaves(expression))
+
+
+def leaves(expression: Any) -> Iterator[Expression]:
+    """Yield the constants, variables and names of which an expression or a query is made."""
+    match expression:
+        case Apply(_, parts) | TupleOf(parts) | SetOf(parts):
+            for part in parts:
+                yield from leaves(part)
+        case Either(_, first, second):
+            yield from (*leaves(first), *leaves(second))
+        case QueryOf(_, argument):
+            yield from leaves(argument)
+        case Literal() | Variable() | Host() | Self():
+            yield expression

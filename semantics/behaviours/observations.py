@@ -1,0 +1,202 @@
+"""Queries as values, and the observations L_q that they yield: what is shown, and every answer got on the way."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+from semantics.state.relations import Linked, Parent, Relation
+from semantics.state.signature import REGION, Name
+
+
+@dataclass(frozen=True, slots=True)
+class Nodes:
+    """The nodes of these names; `HOST` resolved, a name, or the value of a variable."""
+
+    names: tuple[Name, ...]
+
+    def __str__(self) -> str:
+        return self.names[0] if len(self.names) == 1 else f"{{{', '.join(self.names)}}}"
+
+
+@dataclass(frozen=True, slots=True)
+class All:
+    """Everything."""
+
+    def __str__(self) -> str:
+        return "ALL"
+
+
+@dataclass(frozen=True, slots=True)
+class Of:
+    """`PARENT(q)`, `CHILDREN(q)`, `LINKED_TO(q)` or `HOSTED_AT(q)`, by the operator's name."""
+
+    operator: str
+    of: "Query"
+
+    def __str__(self) -> str:
+        return f"{self.operator}({self.of})"
+
+
+Query = Nodes | All | Of
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """What an observation says of one node, or of an agent.
+
+    Attributes:
+        shown: Whether it was denoted.
+        parent: The parent that was seen of it.
+        links: The links on which it was seen, sorted.
+    """
+
+    shown: bool = False
+    parent: Name | None = None
+    links: tuple[Name, ...] = ()
+
+
+NOTHING_SEEN = Fact()
+
+
+@dataclass(frozen=True, slots=True)
+class Swept:
+    """What an observation looked through to the end: who was not seen there is not there.
+
+    Attributes:
+        places: Places whose children were all listed; sorted, as the others are.
+        nodes: Nodes whose links were all listed.
+        links: Links whose points were all listed.
+    """
+
+    places: tuple[Name, ...] = ()
+    nodes: tuple[Name, ...] = ()
+    links: tuple[Name, ...] = ()
+
+
+NOTHING_SWEPT = Swept()
+
+
+class Observation:
+    """L_q: what a query showed, with the answers it got, name by name.
+
+    Attributes:
+        family: What it says of each name; agents under `agent_key`.
+        swept: What it looked through to the end.
+    """
+
+    __slots__ = ("_facts", "family", "swept")
+
+    def __init__(self, family: Mapping[Name, Fact], swept: Swept = NOTHING_SWEPT) -> None:
+        self.family = family
+        self.swept = swept
+        self._facts: tuple[tuple[Name, Fact], ...] | None = None
+
+    @staticmethod
+    def of(
+        shown: Iterable[Name] = (),
+        agents: Iterable[Name] = (),
+        relations: Iterable[Relation] = (),
+        swept: Swept = NOTHING_SWEPT,
+    ) -> "Observation":
+        """Make an observation of everything that it says."""
+        facts: dict[Name, Fact] = {}
+
+        def say(name: Name, **news: Any) -> None:
+            facts[name] = replace(facts.get(name, NOTHING_SEEN), **news)
+
+        for name in (*shown, *map(agent_key, agents)):
+            say(name, shown=True)
+        for pair in relations:
+            if isinstance(pair, Parent):
+                say(pair.node, parent=pair.place)
+            else:
+                links = facts.get(pair.node, NOTHING_SEEN).links
+                say(pair.node, links=tuple(sorted({*links, pair.link})))
+        return Observation(facts, swept)
+
+    @property
+    def facts(self) -> tuple[tuple[Name, Fact], ...]:
+        """All that it says of names, sorted."""
+        if self._facts is None:
+            told = ((name, self.family[name]) for name in sorted(self.family))
+            self._facts = tuple((name, fact) for name, fact in told if fact != NOTHING_SEEN)
+        return self._facts
+
+    def fact(self, name: Name) -> Fact:
+        """Return what it says of one name."""
+        return self.family.get(name, NOTHING_SEEN)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Observation) and (self.facts, self.swept) == (other.facts, other.swept)
+
+    def __hash__(self) -> int:
+        return hash((self.facts, self.swept))
+
+    def __repr__(self) -> str:
+        return f"Observation({dict(self.facts)!r}, {self.swept!r})"
+
+    def __str__(self) -> str:
+        return f"{{{', '.join((*self.shown, *self.agents))}}}"
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and (self.fact(name).shown or self.fact(agent_key(name)).shown)
+
+    @property
+    def shown(self) -> tuple[Name, ...]:
+        """The nodes denoted, with the places whose children were asked for; sorted."""
+        return tuple(name for name, fact in self.facts if fact.shown and not name.startswith(AGENT))
+
+    @property
+    def agents(self) -> tuple[Name, ...]:
+        """The agents denoted (`HOSTED_AT`), sorted."""
+        denoted = (name for name, fact in self.facts if fact.shown and name.startswith(AGENT))
+        return tuple(name.removeprefix(AGENT) for name in denoted)
+
+    @property
+    def relations(self) -> tuple[Relation, ...]:
+        """Every pair of σ_{A(P)} that was answered with yes, in canonical order."""
+        pairs: list[Relation] = [Linked(link, name) for name, fact in self.facts for link in fact.links]
+        pairs += [Parent(name, fact.parent) for name, fact in self.facts if fact.parent is not None]
+        return tuple(sorted(pairs, key=str))
+
+    def parent(self, node: Name) -> Name | None:
+        """Return the parent that was seen of a node."""
+        return self.fact(node).parent
+
+    def children(self, place: Name) -> frozenset[Name]:
+        """Return the children that were seen of a place."""
+        return frozenset(name for name, fact in self.facts if fact.parent == place)
+
+    def links(self, node: Name) -> frozenset[Name]:
+        """Return the links on which a node was seen."""
+        return frozenset(self.fact(node).links)
+
+    def nodes(self) -> tuple[Name, ...]:
+        """Return dom(L_q), sorted: what was shown, and every node of a pair."""
+        places = {fact.parent for _, fact in self.facts if fact.parent is not None} - {REGION}
+        return tuple(sorted(places.union(name for name, _ in self.facts if not name.startswith(AGENT))))
+
+
+AGENT = "agent "
+"""How the name begins under which an observation says of an agent that it was denoted."""
+
+
+def agent_key(agent: Name) -> Name:
+    """Return the name under which an observation speaks of an agent: a node of the same name is another."""
+    return AGENT + agent
+
+
+class Step(NamedTuple):
+    """One operator of a query, with what it is applied to.
+
+    Attributes:
+        operator: Its name; `ALL`, or empty for the nodes that a query begins with.
+        names: The nodes, sorted.
+    """
+
+    operator: str
+    names: tuple[Name, ...]
+
+
+Steps = tuple[Step, ...]
+"""A query as it was resolved when it was evaluated: its operators, innermost first, hence the slots it looked at."""

@@ -1,0 +1,199 @@
+"""q(A(P)), the observation L_q that a query yields, and L ⊕ L_q.
+
+A query denotes a set of nodes of A(P), composed pointwise. Its observation says what is shown, and every answer that
+was got on the way: a yes is a pair, a no follows from a place or link that was enumerated.
+"""
+
+from collections.abc import Mapping
+
+from semantics.behaviours.observations import (
+    AGENT,
+    NOTHING_SEEN,
+    All,
+    Fact,
+    Nodes,
+    Observation,
+    Of,
+    Query,
+    Step,
+    Steps,
+    Swept,
+    agent_key,
+)
+from semantics.state.agents import Agents
+from semantics.state.cells import NAMES, Changes
+from semantics.state.logical_model import LogicalModel
+from semantics.state.physical_model import PhysicalModel
+from semantics.state.signature import REGION, Name
+
+# --- q(A(P)) ----------------------------------------------------------------------------------------------------
+
+
+def evaluate(query: Query, physical: PhysicalModel, alpha: Agents) -> Observation:
+    """Return q(A(P)): what is asked within the query as sets, its answers name by name.
+
+    An absent host gives the empty observation.
+    """
+    return answers(resolve(query, physical, alpha), physical, alpha)
+
+
+def resolve(query: Query, physical: PhysicalModel, alpha: Agents) -> Steps:
+    """Return the steps of a query, as they are resolved in A(P)."""
+    match query:
+        case Of(operator, inner):
+            steps = resolve(inner, physical, alpha)
+            return (*steps, Step(operator, denoted(steps, physical, alpha)))
+        case All():
+            return (Step("ALL", tuple(sorted((REGION, *physical.entities())))),)
+        case Nodes(names):
+            return (Step("", tuple(sorted({name for name in names if name in physical}))),)
+
+
+def denoted(steps: Steps, physical: PhysicalModel, alpha: Agents) -> tuple[Name, ...]:
+    """Return what resolved steps denote, sorted."""
+    operator, names = steps[-1]
+    if operator in ("", "ALL"):
+        return names
+    if operator == "PARENT":
+        return tuple(sorted({REGION if n == REGION else physical.abstract_parent(n) for n in names}))
+    looking = _Looking(steps, physical, alpha)
+    return tuple(sorted(n for n in (REGION, *looking.names) if looking.shows(n, looking.parent(n))))
+
+
+def answers(steps: Steps, physical: PhysicalModel, alpha: Agents) -> Observation:
+    """Return what the slots that a resolved query looks at say in A(P), name by name."""
+    looking = _Looking(steps, physical, alpha)
+    agents = alpha.names() if any(step.operator == "HOSTED_AT" for step in steps) else ()
+    names = (*looking.names, *map(agent_key, agents))
+    return Observation(physical.cells.each(names, looking.fact), looking.swept())
+
+
+class _Looking:
+    """One evaluation of resolved steps."""
+
+    def __init__(self, steps: Steps, physical: PhysicalModel, alpha: Agents) -> None:
+        self.physical = physical
+        self.alpha = alpha
+        self.names: tuple[Name, ...] = physical.cells.read(NAMES)
+        self.applied = [(operator, frozenset(names)) for operator, names in steps]
+        self.links = frozenset(link for name in self.to("LINKED_TO") for link in self.links_of(name))
+
+    def to(self, operator: str) -> frozenset[Name]:
+        """Return all that an operator is applied to."""
+        both = (operator, "ALL") if operator in ("CHILDREN", "LINKED_TO") else (operator,)
+        return frozenset[Name]().union(*(names for applied, names in self.applied if applied in both))
+
+    def swept(self) -> Swept:
+        nodes = self.to("LINKED_TO") - {REGION}
+        return Swept(*(tuple(sorted(each)) for each in (self.to("CHILDREN"), nodes, self.links)))
+
+    def fact(self, name: Name) -> Fact:
+        """Return what is answered of one name."""
+        if name.startswith(AGENT):
+            return Fact(self.alpha.host(name.removeprefix(AGENT)) in self.to("HOSTED_AT"))
+        parent = self.parent(name)
+        links = tuple(link for link in self.links_of(name) if link in self.links) if self.links else ()
+        return Fact(self.shows(name, parent), parent, links)
+
+    def shows(self, name: Name, parent: Name | None) -> bool:
+        """Tell whether the outermost operator denotes a node or the region; `parent` as far as that was asked."""
+        operator, inner = self.applied[-1]
+        match operator:
+            case "" | "ALL":
+                return name in inner
+            case "PARENT":
+                return any(self.physical.is_in(n, name) if n != REGION else name == n for n in sorted(inner))
+            case "CHILDREN":
+                return name in inner or parent in inner
+            case "LINKED_TO":
+                links = {link for n in inner for link in self.links_of(n)}
+                return name in inner or (bool(links) and not links.isdisjoint(self.links_of(name)))
+            case _:
+                return False
+
+    def parent(self, name: Name) -> Name | None:
+        """Return the parent of a node in A(P), as far as it was asked for: its own, or among children."""
+        if name == REGION:
+            return None
+        if name in self.to("PARENT"):
+            return self.physical.abstract_parent(name)
+        return self.parent_among(name, self.to("CHILDREN"))
+
+    def parent_among(self, name: Name, places: frozenset[Name]) -> Name | None:
+        if len(places) == 1:
+            (place,) = places
+            return place if name != REGION and self.physical.is_in(name, place) else None
+        if not places or name == REGION or name not in self.physical:
+            return None
+        place = self.physical.abstract_parent(name)
+        return place if place in places else None
+
+    def links_of(self, name: Name) -> tuple[Name, ...]:
+        return () if name == REGION else self.physical.links(name)
+
+
+# --- L ⊕ L_q ----------------------------------------------------------------------------------------------------
+
+
+def overlay(logical: LogicalModel, seen: Observation) -> Mapping[Name, Changes]:
+    """Return the writes of L ⊕ L_q, node by node: the answers that the query got, and no more.
+
+    A yes sets the relation. A no removes only the relation denied: a node believed under an enumerated place and not
+    seen there goes to the region, a link looked at and seen without n loses n. A new node that was not placed goes to
+    the region; where a cycle would arise, its nodes whose slot was not looked at do. So L_q ⊆ L ⊕ L_q.
+    """
+    learning = _Learning(logical, seen)
+    return logical.cells.each(learning.names, learning.of)
+
+
+class _Learning:
+    """What one observation teaches L of each node."""
+
+    def __init__(self, logical: LogicalModel, seen: Observation) -> None:
+        self.logical = logical
+        self.seen = seen
+        self.names: tuple[Name, ...] = logical.cells.read(NAMES)
+
+    def of(self, name: Name) -> Changes:
+        """Return the writes about one node."""
+        place, links = self.place(name), self.links(name)
+        nested = {} if place is None else self.logical.nesting(name, place)
+        return nested if links is None else nested | self.logical.linking(name, links)
+
+    def place(self, name: Name) -> Name | None:
+        """Return the new parent of a node, None where it keeps what it had."""
+        answered = self.seen.parent(name)
+        if answered is not None:
+            return answered
+        if name not in self.logical:
+            return REGION if self.is_node(name) else None
+        return REGION if self.is_denied(name) or self.is_on_cycle(name) else None
+
+    def is_node(self, name: Name) -> bool:
+        """Tell whether a node is in dom(L_q)."""
+        shown = self.seen.fact(name) != NOTHING_SEEN
+        return shown or any(self.seen.parent(node) == name for node in self.names)
+
+    def is_denied(self, name: Name) -> bool:
+        """Tell whether a node is believed in a place where it was not seen."""
+        return any(self.logical.is_in(name, place) for place in self.seen.swept.places)
+
+    def is_on_cycle(self, name: Name) -> bool:
+        """Tell whether the new parents lead from a node back to it."""
+        passed: set[Name] = set()
+        at = self.logical.parent(name)
+        while at is not None and at != REGION and at not in passed:
+            if at == name:
+                return True
+            passed.add(at)
+            at = self.seen.parent(at) or (REGION if self.is_denied(at) else self.logical.parent(at))
+        return False
+
+    def links(self, name: Name) -> frozenset[Name] | None:
+        """Return the new links of a node, None where it keeps what it had."""
+        swept = self.seen.swept
+        if name in swept.nodes:
+            return self.seen.links(name)
+        if not swept.links:
+            return None
+        return frozenset(self.logical.links(name)).difference(swept.links) | self.seen.links(name)

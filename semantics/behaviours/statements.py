@@ -1,0 +1,193 @@
+"""Statements of a behaviour: commands, each one rule's, and internal computation, which is `fun`'s."""
+
+from dataclasses import dataclass
+
+from semantics.behaviours.expressions import Expression, QueryOf
+from semantics.behaviours.patterns import Pattern
+from semantics.state.signature import Name
+
+Block = tuple[int, ...]
+"""The numbers of statements that follow each other."""
+
+
+# --- commands: each is one rule's --------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Observe:
+    """`observe(q)`."""
+
+    query: QueryOf
+
+
+@dataclass(frozen=True, slots=True)
+class ControlBy:
+    """`control(R ⇒ R')`: `name` is a command of `reactions.COMMANDS`, or a rule of the mission."""
+
+    name: str
+    arguments: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """`case pattern if guard => body`."""
+
+    pattern: Pattern
+    guard: Expression | None
+    body: Block
+
+
+@dataclass(frozen=True, slots=True)
+class React:
+    """`react { cases }`: for one observation or message the first case that fits takes it."""
+
+    cases: tuple[Case, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Send:
+    """`send(m, b)`."""
+
+    message: Expression
+    to: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Migrate:
+    """`migrate(h)`."""
+
+    host: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Spawn:
+    """`spawn NAME hosted_at h with_behavior b(args)`."""
+
+    name: Name
+    host: Expression
+    behaviour: str
+    arguments: tuple[Expression, ...]
+
+
+# --- internal statements: `fun` --------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Assign:
+    """`let x = e` and `x = e`."""
+
+    variable: str
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Display:
+    """`display(e)`: shown to the operator; changes nothing."""
+
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Tested:
+    """The guard of the case that was taken: its test is the first step of the body."""
+
+
+@dataclass(frozen=True, slots=True)
+class If:
+    """`if e { then } else { otherwise }`."""
+
+    test: Expression
+    then: Block
+    otherwise: Block = ()
+
+
+@dataclass(frozen=True, slots=True)
+class While:
+    """`while e { body }`."""
+
+    test: Expression
+    body: Block
+
+
+@dataclass(frozen=True, slots=True)
+class For:
+    """`for x in e { ... }`: evaluates e, and goes through its members in canonical order by `each`, a `ForEach`."""
+
+    members: Expression
+    rest: str
+    each: int
+
+
+@dataclass(frozen=True, slots=True)
+class ForEach:
+    """Take the next member of `rest`, if there is one."""
+
+    variable: str
+    rest: str
+    body: Block
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """`match e { cases }`: the first case that fits; none is a fault."""
+
+    value: Expression
+    cases: tuple[Case, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """`b(args)`: the behaviour's body in its place."""
+
+    behaviour: str
+    arguments: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Choose:
+    """`choose { b } or { b' }`: one successor for each alternative."""
+
+    alternatives: tuple[Block, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ChooseFrom:
+    """`choose x in e { body }`: one successor for each member."""
+
+    variable: str
+    members: Expression
+    body: Block
+
+
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """`loop { body }`."""
+
+    body: Block
+    outermost: bool = False
+
+
+Command = Observe | ControlBy | React | Send | Migrate | Spawn
+Choice = Choose | ChooseFrom
+Internal = Assign | Display | Tested | If | While | For | ForEach | Match | Call
+Statement = Command | Choice | Internal | Loop
+
+
+def branches(statement: Statement) -> tuple[Block, ...]:
+    """Return the blocks of which a statement takes one: of what may be passed over, only the block itself."""
+    match statement:
+        case If(_, then, otherwise):
+            return (then, otherwise)
+        case React(cases) | Match(_, cases):
+            return tuple(case.body for case in cases)
+        case Choose(alternatives):
+            return alternatives
+        case While(_, body) | ForEach(_, _, body) | ChooseFrom(_, _, body):
+            return (body,)
+        case _:
+            return ()
+
+
+def at_internal(statement: Statement | None) -> bool:
+    """Tell whether the next step is internal: `fun`."""
+    return isinstance(statement, Internal | Choice)

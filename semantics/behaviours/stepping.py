@@ -1,0 +1,122 @@
+"""Between a configuration and a process: how an agent starts to compute, and how it is written back."""
+
+from semantics.behaviours.computation import Process
+from semantics.behaviours.expressions import Scope
+from semantics.behaviours.program import Program
+from semantics.behaviours.statements import React, Statement
+from semantics.behaviours.values import Value
+from semantics.races.provenance import NOTHING, Provenance
+from semantics.races.relevance import HOSTED, told_by, uses_host
+from semantics.state.agents import (
+    Code,
+    Store,
+    Watch,
+    code_cell,
+    host_cell,
+    mailbox_cell,
+    store_cell,
+    watch_cell,
+)
+from semantics.state.cells import AGENTS, Changes
+from semantics.state.configuration import Configuration
+from semantics.state.eta import line_cell, sends_cell
+from semantics.state.setting import Scheduler, Setting
+from semantics.state.signature import Name
+
+
+def next_statement(c: Configuration, a: Name) -> Statement | None:
+    """Return the statement that an agent is at, None where it has ended."""
+    code = c.alpha.code(a)
+    return c.setting.program.statements[code[0]] if code else None
+
+
+def waits(code: Code | None, program: Program) -> bool:
+    """Ask whether code is at a `react`."""
+    return bool(code) and isinstance(program.statements[code[0]], React)  # type: ignore[index]  # not None
+
+
+def process_of(c: Configuration, a: Name) -> Process:
+    """Return an agent as a process."""
+    agents, watch = c.alpha, c.alpha.watch(a)
+    code, store = agents.code(a), agents.store(a)
+    rests_on = watch.store if watch else (NOTHING,) * len(store)
+    kept = {name: each for (name, _), each in zip(store, rests_on, strict=True)}
+    scope = scope_of(c.setting, a, agents.host(a), dict(store), kept)
+    scope.placed = watch.host if watch else NOTHING
+    return Process(c.setting.program, code, watch.code if watch else (NOTHING,) * len(code), scope)
+
+
+def continuing(c: Configuration, process: Process) -> Changes:
+    """Write α[a ↦ a']: what is left to run after the jumps before it, and the variables that it may read."""
+    process.unroll()
+    a = process.scope.agent
+    store, rests_on = _variables(process)
+    changes: Changes = {code_cell(a): process.code, store_cell(a): store}
+    watch = c.alpha.watch(a)
+    if watch is not None:
+        changes[watch_cell(a)] = _watch(process, rests_on, watch.mailbox)
+    return changes
+
+
+def _variables(process: Process) -> tuple[Store, tuple[Provenance, ...]]:
+    """Return the variables, with what each rests on: what nobody is told of decides at the most what is done."""
+    store, rests_on = process.variables()
+    told = told_by(process.program, process.code)
+    kept = zip(store, rests_on, strict=True)
+    return store, tuple(each if name in told else _untold(each) for (name, _), each in kept)
+
+
+def _watch(process: Process, store: tuple[Provenance, ...], mailbox: tuple[Provenance, ...] = ()) -> Watch:
+    return Watch(process.rests_on, store, mailbox, placed(process, process.scope.placed))
+
+
+def placed(process: Process, provenance: Provenance) -> Provenance:
+    """Return what is remembered of what an agent's host was chosen by: only while what is left to run uses it."""
+    tested = frozenset(each for each in provenance if each.asked is not None)
+    if not tested or not uses_host(process.program, process.code):
+        return NOTHING
+    return tested if HOSTED in told_by(process.program, process.code) else _untold(tested)
+
+
+def _untold(provenance: Provenance) -> Provenance:
+    return frozenset(each.deciding() for each in provenance)
+
+
+def starting(setting: Setting, a: Name, host: Name, process: Process) -> Changes:
+    """Write the cells of a new agent, but for its name among the agents."""
+    process.unroll()
+    store, rests_on = _variables(process)
+    lines = [line_cell(a)]
+    lines += [sends_cell(a)] if setting.scheduler is Scheduler.PROGRAM_ORDER else []
+    changes: Changes = {
+        host_cell(a): host,
+        code_cell(a): process.code,
+        store_cell(a): store,
+        mailbox_cell(a): (),
+    }
+    changes |= dict.fromkeys(lines, ())
+    if setting.monitored:
+        changes |= {watch_cell(a): _watch(process, rests_on)} | {("watch", *cell): () for cell in lines}
+    return changes
+
+
+def new_process(setting: Setting, a: Name, host: Name, code: tuple[int, ...]) -> Process:
+    """Return a process that has not begun."""
+    return Process(setting.program, code, (NOTHING,) * len(code), scope_of(setting, a, host, {}, {}))
+
+
+def scope_of(
+    setting: Setting, a: Name, host: Name, store: dict[str, Value], rests_on: dict[str, Provenance]
+) -> Scope:
+    """Return what an agent may read, in a mission."""
+    return Scope(a, host, store, rests_on, setting.kinds, setting.program.kept.get(a, {}))
+
+
+def joining(c: Configuration, a: Name) -> Changes:
+    """Write α + a."""
+    return {AGENTS: tuple(sorted({*c.alpha.names(), a}))}
+
+
+def resting_on(process: Process, *parts: Provenance) -> Provenance:
+    """Return what a request rests on: the way to the statement that makes it, and its arguments."""
+    return process.rests_on[0].union(*parts)

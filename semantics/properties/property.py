@@ -1,0 +1,55 @@
+"""The properties that a mission asks to be checked, and the variables that are kept for them."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Final
+
+from semantics.behaviours.program import VariableOf
+from semantics.properties.propositions import Always, Proposition
+from semantics.properties.temporal import Fairness, Temporal
+from semantics.state.configuration import Configuration
+
+TRUE: Final = Always(True)
+
+
+@dataclass(frozen=True, slots=True)
+class Property:
+    """What is to be checked.
+
+    Attributes:
+        kind: `local_consistency`, `race_freedom`, `deadlock_freedom`, `arrival`, `computation`, `invariant`,
+            `reachable`, `ltl`, `ctl` or `progress`.
+        name: Its name; that of its kind where the mission gives none.
+        formula: Of an invariant, or of what is to be reachable.
+        line: Where it stands in the mission's text, from 1; 0 where it was not written.
+        temporal: The formula of `ltl` and `ctl`.
+        fairness: Which runs count, for `ltl`, `ctl` and `progress`: all where it is empty.
+    """
+
+    kind: str
+    name: str
+    formula: Proposition = TRUE
+    line: int = 0
+    temporal: Temporal | None = None
+    fairness: tuple[Fairness, ...] = ()
+
+
+def watched(properties: Iterable[Property]) -> frozenset[VariableOf]:
+    """Return the variables that properties name, wherever it is."""
+    found: set[VariableOf] = set()
+    waiting: list[object] = list(properties)
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, VariableOf):
+            found.add(part)
+        elif isinstance(part, tuple):
+            waiting.extend(part)
+        else:
+            waiting.extend(getattr(part, name) for name in getattr(part, "__dataclass_fields__", ()))
+    return frozenset(found)
+
+
+def watching(c: Configuration, properties: Iterable[Property]) -> Configuration:
+    """Return a configuration from which on what properties name is kept to the end of the run."""
+    program = c.setting.program.watching(watched(properties))
+    return c if program is c.setting.program else Configuration(c.setting.with_(program=program), c.state)

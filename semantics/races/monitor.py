@@ -1,0 +1,273 @@
+"""The memory of the race monitor: what is changed, and by whom, of the observations that an agent still rests on.
+
+Rules only carry along what values rest on; here it is marked what has changed in that since.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache, partial
+from typing import NamedTuple
+
+from semantics.behaviours.observations import Step, Steps
+from semantics.behaviours.queries import answers, denoted
+from semantics.races.provenance import EVERYTHING, NOTHING, SLOT, Dependency, Key, Provenance, differences
+from semantics.races.relevance import (
+    ANY,
+    HEARD,
+    HOSTED,
+    Questions,
+    anybodys,
+    meet,
+    questions_of,
+    relevant,
+    slots_of,
+    told_by,
+)
+from semantics.state.agents import Watch, watch_cell
+from semantics.state.cells import MONITOR, QUEUE, Cell, Changes, merged
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.eta import line_cell, sends_cell
+from semantics.state.relations import Parent, Relation
+from semantics.state.requests import CTR, FLY, MGR, SND, Request
+from semantics.state.signature import Name
+
+CONTROLS = frozenset({"actuate", "command", "commit"})
+"""The rules by which an agent changes P. (The paper knows `actuate`; `command` takes an entity out of its place.)"""
+
+
+def marked(c: Configuration, transition: Transition) -> Transition:
+    """Return the transition with what it changed marked in what agents rest on, where that is monitored.
+
+    What an agent changes itself it knows: it makes nothing stale that the agent does. Of values that it may tell others
+    it is remembered apart, since who is told doesn't know it. A message on its way is its receiver's, so what the
+    sender changes after sending is another's doing.
+    """
+    if not c.setting.monitored or transition.label.rule not in CONTROLS:
+        return transition
+    after, author = transition.target, str(transition.label.agent)
+
+    def marking(holder: Name) -> Changes:
+        """Return the marks in the memory of one agent and in its requests; nobody's are those of the common queue."""
+        again = cache(partial(_asked_again, c, after))
+        memory = {} if holder == NOBODY else _mark_memory(after, holder, author, again)
+        return memory | merged(
+            _mark_requests(after, cell, author, again) for cell in _request_cells(after, holder)
+        )
+
+    return replace(transition, target=after.with_each(after.each((NOBODY, *after.alpha.names()), marking)))
+
+
+NOBODY: Name = ""
+"""Whose requests are those of the queue that all agents share under `fcfs`."""
+
+
+class Again(NamedTuple):
+    """What comes of asking again.
+
+    Attributes:
+        changed: Which of some questions have another answer: slots of A(P), and answers to a query.
+        steps: The steps of the query, resolved anew where another set is denoted.
+    """
+
+    changed: frozenset[Key]
+    steps: Steps
+
+
+def _asked_again(before: Configuration, after: Configuration, steps: Steps, asked: Questions) -> Again:
+    """Ask the slots that a query looked at again, after a transition."""
+    names = touched(before, after)
+    slots = changed_slots(before, after, names, asked)
+    anew = resolved_anew(before, after, steps, names)
+    is_local = anew == steps and not _turns_on(steps, names)
+    if not meet(asked, _answers_about(names if is_local else (ANY,))):
+        return Again(slots, anew)
+    old = answers(steps, before.structure.physical, before.alpha)
+    new = answers(anew, after.structure.physical, after.alpha)
+    return Again(slots | relevant(differences(old, new, names if is_local else None), asked), anew)
+
+
+def resolved_anew(
+    before: Configuration, after: Configuration, steps: Steps, names: tuple[Name, ...]
+) -> Steps:
+    """Return the steps of a query, resolved anew behind one that a transition of these entities lets denote others.
+
+    Where its holder has gone itself since the `sense` doesn't matter: each step asks of what it was applied to.
+    """
+    anew = steps[:1]
+    for step in steps[1:]:
+        passed = steps[: len(anew)]
+        if anew == passed and _denotes_the_same(before, after, passed, names):
+            anew += (step,)
+        else:
+            anew += (Step(step.operator, denoted(anew, after.structure.physical, after.alpha)),)
+    return anew
+
+
+def _denotes_the_same(
+    before: Configuration, after: Configuration, steps: Steps, names: tuple[Name, ...]
+) -> bool:
+    if steps[-1].operator in ("", "ALL") or (steps[-1].operator == "PARENT" and not _turns_on(steps, names)):
+        return True
+    old, new = (denoted(steps, c.structure.physical, c.alpha) for c in (before, after))
+    return old == new
+
+
+def _turns_on(steps: Steps, names: tuple[Name, ...]) -> bool:
+    """Tell whether what a query says of all the others may turn on the places and links of some entities."""
+    return any(
+        step.operator in ("ALL", "PARENT", "LINKED_TO") and set(names).intersection(step.names)
+        for step in steps
+    )
+
+
+def _answers_about(names: tuple[Name, ...]) -> Questions:
+    """Return the answers to a query that may differ where only what it says of these entities does."""
+    answers_to = {(kind, name) for kind in ("in", "parent", "links") for name in names}
+    return frozenset(answers_to | {("children", ANY), EVERYTHING})
+
+
+def touched(before: Configuration, after: Configuration) -> tuple[Name, ...]:
+    """Return the entities whose place or links in A(P) may have changed, sorted."""
+    everyone, setting = tuple(sorted(before.setting.kinds)), before.setting
+    names: set[Name] = set()
+    for cell in after.state.changed(before.state):
+        holds = cell[0] == "placement" and setting.signature[setting.kind(cell[-1])].holds
+        if holds or cell[0] == "down":
+            return everyone
+        if cell[0] in ("placement", "channels"):
+            names.add(cell[-1])
+    return tuple(sorted(names))
+
+
+def changed_slots(
+    before: Configuration, after: Configuration, names: tuple[Name, ...], asked: Questions
+) -> frozenset[Key]:
+    """Return which of some slots of A(P) differ in two configurations, where only these entities may."""
+    old, new = before.structure.physical, after.structure.physical
+    keys: set[Key] = set()
+    for name in names:
+        links: Key = (f"{SLOT}links", name)
+        if relevant([links], asked) and old.links(name) != new.links(name):
+            keys.add(links)
+        if not meet(asked, frozenset({(f"{SLOT}parent", name), (f"{SLOT}children", ANY)})):
+            continue
+        parents = {p.abstract_parent(name) if name in p else None for p in (old, new)}
+        if len(parents) > 1:
+            keys |= {(f"{SLOT}parent", name)} | {(f"{SLOT}children", place) for place in parents if place}
+    return relevant(keys, asked)
+
+
+def slots_used(relations: tuple[Relation, ...], closed: tuple[Name, ...]) -> frozenset[Key]:
+    """Return the slots that a redex uses."""
+    kinds = ((f"{SLOT}{'parent' if isinstance(pair, Parent) else 'links'}", pair.node) for pair in relations)
+    return frozenset(kinds) | {(f"{SLOT}children", node) for node in closed}
+
+
+def stale_tests(request: Request, rests_on: Provenance, used: frozenset[Key]) -> tuple[Dependency, ...]:
+    """Return what a control rests on that others have changed since it was observed: a test, or a relation it uses."""
+    if not isinstance(request, CTR | FLY):
+        return ()
+    stale = (
+        each
+        for each in rests_on
+        if each.asked is not None and (each.stale or used.intersection(each.changed))
+    )
+    return tuple(sorted(stale, key=repr))
+
+
+Asking = Callable[[Steps, Questions], Again]
+"""Asks again, after a transition, some questions about an observation."""
+
+
+def _mark(provenance: Provenance, asked: Questions, again: Asking) -> Provenance:
+    """Return what others rest on than the one who changed something, with that marked."""
+    return frozenset(each if each.stale else _mark_one(each, asked, again) for each in provenance)
+
+
+def _mark_one(each: Dependency, asked: Questions, again: Asking) -> Dependency:
+    if each.asked is not None:
+        asked = frozenset(key for key in asked if key[0].startswith(SLOT)) | {each.asked}
+    changed, steps = again(each.steps, asked)
+    if changed.issubset(each.changed) and steps == each.steps:
+        return each
+    return replace(each, steps=steps).having(changed.union(each.changed), each.own)
+
+
+def _mark_own(provenance: Provenance, asked: Questions, again: Asking) -> Provenance:
+    """Return what the one who changed something rests on itself: what others are told of it will be stale."""
+    return frozenset(
+        each if each.own is None or each.stale else _mark_one_own(each, each.own, asked, again)
+        for each in provenance
+    )
+
+
+def _mark_one_own(each: Dependency, own: tuple[Key, ...], asked: Questions, again: Asking) -> Dependency:
+    answers_asked = frozenset(key for key in asked if not key[0].startswith(SLOT))
+    changed = again(each.steps, answers_asked if each.asked is None else frozenset({each.asked})).changed
+    return each if changed.issubset(own) else each.having(each.changed, changed.union(own))
+
+
+def _mark_memory(c: Configuration, holder: Name, author: Name, again: Asking) -> Changes:
+    watch, mark = c.alpha.watch(holder), _mark_own if holder == author else _mark
+    if watch is None or not any((*watch.code, *watch.store, *watch.mailbox, watch.host)):
+        return {}
+    asked = questions_of(c, holder)
+    mailbox_too = holder != author or _passes_on(c, holder, HEARD)
+
+    def marks(part: tuple[Provenance, ...]) -> tuple[Provenance, ...]:
+        return tuple(mark(each, asked, again) for each in part)
+
+    mailbox = marks(watch.mailbox) if mailbox_too else watch.mailbox
+    host = mark(watch.host, asked, again)
+    return {watch_cell(holder): Watch(marks(watch.code), marks(watch.store), mailbox, host)}
+
+
+def _passes_on(c: Configuration, agent: Name, what: Name) -> bool:
+    """Tell whether others may be told what an agent receives (`HEARD`), or where it is hosted (`HOSTED`)."""
+    return what in told_by(c.setting.program, c.alpha.code(agent))
+
+
+def _request_cells(c: Configuration, holder: Name) -> list[Cell]:
+    cells = [QUEUE] if holder == NOBODY else [line_cell(holder), sends_cell(holder)]
+    return [cell for cell in cells if c.read(cell)]
+
+
+def _mark_requests(c: Configuration, cell: Cell, author: Name, again: Asking) -> Changes:
+    kept = zip(c.read(cell), c.read((MONITOR, *cell)), strict=True)
+    return {(MONITOR, *cell): tuple(_mark_request(c, *each, author, again) for each in kept)}
+
+
+def _mark_request(
+    c: Configuration, request: Request, rests_on: Provenance, author: Name, again: Asking
+) -> Provenance:
+    holder, becomes = _holder(request), HOSTED if isinstance(request, MGR) else HEARD
+    if not rests_on or (holder == author and not _passes_on(c, author, becomes)):
+        return rests_on
+    return (_mark_own if holder == author else _mark)(rests_on, _asked_by(c, request), again)
+
+
+def _holder(request: Request) -> Name:
+    return request.to if isinstance(request, SND) else request.agent
+
+
+def _asked_by(c: Configuration, request: Request) -> Questions:
+    """Return what may matter of what a request rests on: for a control its own redex, for a message who gets it."""
+    if isinstance(request, CTR | FLY):
+        return slots_of(request.reaction.redex)
+    return anybodys(c) if isinstance(request, SND) else questions_of(c, request.agent)
+
+
+def monitored(c: Configuration) -> Configuration:
+    """Return a configuration in which the monitor begins to remember; nothing rests on anything yet."""
+    setting = c.setting.with_(monitored=True)
+    cells: Changes = {}
+    for agent in c.alpha.names():
+        agents = c.alpha
+        lengths = (len(agents.code(agent)), len(agents.store(agent)), len(agents.mailbox(agent)))
+        code, store, mailbox = ((NOTHING,) * length for length in lengths)
+        cells[watch_cell(agent)] = Watch(code, store, mailbox)
+        lines = (line_cell(agent), sends_cell(agent), QUEUE)
+        cells |= {
+            (MONITOR, *cell): (NOTHING,) * len(c.read(cell)) for cell in lines if c.read(cell) is not None
+        }
+    return Configuration(setting, c.state.with_(cells))

@@ -1,0 +1,255 @@
+"""What an agent may ever ask of an observation, and which slots its controls may use: static, larger than any run.
+
+The race monitor remembers of what others change only what may matter to who holds it. So it multiplies configurations
+no more than it must.
+"""
+
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from functools import lru_cache
+from itertools import product
+from math import prod
+
+from semantics.behaviours.expressions import (
+    OPERATORS,
+    Apply,
+    Either,
+    Expression,
+    Fault,
+    Host,
+    Literal,
+    QueryOf,
+    SetOf,
+    TupleOf,
+    free,
+    reads_host,
+)
+from semantics.behaviours.patterns import variables
+from semantics.behaviours.program import Program, expressions_of, reachable
+from semantics.behaviours.reactions import NodeTerm, Pattern, Reaction
+from semantics.behaviours.statements import (
+    Assign,
+    Call,
+    Case,
+    ChooseFrom,
+    ControlBy,
+    For,
+    ForEach,
+    Match,
+    Migrate,
+    Observe,
+    React,
+    Send,
+    Spawn,
+    Statement,
+)
+from semantics.races.provenance import EVERYTHING, SLOT, Key
+from semantics.state.agents import Code
+from semantics.state.configuration import Configuration
+from semantics.state.setting import Setting
+from semantics.state.signature import Name
+
+Names = frozenset[Name]
+Questions = frozenset[Key]
+"""Keys; one about `ANY` stands for those about every name."""
+
+ANY = "*"
+SLOTS: Questions = frozenset((f"{SLOT}{kind}", ANY) for kind in ("parent", "links", "children"))
+
+MOST_INSTANCES = 5_000
+"""A control whose arguments may come to more combinations than these is taken for one that may use any slot."""
+
+
+def relevant(keys: Iterable[Key], questions: Questions) -> frozenset[Key]:
+    """Return the keys that are among some questions."""
+    return frozenset(key for key in keys if key in questions or (key[0], ANY) in questions)
+
+
+def meet(some: Questions, others: Questions) -> bool:
+    """Tell whether some questions and others have any in common."""
+    return any(
+        key in others
+        or (key[0], ANY) in others
+        or (key[-1] == ANY and key[0] in {each[0] for each in others})
+        for key in some
+    )
+
+
+def questions_of(c: Configuration, agent: Name) -> Questions:
+    """Return what an agent may come to ask; if it may tell others what it saw, what anybody may."""
+    program = c.setting.program
+    reach = reachable(program, c.alpha.code(agent))
+    return anybodys(c) if tells(program, reach) else questions_in(c.setting, reach, hosts_of(c, agent))
+
+
+def anybodys(c: Configuration) -> Questions:
+    """Return what any agent may ever come to ask."""
+    every = frozenset(range(len(c.setting.program.statements)))
+    return questions_in(c.setting, every, frozenset[Name]().union(*(hosts_of(c, a) for a in c.alpha.names())))
+
+
+HEARD: Name = ""
+"""Stands, among variables, for what an agent receives."""
+
+HOSTED: Name = "HOST"
+"""Stands, among variables, for where an agent is hosted."""
+
+
+def told_by(program: Program, code: Code) -> Names:
+    """Return the variables whose values may get into what somebody with so much left to run tells others."""
+    return _told(program, reachable(program, code))
+
+
+@lru_cache(maxsize=1 << 12)
+def _told(program: Program, reach: frozenset[int]) -> Names:
+    told: Names = frozenset()
+    while True:
+        parts = (_passed_on(program, program.statements[number], told) for number in sorted(reach))
+        grown = told.union(*parts)
+        if grown == told:
+            return told
+        told = grown
+
+
+def uses_host(program: Program, code: Code) -> bool:
+    """Tell whether somebody with so much left to run may use its host: a control does, whatever its arguments."""
+    return _host_used(program, reachable(program, code))
+
+
+@lru_cache(maxsize=1 << 12)
+def _host_used(program: Program, reach: frozenset[int]) -> bool:
+    statements = [program.statements[number] for number in reach]
+    return any(
+        isinstance(each, ControlBy) or any(map(reads_host, expressions_of(each))) for each in statements
+    )
+
+
+def _read(expression: Expression | QueryOf) -> Names:
+    """Return the variables that an expression or a query reads, and whether it reads the host."""
+    return free(expression) | {HOSTED} if reads_host(expression) else free(expression)
+
+
+def _passed_on(program: Program, statement: Statement, told: Names) -> Names:
+    """Return what a statement tells, or computes what is told from."""
+    match statement:
+        case Send(message, _):
+            return _read(message)
+        case Spawn(_, host, _, arguments):
+            return _read(host).union(*map(_read, arguments))
+        case Migrate(host):
+            return _read(host) if HOSTED in told else frozenset()
+        case Assign(variable, source) | For(source, variable, _) | ChooseFrom(variable, source, _):
+            return _read(source) if variable in told else frozenset()
+        case ForEach(variable, rest, _):
+            return frozenset({rest} if variable in told else ())
+        case Match(source, cases):
+            return _read(source) if _binds(cases, told) else frozenset()
+        case React(cases):
+            return frozenset({HEARD} if _binds(cases, told) else ())
+        case Observe(query):
+            return _read(query) if HEARD in told else frozenset()
+        case Call(behaviour, arguments):
+            given = zip(program.behaviours[behaviour].parameters, arguments, strict=True)
+            return frozenset[Name]().union(*(_read(each) for name, each in given if name in told))
+        case _:
+            return frozenset()
+
+
+def _binds(cases: Iterable[Case], told: Names) -> bool:
+    return any(not told.isdisjoint(variables(case.pattern)) for case in cases)
+
+
+def tells(program: Program, reach: Iterable[int]) -> bool:
+    """Tell whether some statements may let others know what was observed."""
+    return _may(program, reach, Send, Spawn)
+
+
+def hosts_of(c: Configuration, agent: Name) -> Names:
+    """Return where an agent may ever be hosted."""
+    program = c.setting.program
+    if _may(program, range(len(program.statements)), Migrate, Spawn):
+        return frozenset(c.setting.kinds)
+    return frozenset({c.alpha.host(agent)})
+
+
+def slots_of(redex: Pattern) -> Questions:
+    """Return the slots that a redex may use, in whichever match."""
+    used = [("parent", node) for node, _ in redex.parents] + [("links", node) for _, node in redex.links]
+    return frozenset(
+        (f"{SLOT}{kind}", _name(node)) for kind, node in (*used, *(("children", n) for n in redex.closed))
+    )
+
+
+def _name(term: NodeTerm) -> Name:
+    return term if isinstance(term, str) else ANY
+
+
+def _may(program: Program, reach: Iterable[int], *statements: type) -> bool:
+    return any(isinstance(program.statements[number], statements) for number in reach)
+
+
+@lru_cache(maxsize=1 << 12)
+def questions_in(setting: Setting, reach: frozenset[int], hosts: Names) -> Questions:
+    """Return what some statements may ask, and which slots their controls may use, at some hosts."""
+    found: set[Key] = set()
+    for number in sorted(reach):
+        statement = setting.program.statements[number]
+        for expression in expressions_of(statement):
+            found.update(_asked(expression))
+        if isinstance(statement, For | ChooseFrom) and free(statement.members):
+            found.add(EVERYTHING)
+        if isinstance(statement, ControlBy):
+            found |= _slots(setting, statement, hosts)
+    return frozenset(found)
+
+
+def _asked(expression: Expression | QueryOf | None) -> Iterator[Key]:
+    match expression:
+        case Apply(operator, arguments):
+            if free(expression):
+                shown = (each.value if isinstance(each, Literal) else ANY for each in arguments)
+                yield from OPERATORS[operator].asks(*shown)
+            for each in arguments:
+                yield from _asked(each)
+        case TupleOf(items) | SetOf(items):
+            for each in items:
+                yield from _asked(each)
+        case Either(_, first, second):
+            yield from (*_asked(first), *_asked(second))
+        case QueryOf(_, argument):
+            yield from _asked(argument)
+
+
+def _slots(setting: Setting, control: ControlBy, hosts: Names) -> Questions:
+    """Return the slots that a control may use, whatever its arguments come to."""
+    found = instances(setting, control, hosts)
+    if found is None:
+        return SLOTS
+    return frozenset[Key]().union(*map(slots_of, {reaction.redex for reaction in found}))
+
+
+def instances(setting: Setting, control: ControlBy, hosts: Names) -> tuple[Reaction, ...] | None:
+    """Return the reactions that a control may request, whatever its arguments may name; None if too many."""
+    ranges = _ranges(setting, control, hosts)
+    if prod(map(len, ranges)) > MOST_INSTANCES:
+        return None
+    make = setting.program.reactions[control.name]
+    found = []
+    for host, *names in product(*map(sorted, ranges)):
+        with suppress(Fault):  # not every name is one that the command takes
+            found.append(make(host, *names))
+    return tuple(found)
+
+
+def _ranges(setting: Setting, control: ControlBy, hosts: Names) -> list[Names]:
+    return [hosts, *(_range(setting, each, hosts) for each in control.arguments)]
+
+
+def _range(setting: Setting, argument: Expression, hosts: Names) -> Names:
+    match argument:
+        case Literal(str(name)):
+            return frozenset({name})
+        case Host():
+            return hosts
+        case _:
+            return frozenset(setting.kinds)

@@ -1,0 +1,61 @@
+"""A(P) from physical properties: the paper's Bigraph Driver (3.2.2), and the merging of what several stations saw."""
+
+from collections.abc import Iterable
+
+from bigraphs import Bigraph
+from physical import PhysicalProperty
+from semantics.behaviours.program import Program
+from semantics.state.cells import Changes
+from semantics.state.configuration import Configuration
+from semantics.state.initial import initial
+from semantics.state.logical_model import links_cell, parent_cell
+from semantics.state.physical_model import Carried, Placed, Placement
+from semantics.state.setting import Setting
+from semantics.state.signature import Signature
+
+
+def merged(*sources: Iterable[PhysicalProperty]) -> tuple[PhysicalProperty, ...]:
+    """Return the newest property of each entity, sorted by entity: a property seen again replaces the one before.
+
+    One without a time is older than any with one; of two equally new the one whose source comes last by name is kept,
+    so that every station keeps the same.
+    """
+    newest: dict[str, PhysicalProperty] = {}
+    for each in (each for source in sources for each in source):
+        known = newest.get(each.entity)
+        if known is None or _age(each) >= _age(known):
+            newest[each.entity] = each
+    return tuple(newest[entity] for entity in sorted(newest))
+
+
+def _age(seen: PhysicalProperty) -> tuple[float, str]:
+    return (float("-inf") if seen.time is None else seen.time, seen.source or "")
+
+
+def world(properties: Iterable[PhysicalProperty], signature: Signature) -> Configuration:
+    """Return the configuration without agents whose P these properties are, and whose L is A(P)."""
+    seen = merged(properties)
+    setting = Setting(signature, {each.entity: each.kind for each in seen}, Program())
+    placements = {each.entity: placement_of(each) for each in seen}
+    return initial(setting, placements, {each.entity: each.channels for each in seen}, {})
+
+
+def placement_of(seen: PhysicalProperty) -> Placement:
+    """Return where a property says that its entity is."""
+    placed = Placed(seen.geometry, seen.altitude)
+    return placed if seen.carried_by is None else Carried(seen.carried_by, placed)
+
+
+def abstraction(properties: Iterable[PhysicalProperty], signature: Signature) -> Bigraph:
+    """Return A(P) as a bigraph: each node in its smallest total container, or in what carries it."""
+    return world(properties, signature).structure.logical.bigraph()
+
+
+def as_it_is(c: Configuration) -> Configuration:
+    """Return a configuration in which L is A(P): what somebody would believe who sees everything."""
+    physical = c.structure.physical
+    slots: Changes = {}
+    for name in c.setting.kinds:
+        slots[parent_cell(name)] = physical.abstract_parent(name) if name in physical else None
+        slots[links_cell(name)] = physical.links(name) if name in physical else ()
+    return c.with_(slots)

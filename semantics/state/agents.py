@@ -1,0 +1,147 @@
+"""The agents α as a view over cells, and the watch that the race monitor keeps beside each."""
+
+from dataclasses import dataclass, replace
+
+from semantics.behaviours.values import Value, order_key
+from semantics.races.provenance import NOTHING, Provenance
+from semantics.state.cells import AGENTS, MONITOR, Cell, Cells, Changes, has
+from semantics.state.signature import Name
+
+Code = tuple[int, ...]
+"""What is left to run: statements by number in the program, the next one first."""
+
+Store = tuple[tuple[str, Value], ...]
+"""The variables that what is left to run may read, or that properties name, sorted."""
+
+
+def written(variable: str) -> str:
+    """Return a variable as the programmer wrote it; nothing of one that no programmer wrote.
+
+    >>> written("obs#2"), written("#1")
+    ('obs', '')
+    """
+    return variable.partition("#")[0]
+
+
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """What an agent's control flow, variables, mail and host rest on; each part runs beside its cell.
+
+    Attributes:
+        code: For each statement that is left to run, what was tested to get there.
+        store: For each variable of the store, what it was computed from.
+        mailbox: For each message of the mailbox, what its sender had computed it from.
+        host: What the node that it is hosted at was chosen by.
+    """
+
+    code: tuple[Provenance, ...] = ()
+    store: tuple[Provenance, ...] = ()
+    mailbox: tuple[Provenance, ...] = ()
+    host: Provenance = NOTHING
+
+
+def host_cell(agent: Name) -> Cell:
+    """Address the node that an agent is hosted at."""
+    return ("host", agent)
+
+
+def code_cell(agent: Name) -> Cell:
+    """Address what is left of an agent to run."""
+    return ("code", agent)
+
+
+def is_over(code: Code | None) -> bool:
+    """Ask whether nothing is left to run."""
+    return not code
+
+
+def store_cell(agent: Name) -> Cell:
+    """Address an agent's variables."""
+    return ("store", agent)
+
+
+def mailbox_cell(agent: Name) -> Cell:
+    """Address the messages that an agent has got and not received: a sorted tuple."""
+    return ("mailbox", agent)
+
+
+def watch_cell(agent: Name) -> Cell:
+    """Address an agent's `Watch`; a monitor cell."""
+    return (MONITOR, "agent", agent)
+
+
+class Agents:
+    """α over the cells of a configuration."""
+
+    __slots__ = ("cells",)
+
+    def __init__(self, cells: Cells) -> None:
+        self.cells = cells
+
+    def names(self) -> tuple[Name, ...]:
+        """Return the agents, sorted."""
+        names: tuple[Name, ...] = self.cells.read(AGENTS)
+        return names
+
+    def __contains__(self, agent: Name) -> bool:
+        return self.cells.test(AGENTS, has, agent)
+
+    def host(self, agent: Name) -> Name:
+        """Return the node that an agent is hosted at."""
+        host: Name = self.cells.read(host_cell(agent))
+        return host
+
+    def code(self, agent: Name) -> Code:
+        """Return what is left of an agent to run; empty for one that has ended."""
+        code: Code = self.cells.read(code_cell(agent))
+        return code
+
+    def store(self, agent: Name) -> Store:
+        """Return an agent's variables."""
+        store: Store = self.cells.read(store_cell(agent))
+        return store
+
+    def mailbox(self, agent: Name) -> tuple[Value, ...]:
+        """Return the messages of an agent's mailbox, sorted: they have no order of arrival."""
+        mailbox: tuple[Value, ...] = self.cells.read(mailbox_cell(agent))
+        return mailbox
+
+    def watch(self, agent: Name) -> Watch | None:
+        """Return what the monitor remembers of an agent, None where nobody asked for it."""
+        watch: Watch | None = self.cells.read(watch_cell(agent))
+        return watch
+
+    def hosted(self, node: Name) -> tuple[Name, ...]:
+        """Return the agents hosted at a node, sorted."""
+        return tuple(agent for agent in self.names() if self.host(agent) == node)
+
+    def hosting(self, agent: Name, host: Name, rests_on: Provenance = NOTHING) -> Changes:
+        """Write host(agent) ↦ host."""
+        watch = self.watch(agent)
+        changes: Changes = {host_cell(agent): host}
+        return changes if watch is None else {**changes, watch_cell(agent): replace(watch, host=rests_on)}
+
+    def posting(self, agent: Name, message: Value, rests_on: Provenance = NOTHING) -> Changes:
+        """Write mailbox(agent) + message."""
+        watch = self.watch(agent)
+        mail = (
+            list(zip(self.mailbox(agent), watch.mailbox, strict=True))
+            if watch
+            else [(m, NOTHING) for m in self.mailbox(agent)]
+        )
+        return self._mail(agent, [*mail, (message, rests_on)])
+
+    def taking(self, agent: Name, position: int) -> Changes:
+        """Write mailbox(agent) less one message."""
+        watch = self.watch(agent)
+        kept = watch.mailbox if watch else (NOTHING,) * len(self.mailbox(agent))
+        mail = list(zip(self.mailbox(agent), kept, strict=True))
+        return self._mail(agent, mail[:position] + mail[position + 1 :])
+
+    def _mail(self, agent: Name, mail: list[tuple[Value, Provenance]]) -> Changes:
+        mail.sort(key=lambda item: (order_key(item[0]), sorted(map(str, item[1]))))
+        changes: Changes = {mailbox_cell(agent): tuple(message for message, _ in mail)}
+        watch = self.watch(agent)
+        if watch is not None:
+            changes[watch_cell(agent)] = replace(watch, mailbox=tuple(kept for _, kept in mail))
+        return changes

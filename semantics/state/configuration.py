@@ -1,0 +1,112 @@
+"""Configurations ⟨α | S | η⟩: immutable, hashable, compared by value; and the transitions between them."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from semantics.state.agents import Agents
+from semantics.state.cells import MONITOR, Cell, Changes, Part, Question, Row, State, merged
+from semantics.state.eta import Eta, Pending
+from semantics.state.requests import REQUESTS, Received, Request
+from semantics.state.setting import Setting
+from semantics.state.signature import Name
+from semantics.state.structure import Structure
+
+
+class Configuration:
+    """⟨α | S | η⟩ as views over cells, within a setting.
+
+    Attributes:
+        alpha: The agents.
+        structure: The structure S = (L, P, β, γ).
+        eta: The pending requests.
+        setting: What stays the same in the mission.
+        state: The cells.
+    """
+
+    __slots__ = ("alpha", "eta", "setting", "state", "structure")
+
+    def __init__(self, setting: Setting, state: State) -> None:
+        self.setting = setting
+        self.state = state
+        self.alpha = Agents(state)
+        self.structure = Structure(state, setting)
+        self.eta = Eta(state, setting)
+
+    @staticmethod
+    def of(setting: Setting, contents: Mapping[Cell, Any]) -> "Configuration":
+        """Make a configuration of the values of its cells."""
+        return Configuration(setting, Row.of(contents))
+
+    def read(self, cell: Cell) -> Any:
+        """Return the value of a cell."""
+        return self.state.read(cell)
+
+    def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
+        """Ask one question of a cell."""
+        return self.state.test(cell, question, *constants)
+
+    def with_(self, *changes: Changes) -> "Configuration":
+        """Return the configuration with these cells written; later changes win."""
+        return Configuration(self.setting, self.state.with_(merged(changes)))
+
+    def each(self, names: Iterable[Name], part: Callable[[Name], Part]) -> Mapping[Name, Part]:
+        """Return what a pointwise definition says of each name: no part depends on another."""
+        return self.state.each(names, part)
+
+    def with_each(self, parts: Mapping[Name, Changes]) -> "Configuration":
+        """Return the configuration with what each part of a pointwise definition writes."""
+        return Configuration(self.setting, self.state.with_each(parts))
+
+    def unmonitored(self) -> "Configuration":
+        """Return the configuration without the monitor's cells: what is counted."""
+        assert isinstance(self.state, Row)
+        kept = {cell: value for cell, value in self.state.items() if cell[0] != MONITOR}
+        return Configuration.of(self.setting, kept)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Configuration) and self.state == other.state
+
+    def __hash__(self) -> int:
+        return hash(self.state)
+
+    def __repr__(self) -> str:
+        from semantics.state.printing import print_configuration  # noqa: PLC0415  # printing knows configurations
+
+        return print_configuration(self)
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """What a transition is called: `⟨rule : ...⟩`.
+
+    Attributes:
+        rule: The name of the inference rule.
+        agent: Whose rule it is; None for the environment's.
+        about: The request served, the observation received, or the words after the agent.
+    """
+
+    rule: str
+    agent: Name | None
+    about: Request | Received | str = ""
+
+    def __str__(self) -> str:
+        words = [str(self.about)] if isinstance(self.about, REQUESTS) else [self.agent or "", str(self.about)]
+        return f"⟨{self.rule} : {', '.join(word for word in words if word)}⟩"
+
+
+@dataclass(frozen=True, slots=True)
+class Transition:
+    """One step that a rule allows.
+
+    Attributes:
+        label: What it is called.
+        target: The configuration after it.
+        shown: What `display` showed.
+        served: The pending request that was served, where it stood.
+    """
+
+    label: Label
+    target: Configuration
+    shown: tuple[str, ...] = ()
+    served: Pending | None = field(default=None, compare=False)

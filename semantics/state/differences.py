@@ -1,0 +1,147 @@
+"""What differs between two configurations, and nothing else: of a request that it is there now, of a link that it went.
+
+`printing.print_changes` prints whole cells, as they are after a step; here only what is new in them is told, so that a
+run can be read by what each step did.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from semantics.behaviours.values import show
+from semantics.state.agents import written
+from semantics.state.cells import AGENTS, MONITOR, NAMES, QUEUE, Cell
+from semantics.state.configuration import Configuration
+from semantics.state.physical_model import Carried, InTransit, PhysicalModel
+from semantics.state.printing import word_of
+from semantics.state.requests import READY
+from semantics.state.signature import Name
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """One thing that differs.
+
+    Attributes:
+        part: Where: `α`, `L`, `P` or `η`; `E` for what the environment may still say.
+        whose: The agent, node or channel that it is about.
+        text: What, in words and signs.
+    """
+
+    part: str
+    whose: Name
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.part}  {self.text}"
+
+
+PARTS = ("α", "L", "P", "η", "E")
+"""The parts of a configuration, in the order in which differences are told."""
+
+
+def differences(before: Configuration, after: Configuration) -> tuple[Difference, ...]:
+    """Return what differs, part by part, the monitor's cells left out."""
+    cells = sorted({*_cells(before), *_cells(after)})
+    changed = [cell for cell in cells if before.read(cell) != after.read(cell)]
+    found = [each for cell in changed for each in _of_cell(before, after, cell)]
+    return tuple(sorted(found, key=lambda each: PARTS.index(each.part)))
+
+
+def _cells(c: Configuration) -> Iterable[Cell]:
+    return (cell for cell, _ in c.state.items())  # type: ignore[attr-defined]  # only stored configurations differ
+
+
+def _of_cell(before: Configuration, after: Configuration, cell: Cell) -> Iterator[Difference]:
+    what, whose = cell[0], cell[-1]
+    if what == MONITOR or cell in (AGENTS, NAMES):
+        return
+    old, new = before.read(cell), after.read(cell)
+    if what == "code":
+        yield Difference("α", whose, f"{whose} {'is ' if new else ''}{_at(after, whose)}")
+    elif what == "host":
+        yield Difference("α", whose, f"{whose} hosted_at {new}" if new else f"{whose} is gone")
+    elif what == "store":
+        texts = dict.fromkeys(_variables(after, old or (), new or ()))
+        yield from (Difference("α", whose, f"{whose}.{text}") for text in texts)
+    elif what == "mailbox":
+        yield from (Difference("α", whose, f"mail of {whose}: {text}") for text in _shown(after, old, new))
+    elif what in ("line", "sends") or cell == QUEUE:
+        yield from (Difference("η", agent, text) for agent, text in _requests(old or (), new or ()))
+    elif what == "parent":
+        yield Difference("L", whose, f"{whose} : {_place(before, whose)} ↦ {_place(after, whose)}")
+    elif what in ("links", "channels"):
+        part = "L" if what == "links" else "P"
+        yield from (Difference(part, whose, f"{whose} : {text}") for text in _joined(old or (), new or ()))
+    elif what == "placement":
+        physical = (_where(c.structure.physical, whose) for c in (before, after))
+        yield Difference("P", whose, f"{whose} : {' ↦ '.join(physical)}")
+    elif what == "down":
+        yield Difference("P", whose, f"{whose} {'drops' if new else 'returns'}")
+    elif what == "says":
+        yield Difference("E", whose, f"may still be said: {new}")
+
+
+def _at(c: Configuration, a: Name) -> str:
+    code, program = c.alpha.code(a), c.setting.program
+    if not code:
+        return "ended"
+    line = program.line(code[0])
+    return f"at {word_of(program.statements[code[0]])}" + (f" (line {line})" if line else "")
+
+
+def _variables(
+    c: Configuration, old: Iterable[tuple[str, object]], new: Iterable[tuple[str, object]]
+) -> Iterator[str]:
+    """Yield the variables that are new or have another value; what is merely forgotten is no news."""
+    before, names = dict(old), frozenset((*c.setting.kinds, *c.alpha.names()))
+    for name, value in new:
+        if before.get(name) != value and written(name):
+            yield f"{written(name)} = {show(value, names)}"  # type: ignore[arg-type]  # stores hold values
+
+
+def _shown(c: Configuration, old: Iterable[object] | None, new: Iterable[object] | None) -> Iterator[str]:
+    names = frozenset((*c.setting.kinds, *c.alpha.names()))
+    yield from _more_and_less(
+        [show(each, names) for each in old or ()],  # type: ignore[arg-type]  # mail is values
+        [show(each, names) for each in new or ()],  # type: ignore[arg-type]
+    )
+
+
+def _more_and_less(old: Iterable[str], new: Iterable[str]) -> Iterator[str]:
+    before, after = Counter(old), Counter(new)
+    yield from (f"− {each}" for each in sorted((before - after).elements()))
+    yield from (f"+ {each}" for each in sorted((after - before).elements()))
+
+
+def _requests(old: Iterable[object], new: Iterable[object]) -> Iterator[tuple[Name, str]]:
+    before, after = Counter(old), Counter(new)
+    for sign, requests in (("−", before - after), ("+", after - before)):
+        for request in sorted(requests.elements(), key=str):
+            short = (
+                f"READY({request.agent}, {request.observation})"
+                if isinstance(request, READY)
+                else str(request)
+            )
+            yield request.agent, f"{sign} {short}"  # type: ignore[attr-defined]  # every request has an agent
+
+
+def _joined(old: Iterable[Name], new: Iterable[Name]) -> Iterator[str]:
+    before, after = set(old), set(new)
+    yield from (f"− {each}" for each in sorted(before - after))
+    yield from (f"+ {each}" for each in sorted(after - before))
+
+
+def _place(c: Configuration, node: Name) -> str:
+    return str(c.structure.logical.parent(node)) if node in c.structure.logical else "unknown"
+
+
+def _where(physical: PhysicalModel, name: Name) -> str:
+    placement = physical.placement(name)
+    if placement is None:
+        return "absent"
+    if isinstance(placement, InTransit):
+        return f"on the way to {placement.to}"
+    if isinstance(placement, Carried):
+        return f"carried by {placement.by}"
+    return f"in {physical.abstract_parent(name)}"

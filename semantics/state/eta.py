@@ -1,0 +1,123 @@
+"""The pending requests η as a view over cells, and the lines in which the three schedulers serve them."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+from semantics.races.provenance import NOTHING, Provenance
+from semantics.state.cells import AGENTS, MONITOR, QUEUE, Cell, Cells, Changes
+from semantics.state.requests import FLY, READY, SND, Request, request_key
+from semantics.state.setting import Scheduler
+from semantics.state.signature import Name
+
+if TYPE_CHECKING:
+    from semantics.state.setting import Setting
+
+
+def line_cell(agent: Name) -> Cell:
+    """Address one agent's requests: in the order asked, sorted where the scheduler knows no order."""
+    return ("line", agent)
+
+
+def sends_cell(agent: Name) -> Cell:
+    """Address one agent's messages on their way, sorted: they stand in no line."""
+    return ("sends", agent)
+
+
+class Pending(NamedTuple):
+    """A request where it stands: its cell, its position there, and what it rests on."""
+
+    request: Request
+    cell: Cell
+    position: int
+    rests_on: Provenance
+
+
+class Eta:
+    """η over the cells of a configuration.
+
+    Under `program_order` each agent has a line, under `unordered` a multiset. Under `fcfs` all share one queue for what
+    waits for its turn; what takes none (READY and FLY) stands in its agent's own line, since its place among others'
+    requests is nothing that anybody could tell.
+    """
+
+    __slots__ = ("cells", "setting")
+
+    def __init__(self, cells: Cells, setting: "Setting") -> None:
+        self.cells = cells
+        self.setting = setting
+
+    def of(self, agent: Name) -> tuple[Pending, ...]:
+        """Return an agent's requests, in line where there is one."""
+        return tuple(each for cell in self._cells(agent) for each in self._at(cell, agent))
+
+    def all(self) -> tuple[Pending, ...]:
+        """Return every pending request: the agents' in order of their names, then the queue of `fcfs` as asked."""
+        agents: tuple[Name, ...] = self.cells.read(AGENTS)
+        if self.setting.scheduler is Scheduler.FCFS:
+            return tuple(each for cell in (*map(line_cell, agents), QUEUE) for each in self._at(cell))
+        return tuple(each for agent in agents for each in self.of(agent))
+
+    def in_line(self, agent: Name) -> tuple[Pending, ...]:
+        """Return the requests of an agent that may be served next (under `fcfs` apart from others' turns)."""
+        waiting = [each for each in self.of(agent) if not isinstance(each.request, READY)]
+        if self.setting.scheduler is Scheduler.UNORDERED:
+            return tuple(waiting)
+        line = [each for each in waiting if not isinstance(each.request, SND)]
+        return (*line[:1], *(each for each in waiting if isinstance(each.request, SND)))
+
+    def ready(self, agent: Name) -> tuple[Pending, ...]:
+        """Return the observations of an agent that may be delivered next."""
+        ready = tuple(each for each in self.of(agent) if isinstance(each.request, READY))
+        return ready if self.setting.scheduler is Scheduler.UNORDERED else ready[:1]
+
+    def adding(self, request: Request, rests_on: Provenance = NOTHING) -> Changes:
+        """Write η + request."""
+        cell = self._cell(request)
+        return self._write(cell, [*self._at(cell), Pending(request, cell, -1, rests_on)])
+
+    def removing(self, pending: Pending) -> Changes:
+        """Write η − request."""
+        line = list(self._at(pending.cell))
+        return self._write(pending.cell, line[: pending.position] + line[pending.position + 1 :])
+
+    def replacing(self, pending: Pending, request: Request, rests_on: Provenance | None = None) -> Changes:
+        """Write η with another request in the place of one, or behind it in the line that the other one stands in."""
+        kept = pending.rests_on if rests_on is None else rests_on
+        if self._cell(request) != pending.cell:
+            return self.removing(pending) | self.adding(request, kept)
+        line = list(self._at(pending.cell))
+        line[pending.position] = Pending(request, pending.cell, pending.position, kept)
+        return self._write(pending.cell, line)
+
+    def _cells(self, agent: Name) -> tuple[Cell, ...]:
+        more = {Scheduler.FCFS: (QUEUE,), Scheduler.PROGRAM_ORDER: (sends_cell(agent),)}
+        return (line_cell(agent), *more.get(self.setting.scheduler, ()))
+
+    def _cell(self, request: Request) -> Cell:
+        """Return where a request stands."""
+        if self.setting.scheduler is Scheduler.FCFS and not isinstance(request, READY | FLY):
+            return QUEUE
+        is_message = self.setting.scheduler is Scheduler.PROGRAM_ORDER and isinstance(request, SND)
+        return sends_cell(request.agent) if is_message else line_cell(request.agent)
+
+    def _at(self, cell: Cell, agent: Name | None = None) -> Iterator[Pending]:
+        """Yield what stands in a cell, everybody's or one agent's."""
+        requests: tuple[Request, ...] = self.cells.read(cell)
+        if not requests:
+            return
+        rests_on = (NOTHING,) * len(requests)
+        if self.setting.monitored:
+            rests_on = self.cells.read((MONITOR, *cell))
+        for position, (request, kept) in enumerate(zip(requests, rests_on, strict=True)):
+            if agent is None or request.agent == agent:
+                yield Pending(request, cell, position, kept)
+
+    def _write(self, cell: Cell, line: list[Pending]) -> Changes:
+        if self.setting.scheduler is Scheduler.UNORDERED or cell[0] == "sends":
+            line = sorted(
+                line, key=lambda each: (request_key(each.request), sorted(map(repr, each.rests_on)))
+            )
+        changes: Changes = {cell: tuple(each.request for each in line)}
+        if self.setting.monitored:
+            changes[MONITOR, *cell] = tuple(each.rests_on for each in line)
+        return changes

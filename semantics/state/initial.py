@@ -1,0 +1,75 @@
+"""The first configuration of a mission: L₀ = A(P₀), unless the mission says what is believed."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from semantics.behaviours.stepping import new_process, starting
+from semantics.environment import Drops, Leaves, Says
+from semantics.state.agents import Code
+from semantics.state.cells import AGENTS, NAMES, QUEUE, Changes
+from semantics.state.configuration import Configuration
+from semantics.state.logical_model import links_cell, parent_cell
+from semantics.state.physical_model import Placement, channels_cell, down_cell, placement_cell
+from semantics.state.setting import Scheduler, Setting
+from semantics.state.signature import Name
+
+
+@dataclass(frozen=True, slots=True)
+class Beliefs:
+    """What L₀ holds where it differs from A(P₀).
+
+    Attributes:
+        parents: The believed parent of a node, None where the node is not in L₀.
+        links: The believed links of a node.
+    """
+
+    parents: Mapping[Name, Name | None] = field(default_factory=dict)
+    links: Mapping[Name, Iterable[Name]] = field(default_factory=dict)
+
+
+def initial(
+    setting: Setting,
+    placements: Mapping[Name, Placement],
+    channels: Mapping[Name, Iterable[Name]],
+    agents: Mapping[Name, tuple[Name, Code]],
+    beliefs: Beliefs | None = None,
+) -> Configuration:
+    """Return the configuration that a mission starts in.
+
+    Args:
+        setting: What stays the same.
+        placements: P₀ of the entities that are there; the setting's other entities are absent.
+        channels: The channels of entities, those of absent ones left out.
+        agents: For each agent its host and the code that it starts with.
+        beliefs: Where L₀ differs from A(P₀).
+    """
+    contents: Changes = {NAMES: tuple(sorted(setting.kinds)), AGENTS: tuple(sorted(agents))}
+    for name in setting.kinds:
+        contents[placement_cell(name)] = placements.get(name)
+        contents[channels_cell(name)] = tuple(sorted(channels.get(name, ())))
+    for clause in setting.environment:
+        if isinstance(clause, Drops):
+            contents[down_cell(clause.channel)] = False
+        elif isinstance(clause, Leaves):
+            contents[clause.left] = False
+        elif isinstance(clause, Says):
+            contents[clause.counter] = clause.times
+    for agent, (host, code) in sorted(agents.items()):
+        contents |= starting(setting, agent, host, new_process(setting, agent, host, code))
+    if setting.scheduler is Scheduler.FCFS:
+        contents[QUEUE] = ()
+        contents |= {("watch", *QUEUE): ()} if setting.monitored else {}
+    return _believing(Configuration.of(setting, contents), beliefs or Beliefs())
+
+
+def _believing(c: Configuration, beliefs: Beliefs) -> Configuration:
+    physical = c.structure.physical
+    slots: Changes = {}
+    for name in c.setting.kinds:
+        present = name in physical
+        slots[parent_cell(name)] = physical.abstract_parent(name) if present else None
+        slots[links_cell(name)] = physical.links(name) if present else ()
+    slots |= {parent_cell(name): parent for name, parent in beliefs.parents.items()}
+    slots |= {links_cell(name): tuple(sorted(links)) for name, links in beliefs.links.items()}
+    slots |= {links_cell(name): () for name, parent in beliefs.parents.items() if parent is None}
+    return c.with_(slots)

@@ -1,0 +1,260 @@
+"""The physical model P as a view over cells: where everything is, and σ_P = {contains, carries, connected}."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+from physical import Band, Geometry, area, band_contains, contains, point
+from semantics.state.cells import NAMES, Cell, Cells, Changes, is_something
+from semantics.state.signature import REGION, Name, Sorting
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """A geometry on the earth, with the band of altitudes (metres) that it takes up, if it has one."""
+
+    geometry: Geometry
+    altitude: Band | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Carried:
+    """Carried by another entity, wherever that is; `shape` is what it takes up once it is put down.
+
+    Where a shape was before means nothing while it is carried: it is kept as it was first given, a point as any point.
+    """
+
+    by: Name
+    shape: Placed
+
+    def __post_init__(self) -> None:
+        geometry = self.shape.geometry
+        still = point(0, 0) if geometry.is_point else geometry.template or geometry
+        object.__setattr__(self, "shape", Placed(still, self.shape.altitude))
+
+
+@dataclass(frozen=True, slots=True)
+class InTransit:
+    """Commanded from `origin` to a node (`control timed`): it may be anywhere between the two."""
+
+    origin: Placed
+    to: Name
+
+
+Placement = Placed | Carried | InTransit
+
+
+class Holder(NamedTuple):
+    """What may contain others: its area in square metres, its name, and where it stands."""
+
+    area: float
+    place: Name
+    at: Placed
+
+
+def placement_cell(entity: Name) -> Cell:
+    """Address where an entity is; None there means that it is not in P."""
+    return ("placement", entity)
+
+
+def channels_cell(entity: Name) -> Cell:
+    """Address the sorted channels that an entity is on."""
+    return ("channels", entity)
+
+
+def down_cell(channel: Name) -> Cell:
+    """Address whether a channel that may drop is down."""
+    return ("down", channel)
+
+
+@lru_cache(maxsize=1 << 12)  # live, what moves is at each place once: more would only be in the way
+def encloses(outer: Placed, inner: Placed) -> bool:
+    """Tell interior containment, and that of altitude where both have a band."""
+    levels = band_contains(outer.altitude, inner.altitude)
+    return levels and not outer.geometry.is_point and contains(outer.geometry, inner.geometry)
+
+
+def is_carried(placement: Placement | None) -> bool:
+    """Ask whether something is carried."""
+    return isinstance(placement, Carried)
+
+
+def is_aboard(placement: Placement | None, carriers: frozenset[Name]) -> bool:
+    """Ask whether something is carried by one of some others."""
+    return isinstance(placement, Carried) and placement.by in carriers
+
+
+def is_placed(placement: Placement | None) -> bool:
+    """Ask whether something stands by itself, not in transit."""
+    return isinstance(placement, Placed)
+
+
+def stands_within(placement: Placement | None, at: Placed) -> bool:
+    """Ask whether what stands there is within a place that stands so."""
+    return isinstance(placement, Placed) and encloses(at, placement)
+
+
+def stands_in(placement: Placement | None, place: Name, holders: tuple[Holder, ...]) -> bool:
+    """Ask whether a place is the smallest of the holders that contain what stands there; the region, if none does."""
+    if not isinstance(placement, Placed):
+        return False
+    return next((holder.place for holder in holders if encloses(holder.at, placement)), REGION) == place
+
+
+class PhysicalModel:
+    """P and σ_P over the cells of a configuration."""
+
+    __slots__ = ("cells", "sorting")
+
+    def __init__(self, cells: Cells, sorting: Sorting) -> None:
+        self.cells = cells
+        self.sorting = sorting
+
+    def placement(self, entity: Name) -> Placement | None:
+        """Return what P says of an entity's whereabouts, None where it has no image."""
+        placement: Placement | None = self.cells.read(placement_cell(entity))
+        return placement
+
+    def channels(self, entity: Name) -> tuple[Name, ...]:
+        """Return the channels that an entity is set to, up or down."""
+        return self.cells.read(channels_cell(entity)) or ()
+
+    def __contains__(self, entity: Name) -> bool:
+        return self.cells.test(placement_cell(entity), is_something)
+
+    def entities(self) -> tuple[Name, ...]:
+        """Return dom(P), sorted."""
+        return tuple(name for name in self.cells.read(NAMES) if name in self)
+
+    def carrier(self, entity: Name) -> Name | None:
+        """Return what carries an entity."""
+        if not self.cells.test(placement_cell(entity), is_carried):
+            return None
+        placement = self.placement(entity)
+        return placement.by if isinstance(placement, Carried) else None
+
+    def carriers(self, entity: Name) -> Iterator[Name]:
+        """Yield what carries an entity, then what carries that, and so on."""
+        by = self.carrier(entity)
+        while by is not None:
+            yield by
+            by = self.carrier(by)
+
+    def cargo(self, entity: Name) -> frozenset[Name]:
+        """Return everything that an entity carries, at any depth."""
+        aboard, names = frozenset({entity}), self.cells.read(NAMES)
+        while more := {name for name in names if name not in aboard and self._is_aboard(name, aboard)}:
+            aboard |= more
+        return aboard - {entity}
+
+    def _is_aboard(self, entity: Name, carriers: frozenset[Name]) -> bool:
+        return self.cells.test(placement_cell(entity), is_aboard, carriers)
+
+    def position(self, entity: Name) -> Placed | None:
+        """Return where an entity is: where its outermost carrier is, or was when it took off."""
+        placement = self.placement(entity)
+        while isinstance(placement, Carried):
+            placement = self.placement(placement.by)
+        return placement.origin if isinstance(placement, InTransit) else placement
+
+    def going_to(self, entity: Name) -> Name:
+        """Return where an entity itself was sent; nothing for what is not under way."""
+        placement = self.placement(entity)
+        return placement.to if isinstance(placement, InTransit) else ""
+
+    def transit(self, entity: Name) -> InTransit | None:
+        """Return the flight of an entity, or of what carries it."""
+        placement = self.placement(entity)
+        while isinstance(placement, Carried):
+            placement = self.placement(placement.by)
+        return placement if isinstance(placement, InTransit) else None
+
+    def contains(self, place: Name, entity: Name) -> bool:
+        """Tell σ_P's `contains`.
+
+        An entity in transit is contained only by what contains both ends of its flight, the destination itself
+        excepted: nobody sees it arrived before it has. What is carried contains nothing: it has no room of its own.
+        """
+        if place == entity or self.carrier(place) is not None:
+            return False
+        outer, inner = self.position(place), self.position(entity)
+        if outer is None or inner is None or not encloses(outer, inner):
+            return False
+        flight = self.transit(entity)
+        if flight is None:
+            return True
+        destination = None if flight.to == REGION else self.position(flight.to)
+        return place != flight.to and destination is not None and encloses(outer, destination)
+
+    def carries(self, carrier: Name, entity: Name) -> bool:
+        """Tell σ_P's `carries`."""
+        return self._is_aboard(entity, frozenset({carrier}))
+
+    def connected(self, channel: Name, entity: Name) -> bool:
+        """Tell σ_P's `connected`: the entity is there, on the channel, and the channel is up."""
+        return channel in self.channels(entity) and not self.is_down(channel) and entity in self
+
+    def is_down(self, channel: Name) -> bool:
+        """Tell whether a channel that may drop has dropped."""
+        return bool(self.cells.read(down_cell(channel)))
+
+    def abstract_parent(self, entity: Name) -> Name:
+        """Return the parent of an entity in A(P) (paper, 3.2.2): its carrier, else the smallest total container."""
+        by = self.carrier(entity)
+        if by is not None:
+            return by
+        holders = (holder.place for holder in self.holders(entity) if self.contains(holder.place, entity))
+        return next(holders, REGION)
+
+    def is_in(self, entity: Name, place: Name) -> bool:
+        """Tell whether an entity's parent in A(P) is a place; only that is asked of where it stands."""
+        where = placement_cell(entity)
+        if place != REGION and place not in self.sorting.containers(self.sorting.kind(entity)):
+            return self.carries(place, entity)
+        if not self.cells.test(where, is_placed):
+            return entity in self and self.abstract_parent(entity) == place
+        if place != REGION and not self._encloses(place, entity):
+            return False  # most places: the others that may contain it need not be looked at
+        return self.cells.test(where, stands_in, place, self.holders(entity))
+
+    def _encloses(self, place: Name, entity: Name) -> bool:
+        at = None if place == entity or self.carrier(place) is not None else self.position(place)
+        return at is not None and self.cells.test(placement_cell(entity), stands_within, at)
+
+    def holders(self, entity: Name) -> tuple[Holder, ...]:
+        """Return what may contain an entity, in the order of A(P): the smallest first, of equal ones by name.
+
+        What is carried has no room of its own.
+        """
+        places = self.sorting.containers(self.sorting.kind(entity))
+        standing = [place for place in places if place != entity and self.carrier(place) is None]
+        positions = [(place, self.position(place)) for place in standing]
+        found = (Holder(measure(at.geometry), place, at) for place, at in positions if at is not None)
+        return tuple(sorted(found, key=lambda holder: holder[:2]))
+
+    def children(self, place: Name) -> tuple[Name, ...]:
+        """Return the children of a place, or of the region, in A(P), sorted."""
+        return tuple(name for name in self.cells.read(NAMES) if self.is_in(name, place))
+
+    def links(self, entity: Name) -> tuple[Name, ...]:
+        """Return the links of an entity in A(P), sorted."""
+        return tuple(channel for channel in self.channels(entity) if self.connected(channel, entity))
+
+    def points(self, channel: Name) -> tuple[Name, ...]:
+        """Return the entities on a link of A(P), sorted."""
+        return tuple(name for name in self.cells.read(NAMES) if self.connected(channel, name))
+
+    def placing(self, entity: Name, placement: Placement | None) -> Changes:
+        """Write P[entity ↦ placement]."""
+        return {placement_cell(entity): placement}
+
+    def joining(self, entity: Name, channels: frozenset[Name]) -> Changes:
+        """Write the channels that an entity is on."""
+        return {channels_cell(entity): tuple(sorted(channels))}
+
+
+@lru_cache(maxsize=1 << 14)
+def measure(geometry: Geometry) -> float:
+    """Return the area of a geometry in square metres."""
+    return area(geometry)

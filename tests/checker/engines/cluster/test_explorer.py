@@ -1,0 +1,294 @@
+"""Exploring with several workers, here in one process: the same as alone, whoever is lost on the way."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from local_crew import LocalCrew
+
+from checker import CheckpointError, Engine, Keeping, Limits, MachineError, explore
+from checker.engines.archive import read_archive, write_archive
+from checker.engines.cluster import explorer, shard
+from checker.engines.cluster.checkpoints import KINDS, SCHEMA
+from checker.engines.cluster.explorer import Expedition
+from checker.properties.coverage import Visited
+from checker.properties.inspections import Computation, DeadlockFreedom, LocalConsistency
+from checker.properties.races import ControlRaces
+from checker.properties.temporal.decide import kept_graph
+from semantics import strategies
+from semantics.races.monitor import monitored
+from specs.elaboration import load_mission
+
+MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
+FEW = ("broken_unrealisable", "distributed_handover", "nomad", "takeover", "surveillance", "tanker")
+LIMITS = Limits(configurations=20_000)
+
+
+def start(name):
+    return load_mission(MISSIONS / f"{name}.mission").initial
+
+
+@pytest.fixture
+def small_rounds(monkeypatch):
+    """Let layers take several rounds, and rows be sent more than once."""
+    monkeypatch.setattr(explorer, "ROUND", 1)
+    monkeypatch.setattr(shard, "SENT", 2)
+
+
+def together(initial, workers, inspect=(), limits=LIMITS, **options):
+    return Expedition(LocalCrew(initial, workers, limits.pending), initial, limits, **options).run(inspect)
+
+
+def inspections():
+    return Visited(), DeadlockFreedom(), LocalConsistency(), Computation(), ControlRaces()
+
+
+def counted(found):
+    return (
+        len(found.configurations), found.transitions, found.depth, found.expanded, found.rules, found.bounds,
+    )  # fmt: skip
+
+
+def collected(inspect, found):
+    """Return what inspections have found, with how far from the first configuration what is shown was found.
+
+    Of more violations than are shown, equally near ones may be others.
+    """
+    lists = [each.collected for each in inspect[1:]] + [inspect[1].arrival]
+    return [
+        (
+            each.count, each.examined, each.different,
+            sorted((kind, len(found.path(finding.at))) for (kind, _), finding in each.first.items()),
+            each.example is not None and len(found.path(each.example)),
+        )
+        for each in lists
+    ]  # fmt: skip
+
+
+def whole(found):
+    return list(found.configurations), list(map(int, found.origins)), counted(found)
+
+
+@pytest.mark.parametrize(("name", "workers"), list(zip(FEW, (2, 3, 5, 2, 3, 5), strict=True)))
+@pytest.mark.usefixtures("small_rounds")
+def test_workers_visit_together_what_one_process_visits_alone(name, workers):
+    for initial in (start(name), monitored(start(name))):
+        one, other = inspections(), inspections()
+        alone = explore(initial, one, LIMITS, engine=Engine.FAST)
+        found = together(initial, workers, other)
+        assert counted(found) == counted(alone)
+        assert set(found.configurations) == set(alone.configurations)
+        assert collected(other, found) == collected(one, alone)
+        assert (other[0].codes, other[0].passed, other[0].happened) == (
+            one[0].codes, one[0].passed, one[0].happened,
+        )  # fmt: skip
+
+
+@pytest.mark.usefixtures("small_rounds")
+def test_each_configuration_is_one_step_behind_the_one_that_it_was_reached_from():
+    found = together(start("surveillance"), 3)
+    lengths = [len(found.path(number)) for number in range(len(found.configurations))]
+    assert lengths == sorted(lengths)
+    assert lengths[-1] == found.depth + 1
+
+
+@given(strategies.initial_configurations())
+@settings(max_examples=25)
+def test_workers_visit_of_generated_missions_what_one_process_visits(initial):
+    limits = Limits(configurations=60)
+    one, other = inspections(), inspections()
+    alone = explore(initial, one, limits)
+    found = together(initial, 2, other, limits)
+    assert (len(found.configurations), found.bounds) == (len(alone.configurations), alone.bounds)
+    if alone.complete:
+        assert counted(found) == counted(alone)
+        assert collected(other, found) == collected(one, alone)
+
+
+@pytest.mark.parametrize("name", ["broken_deadlock", "nomad"])
+def test_the_graph_is_that_of_one_process_but_for_numbers(name):
+    initial = start(name)
+    graphs = []
+    for found in (explore(initial, engine=Engine.FAST), together(initial, 3)):
+        graph = kept_graph(found)
+        c = list(found.configurations)
+        labels = [(label.rule, label.agent) for label in graph.labels]
+        edges = zip(graph.sources, graph.actions, graph.targets, strict=True)
+        graphs.append({(c[source], labels[action], c[target]) for source, action, target in edges})
+        assert graph.partial is None
+    assert graphs[0] == graphs[1]
+
+
+@pytest.mark.parametrize("most", [1, 2, 30, 100, 152])
+@pytest.mark.usefixtures("small_rounds")
+def test_no_more_configurations_are_visited_than_were_allowed(most):
+    initial, limits = start("surveillance"), Limits(configurations=most)
+    alone, found = explore(initial, limits=limits), together(initial, 3, limits=limits)
+    assert (len(found.configurations), found.expanded, found.bounds) == (most, most, alone.bounds)
+    assert not found.complete
+    assert kept_graph(found).open.any()
+
+
+def test_as_many_as_there_are_is_no_limit():
+    assert together(start("surveillance"), 3, limits=Limits(configurations=153)).complete
+
+
+def test_without_time_or_memory_the_search_is_incomplete():
+    initial = start("surveillance")
+    assert together(initial, 2, limits=Limits(seconds=-1.0)).bounds == ["the time limit of -1 s"]
+    found = together(initial, 2, limits=Limits(memory=1_000_000))
+    assert found.bounds == ["the memory limit of 1 MB"]
+    assert kept_graph(found).open.tolist() == [True]
+
+
+@pytest.mark.parametrize("when", [1, 4])
+@pytest.mark.usefixtures("small_rounds")
+def test_an_interruption_keeps_what_is_whole_and_can_be_gone_on_from(tmp_path, when):
+    initial, told = start("surveillance"), []
+
+    def interrupt(progress):
+        told.append(progress)
+        if len(told) == when:
+            raise KeyboardInterrupt
+
+    found = together(initial, 2, report=interrupt, every=0.0, keeping=Keeping(str(tmp_path)))
+    assert found.bounds == ["an interruption"]
+    assert len(found.configurations) == told[-1].configurations < 153
+    resumed = together(initial, 2, keeping=Keeping(str(tmp_path), resumed=True))
+    assert whole(resumed) == whole(together(initial, 2))
+
+
+class Interrupted(LocalCrew):
+    """A crew whose leader is interrupted while rows are on their way."""
+
+    def exchange(self, giving, taking, *arguments):
+        if len(self.called) < 30:
+            return super().exchange(giving, taking, *arguments)
+        self.every(giving, *arguments)
+        raise KeyboardInterrupt
+
+
+@pytest.mark.usefixtures("small_rounds")
+def test_what_is_interrupted_while_rows_are_on_their_way_is_not_kept(tmp_path):
+    initial = start("surveillance")
+    found = Expedition(Interrupted(initial, 2), initial, LIMITS, keeping=Keeping(str(tmp_path))).run(())
+    assert found.bounds == ["an interruption"]
+    assert 1 < len(found.configurations) < 153
+    assert not list(tmp_path.rglob("latest.checkpoint"))
+
+
+# --- who is lost ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("every", [0.0, 60.0])
+@pytest.mark.usefixtures("small_rounds")
+def test_whenever_a_worker_is_lost_nothing_is_lost_with_it(tmp_path, every):
+    initial = start("broken_unrealisable")
+    undisturbed = LocalCrew(initial, 3)
+    expected = whole(Expedition(undisturbed, initial, LIMITS).run(()))
+    for call in range(2, undisturbed.calls, 31):
+        folder = tmp_path / str(call)
+        crew = LocalCrew(initial, 3, dies=((call, call % 3),))
+        keeping = Keeping(str(folder), every=every)
+        assert whole(Expedition(crew, initial, LIMITS, keeping=keeping).run(())) == expected
+        assert crew.revived == 1
+
+
+class Seldom(Expedition):
+    """Keeps a checkpoint after every tenth round, and at the end."""
+
+    rounds = 0
+
+    def save(self):
+        self.rounds += 1
+        if self.rounds % 10 == 0 or self.is_done():
+            super().save()
+
+
+@pytest.mark.parametrize("dies", [((60, 0),), ((60, 1),), ((25, 0), (110, 1), (170, 0), (250, 1))])
+@pytest.mark.usefixtures("small_rounds")
+def test_whoever_was_not_lost_at_first_may_be_lost_later(tmp_path, dies):
+    initial = start("distributed_handover")
+    expected = whole(together(initial, 2))
+    crew = LocalCrew(initial, 2, dies=dies)
+    found = Seldom(crew, initial, LIMITS, keeping=Keeping(str(tmp_path), every=0.0)).run(())
+    assert whole(found) == expected
+    assert crew.revived == len(dies)
+    again = together(initial, 2, keeping=Keeping(str(tmp_path), resumed=True))
+    assert whole(again) == expected
+
+
+@pytest.mark.usefixtures("small_rounds")
+def test_a_crew_that_was_lost_altogether_is_followed_by_another(tmp_path, monkeypatch):
+    initial = start("distributed_handover")
+    undisturbed = LocalCrew(initial, 2)
+    found = Expedition(undisturbed, initial, LIMITS).run(())
+    calls, expected = undisturbed.calls, whole(found)
+    for call in (30, 90, 2 * calls - 80):
+        folder = str(tmp_path / str(call))
+        crew = LocalCrew(initial, 2, dies=((call, 0),))
+        monkeypatch.setattr(crew, "revive", lambda: None)  # it stays dead
+        with pytest.raises(MachineError, match="lost 6 times without a checkpoint between"):
+            Expedition(crew, initial, LIMITS, keeping=Keeping(folder, every=0.0)).run(())
+        crew = LocalCrew(initial, 2)
+        resumed = Expedition(crew, initial, LIMITS, keeping=Keeping(folder, resumed=True)).run(())
+        assert whole(resumed) == expected
+    assert crew.called.count("expand") < undisturbed.called.count("expand") // 2
+
+
+def test_what_was_found_under_a_limit_of_time_is_not_explored_otherwise(tmp_path):
+    initial, limits = start("surveillance"), Limits(seconds=-1.0)
+    crew = LocalCrew(initial, 2)
+    found = Expedition(crew, initial, limits).run(())
+    crew.lost = {0, 1}
+    with pytest.raises(MachineError, match="where they were was not kept"):
+        list(found.configurations)
+    crew = LocalCrew(initial, 2)
+    found = Expedition(crew, initial, limits, keeping=Keeping(str(tmp_path))).run(())
+    crew.lost = {0, 1}
+    assert list(found.configurations) == [initial]
+
+
+# --- checkpoints ----------------------------------------------------------------------------------------------
+
+
+def kept(folder, workers=2, name="oil_spill", digest="d", limits=LIMITS, resumed=True):
+    initial = start(name)
+    keeping = Keeping(str(folder), resumed=resumed, digest=digest)
+    return together(initial, workers, limits=limits, keeping=keeping)
+
+
+@pytest.mark.parametrize("other", [{"digest": "e"}, {"workers": 3}, {"limits": Limits(configurations=7)}])
+def test_a_checkpoint_of_something_else_is_refused(tmp_path, other):
+    kept(tmp_path, resumed=False)
+    with pytest.raises(CheckpointError, match="of another mission, variation, limit, version or number of"):
+        kept(tmp_path, **other)
+
+
+def test_a_checkpoint_of_another_missions_rows_is_refused(tmp_path):
+    kept(tmp_path, resumed=False)
+    with pytest.raises(CheckpointError, match="not what was learned"):
+        kept(tmp_path, name="tanker")
+
+
+@pytest.mark.parametrize("damage", [b"", b"no archive", b"PK\x03\x04 half", b"[]"])
+def test_a_damaged_checkpoint_is_refused(tmp_path, damage):
+    kept(tmp_path, resumed=False)
+    for file in sorted((tmp_path / "exploration-ray").iterdir()):
+        before = file.read_bytes()
+        file.write_bytes(damage)
+        with pytest.raises(CheckpointError, match="no checkpoint"):
+            kept(tmp_path)
+        file.write_bytes(before)
+    assert len(kept(tmp_path).configurations) == 34
+
+
+@pytest.mark.parametrize("part", ["rows", "origins", "packing", "places", "sizes", "digests", "learned"])
+def test_a_checkpoint_whose_parts_do_not_fit_together_is_refused(tmp_path, part):
+    kept(tmp_path, resumed=False)
+    [path] = (tmp_path / "exploration-ray").glob("shard-*-0.checkpoint")
+    head, arrays = read_archive(path, SCHEMA, KINDS)
+    arrays[part] = arrays[part][:-1] if part != "learned" else arrays[part] + 1000
+    write_archive(path, head, KINDS, list(arrays.values()))
+    with pytest.raises(CheckpointError, match="damaged"):
+        kept(tmp_path)

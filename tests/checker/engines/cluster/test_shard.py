@@ -1,0 +1,65 @@
+"""A worker's shard: whose rows are, and what it needs to know to go back."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from checker import Engine, explore
+from checker.engines.cluster.keys import Keys
+from checker.engines.cluster.shard import Shard
+from specs.elaboration import load_mission
+
+MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
+
+
+def start(name):
+    return load_mission(MISSIONS / f"{name}.mission").initial
+
+
+def shard(name="surveillance", me=0, workers=1):
+    """Return the shard of one of some workers; of one alone, all rows are its."""
+    return Shard(start(name), 64, me, workers)
+
+
+def explored(one):
+    layer = 0
+    while one.expanded < one.size:
+        one.expand(layer, 1_000)
+        layer += 1
+    return one
+
+
+@pytest.mark.parametrize("name", ["surveillance", "nomad", "tanker"])
+def test_a_worker_alone_has_all_rows_in_the_order_of_the_fast_explorer(name):
+    alone = explore(start(name), engine=Engine.FAST)
+    one = explored(shard(name))
+    assert [one.configuration(number) for number in range(one.size)] == list(alone.configurations)
+    assert one.rules() == alone.rules
+
+
+def test_whose_a_row_is_depends_on_what_it_says_alone():
+    one = explored(shard())
+    owners = {}
+    for number in range(one.size):
+        keys = Keys(one.learner.columns)
+        keys.refresh()
+        codes = one.codes(number)
+        xor = np.bitwise_xor.reduce([keys.keys[keys.begins[n] + code] for n, code in enumerate(codes)])
+        owners[one.row(number)] = int(xor) >> 32 >> 31  # of two workers
+    assert set(owners.values()) == {0, 1}
+    for me in range(2):
+        first, other = shard(me=me, workers=2), shard(me=me, workers=2)
+        assert first.size == other.size == (owners[first.learner.still] == me)
+
+
+def test_what_was_learned_is_learned_again_from_the_start_so_that_checkpoints_say_where():
+    one = explored(shard())
+    learned, rows = one.learned, one.size
+    one.start()
+    assert one.learned == []
+    explored(one)
+    assert one.size == rows
+    again, before = ({row for row, *_ in each} for each in (one.learned, learned))
+    assert again
+    assert again <= before  # of values that it knows it need not ask

@@ -1,0 +1,221 @@
+"""The compiled loops where no index may leave its array: `make bounds` compiles them with checks of bounds.
+
+Rooms are made small, so that they grow in small missions, and every search is cut at many sizes and gone on with.
+"""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from local_crew import LocalCrew
+
+import checker.limits
+from checker import Engine, Keeping, Limits, check, explore
+from checker.engines.cluster import explorer as cluster
+from checker.engines.cluster.explorer import Expedition
+from checker.engines.fast import engine, explorer, kernel
+from checker.engines.fast.rows import Rows
+from checker.reduction import Reduced, Reduction
+from semantics import Scheduler
+from semantics.races.monitor import monitored
+from specs.elaboration import Variation, load_mission
+
+ROOT = Path(__file__).parents[4]
+MISSIONS = ROOT / "specs" / "missions"
+NAMES = sorted(path.stem for path in MISSIONS.glob("*.mission"))
+LIMITS = Limits(configurations=3_000)
+FEW = 12
+"""Below so many configurations every size is cut at; then each that is a third larger."""
+
+IS_CHECKED = os.environ.get("NUMBA_BOUNDSCHECK") == "1"
+LONG = (pytest.mark.bounds, pytest.mark.skipif(not IS_CHECKED, reason="a long run: `make bounds`"))
+
+
+def checked(test):
+    """Mark a test that runs where the loops are compiled with checks."""
+    for mark in LONG:
+        test = mark(test)
+    return test
+
+
+@pytest.fixture(autouse=True)
+def small_rooms(monkeypatch):
+    """Let rooms grow, batches be too small for a row, and the clock be looked at after every other row."""
+    monkeypatch.setattr(engine, "FIRST_ROWS", 8)
+    monkeypatch.setattr(engine, "BATCH", 8)
+    monkeypatch.setattr(engine, "WORTH", 4)
+    monkeypatch.setattr(explorer, "CHUNK", 2)
+
+
+def stop_at(size):
+    def stop(progress):
+        if progress.configurations >= size:
+            raise KeyboardInterrupt
+
+    return stop
+
+
+def sizes(most):
+    """Return the sizes at which a search is cut."""
+    size = 1
+    while size < most:
+        yield size
+        size = size + 1 if size < FEW else size * 4 // 3
+
+
+def seen(found):
+    return (len(found.configurations), list(map(int, found.origins)), found.depth, found.rules, found.bounds)
+
+
+def fast(initial, **options):
+    return explore(initial, engine=Engine.FAST, **{"limits": LIMITS, **options})
+
+
+def goes_on_from_every_size(initial, folder):
+    whole = seen(fast(initial))
+    for size in sizes(whole[0]):
+        fast(initial, keeping=Keeping(str(folder), digest="d"), report=stop_at(size), every=0.0)
+        resumed = fast(initial, keeping=Keeping(str(folder), True, "d"))
+        assert seen(resumed) == whole, f"cut at {size}"
+
+
+def initials(name):
+    """Yield a mission's first configuration under each scheduler, and as races are looked for."""
+    for scheduler in Scheduler:
+        yield load_mission(MISSIONS / f"{name}.mission", Variation(scheduler=scheduler)).initial
+    yield monitored(load_mission(MISSIONS / f"{name}.mission").initial)
+
+
+@checked
+def test_the_loops_are_compiled_with_checks_of_bounds():
+    with pytest.raises(IndexError):
+        kernel.first_turn(*(np.zeros(0, np.int32) for _ in range(2)), np.zeros(1, np.int32), 1)
+
+
+@checked
+@pytest.mark.parametrize("name", NAMES)
+def test_searches_go_on_from_every_size(tmp_path, name):
+    for number, initial in enumerate(initials(name)):
+        goes_on_from_every_size(initial, tmp_path / str(number))
+
+
+@checked
+@pytest.mark.parametrize("name", NAMES)
+def test_searches_stop_at_every_limit_of_configurations(name):
+    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    for size in sizes(len(fast(initial).configurations)):
+        assert len(fast(initial, limits=Limits(configurations=size)).configurations) == size
+
+
+@checked
+@pytest.mark.parametrize("name", NAMES)
+def test_searches_spill_at_every_size(tmp_path, monkeypatch, name):
+    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    whole = seen(fast(initial))
+    spill, spilled = Rows.spill, []
+
+    def noted(rows, folder, used):
+        spill(rows, folder, used)
+        spilled.append(used)
+
+    monkeypatch.setattr(Rows, "spill", noted)
+    monkeypatch.setattr(checker.limits, "memory_taken", lambda: 2 if full() else 0)
+    for size in sizes(whole[0]):
+        reached, spilled[:] = [0], []
+
+        def full(size=size, reached=reached):
+            return reached[0] >= size and not spilled
+
+        def note(progress, reached=reached):
+            reached[0] = progress.configurations
+
+        limits = Limits(configurations=LIMITS.configurations, memory=1, spill=str(tmp_path))
+        found = fast(initial, limits=limits, report=note, every=0.0)
+        assert seen(found) == whole, f"spilled at {size}"
+
+
+@checked
+@pytest.mark.parametrize("name", NAMES)
+def test_searches_end_at_every_limit_of_memory(monkeypatch, name):
+    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    for size in sizes(len(fast(initial).configurations)):
+        reached = [0]
+        monkeypatch.setattr(checker.limits, "memory_taken", lambda reached=reached: reached[0])
+
+        def note(progress, reached=reached):
+            reached[0] = progress.configurations
+
+        limits = Limits(configurations=LIMITS.configurations, memory=size)
+        found = fast(initial, limits=limits, report=note, every=0.0)
+        assert len(found.configurations) >= size
+
+
+@checked
+@pytest.mark.parametrize("name", NAMES)
+def test_all_that_is_decided_is_decided_within_bounds(name):
+    mission = load_mission(MISSIONS / f"{name}.mission")
+    wide = check(mission.initial, mission.properties, LIMITS, engine=Engine.FAST)
+    reference = check(mission.initial, mission.properties, LIMITS, engine=Engine.REFERENCE)
+    assert [each.outcome for each in wide.verdicts] == [each.outcome for each in reference.verdicts]
+
+
+@checked
+@pytest.mark.parametrize("bits", [16, 32, 64])
+@pytest.mark.parametrize("name", NAMES)
+def test_tags_stay_within_bounds(name, bits):
+    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    found = fast(initial, keeping=Keeping(compact=bits))
+    assert 1 <= len(found.configurations) <= len(fast(initial).configurations)
+
+
+@checked
+@pytest.mark.parametrize("name", NAMES)
+def test_reduced_searches_stay_within_bounds(name):
+    mission = load_mission(MISSIONS / f"{name}.mission")
+    formulas = [each.formula for each in mission.properties if each.kind in {"invariant", "reachable"}]
+    reducer = Reduced(mission.initial, [Reduction.POR], formulas)
+    found = fast(mission.initial, reduce=reducer)
+    assert 1 <= len(found.configurations) <= len(fast(mission.initial).configurations)
+
+
+@checked
+@pytest.mark.parametrize("name", NAMES)
+def test_workers_go_on_from_every_round(tmp_path, monkeypatch, name):
+    monkeypatch.setattr(cluster, "ROUND", 7)
+    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    whole = Expedition(LocalCrew(initial, 2), initial, LIMITS).run(())
+    for size in sizes(len(whole.configurations)):
+        folder = str(tmp_path / str(size))
+        crew = LocalCrew(initial, 2)
+        keeping = Keeping(folder, every=0.0)
+        Expedition(crew, initial, LIMITS, stop_at(size), 0.0, keeping).run(())
+        again = Expedition(LocalCrew(initial, 2), initial, LIMITS, keeping=Keeping(folder, True)).run(())
+        assert len(again.configurations) == len(whole.configurations)
+        assert again.transitions == whole.transitions
+
+
+def test_a_small_mission_goes_on_from_every_size_within_bounds(tmp_path):
+    """The small part of `make bounds` that every run of the tests has."""
+    environment = {**os.environ, "NUMBA_BOUNDSCHECK": "1", "NUMBA_CACHE_DIR": str(tmp_path)}
+    chosen = "compiled_with or (go_on_from_every_size and two_gates)"
+    line = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        __file__,
+        "-m",
+        "bounds",
+        "-k",
+        chosen,
+    ]
+    ran = subprocess.run(
+        line, check=False, env=environment, cwd=ROOT, capture_output=True, text=True, timeout=600
+    )
+    assert ran.returncode == 0, ran.stdout
+    assert "2 passed" in ran.stdout

@@ -1,0 +1,113 @@
+"""The fast explorer: it visits what the reference explorer visits, in the same order, and stops where that stops."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+
+from checker import Engine, Limits, check, explore
+from checker.properties.temporal.decide import kept_graph
+from semantics import Control, Scheduler, strategies
+from semantics.properties.property import Property
+from semantics.races.monitor import monitored
+from specs.elaboration import Variation, load_mission
+
+MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
+NAMES = sorted(path.stem for path in MISSIONS.glob("*.mission"))
+FEW = Limits(configurations=400)
+
+VARIATIONS = {
+    "as written": Variation(),
+    "timed": Variation(control=Control.TIMED),
+    "unordered": Variation(scheduler=Scheduler.UNORDERED),
+    "fcfs timed": Variation(scheduler=Scheduler.FCFS, control=Control.TIMED),
+}
+
+ENGINES = (Engine.REFERENCE, Engine.FAST)
+"""Those that give the same numbers to configurations; Ray's are in `tests/checker/engines/cluster`."""
+
+
+def told(report):
+    """Return what a report says, in a form in which a difference can be read."""
+    verdicts = [
+        (
+            each.property.name,
+            each.outcome,
+            [(v.kind, v.message, v.details, labels(v.trace)) for v in each.violations],
+            (each.count, each.different, each.examined),
+            labels(each.witness),
+            (each.note, each.remarks),
+        )
+        for each in report.verdicts
+    ]
+    sizes = (report.configurations, report.transitions, report.depth, report.bounds, report.rules)
+    return (*verdicts, sizes, report.coverage)
+
+
+def labels(trace):
+    return trace and [f"{step.label} {step.choice}" for step in trace.steps]
+
+
+def explored(initial, engine, limits=FEW):
+    found = explore(initial, limits=limits, engine=engine)
+    visited = (list(found.configurations), list(map(int, found.origins)), found.depth, found.expanded)
+    return (*visited, found.transitions, found.rules, found.bounds)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("variation", VARIATIONS.values(), ids=VARIATIONS)
+def test_a_mission_is_explored_alike_by_both_engines(name, variation):
+    initial = load_mission(MISSIONS / f"{name}.mission", variation).initial
+    assert explored(initial, Engine.FAST) == explored(initial, Engine.REFERENCE)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_monitored_mission_is_explored_alike_by_both_engines(name):
+    initial = monitored(load_mission(MISSIONS / f"{name}.mission").initial)
+    assert explored(initial, Engine.FAST) == explored(initial, Engine.REFERENCE)
+
+
+@given(strategies.initial_configurations())
+@settings(max_examples=100)
+def test_generated_missions_are_explored_alike_by_both_engines(initial):
+    limits = Limits(configurations=60)
+    assert explored(initial, Engine.FAST, limits) == explored(initial, Engine.REFERENCE, limits)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("variation", VARIATIONS.values(), ids=VARIATIONS)
+def test_both_engines_come_to_the_same_report(name, variation):
+    mission = load_mission(MISSIONS / f"{name}.mission", variation)
+    reports = [check(mission.initial, mission.properties, FEW, engine=engine) for engine in ENGINES]
+    assert told(reports[0]) == told(reports[1])
+
+
+@given(strategies.initial_configurations())
+@settings(max_examples=60)
+def test_generated_missions_are_judged_alike_by_both_engines(initial):
+    kinds = ("local_consistency", "race_freedom", "deadlock_freedom", "arrival", "computation")
+    properties = [Property(kind, kind) for kind in kinds]
+    limits = Limits(configurations=60)
+    reports = [check(initial, properties, limits, engine=engine) for engine in ENGINES]
+    assert told(reports[0]) == told(reports[1])
+
+
+def test_the_rules_are_run_far_less_often_than_there_are_transitions():
+    found = explore(load_mission(MISSIONS / "rendezvous.mission").initial, engine=Engine.FAST)
+    assert (len(found.configurations), found.transitions) == (18_051, 73_275)
+    assert found.rule_runs is not None
+    assert found.rule_runs < 600
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_both_engines_keep_the_same_graph(name):
+    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    graphs = [kept_graph(explore(initial, limits=FEW, engine=engine, edges=True)) for engine in ENGINES]
+    one, other = ((g.starts.tolist(), g.targets.tolist(), actions(g), g.open.tolist()) for g in graphs)
+    assert one == other
+
+
+def actions(graph):
+    """Return who does what, edge by edge: the fast engine doesn't say which observation is received."""
+    labels = [(each.rule, each.agent) for each in graph.labels]
+    return [labels[action] for action in graph.actions]

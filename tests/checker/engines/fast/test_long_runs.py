@@ -1,0 +1,181 @@
+"""Long runs: checkpoints and going on from them, limits of memory, and cross-checks."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from checker import CheckpointError, Engine, Keeping, Limits, check, explore
+from checker.engines.archive import read_archive, write_archive
+from checker.engines.fast.checkpoint import KINDS, SCHEMA
+from checker.engines.fast.crosscheck import Disagreement, crosscheck
+from specs.elaboration import load_mission
+
+ROOT = Path(__file__).parents[4]
+MISSIONS = ROOT / "specs" / "missions"
+
+
+def start(name):
+    return load_mission(MISSIONS / f"{name}.mission").initial
+
+
+def explored(initial, **options):
+    return explore(initial, engine=Engine.FAST, **options)
+
+
+def seen(found):
+    return (
+        list(found.configurations),
+        list(found.origins),
+        found.depth,
+        found.transitions,
+        found.rules,
+        found.bounds,
+    )
+
+
+def alter(path, change):
+    """Alter a checkpoint as somebody would who works out its digest anew."""
+    head, arrays = read_archive(path, SCHEMA, KINDS)
+    change(head, arrays)
+    write_archive(path, head, KINDS, list(arrays.values()))
+
+
+def bigactors(*words):
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONHASHSEED": "random"}
+    return [sys.executable, "-m", "bigactors", *words], environment
+
+
+def test_what_was_killed_goes_on_and_comes_to_the_same_report(tmp_path):
+    kept, whole, again = tmp_path / "kept", tmp_path / "whole.json", tmp_path / "again.json"
+    line, environment = bigactors("check", "takeover", "--no-traces", "--engine", "fast")
+    subprocess.run([*line, "--json", str(whole)], env=environment, check=True, capture_output=True)
+    long = [*line, "--checkpoint", str(kept), "--every", "0.001"]
+    running = subprocess.Popen(long, env=environment, stdout=subprocess.DEVNULL)
+    while not list(kept.rglob("*.checkpoint")) and running.poll() is None:
+        time.sleep(0.002)
+    running.send_signal(signal.SIGKILL)
+    running.wait()
+    assert list(kept.rglob("*.checkpoint"))
+    resumed = [*long, "--resume", "--json", str(again)]
+    subprocess.run(resumed, env=environment, check=True, capture_output=True)
+    reports = [json.loads(path.read_text()) for path in (whole, again)]
+    assert {report.pop("seconds") >= 0 for report in reports} == {True}
+    assert reports[0] == reports[1]
+
+
+def test_an_exploration_goes_on_in_the_middle_of_a_layer(tmp_path):
+    initial = start("rendezvous")
+    keeping = Keeping(str(tmp_path), digest="d")
+    cut = explored(initial, limits=Limits(seconds=0.0), keeping=keeping)
+    assert not cut.complete
+    assert len(cut.configurations) < 18_051
+    resumed = explored(initial, keeping=Keeping(str(tmp_path), resumed=True, digest="d"))
+    assert seen(resumed) == seen(explored(initial))
+
+
+def test_a_checkpoint_of_something_else_is_refused(tmp_path):
+    explored(start("oil_spill"), keeping=Keeping(str(tmp_path), digest="one"))
+    with pytest.raises(CheckpointError, match="of another mission"):
+        explored(start("oil_spill"), keeping=Keeping(str(tmp_path), True, "other"))
+    limits = Limits(configurations=7)
+    with pytest.raises(CheckpointError, match="of another mission"):
+        explored(start("oil_spill"), limits=limits, keeping=Keeping(str(tmp_path), True, "one"))
+
+
+@pytest.mark.parametrize("damage", [b"", b"no archive", b"PK\x03\x04 half"])
+def test_a_damaged_checkpoint_is_refused(tmp_path, damage):
+    (tmp_path / "exploration.checkpoint").write_bytes(damage)
+    with pytest.raises(CheckpointError, match="no checkpoint"):
+        explored(start("oil_spill"), keeping=Keeping(str(tmp_path), True, "one"))
+
+
+def test_a_checkpoint_whose_rows_are_not_the_missions_is_refused(tmp_path):
+    explored(start("oil_spill"), keeping=Keeping(str(tmp_path), digest="one"))
+    alter(tmp_path / "exploration.checkpoint", lambda _, arrays: arrays["rows"].__setitem__(slice(None), 0))
+    with pytest.raises(CheckpointError):
+        explored(start("oil_spill"), keeping=Keeping(str(tmp_path), True, "one"))
+
+
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_without_memory_the_search_is_incomplete(engine):
+    mission = load_mission(MISSIONS / "rendezvous.mission")
+    report = check(mission.initial, mission.properties, Limits(memory=1_000_000), engine=engine)
+    assert report.bounds[0] == "the memory limit of 1 MB"
+    assert not report.complete
+    assert "holds" not in {
+        each.outcome.value for each in report.verdicts if each.property.kind == "invariant"
+    }
+
+
+@pytest.mark.parametrize("name", ["takeover", "nomad", "handover"])
+def test_the_interpreter_agrees_with_what_was_learned(name):
+    found = explored(start(name), limits=Limits(configurations=300))
+    crosscheck(found.survey.space, 60)
+
+
+def test_the_cross_check_finds_what_was_learned_wrong():
+    space = explored(start("oil_spill")).survey.space
+    wrong = int(np.flatnonzero(space.counts.used)[-1])  # some that was taken
+    width = space.packing.words
+    space.masks.room[2 * width * wrong + width] ^= ~np.uint64(0)  # it sets what it should not
+    with pytest.raises(Disagreement):
+        crosscheck(space, space.size)
+
+
+ROOMY = """
+import resource
+from checker import Engine, Limits, check, report_text
+from specs.elaboration import elaborate
+from specs.parser import parse_bytes
+from pathlib import Path
+
+def loop(name, host):
+    body = "n = n + 1  control(MOVE_HOST_TO there0)  control(MOVE_HOST_TO here0)"
+    return f"BigActor {name} hosted_at {host} with_behavior {{ let n = 0  loop {{ {body} }} }}"
+
+text = f'''
+signature {{ kind Location contains UAV  kind UAV driven }}
+world {{
+  here0: Location = box (37.1, -8.6) (37.0, -8.7)
+  there0: Location = box (37.1, -8.4) (37.0, -8.5)
+  uav0: UAV = point (37.05, -8.65)
+  uav1: UAV = point (37.05, -8.65)
+}}
+{loop("a", "uav0")}
+{loop("b", "uav1")}
+check {{ local_consistency }}
+'''
+source, tree = parse_bytes("m", text.encode())
+mission = elaborate(tree, source, Path())
+
+def checked(limits):
+    return check(mission.initial, mission.properties, limits, engine=Engine.FAST)
+
+checked(Limits(configurations=50_000))  # compiled and loaded
+taken = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (taken + 40_000_000, resource.RLIM_INFINITY))
+print(*report_text("m", checked(Limits(configurations=None, seconds=100.0)), traces=False), sep="\\n")
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is told of by /proc")
+def test_where_the_system_gives_no_more_memory_the_search_is_incomplete_and_says_so():
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    ran = subprocess.run(
+        [sys.executable, "-c", ROOMY],
+        check=False,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert ran.returncode == 0, ran.stderr
+    assert "stopped at the end of the memory that there is: what lies beyond" in ran.stdout
+    assert "? local_consistency  incomplete" in ran.stdout

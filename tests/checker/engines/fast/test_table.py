@@ -1,0 +1,86 @@
+"""The visited set finds every row again, whatever its size, and takes little room."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from checker import Limits
+from checker.engines.fast import engine
+from checker.engines.fast.compacting import tag_of, write_tags
+from checker.engines.fast.engine import Space
+from checker.engines.fast.learner import Learner
+from checker.engines.fast.table import (
+    ENTERED,
+    bits_for,
+    find,
+    hashed,
+    most_in,
+    rebuild,
+    slot_of,
+    slots_for,
+    write_numbers,
+)
+from specs.elaboration import load_mission
+
+MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
+
+WIDTH = 2
+
+
+def rows(count, seed=0):
+    return np.random.default_rng(seed).integers(0, 1 << 63, WIDTH * count, dtype=np.uint64)
+
+
+def found(words, table, target, k):
+    mixed = np.uint64(hashed(target, WIDTH * k, WIDTH))
+    return find(words, table, target, k, mixed, WIDTH, np.uint32(bits_for(len(table))))
+
+
+@pytest.mark.parametrize("count", [1, 1000, ENTERED, ENTERED + 1])
+def test_a_table_that_is_filled_finds_each_row_and_no_other(count):
+    words, others = rows(count), rows(count, seed=1)
+    slots = next(slots for slots in range(count, 3 * count) if most_in(slots) >= count)
+    table = np.zeros(slots, np.uint32)
+    rebuild(words, count, WIDTH, table, write_numbers, bits_for(slots))
+    assert np.count_nonzero(table) == count
+    some = range(0, count, max(count // 1000, 1))
+    assert [found(words, table, words, k) for k in some] == list(some)
+    assert all(table[-found(words, table, others, k) - 1] == 0 for k in some)
+
+
+@pytest.mark.parametrize(("kind", "bits"), [(np.uint32, 32), (np.uint64, 64)])
+def test_tags_stand_at_or_behind_the_slots_of_their_hashes(kind, bits):
+    count = 1000
+    words, table = rows(count), np.zeros(slots_for(count), kind)
+    rebuild(words, count, WIDTH, table, write_tags, bits)
+    assert np.count_nonzero(table) == count
+    for row in range(count):
+        mixed = np.uint64(hashed(words, WIDTH * row, WIDTH))
+        tag, slot = tag_of(mixed, bits), int(slot_of(mixed, len(table)))
+        while table[slot] != tag:
+            assert table[slot] != 0
+            slot = (slot + 1) % len(table)
+
+
+def test_a_table_takes_at_most_nine_bytes_a_row_each_time_when_it_grows():
+    rows = 1_000_000
+    for _ in range(12):
+        slots = slots_for(rows)
+        assert 4 * slots <= 9 * rows
+        assert most_in(slots) >= 1.49 * rows
+        rows = most_in(slots) + 1
+
+
+@pytest.mark.parametrize("budget", range(100_000, 310_000, 30_000))
+def test_a_table_grows_by_less_where_memory_ends_so_that_rows_have_it(budget, monkeypatch):
+    monkeypatch.setattr(engine, "BATCH", 256)
+    initial = load_mission(MISSIONS / "rendezvous.mission").initial
+    space = Space(Learner(initial.setting, initial.state, Limits().pending), None)
+    row = 8 * space.packing.words + 4
+    space.left = lambda: budget - row * space.size - space.table.room.nbytes
+    while space.left() >= 0:
+        assert space.expanded < space.size
+        space.advance(min(space.expanded + 16, space.size))
+    fullest = budget / (row + 4 * 3 / 2)
+    assert space.size > 0.93 * fullest

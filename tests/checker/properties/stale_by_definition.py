@@ -1,0 +1,295 @@
+"""Stale-observation races as semantics.md defines them, told from one run: a judge that is not the monitor.
+
+A run is kept whole: the world before and after each step, who took it, and what each line of the text had asked, tested
+and sent. Nothing is forgotten and nothing is merged. Missions are of lines that stand for themselves, so that what a
+control depends on is read off the lines; tests are of the form `name in o`.
+"""
+
+from dataclasses import dataclass, field, replace
+
+from hypothesis import strategies as st
+
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.requests import CTR, FLY
+
+HOSTS = {"a": "uav0", "b": "uav1", "c": "uav0", "d": "gcs0"}
+DRIVERS = tuple(f"control(MOVE_HOST_TO {place})" for place in ("gate0", "gate0", "north0", "south0"))
+MOVES = dict.fromkeys("abc", DRIVERS) | {"d": ("control(MOVE uav0 TO gate0)", "control(MOVE uav0 TO south0)")}
+QUERIES = (
+    "CHILDREN(gate0)",
+    "CHILDREN(PARENT(HOST))",
+    "CHILDREN(PARENT(uav1))",
+    "PARENT(uav1)",
+    "LINKED_TO(uav0)",
+)
+NAMES = ("uav0", "uav0", "uav1", "uav1", "vessel0", "gate0")
+TELLING = ("tested", "told", "reported", "reported")
+WAYS = (*TELLING, "bare", "woken", "heard", "trusted", "trusted")
+"""How an agent comes to a control, or lets another know; the first tells most."""
+
+MOVING = frozenset({"command", "commit", "actuate"})
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of an agent's text: what it does, and with what."""
+
+    way: str
+    control: str
+    query: str = ""
+    name: str = ""
+    to: str = ""
+
+    def text(self, number: int) -> str:
+        test = f"{self.name} in o"
+        match self.way:
+            case "bare":
+                return self.control
+            case "tested":
+                return self.looking(
+                    f"case o: Observation if {test} => {self.control} case o: Observation => skip"
+                )
+            case "told":
+                send = f'send(("go", {number}), {self.to})'
+                return self.looking(f"case o: Observation if {test} => {send} case o: Observation => skip")
+            case "reported":
+                send = f'send(("seen", {number}, {test}), {self.to})'
+                return self.looking(f"case o: Observation => {self.control} {send}")
+            case "woken":
+                return f"react {{ case m: Message => {self.control} }}"
+            case "heard":
+                return f"react {{ case (w, n) => {self.control} case m: Message => skip }}"
+            case _:
+                return f"react {{ case (w, n, x) if not x => {self.control} case m: Message => skip }}"
+
+    def looking(self, cases: str) -> str:
+        return f"observe({self.query}) react {{ {cases} }}"
+
+
+@st.composite
+def companies(draw) -> dict[str, list[Line]]:
+    """Yield two or three agents of one to three lines each."""
+    agents = draw(st.sampled_from(["ab", "abc", "abd"]))
+    company = {}
+    for agent in agents:
+        lines = [
+            Line(
+                draw(st.sampled_from(TELLING if agent == "a" else WAYS)),
+                draw(st.sampled_from(MOVES[agent])),
+                draw(st.sampled_from(QUERIES)),
+                draw(st.sampled_from(NAMES)),
+                draw(st.sampled_from(agents.replace(agent, ""))),
+            )
+            for _ in range(draw(st.integers(1, 3)))
+        ]
+        company[agent] = lines
+    return company
+
+
+def text_of(company: dict[str, list[Line]], first: int) -> str:
+    """Return the text of a mission that begins on some line; each `Line` is on one of its own."""
+    rows: list[str] = []
+    for agent, lines in company.items():
+        rows.append(f"BigActor {agent} hosted_at {HOSTS[agent]} with_behavior {{")
+        rows += [line.text(first + len(rows) + rank) for rank, line in enumerate(lines)]
+        rows.append("}")
+    return "\n".join(rows) + "\n"
+
+
+# --- the judge ------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class World:
+    """A(P), slot by slot."""
+
+    parents: dict[str, str]
+    links: dict[str, frozenset[str]]
+
+    @staticmethod
+    def of(c: Configuration) -> "World":
+        physical = c.structure.physical
+        names = physical.entities()
+        return World(
+            {name: physical.abstract_parent(name) for name in names},
+            {name: frozenset(physical.links(name)) for name in names},
+        )
+
+    def slot(self, slot: tuple[str, str]) -> object:
+        return (self.parents if slot[0] == "parent" else self.links).get(slot[1])
+
+
+@dataclass(frozen=True)
+class Test:
+    """`name in o`, of an observation.
+
+    Attributes:
+        at: When it was sensed.
+        operator: The outermost operator of its query.
+        around: Whose parent it was applied to, if it was.
+        node: What it was applied to otherwise.
+        name: The name asked for.
+        holders: Who held it from when on.
+        by_value: Of each time that it was handed on, whether as what a value was computed from.
+    """
+
+    at: int
+    operator: str
+    around: str | None
+    node: str
+    name: str
+    holders: tuple[tuple[int, str], ...]
+    by_value: tuple[bool, ...] = ()
+
+    def handed(self, time: int, to: str, by_value: bool) -> "Test":
+        return replace(self, holders=(*self.holders, (time, to)), by_value=(*self.by_value, by_value))
+
+    def concerns(self, change: "Change") -> bool:
+        """Tell whether a change is another's doing to who holds the test in the end.
+
+        What its holder changes itself is not, unless it hands a value on afterwards.
+        """
+        rank = max(rank for rank, (since, _) in enumerate(self.holders) if since <= change.time)
+        return change.author != self.holders[rank][1] or (*self.by_value, False)[rank]
+
+    def is_own(self, change: "Change") -> bool:
+        return change.author == [who for since, who in self.holders if since <= change.time][-1]
+
+    def answer(self, world: World, node: str) -> bool:
+        match self.operator:
+            case "CHILDREN":
+                return self.name == node or world.parents.get(self.name) == node
+            case "PARENT":
+                return world.parents.get(node) == self.name
+            case _:
+                return self.name == node or bool(world.links[node] & world.links.get(self.name, frozenset()))
+
+
+@dataclass(frozen=True)
+class Change:
+    """A control that was served."""
+
+    time: int
+    author: str
+    before: World
+    after: World
+
+
+@dataclass
+class Judge:
+    """Watches a run, and tells of each control that is served whether it is a stale-observation race."""
+
+    company: dict[str, list[Line]]
+    first: int
+    time: int = 0
+    changes: list[Change] = field(default_factory=list)
+    asked: dict[str, list[tuple[int, frozenset[Test]]]] = field(default_factory=dict)
+    """What waits to be sensed, and under which tests it was asked for."""
+    seen: dict[str, Test | None] = field(default_factory=dict)
+    passed: dict[str, frozenset[Test]] = field(default_factory=dict)
+    """What had to be so for an agent to come to the line where it is."""
+    inside: dict[str, tuple[int, frozenset[Test]]] = field(default_factory=dict)
+    """The line that an agent is on, with what the case that it is in depends on."""
+    controls: dict[str, list[frozenset[Test]]] = field(default_factory=dict)
+    messages: dict[str, frozenset[Test]] = field(default_factory=dict)
+
+    def line(self, number: int) -> Line:
+        rows: dict[int, Line] = {}
+        at = self.first
+        for lines in self.company.values():
+            rows |= {at + 1 + rank: each for rank, each in enumerate(lines)}
+            at += len(lines) + 2
+        return rows[number]
+
+    def is_race(self, t: Transition) -> bool:
+        """Tell whether a served control rests on what others have changed."""
+        assert t.served is not None
+        request = t.served.request
+        assert isinstance(request, CTR | FLY)
+        tests = self.controls[request.agent][0]
+        used = slots_of(str(request.reaction), HOSTS[request.agent])
+        return any(self.is_stale(test, used) for test in tests)
+
+    def is_stale(self, test: Test, used: frozenset[tuple[str, str]]) -> bool:
+        node = test.node
+        for change in self.changes:
+            if change.time <= test.at:
+                continue
+            led = node
+            if test.around is not None and differs(change, ("parent", test.around)):
+                led = change.after.parents[test.around]
+            flips = test.answer(change.before, node) != test.answer(change.after, led)
+            if flips and test.concerns(change):
+                return True
+            if not test.is_own(change):
+                if any(differs(change, slot) for slot in used):
+                    return True
+                node = led
+        return False
+
+    def take(self, before: Configuration, t: Transition) -> None:
+        """Watch one step of the run."""
+        self.time += 1
+        agent = t.label.agent
+        assert agent is not None
+        rule = t.label.rule
+        if rule in MOVING:
+            self.changes.append(Change(self.time, agent, World.of(before), World.of(t.target)))
+            if rule != "command":
+                self.controls[agent].pop(0)
+            return
+        if rule == "sense":
+            number, _ = self.asked[agent].pop(0)
+            self.seen[agent] = self.test(before, agent, self.line(number))
+            return
+        if rule == "snd":
+            return
+        number = before.setting.program.line(before.alpha.code(agent)[0])
+        if self.inside.get(agent, (0, frozenset()))[0] != number:
+            self.inside[agent] = (number, self.passed.get(agent, frozenset()))
+        here = self.inside[agent][1]
+        line = self.line(number)
+        if rule == "req_obs":
+            self.asked.setdefault(agent, []).append((number, here))
+        elif rule == "rcv_obs" and line.way in ("tested", "told"):
+            self.inside[agent] = (number, here | {self.seen[agent]})
+        elif rule == "rcv_msg":
+            self.receive(agent, number, line, str(t.label))
+        elif rule == "req_ctr":
+            self.controls.setdefault(agent, []).append(here)
+        elif rule == "req_snd":
+            self.send(agent, number, line, here)
+
+    def test(self, c: Configuration, agent: str, line: Line) -> Test:
+        operator, _, inner = line.query.partition("(")
+        name = inner.strip("()").replace("PARENT(", "").replace("HOST", HOSTS[agent])
+        around = name if "PARENT" in inner else None
+        node = World.of(c).parents[name] if around is not None else name
+        return Test(self.time, operator, around, node, line.name, ((0, agent),))
+
+    def send(self, agent: str, number: int, line: Line, here: frozenset[Test]) -> None:
+        tests = {each.handed(self.time, line.to, by_value=False) for each in here}
+        if line.way == "reported":
+            test = self.seen[agent]
+            assert test is not None
+            tests.add(test.handed(self.time, line.to, by_value=True))
+        self.messages[str(number)] = frozenset(tests)
+
+    def receive(self, agent: str, number: int, line: Line, label: str) -> None:
+        tests = next(tests for key, tests in self.messages.items() if f", {key}" in label)
+        if line.way == "woken":
+            tests = frozenset(each for each in tests if not each.by_value[-1])
+        self.passed[agent] = self.passed.get(agent, frozenset()) | tests
+        self.inside[agent] = (number, self.inside[agent][1] | tests)
+
+
+def differs(change: Change, slot: tuple[str, str]) -> bool:
+    return change.before.slot(slot) != change.after.slot(slot)
+
+
+def slots_of(reaction: str, host: str) -> frozenset[tuple[str, str]]:
+    """Return the slots that a move uses: where what is moved is, and on which links it and its station are."""
+    words = reaction.split()
+    if words[0] == "MOVE_HOST_TO":
+        return frozenset({("parent", host)})
+    return frozenset({("parent", words[1]), ("links", words[1]), ("links", host)})

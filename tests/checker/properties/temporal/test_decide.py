@@ -1,0 +1,237 @@
+"""Temporal properties of missions: verdicts, what they say, and the runs that show them."""
+
+import json
+import re
+
+import pytest
+from checked_missions import checked, load, verdict_of
+
+from checker import Engine, Limits, ReplayError, Trace, check, print_trace, replay, report_text, to_json
+from checker.reports.lines import violation_line
+from checker.verdicts import Outcome
+
+THERE_AND_BACK = """
+BigActor a hosted_at uav0 with_behavior {
+  loop { control(MOVE_HOST_TO gate0) control(MOVE_HOST_TO north0) observe(HOST) react { case o => skip } }
+}
+BigActor g hosted_at gcs0 with_behavior { observe(HOST) }
+"""
+ONCE = "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) }"
+
+
+def verdict(text, claim, limits=None):
+    """Return the verdict on one property, which has a name if it is not progress."""
+    report = checked(f"{text}\ncheck {{ {claim} }}", limits=limits or Limits())
+    return report.verdicts[0]
+
+
+HOLDS = [
+    (THERE_AND_BACK, 'ltl "q" under weak fairness of agents: [] <> uav0 in gate0'),
+    (THERE_AND_BACK, 'ltl "q" under weak fairness of a: infinitely often taken actuate a'),
+    (THERE_AND_BACK, 'ltl "q" under weak fairness of rules: pending OBS g leads to not pending OBS g'),
+    (THERE_AND_BACK, 'ltl "q": uav0 in north0 U (uav0 in gate0 or pending CTR a) or [] uav0 in north0'),
+    (THERE_AND_BACK, 'ltl "q": taken req_obs g -> X pending OBS g'),
+    (THERE_AND_BACK, 'ltl "q": [] (enabled sense g <-> pending OBS g)'),
+    (THERE_AND_BACK, 'ctl "q": AG EF uav0 in gate0'),
+    (THERE_AND_BACK, 'ctl "q": EG not ended g'),
+    (THERE_AND_BACK, 'ctl "q": E (uav0 in north0 U uav0 in gate0) and not AF ended g'),
+    (THERE_AND_BACK, 'ctl "q" under weak fairness of agents: AF uav0 in gate0 and AG AF ended g'),
+    (THERE_AND_BACK, "progress"),
+    (ONCE, 'ltl "q": eventually always uav0 in gate0'),
+    (ONCE, 'ctl "q": AF AG (uav0 in gate0 and ended a)'),
+    (ONCE, 'ltl "q": [] (ended a -> not enabled a or taken a)'),
+    (ONCE + " control timed environment { uav0 arrives }", 'ltl "q": eventually uav0 in gate0'),
+    (ONCE + " control timed environment { uav0 arrives }", "progress"),
+    (ONCE + " control timed", 'ltl "q" under weak fairness of commit: eventually uav0 in gate0'),
+    (ONCE, 'ltl "q": forall u: UAV . always (present u and (u in gate0 -> <> u in gate0))'),
+]
+VIOLATED = [
+    (THERE_AND_BACK, 'ltl "q": pending OBS g leads to taken sense g'),
+    (THERE_AND_BACK, 'ltl "q" under weak fairness of a: <> ended g'),
+    (THERE_AND_BACK, 'ltl "q" under weak fairness of agents: <> [] uav0 in gate0'),
+    (THERE_AND_BACK, 'ltl "q": [] not uav0 in gate0'),
+    (THERE_AND_BACK, 'ltl "q": X X uav0 in gate0'),
+    (THERE_AND_BACK, 'ctl "q": AF ended g'),
+    (THERE_AND_BACK, 'ctl "q": AG (uav0 in gate0 -> AX uav0 in gate0)'),
+    (THERE_AND_BACK, 'ctl "q": EF AG uav0 in gate0'),
+    (ONCE, 'ltl "q": [] <> uav0 in north0'),
+    (ONCE + " control timed", 'ltl "q": eventually uav0 in gate0'),
+    (ONCE + " control timed", 'ltl "q" under weak fairness of agents, rules: eventually uav0 in gate0'),
+    (ONCE + " environment { uav0 drifts among north0, south0 }", "progress"),
+]
+
+
+@pytest.mark.parametrize(("text", "claim"), HOLDS)
+def test_it_holds(text, claim):
+    found = verdict(text, claim)
+    assert (found.outcome, found.violations) == (Outcome.HOLDS, ())
+
+
+def test_progress_that_holds_shows_a_shortest_run_that_ends_as_a_request_is_served():
+    found = verdict(THERE_AND_BACK, "progress")
+    assert found.examined == 4  # two controls and an observation of a, one observation of g
+    assert [step.label.rule for step in found.witness.steps] == ["req_ctr", "actuate"]
+    assert found.witness.shortest
+
+
+def test_progress_where_nothing_is_asked_for_has_no_witness():
+    found = verdict("BigActor a hosted_at uav0 with_behavior { skip }", "progress")
+    assert (found.outcome, found.examined, found.witness) == (Outcome.HOLDS, 0, None)
+    assert found.remarks == ("vacuous: nothing is ever requested",)
+
+
+@pytest.mark.parametrize(("text", "claim"), VIOLATED)
+def test_it_is_violated_by_a_run_that_replays(text, claim):
+    found = verdict(text, claim)
+    assert found.outcome is Outcome.VIOLATED
+    (violation,) = found.violations
+    data = json.loads(json.dumps(to_json(violation.trace, "m", "sha256:0")))
+    assert replay(load(text).initial, data) == violation.trace
+
+
+def run_of(text, claim):
+    return verdict(text, claim).violations[0].trace
+
+
+def test_what_can_be_seen_early_is_shown_by_a_shortest_trace_without_a_loop():
+    trace = run_of(THERE_AND_BACK, 'ltl "q": [] not uav0 in gate0')
+    assert (len(trace), trace.loop) == (2, None)
+
+
+def test_what_goes_on_for_ever_is_shown_by_a_loop():
+    trace = run_of(THERE_AND_BACK, 'ltl "q": <> ended g')
+    assert (trace.loop, len(trace)) == (2, 9)  # where the first flight ended, not where it began
+    assert trace.configurations[9] == trace.configurations[2]
+    assert list(print_trace(trace))[-1] == "c9 = c2: the 7 steps from there on, again and again"
+
+
+def test_a_run_stays_where_nothing_has_to_happen():
+    for text in (ONCE, ONCE + " control timed"):
+        trace = run_of(text, 'ltl "q": infinitely often taken actuate a')
+        assert trace.loop == len(trace) == 2
+        assert list(print_trace(trace))[-1] == "c2 stays for ever: nothing has to happen"
+
+
+def test_a_stay_of_a_moment_is_told_and_takes_no_loop_out_of_place():
+    text = ONCE + " environment { uav0 drifts among north0, south0 }\n"
+    paused = "not pending a and ended a and not taken env and X taken env"
+    ended = verdict(text, f'ltl "q": [] not ({paused})').violations[0]
+    assert (len(ended.trace), ended.trace.loop) == (3, None)
+    assert ended.details == ("it stays at c2 for a moment before it goes on",)
+    again = verdict(text, f'ltl "q": not infinitely often ({paused})').violations[0]
+    assert again.trace.configurations[again.trace.loop] == again.trace.configurations[-1]
+    assert len(again.details) == 1
+
+
+def test_a_report_says_how_long_a_run_is_and_what_of_it_repeats():
+    report = checked(f'{THERE_AND_BACK} check {{ ltl "q": <> ended g }}')
+    lines = "\n".join(report_text("m", report))
+    assert "a shortest run of 9 steps, the last 7 repeated for ever:" in lines
+    report = checked(f'{ONCE} check {{ ltl "q": [] <> uav0 in north0 }}')
+    assert "a shortest run of 2 steps, at whose end it stays for ever:" in "\n".join(report_text("m", report))
+
+
+# --- what was cut off -----------------------------------------------------------------------------------------
+
+CUT = Limits(configurations=8)
+
+
+@pytest.mark.parametrize(("text", "claim"), [each for each in HOLDS if each[0] == THERE_AND_BACK])
+def test_what_was_cut_off_never_holds(text, claim):
+    assert verdict(text, claim, CUT).outcome is Outcome.INCOMPLETE
+
+
+def test_a_violation_within_what_was_explored_is_one():
+    found = verdict(THERE_AND_BACK, 'ltl "q": [] not uav0 in gate0', CUT)
+    assert (found.outcome, len(found.violations[0].trace)) == (Outcome.VIOLATED, 2)
+    assert verdict(THERE_AND_BACK, 'ctl "q": AX uav0 in gate0', CUT).outcome is Outcome.VIOLATED
+
+
+# --- what is said ---------------------------------------------------------------------------------------------
+
+
+def test_a_verdict_says_under_which_fairness_it_is():
+    found = verdict(ONCE, 'ltl "q" under weak fairness of a and strong fairness of actuate a: <> ended a')
+    assert found.note == "under weak fairness of a and strong fairness of actuate a"
+
+
+def test_fairness_to_what_never_is_is_pointed_out():
+    found = verdict(ONCE, 'ltl "q" under strong fairness of sense a: <> ended a')
+    assert found.remarks == ("strong fairness of sense a is about no step that ever is",)
+
+
+def test_what_leads_to_something_and_never_is_is_pointed_out():
+    found = verdict(ONCE, 'ltl "q": pending MGR a leads to ended a')
+    assert found.remarks == ("vacuous: 'pending MGR a' is never true, so that '<> ended a' is never needed",)
+
+
+def test_a_formula_that_is_too_large_is_not_decided():
+    parts = " or ".join(
+        f"[] <> (pending {sort} a and uav{n} in gate0)" for sort in ("CTR", "OBS", "SND") for n in (0, 1)
+    )
+    both = " and ".join(
+        f"<> (pending {sort} g or [] uav{n} in south0)"
+        for sort in ("CTR", "OBS", "FLY", "MGR", "SND")
+        for n in (0, 1)
+    )
+    found = verdict(THERE_AND_BACK, f'ltl "q": not (({parts}) and {both})')
+    assert found.outcome is Outcome.INCOMPLETE
+    assert found.note.startswith("not decided: it")
+
+
+def test_a_starved_request_has_the_line_that_asked_for_it():
+    text = ONCE + " environment { uav0 drifts among north0, south0 }\ncheck { progress }"
+    mission = load(text)
+    (violation,) = check(mission.initial, mission.properties).verdicts[0].violations
+    assert violation.kind == "unserved CTR"
+    assert mission.source.text.splitlines()[violation_line(violation) - 1].startswith("BigActor a")
+
+
+# --- traces with a loop ---------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def loop_data():
+    return to_json(run_of(THERE_AND_BACK, 'ltl "q": <> ended g'), "m", "sha256:0")
+
+
+def test_a_trace_without_a_loop_says_nothing_of_one():
+    assert "loop" not in to_json(Trace(load(ONCE).initial), "m", "sha256:0")
+
+
+def test_a_run_that_does_not_come_round_there_is_refused(loop_data):
+    with pytest.raises(
+        ReplayError, match=re.escape("step 9: coming round to c3 is not enabled: its last step")
+    ):
+        replay(load(THERE_AND_BACK).initial, loop_data | {"loop": 3})
+
+
+def test_a_run_that_has_to_go_on_cannot_stay(loop_data):
+    with pytest.raises(ReplayError, match="staying for ever is not enabled: something has to be done"):
+        replay(load(THERE_AND_BACK).initial, loop_data | {"loop": 9})
+
+
+@pytest.mark.parametrize("loop", [-1, 10, True, "0", 0.0])
+def test_a_loop_that_is_no_number_of_a_configuration_is_refused(loop_data, loop):
+    with pytest.raises(ValueError, match="'loop' should be the number"):
+        replay(load(THERE_AND_BACK).initial, loop_data | {"loop": loop})
+
+
+def test_the_verdict_of_each_engine_is_the_same():
+    mission = load(f'{THERE_AND_BACK} check {{ progress ltl "q": <> ended g ctl "r": AG EF ended g }}')
+    reports = [
+        check(mission.initial, mission.properties, engine=engine)
+        for engine in (Engine.REFERENCE, Engine.FAST)
+    ]
+    assert reports[0].verdicts == reports[1].verdicts
+    assert verdict_of(reports[0], "q").outcome is Outcome.VIOLATED
+
+
+@pytest.mark.parametrize(
+    "claim",
+    ["progress", "progress under strong fairness of actuate", 'ltl "q" under weak fairness of a: true'],
+)
+def test_nothing_is_said_never_to_be_where_not_everything_was_explored(claim):
+    slow = ONCE.replace("{ ", "{ let n = 1  n = n + 1  observe(HOST)  ")
+    found = verdict(slow, claim, Limits(configurations=1))
+    assert (found.outcome, found.remarks) == (Outcome.INCOMPLETE, ())

@@ -1,0 +1,225 @@
+"""Vacuity of temporal properties: beside the definition on generated graphs, and as missions are told of it."""
+
+from dataclasses import fields, replace
+
+import pytest
+from checked_missions import load
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from structures import (
+    P,
+    Q,
+    Sets,
+    Unrolled,
+    branching,
+    conditions,
+    fairnesses,
+    is_fair,
+    is_run,
+    lassos,
+    linear,
+    truths,
+)
+from test_decide import ONCE, THERE_AND_BACK, verdict
+
+from checker import Engine, Outcome, check
+from checker.bounding import BoundMet
+from checker.properties.occurrences import Part, at, strengthened, unneeded
+from checker.properties.temporal import vacuity
+from checker.properties.temporal.branching import Branching
+from checker.properties.temporal.linear import counterexample
+from checker.properties.temporal.vacuity import judge_linear
+from semantics.properties.propositions import Always, Inside, Known
+from semantics.properties.temporal import Both, Denied, Either, Eventually, Globally, Now, Path, State, parts
+
+CONSTANTS = (Now(Always(False)), Now(Always(True)))
+
+
+def occurrences(formula, path=()):
+    """Yield where each part of a formula stands that says something of configurations or runs by itself."""
+    if not isinstance(formula, Path):
+        yield path
+    for rank, part in enumerate(parts(formula)):
+        yield from occurrences(part, (*path, rank))
+
+
+def put(formula, path, by):
+    if not path:
+        return by
+    name = fields(formula)[path[0]].name
+    return replace(formula, **{name: put(getattr(formula, name), path[1:], by)})
+
+
+def told(formula, holds):
+    """Return where the parts stand that are told to be never needed."""
+    return {part.paths[0] for _, part in unneeded(formula, {}, holds)}
+
+
+@settings(max_examples=120)
+@given(truths(3), branching, st.lists(fairnesses, max_size=2))
+def test_a_part_is_never_needed_if_anything_may_stand_there_in_branching_time(truth, formula, declared):
+    naive = Sets(truth, declared)
+    assume(0 in naive.where(formula))
+    tree = Branching(truth.graph, truth, conditions(truth, declared))
+    free = {
+        path
+        for path in occurrences(formula)
+        if path and all(0 in naive.where(put(formula, path, each)) for each in CONSTANTS)
+    }
+    found = told(formula, lambda each: bool(tree.where(each)[0]))
+    assert all(any(path[: len(one)] == one for one in free) for path in found)
+    leaves = {path for path in free if isinstance(at(formula, path), State)}
+    assert all(any(path[: len(one)] == one for one in found) for path in leaves)
+
+
+@settings(max_examples=120)
+@given(truths(3), linear, st.lists(fairnesses, max_size=2))
+def test_no_run_violates_a_formula_in_which_anything_stands_for_a_part_that_is_never_needed(
+    truth, formula, declared
+):
+    fairness = conditions(truth, declared)
+    assume(counterexample(truth.graph, truth, formula, fairness) is None)
+    runs = [each for each in lassos(truth.graph, 4) if is_fair(truth, each[1], declared)]
+    failed = []
+
+    def holds(each):
+        run = counterexample(truth.graph, truth, each, fairness)
+        failed.extend([each] if run is not None else [])
+        return run is None
+
+    for path in told(formula, holds):
+        for each in CONSTANTS:
+            changed = put(formula, path, each)
+            assert all(Unrolled(truth, *run).holds(changed) for run in runs)
+    judged = judge_linear(truth, formula, fairness, {})
+    if judged.witness is not None:
+        stem, loop = judged.witness.stem, judged.witness.loop
+        assert is_run(truth.graph, stem, loop)
+        assert is_fair(truth, loop, declared)
+        run = Unrolled(truth, stem, loop)
+        assert run.holds(formula)
+        assert not failed or not all(run.holds(each) for each in failed)
+
+
+# --- quantifiers and polarity ---------------------------------------------------------------------------------
+
+KINDS = {"uav0": "UAV", "uav1": "UAV", "gate0": "Gate"}
+
+
+def body(name):
+    return Globally(Either(Denied(Now(Inside(name, "gate0"))), Eventually(Now(Known(name)))))
+
+
+def test_the_body_of_a_quantifier_is_one_part_in_all_places():
+    formula = Both(Both(Both(body("uav0"), body("uav1")), Now(P)), Now(Q))
+    found = {part.formula: part for part in Part(formula).parts(KINDS)}
+    assert len(found) == 4  # of other operands beside it, it is none
+    (part,) = Part(Both(body("uav0"), body("uav1"))).parts(KINDS)
+    assert part.paths == ((0,), (1,))
+    (either,) = part.parts(KINDS)
+    condition, _ = either.parts(KINDS)
+    (atom,) = condition.parts(KINDS)
+    assert (len(atom.paths), atom.positive) == (2, False)
+    true = Now(Always(True))
+    assert strengthened(Both(body("uav0"), body("uav1")), atom) == Both(
+        *(Globally(Either(Denied(true), Eventually(Now(Known(name))))) for name in ("uav0", "uav1"))
+    )
+
+
+# --- in missions ----------------------------------------------------------------------------------------------
+
+TOLD = [
+    (
+        "pending MGR a leads to ended a",
+        "vacuous: 'pending MGR a' is never true, so that '<> ended a' is never needed",
+    ),
+    (
+        "always (uav0 in vessel0 and taken actuate a -> next uav0 in gate0)",
+        "vacuous: 'uav0 in vessel0 and taken actuate a' is never true, so that 'X uav0 in gate0' is never needed",
+    ),
+    ("pending CTR a leads to uav0 in gate0", "'pending CTR a' is never needed: it holds without"),
+    (
+        "<> (uav0 in gate0 or uav0 in vessel0)",
+        "'uav0 in vessel0' is never needed: it holds without",
+    ),
+    (
+        "forall u: UAV . u in vessel0 leads to ended a",
+        "vacuous: 'uav0 in vessel0' and its like are never true, so that '<> ended a' and its like are never needed",
+    ),
+]
+NEEDED = [
+    "always (pending CTR a -> uav0 in north0)",
+    "eventually always uav0 in gate0",
+    "uav0 in north0 U uav0 in gate0",
+    "always (taken actuate a -> next uav0 in gate0)",
+    "always (uav0 in gate0 <-> not uav0 in north0)",
+]
+
+
+@pytest.mark.parametrize(("formula", "remark"), TOLD)
+def test_what_is_never_needed_is_told(formula, remark):
+    assert remark in verdict(ONCE, f'ltl "q": {formula}').remarks
+
+
+@pytest.mark.parametrize("formula", NEEDED)
+def test_of_what_is_needed_there_is_a_witness_and_no_remark(formula):
+    found = verdict(ONCE, f'ltl "q": {formula}')
+    assert found.remarks == ()
+    assert len(found.witness) == found.witness.loop == 2
+
+
+def test_a_branching_formula_is_told_of_too():
+    assert verdict(ONCE, 'ctl "q": AG (uav0 in vessel0 -> EF ended a)').remarks == (
+        "vacuous: 'uav0 in vessel0' is never true, so that 'E <> ended a' is never needed",
+    )
+    found = verdict(ONCE, 'ctl "q": AG (uav0 in gate0 -> AX uav0 in gate0)')
+    assert (found.remarks, len(found.witness)) == ((), 2)
+    assert verdict(ONCE, 'ctl "q": AG (uav0 in north0 or uav0 in gate0 or AF ended a)').remarks == (
+        "'uav0 in north0 or uav0 in gate0' is never needed: it holds without",
+        "'A <> ended a' is never needed: it holds without",
+    )
+
+
+def test_the_witness_of_each_engine_is_as_long():
+    mission = load(f'{THERE_AND_BACK} check {{ ltl "q": pending OBS g leads to not pending MGR g }}')
+    found = [
+        check(mission.initial, mission.properties, engine=engine).verdicts[0]
+        for engine in (Engine.REFERENCE, Engine.FAST)
+    ]
+    assert found[0] == found[1]
+    assert found[0].witness is not None
+
+
+def test_a_graph_that_is_too_large_is_not_gone_through_again(monkeypatch):
+    monkeypatch.setattr(vacuity, "MOST_EDGES", 1)
+    found = verdict(ONCE, 'ltl "q": uav0 in north0 or uav0 in vessel0')
+    assert (found.outcome, found.remarks, found.witness) == (Outcome.HOLDS, (), None)
+
+
+def test_where_the_time_ends_what_holds_still_does(monkeypatch):
+    def late(*_):
+        raise BoundMet("time")
+
+    monkeypatch.setattr(vacuity, "counterexample", late)
+    found = verdict(ONCE, 'ltl "q": uav0 in north0 or uav0 in vessel0')
+    assert (found.outcome, found.remarks, found.witness) == (Outcome.HOLDS, (), None)
+
+
+NOTHING = {
+    'ltl "q": [] forall v: OilTank . present v': True,
+    'ltl "q": forall v: OilTank . [] present v': True,
+    'ltl "q": (exists v: OilTank . present v) leads to false': True,
+    'ctl "q": AG forall v: OilTank . EF present v': True,
+    'ctl "q": not EF exists v: OilTank . present v': True,
+    'ltl "q": [] forall v: OilTank . taken a': True,
+    'ltl "q": [] ((forall v: OilTank . present v) and present uav0)': False,
+    'ctl "q": AG forall v: UAV . present v': False,
+}
+
+
+@pytest.mark.parametrize("claim", NOTHING)
+def test_a_formula_over_a_kind_without_entities_is_vacuous(claim):
+    text = f"signature {{ kind OilTank }} {ONCE}"
+    found = verdict(text, claim)
+    assert found.outcome is Outcome.HOLDS
+    assert (found.remarks == ("vacuous: nothing that it speaks of ever changes",)) is NOTHING[claim]

@@ -1,0 +1,386 @@
+"""Local consistency, deadlock and arrival, computation, invariants and reachability, clause by clause."""
+
+import pytest
+from checked_missions import (
+    WORLD,
+    checked,
+    enumerate_naively,
+    kinds,
+    load,
+    moves,
+    rules_of,
+    verdict,
+    verdict_of,
+    violation,
+)
+
+from checker.properties.inspections import LocalConsistency
+from checker.verdicts import Outcome
+from semantics.properties.propositions import holds
+from semantics.state.requests import FLY
+from semantics.successors import expand
+
+WATCH = "BigActor watch hosted_at gcs2 with_behavior { loop { observe(PARENT(HOST)) react { case obs => skip } } }\n"
+"""It goes on, so that nothing stands still."""
+
+SPILL = WORLD.replace("spill0: OilSpill absent", "spill0: OilSpill = circle (37.09, -8.70) radius 200 m")
+
+# --- local consistency ----------------------------------------------------------------------------------------
+
+
+def consistency(text):
+    return verdict(text, "local_consistency")
+
+
+def test_a_control_whose_redex_is_gone_is_unmatched():
+    text = """
+    BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) control(MOVE uav0 TO gate0) }
+    """
+    found = consistency(text)
+    assert kinds(found) == {"unmatched": 3}
+    assert rules_of(violation(found, "unmatched").trace) == ["req_ctr", "actuate", "req_ctr"]
+    message = "CTR(a, MOVE uav0 TO gate0) is unmatched: its redex matches nothing in L"
+    assert violation(found, "unmatched").message == message
+
+
+def test_a_control_that_believes_what_is_no_longer_so_is_inconsistent():
+    found = consistency(moves("gate0", "a", "uav0") + "environment { uav0 drifts among south0 }")
+    assert kinds(found) == {"inconsistent": 2}
+    assert violation(found, "inconsistent").details == ("uav0: L has it in north0, P shows it in south0",)
+
+
+def test_a_control_of_what_has_vanished_is_inconsistent():
+    found = consistency(moves("gate0", "a", "uav0") + "environment { uav0 vanishes }")
+    assert violation(found, "inconsistent").details == ("uav0: L has it in north0, P does not show it",)
+
+
+def test_a_target_that_has_vanished_makes_a_control_inconsistent():
+    text = "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) }\nenvironment { gate0 vanishes }"
+    assert kinds(consistency(text)) == {"inconsistent": 2}
+
+
+def test_a_link_that_is_down_makes_a_control_inconsistent_and_both_sides_are_shown():
+    text = """
+    BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }
+    environment { uav0 leaves control:gcs0 }
+    """
+    found = consistency(text)
+    assert violation(found, "inconsistent").details == ("uav0: L has it on control:gcs0, mesh, P on mesh",)
+
+
+def test_a_control_that_no_physical_change_makes_true_is_unrealisable():
+    text = """
+    BigActor a hosted_at vessel0 with_behavior { control(MOVE_HOST_TO south0) control(PUT drifter0 IN north0) }
+    environment { vessel0 drifts among point (36.985, -8.71) }
+    """
+    found = consistency(text)
+    assert list(kinds(found)) == ["unrealisable"]
+    assert violation(found, "unrealisable").message.endswith("no physical change makes its reactum true")
+
+
+def test_looking_again_repairs_what_is_inconsistent_if_nothing_moves_in_between():
+    text = """
+    BigActor a hosted_at uav0 with_behavior {
+      observe(PARENT(HOST)) react { case obs => control(MOVE_HOST_TO gate0) }
+    }
+    believes { uav0 in south0 }
+    """
+    assert consistency(text).outcome is Outcome.HOLDS
+    assert kinds(consistency(moves("gate0", "a", "uav0") + "believes { uav0 in south0 }")) == {
+        "inconsistent": 1
+    }
+
+
+def test_only_the_control_next_in_line_is_asked_for():
+    text = """
+    BigActor a hosted_at uav0 with_behavior {
+      observe(PARENT(HOST)) control(MOVE_HOST_TO gate0) react { case o => skip }
+    }
+    believes { uav0 in south0 }
+    """
+    assert consistency(text).outcome is Outcome.HOLDS
+    assert consistency(text + "scheduler unordered").outcome is Outcome.VIOLATED
+
+
+def test_whose_turn_it_is_makes_no_difference_to_consistency():
+    text = (
+        moves("gate0", "a", "uav0") + moves("gate0", "b", "uav1") + "environment { uav1 drifts among north0 }"
+    )
+    for scheduler in ("program_order", "fcfs"):
+        found = consistency(text + f"\nscheduler {scheduler}")
+        assert kinds(found) == {"inconsistent": 2}
+
+
+TWO_PILOTS = """
+BigActor a hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }
+BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) }
+"""
+
+
+def test_a_command_for_what_is_in_transit_waits_and_is_no_inconsistency():
+    found = checked(TWO_PILOTS + "control timed\nenvironment { uav0 arrives }\ncheck { local_consistency }")
+    assert verdict_of(found, "local_consistency").outcome is Outcome.HOLDS
+
+
+def test_a_flight_whose_target_vanished_is_inconsistent():
+    text = moves("gate0", "a", "uav0") + WATCH + "control timed\nenvironment { gate0 vanishes }"
+    found = consistency(text)
+    assert kinds(found) == {"inconsistent": 2}
+    lost = [c for c in enumerate_naively(load(text).initial)[0] if is_lost(c)]
+    assert lost
+    for c in lost:
+        looked = LocalConsistency()
+        looked(0, c, expand(c))
+        assert [each.message.partition(":")[0] for each in looked.collected.first.values()] == [
+            "FLY(a, MOVE_HOST_TO gate0) is inconsistent"
+        ]
+
+
+def is_lost(c):
+    flies = any(isinstance(each.request, FLY) for each in c.eta.all())
+    return flies and "gate0" not in c.structure.physical
+
+
+def test_a_flight_to_a_target_that_moved_is_renewed():
+    text = """
+    BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO spill0) }
+    control timed
+    environment {
+      spill0 drifts among circle (36.98, -8.70) radius 200 m, circle (37.02, -8.69) radius 200 m
+      uav0 arrives
+    }
+    check {
+      local_consistency deadlock_freedom arrival
+      reachable "there": actually uav0 in spill0 and ended a and not pending a
+    }
+    """
+    report = checked(text, SPILL)
+    assert verdict_of(report, "deadlock_freedom").outcome is Outcome.HOLDS
+    assert verdict_of(report, "there").outcome is Outcome.HOLDS
+    assert "inconsistent" not in kinds(verdict_of(report, "local_consistency"))
+
+
+def test_a_mission_without_controls_is_vacuously_consistent():
+    found = consistency(WATCH)
+    assert (found.outcome, found.examined, found.witness) == (Outcome.HOLDS, 0, None)
+
+
+# --- deadlock -------------------------------------------------------------------------------------------------
+
+
+def deadlock(text):
+    return verdict(text, "deadlock_freedom")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('BigActor a hosted_at gcs0 with_behavior { react { case "x" => skip } }', "a waits at a react"),
+        (
+            "BigActor a hosted_at gcs0 with_behavior { control(HAND uav1 TO gcs2) }",
+            "CTR(a, HAND uav1 TO gcs2) is pending",
+        ),
+        (
+            "BigActor a hosted_at gcs0 with_behavior { migrate(drifter0) }",
+            "MGR(a, drifter0) is pending",
+        ),
+        (
+            'BigActor a hosted_at drifter0 with_behavior { send("x", b) }\nBigActor b hosted_at gcs0 with_behavior { }',
+            'SND(a, b, "x") is pending',
+        ),
+        (
+            "BigActor a hosted_at gcs0 with_behavior { control(HAND uav1 TO gcs2) observe(ALL) }",
+            "CTR(a, HAND uav1 TO gcs2) is pending; OBS(a, ALL) is pending",
+        ),
+    ],
+)
+def test_what_nothing_but_the_environment_could_help_is_a_deadlock(text, words):
+    found = deadlock(text)
+    assert list(kinds(found)) == ["deadlock"]
+    assert found.violations[0].message == f"nothing but the environment can move, and {words}"
+
+
+def test_the_environment_moving_for_ever_is_no_help():
+    text = 'BigActor a hosted_at gcs0 with_behavior { react { case "x" => skip } }'
+    found = deadlock(text + "\nenvironment { uav0 leaves mesh and returns }")
+    assert kinds(found) == {"deadlock": 0}
+
+
+def test_another_agent_that_can_always_move_is_help_enough():
+    text = 'BigActor a hosted_at gcs0 with_behavior { react { case "x" => skip } }\n'
+    assert deadlock(text + WATCH).outcome is Outcome.HOLDS
+
+
+AT_REST = {
+    "at the react of a loop": "loop { react { case x => skip } }",
+    "after something else": 'observe(ALL) react { case o => skip } loop { react { case "x" => skip } }',
+    "with more in the loop": 'loop { react { case "x" => skip } react { case "y" => skip } }',
+    "in a behaviour that is called last": "serve()",
+    "in a behaviour that the loop calls": "loop { once() }",
+    "in one that this calls": "loop { twice() }",
+}
+NOT_AT_REST = {
+    "at a react": 'react { case "x" => skip }',
+    "in a loop in a loop": 'loop { let again = true while again { react { case "x" => again = false } } }',
+    "in a choice in a loop": 'loop { if HOST == gcs0 { react { case "x" => skip } } }',
+    "in a case in a loop": 'loop { observe(ALL) react { case o => react { case "x" => skip } } }',
+}
+BEHAVIOURS = """
+def serve() = { loop { react { case x => skip } } }
+def once() = { react { case "x" => skip } }
+def twice() = { once() once() }
+"""
+
+
+@pytest.mark.parametrize("body", AT_REST.values(), ids=AT_REST)
+def test_at_rest(body):
+    text = BEHAVIOURS + f"BigActor a hosted_at gcs0 with_behavior {{ {body} }}"
+    found = deadlock(text)
+    assert found.outcome is Outcome.HOLDS
+    assert found.examined > 0
+
+
+@pytest.mark.parametrize("body", NOT_AT_REST.values(), ids=NOT_AT_REST)
+def test_not_at_rest(body):
+    text = BEHAVIOURS + f"BigActor a hosted_at gcs0 with_behavior {{ {body} }}"
+    assert list(kinds(deadlock(text))) == ["deadlock"]
+
+
+def test_a_case_that_someone_may_still_say_is_rest_until_it_was_said_too_often():
+    text = (
+        'BigActor a hosted_at gcs0 with_behavior { react { case "x" => skip } react { case "x" => skip } }\n'
+    )
+    assert deadlock(text + 'environment { says "x" to a at most 2 times }').outcome is Outcome.HOLDS
+    assert kinds(deadlock(text + 'environment { says "x" to a }')) == {"deadlock": 2}
+    assert kinds(deadlock(text + 'environment { says "y" to a }')) == {"deadlock": 0}
+
+
+def test_what_is_said_to_another_is_no_help():
+    text = """
+    BigActor a hosted_at gcs0 with_behavior { react { case "x" => skip } }
+    BigActor b hosted_at gcs0 with_behavior { loop { react { case "x" => skip } } }
+    environment { says "x" to b }
+    """
+    assert kinds(deadlock(text)) == {"deadlock": 0}
+
+
+def test_an_observation_that_an_ended_agent_did_not_receive_is_nothing():
+    found = deadlock("BigActor a hosted_at gcs0 with_behavior { observe(ALL) }")
+    assert (found.outcome, found.examined) == (Outcome.HOLDS, 1)
+
+
+def test_an_observation_that_no_case_takes_leaves_its_agent_waiting():
+    text = "BigActor a hosted_at gcs0 with_behavior { observe(PARENT(HOST)) react { case o if uav0 in o => skip } }"
+    found = deadlock(text)
+    assert found.violations[0].message.endswith("and a waits at a react")
+
+
+# --- arrival --------------------------------------------------------------------------------------------------
+
+FLIGHT = moves("gate0", "a", "uav0") + "control timed\n"
+
+
+def test_a_flight_that_is_not_declared_to_arrive_is_reported_apart():
+    report = checked(FLIGHT + "check { deadlock_freedom arrival }")
+    assert verdict_of(report, "deadlock_freedom").outcome is Outcome.HOLDS
+    late = verdict_of(report, "arrival")
+    assert kinds(late) == {"not arrived": 2}
+    assert late.violations[0].message == (
+        "a run may wait here for ever for ⟨commit : FLY(a, MOVE_HOST_TO gate0)⟩"
+    )
+    assert "declare that it arrives" in verdict_of(report, "deadlock_freedom").note
+
+
+def test_a_flight_that_is_declared_to_arrive_is_fair():
+    report = checked(FLIGHT + "environment { uav0 arrives }\ncheck { deadlock_freedom arrival }")
+    assert [v.outcome for v in report.verdicts[:2]] == [Outcome.HOLDS, Outcome.HOLDS]
+    assert verdict_of(report, "arrival").note == "flights declared to arrive are fair"
+    assert verdict_of(report, "deadlock_freedom").note == ""
+
+
+def test_the_declaration_of_another_entity_is_no_help():
+    late = verdict(FLIGHT + "environment { uav1 arrives }", "arrival")
+    assert kinds(late) == {"not arrived": 2}
+
+
+def test_another_agent_that_goes_on_leaves_nothing_waiting_for_a_flight():
+    assert verdict(FLIGHT + WATCH, "arrival").outcome is Outcome.HOLDS
+
+
+def test_what_takes_no_flight_is_vacuously_arrived():
+    found = verdict(moves("gate0", "a", "uav0"), "arrival")
+    assert (found.outcome, found.examined, found.note) == (Outcome.HOLDS, 0, "")
+
+
+# --- computation ----------------------------------------------------------------------------------------------
+
+
+def test_a_computation_that_fails_is_found_with_the_way_to_it():
+    text = """
+    BigActor a hosted_at uav0 with_behavior { observe(PARENT(HOST)) react { case o => display(first(o of Drifter)) } }
+    """
+    found = verdict_of(checked(text), "computation")
+    assert kinds(found) == {"fails": 3}
+    assert found.violations[0].message == "a: 'first' can't be computed of ({}): the set is empty"
+
+
+def test_a_computation_that_reaches_no_command_diverges():
+    text = "BigActor a hosted_at uav0 with_behavior { let x = 0 while true { x = 1 - x } }"
+    assert kinds(verdict_of(checked(text), "computation")) == {"diverges": 0}
+
+
+def test_one_agents_fault_does_not_stop_the_others():
+    text = "BigActor b hosted_at gcs0 with_behavior { display(first({})) }\n" + moves("gate0", "a", "uav0")
+    report = checked(text + 'check { reachable "there": actually uav0 in gate0 }')
+    assert verdict_of(report, "there").outcome is Outcome.HOLDS
+    assert kinds(verdict_of(report, "computation")) == {"fails": 0}
+
+
+def test_what_a_failed_agent_had_asked_for_is_served_all_the_same():
+    text = """
+    BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) send(first({}), a) }
+    BigActor b hosted_at uav1 with_behavior { control(MOVE_HOST_TO gate0) display(first({})) observe(ALL) }
+    check { reachable "a": actually uav0 in gate0 reachable "b": actually uav1 in gate0 }
+    """
+    report = checked(text)
+    assert verdict_of(report, "computation").outcome is Outcome.VIOLATED
+    assert [verdict_of(report, name).outcome for name in ("a", "b")] == [Outcome.HOLDS, Outcome.HOLDS]
+
+
+# --- invariants and reachability ------------------------------------------------------------------------------
+
+FORMULAS = [
+    "actually uav0 in gate0",
+    "uav0 in gate0 and not (uav1 in gate0)",
+    "pending CTR a and pending CTR b",
+    "ended a -> actually uav0 in gate0",
+    "uav0 in gate0 <-> actually uav0 in gate0",
+    "forall u: UAV . actually u in gate0",
+]
+
+
+@pytest.mark.parametrize("formula", FORMULAS)
+def test_invariants_and_reachability_agree_with_a_naive_enumeration_and_are_shortest(formula):
+    text = moves("gate0", "a", "uav0") + moves("gate0", "b", "uav1")
+    asked = f'invariant "always": {formula} invariant "never": not ({formula}) reachable "once": {formula}'
+    text += f"\ncheck {{ {asked} }}"
+    mission = load(text)
+    proposition = next(each.formula for each in mission.properties if each.kind == "reachable")
+    depths = enumerate_naively(mission.initial)[0]
+    true = [depth for c, depth in depths.items() if holds(proposition, c)]
+    false = [depth for c, depth in depths.items() if not holds(proposition, c)]
+    report = checked(text)
+    always, never, once = (verdict_of(report, name) for name in ("always", "never", "once"))
+    assert kinds(always) == ({"invariant": min(false)} if false else {})
+    assert kinds(never) == ({"invariant": min(true)} if true else {})
+    assert (always.count, always.examined) == (len(false), len(true))
+    assert (None if once.witness is None else len(once.witness)) == (min(true) if true else None)
+    assert once.examined == len(true)
+    if true:
+        assert holds(proposition, once.witness.configurations[-1])
+
+
+def test_what_is_nowhere_reachable_is_violated_and_says_so():
+    found = verdict(moves("gate0", "a", "uav0") + 'check { reachable "up": uav1 in gate0 }', "up")
+    assert (found.outcome, found.violations, found.witness) == (Outcome.VIOLATED, (), None)
+    assert found.note == "no reachable configuration satisfies: uav1 in gate0"

@@ -1,0 +1,141 @@
+"""Lanes and comparisons: who took each step, what it changed, and where two runs part."""
+
+from dataclasses import replace
+
+from checked_missions import WORLD, load, moves, start, verdict, violation
+
+from checker import Trace
+from checker.reports.comparison import Pair, compare, comparison_text
+from checker.reports.lanes import lanes_of_trace, lanes_text
+from checker.traces import candidates
+
+DRIFTS = moves("gate0", "a", "uav0") + "environment { uav0 drifts among south0 }"
+RACE = """
+BigActor a hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }
+BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) }
+"""
+
+
+def follow(text, *labels):
+    """Return the trace that takes the first transition whose label contains each word, one after the other."""
+    trace = Trace(start(text))
+    for word in labels:
+        found = candidates(trace.configurations[-1])
+        trace = trace.extended(next(each for each in found if word in str(each.label)))
+    return trace
+
+
+def test_each_step_stands_in_its_actors_lane_with_what_it_changed():
+    trace = violation(verdict(DRIFTS, "local_consistency"), "inconsistent").trace
+    lanes = lanes_of_trace(trace)
+    assert lanes.names == ("a", "environment")
+    assert [(step.number, step.lane, step.label.rule, step.serves) for step in lanes.steps] == [
+        (1, 0, "req_ctr", False),
+        (2, 1, "env", False),
+    ]
+    assert [list(map(str, step.changes)) for step in lanes.steps] == [
+        ["α  a ended", "η  + CTR(a, MOVE_HOST_TO gate0)"],
+        ["P  uav0 : in north0 ↦ in south0"],
+    ]
+
+
+def test_lanes_are_columns_of_text():
+    trace = violation(verdict(DRIFTS, "local_consistency"), "inconsistent").trace
+    assert list(lanes_text(lanes_of_trace(trace), 72)) == [
+        "      a                                environment",
+        "      ───────────────────────────────  ───────────────────────────────",
+        "c1    ● req_ctr                        │",
+        "        control(MOVE_HOST_TO gate0)    │",
+        "        α  a ended                     │",
+        "        η  + CTR(a, MOVE_HOST_TO       │",
+        "          gate0)                       │",
+        "c2    │                                ● env",
+        "      │                                  uav0 drifts to south0",
+        "      │                                  P  uav0 : in north0 ↦ in",
+        "      │                                    south0",
+    ]
+
+
+def test_a_run_that_repeats_says_from_where():
+    trace = follow(RACE, *ONE)
+    assert (
+        list(lanes_text(lanes_of_trace(replace(trace, loop=2))))[-1]
+        == "↻ c4 is c2: from there on again and again"
+    )
+    assert list(lanes_text(lanes_of_trace(replace(trace, loop=4))))[-1] == "c4, for ever"
+
+
+def test_a_trace_without_steps_has_its_agents_lanes():
+    assert list(lanes_text(lanes_of_trace(Trace(start(RACE))), 60)) == [
+        "      a                          b",
+        "      ─────────────────────────  ─────────────────────────",
+    ]
+
+
+def test_a_spawned_agent_has_a_lane_from_the_start():
+    text = (
+        "BigActor b hosted_at uav0 with_behavior { spawn a hosted_at uav0 with_behavior looks() }\n"
+        "def looks() = { observe(ALL) }"
+    )
+    lanes = lanes_of_trace(follow(text, "spawn", "req_obs"))
+    assert lanes.names == ("a", "b")
+    assert [step.lane for step in lanes.steps] == [1, 0]
+
+
+# --- comparison -----------------------------------------------------------------------------------------------
+
+ONE = ("req_ctr : a", "req_ctr : b", "actuate : CTR(a", "actuate : CTR(b")
+OTHER = ("req_ctr : a", "req_ctr : b", "actuate : CTR(b", "actuate : CTR(a")
+
+
+def test_two_traces_part_at_the_first_step_that_differs_and_are_aligned_after_it():
+    found = compare(follow(RACE, *ONE), follow(RACE, *OTHER))
+    assert found.shared == 2
+    assert found.pairs == (Pair(None, 3), Pair(3, 4), Pair(4, None))
+    assert [str(each) for each in found.ends] == [
+        "L  uav0 : gate0 ↦ south0",
+        "P  uav0 : in gate0 ↦ in south0",
+    ]
+
+
+def test_a_comparison_as_text():
+    assert list(comparison_text(follow(RACE, *ONE), follow(RACE, *OTHER), ("one", "other"))) == [
+        "< one: 4 steps",
+        "> other: 4 steps",
+        "the same for 2 steps, up to c2; then",
+        "  > c2 --⟨actuate : CTR(b, MOVE uav0 TO gate0)⟩--> c3",
+        "  = c2 --⟨actuate : CTR(a, MOVE uav0 TO south0)⟩--> c3 (c4 there)",
+        "  < c3 --⟨actuate : CTR(b, MOVE uav0 TO gate0)⟩--> c4",
+        "at the end of the second, not as at the end of the first:",
+        "  L  uav0 : gate0 ↦ south0",
+        "  P  uav0 : in gate0 ↦ in south0",
+    ]
+
+
+def test_a_trace_is_the_same_as_itself_and_parts_from_a_longer_one_at_its_end():
+    one, longer = follow(RACE, *ONE[:3]), follow(RACE, *ONE)
+    assert list(comparison_text(one, one, ("x", "y")))[-1] == "they are the same: 3 steps"
+    assert compare(one, longer).shared == 3
+    assert compare(one, longer).pairs == (Pair(None, 4),)
+
+
+def test_of_long_traces_only_so_many_steps_are_aligned(monkeypatch):
+    monkeypatch.setattr("checker.reports.comparison.MOST_ALIGNED", 1)
+    found = compare(follow(RACE, *ONE), follow(RACE, *OTHER))
+    assert (found.pairs, found.beyond) == ((Pair(3, None), Pair(None, 3)), (1, 1))
+
+
+def test_two_ways_to_one_end_end_alike():
+    text = moves("gate0", "a", "uav0") + moves("south0", "b", "uav1")
+    one = follow(text, "req_ctr : a", "req_ctr : b", "CTR(a", "CTR(b")
+    other = follow(text, "req_ctr : b", "req_ctr : a", "CTR(b", "CTR(a")
+    assert list(comparison_text(one, other, ("x", "y")))[-1] == "they end in the same configuration"
+
+
+def test_traces_of_missions_with_other_entities_are_compared_by_their_steps_alone():
+    larger = WORLD.replace("spill0: OilSpill absent", "spill0: OilSpill absent\n  spill1: OilSpill absent")
+    one, other = Trace(start(RACE)), Trace(load(RACE, larger).initial)
+    assert compare(one, other).ends is None
+    other = other.extended(candidates(other.initial)[0])
+    said = list(comparison_text(one, other, ("x", "y")))
+    assert said[-1] == "their ends are not compared: the missions have different entities"

@@ -1,0 +1,365 @@
+"""Reports as text and as data, and exit codes with their precedence."""
+
+import json
+import re
+from dataclasses import replace
+
+import pytest
+from checked_missions import checked, load, moves, start
+
+from checker import (
+    Limits,
+    Outcome,
+    Report,
+    Trace,
+    Verdict,
+    Violation,
+    check,
+    replay,
+    report_json,
+    report_text,
+)
+from semantics.properties.property import Property
+from semantics.state.setting import Control
+
+
+def lines(text, *, traces=False, limits=None):
+    mission = load(text)
+    report = check(mission.initial, mission.properties, limits)
+    return [re.sub(r"\d+\.\d\d s$", "T s", line) for line in report_text("m", report, traces=traces)]
+
+
+ENTERS = moves("gate0", "a", "uav0")
+PILOTS = """
+BigActor a hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }
+BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) }
+"""
+EVERYTHING = """
+check { local_consistency race_freedom deadlock_freedom arrival invariant "never": not (actually uav1 in gate0)
+        reachable "in": actually uav0 in gate0 }
+"""
+
+# --- text -----------------------------------------------------------------------------------------------------
+
+
+def test_what_holds_is_said_with_what_was_examined():
+    assert lines(ENTERS + EVERYTHING) == [
+        "m: 3 configurations, 2 transitions, depth 2, complete, T s",
+        "  ✓ local_consistency  holds; examined 1 control next in line, a witness of 2 steps",
+        (
+            "  ✓ race_freedom       holds; by ownership, without a search: no agent may write what another's control "
+            "rests on"
+        ),
+        "  ✓ deadlock_freedom   holds; examined 1 configuration at rest, a witness of 2 steps",
+        "  ✓ arrival            holds; vacuous: no flight ever ends",
+        (
+            "  ✓ never              holds; vacuous: nothing that it speaks of ever changes; examined 3 configurations, "
+            "a witness of 0 steps"
+        ),
+        "  ✓ in                 holds; examined 1, a witness of 2 steps",
+        "  ✓ computation        holds; no bigActor computes anything that could fail",
+        "  rules: actuate 1, req_ctr 1",
+    ]
+
+
+def test_what_never_rests_and_controls_nothing_is_said_so():
+    text = "BigActor a hosted_at gcs0 with_behavior { loop { observe(ALL) react { case o => display(o) } } }"
+    assert lines(text)[1:-1] == [
+        "  ✓ local_consistency  holds; vacuous: no control was ever next in line",
+        (
+            "  ✓ race_freedom       holds; by ownership, without a search: no agent may write what another's control "
+            "rests on"
+        ),
+        "  ✓ deadlock_freedom   holds; some bigActor can always move",
+        "  ✓ computation        holds; examined 1 internal step, a witness of 4 steps",
+    ]
+
+
+def test_flights_that_arrive_are_counted():
+    text = ENTERS + "control timed\nenvironment { uav0 arrives }\ncheck { arrival }"
+    assert lines(text)[1] == (
+        "  ✓ arrival      holds; flights declared to arrive are fair; examined 1 end of a flight, a witness of 3 steps"
+    )
+
+
+def test_a_search_says_over_how_much_it_went():
+    text = (
+        ENTERS
+        + 'BigActor b hosted_at gcs0 with_behavior { send("x", b) react { case o => control(MOVE uav0 TO south0) } }'
+    )
+    found = lines(text + "check { race_freedom }")
+    assert found[1] == (
+        "  ✓ race_freedom  holds; searched over 9 configurations with the monitor's memory; "
+        "examined 3 controls and pairs of controls, a witness of 2 steps"
+    )
+
+
+def test_a_search_that_met_no_control_is_vacuous():
+    text = PILOTS.replace("{ control", '{ react { case "never" => skip } control')
+    assert lines(text + "check { race_freedom }")[1] == (
+        "  ✓ race_freedom  holds; searched over 1 configurations with the monitor's memory; "
+        "vacuous: no control was ever served"
+    )
+
+
+def test_what_is_violated_is_shown_with_a_shortest_trace():
+    assert lines(PILOTS + "check { race_freedom }", traces=True) == [
+        "m: 10 configurations, 12 transitions, depth 4, complete, T s",
+        "  ✗ race_freedom  violated; searched over 10 configurations with the monitor's memory; found once",
+        (
+            "      control race: CTR(a, MOVE uav0 TO south0) and CTR(b, MOVE uav0 TO gate0) end differently in the two "
+            "orders"
+        ),
+        "        enabled here: ⟨actuate : CTR(a, MOVE uav0 TO south0)⟩ and ⟨actuate : CTR(b, MOVE uav0 TO gate0)⟩",
+        "      a shortest trace, 2 steps:",
+        "        c0 --⟨req_ctr : a, control(MOVE uav0 TO south0)⟩--> c1",
+        "              α  a@gcs0 ended",
+        "              η  a: CTR(a, MOVE uav0 TO south0)",
+        "        c1 --⟨req_ctr : b, control(MOVE uav0 TO gate0)⟩--> c2",
+        "              α  b@gcs0 ended",
+        "              η  b: CTR(b, MOVE uav0 TO gate0)",
+        "  ✓ computation   holds; no bigActor computes anything that could fail",
+        "  rules: actuate 6, req_ctr 6",
+    ]
+
+
+def test_without_traces_only_their_lengths_are_shown():
+    found = lines(PILOTS + "check { race_freedom }")
+    assert "      a shortest trace, 2 steps" in found
+    assert not any("--⟨" in line for line in found)
+
+
+THREE_STALE = """
+BigActor a hosted_at gcs0 with_behavior { control(MOVE uav1 TO gate0) }
+BigActor b hosted_at gcs1 with_behavior { control(MOVE uav0 TO gate0) control(MOVE uav0 TO south0) }
+BigActor c hosted_at vessel0 with_behavior { control(MOVE_HOST_TO gate0) }
+environment { vessel0 drifts among point (36.985, -8.71), point (37.02, -8.69) }
+check { local_consistency }
+"""
+
+
+def test_each_request_that_cannot_be_served_is_a_violation_of_its_own():
+    found = [line for line in lines(THREE_STALE) if line.startswith(("  ✗", "      "))]
+    assert [line for line in found if not line.startswith("        ")] == [
+        "  ✗ local_consistency  violated; found 69 times, 3 different",
+        "      unmatched: CTR(a, MOVE uav1 TO gate0) is unmatched: its redex matches nothing in L",
+        "      a shortest trace, 1 step",
+        "      unmatched: CTR(b, MOVE uav0 TO gate0) is unmatched: its redex matches nothing in L",
+        "      a shortest trace, 1 step",
+        (
+            "      inconsistent: CTR(c, MOVE_HOST_TO gate0) is inconsistent: L believes what P no longer shows: "
+            "nobody looked since"
+        ),
+        "      a shortest trace, 2 steps",
+    ]
+
+
+def test_only_so_many_violations_are_shown_and_the_others_counted():
+    mission = load(THREE_STALE)
+    for most, said in ((1, "3 different, of which 1 are shown"), (2, "3 different, of which 2 are shown")):
+        report = check(mission.initial, mission.properties, violations=most)
+        assert len(report.verdicts[0].violations) == most
+        assert said in next(line for line in report_text("m", report) if "✗" in line)
+
+
+def test_each_kind_is_shown_before_a_second_of_any():
+    mission = load(THREE_STALE)
+    shown = check(mission.initial, mission.properties, violations=2).verdicts[0]
+    assert [each.kind for each in shown.violations] == ["unmatched", "inconsistent"]
+    assert shown.different == 3
+
+
+def test_findings_are_counted():
+    text = ENTERS + 'check { invariant "out": not (uav0 in gate0) invariant "north": actually uav0 in gate0 }'
+    found = lines(text)
+    assert found[1] == "  ✗ out          violated; found once"
+    assert found[4] == "  ✗ north        violated; found 2 times"
+    assert found[6] == "      a shortest trace, 0 steps"
+
+
+def test_what_is_nowhere_is_violated_without_a_trace():
+    found = lines(ENTERS + 'check { reachable "up": uav1 in gate0 }')
+    assert found[1] == "  ✗ up           violated; no reachable configuration satisfies: uav1 in gate0"
+    assert found[2].startswith("  ✓ computation")
+
+
+def test_what_was_cut_off_says_where_and_decides_nothing():
+    found = lines(ENTERS + EVERYTHING, limits=Limits(configurations=2))
+    assert found[:-1] == [
+        "m: 2 configurations, 2 transitions, depth 1, INCOMPLETE, T s",
+        "  stopped at the limit of 2 configurations: what lies beyond was not explored",
+        "  ? local_consistency  incomplete; examined 1 control next in line, a witness of 2 steps",
+        (
+            "  ✓ race_freedom       holds; by ownership, without a search: no agent may write what another's control "
+            "rests on"
+        ),
+        "  ? deadlock_freedom   incomplete; nothing against it so far",
+        "  ? arrival            incomplete; nothing against it so far",
+        "  ? never              incomplete; examined 2 configurations, a witness of 0 steps",
+        "  ? in                 incomplete; not found so far",
+        "  ? computation        incomplete; nothing against it so far",
+    ]
+
+
+def test_what_was_found_before_the_end_stands():
+    found = lines(
+        ENTERS + 'check { invariant "out": pending a reachable "asked": pending CTR a }',
+        limits=Limits(configurations=2),
+    )
+    assert "  ✗ out          violated; found once" in found
+    assert "  ✓ asked        holds; examined 1, a witness of 1 step" in found
+
+
+def test_the_notes_of_a_mission_come_last():
+    report = replace(checked(ENTERS), notes=("borders are left out",))
+    assert list(report_text("m", report))[-1] == "  note: borders are left out"
+
+
+# --- data -----------------------------------------------------------------------------------------------------
+
+
+def as_json(text, limits=None):
+    mission = load(text)
+    report = check(mission.initial, mission.properties, limits, notes=("a note",))
+    return json.loads(json.dumps(report_json("m", "sha256:0", report, mission.setting.control)))
+
+
+def test_the_data_say_what_the_report_says():
+    data = as_json(PILOTS + EVERYTHING)
+    assert {key: value for key, value in data.items() if key not in ("properties", "seconds")} == {
+        "schema": "bigactors.report/1",
+        "mission": "m",
+        "digest": "sha256:0",
+        "complete": True,
+        "bounds": [],
+        "configurations": 10,
+        "transitions": 12,
+        "depth": 4,
+        "reduced": [],
+        "transitions_allowed": 12,
+        "exit_code": 1,
+        "rules": {"actuate": 6, "req_ctr": 6},
+        "rules_never_used": [
+            "fun",
+            "req_obs",
+            "sense",
+            "rcv_obs",
+            "req_snd",
+            "snd",
+            "rcv_msg",
+            "req_mgr",
+            "migrate",
+            "spawn",
+        ],
+        "coverage": {
+            "complete": True,
+            "statements": {"reached": 2, "of": 2},
+            "branches": {"reached": 0, "of": 0},
+            "rules": {"reached": 0, "of": 0},
+            "clauses": {"reached": 0, "of": 0},
+            "lines_reached": [25, 26],
+            "lines_not_reached": [],
+            "gaps": [],
+        },
+        "notes": ["a note"],
+    }
+    assert data["seconds"] >= 0
+    assert [(each["name"], each["kind"], each["verdict"]) for each in data["properties"]] == [
+        ("local_consistency", "local_consistency", "holds"),
+        ("race_freedom", "race_freedom", "violated"),
+        ("deadlock_freedom", "deadlock_freedom", "holds"),
+        ("arrival", "arrival", "holds"),
+        ("never", "invariant", "holds"),
+        ("in", "reachable", "holds"),
+        ("computation", "computation", "holds"),
+    ]
+
+
+def test_the_traces_among_the_data_replay():
+    data = as_json(PILOTS + EVERYTHING)
+    c = start(PILOTS)
+    for each in data["properties"]:
+        first = each["violations"][0]["trace"] if each["violations"] else None
+        assert each["trace"] == first
+        assert (each["trace"] is None) == (each["verdict"] != "violated")
+        for trace in filter(None, (each["trace"], each["witness"])):
+            assert (trace["schema"], trace["mission"], trace["digest"]) == (
+                "bigactors.trace/1",
+                "m",
+                "sha256:0",
+            )
+            assert len(replay(c, trace)) == len(trace["steps"])
+
+
+def test_the_rules_that_never_fired_depend_on_how_control_goes():
+    atomic, timed = as_json(ENTERS), as_json(ENTERS + "control timed")
+    assert "commit" not in atomic["rules_never_used"]
+    assert atomic["rules"] == {"actuate": 1, "req_ctr": 1}
+    assert timed["rules"] == {"command": 1, "commit": 1, "req_ctr": 1}
+    assert "actuate" in timed["rules_never_used"]
+
+
+def test_the_data_of_what_was_cut_off_are_incomplete():
+    data = as_json(ENTERS + EVERYTHING, Limits(configurations=2))
+    assert (data["complete"], data["exit_code"]) == (False, 3)
+    assert data["bounds"] == ["the limit of 2 configurations"]
+    verdicts = {each["name"]: each["verdict"] for each in data["properties"]}
+    assert verdicts.pop("race_freedom") == "holds"
+    assert set(verdicts.values()) == {"incomplete"}
+
+
+def test_a_vacuous_verdict_has_examined_nothing():
+    data = as_json("BigActor a hosted_at gcs0 with_behavior { }\ncheck { local_consistency }")
+    assert [(each["examined"], each["witness"]) for each in data["properties"]] == [(0, None), (0, None)]
+
+
+# --- exit codes -----------------------------------------------------------------------------------------------
+
+HOLDS, VIOLATED, INCOMPLETE = Outcome.HOLDS, Outcome.VIOLATED, Outcome.INCOMPLETE
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "bounds", "code"),
+    [
+        ((), (), 0),
+        ((HOLDS, HOLDS), (), 0),
+        ((HOLDS, VIOLATED), (), 1),
+        ((HOLDS,), ("a limit",), 3),
+        ((HOLDS, INCOMPLETE), ("a limit",), 3),
+        ((HOLDS, INCOMPLETE), (), 3),
+        ((INCOMPLETE, VIOLATED), ("a limit",), 1),
+        ((VIOLATED, INCOMPLETE, HOLDS), (), 1),
+    ],
+)
+def test_a_violation_goes_before_what_is_incomplete_and_that_before_success(outcomes, bounds, code):
+    verdicts = tuple(Verdict(Property("invariant", "x"), outcome) for outcome in outcomes)
+    report = Report(verdicts, configurations=1, transitions=0, depth=0, bounds=bounds)
+    assert report.exit_code == code
+    assert report.complete == (not bounds)
+
+
+def test_missions_have_exit_codes():
+    assert checked(ENTERS + EVERYTHING).exit_code == 0
+    assert checked(PILOTS + EVERYTHING).exit_code == 1
+    assert checked(ENTERS + EVERYTHING, limits=Limits(configurations=2)).exit_code == 3
+    violated = ENTERS + 'check { invariant "out": not (pending a) }'
+    assert checked(violated, limits=Limits(configurations=2)).exit_code == 1
+
+
+def test_a_verdict_and_its_violations_are_values():
+    c = start(ENTERS)
+    one, other = (Violation("deadlock", "x", Trace(c)) for _ in range(2))
+    assert one == other
+    assert report_json("m", "d", Report((), 1, 0, 0), Control.TIMED)["rules_never_used"][6:8] == [
+        "command",
+        "commit",
+    ]
+
+
+def test_race_freedom_by_ownership_has_a_run_in_which_a_control_is_served():
+    (race,) = (each for each in as_json(ENTERS + EVERYTHING)["properties"] if each["name"] == "race_freedom")
+    assert race["note"].startswith("by ownership")
+    assert [step["label"] for step in race["witness"]["steps"]] == [
+        "⟨req_ctr : a, control(MOVE_HOST_TO gate0)⟩",
+        "⟨actuate : CTR(a, MOVE_HOST_TO gate0)⟩",
+    ]

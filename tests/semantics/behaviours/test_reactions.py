@@ -1,0 +1,220 @@
+"""Matching of reactions in L, and what they change."""
+
+from itertools import product
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from small_missions import aboard, mission
+
+from physical import point
+from semantics import strategies
+from semantics.behaviours.reactions import (
+    COMMANDS,
+    LinkVariable,
+    Match,
+    NodeVariable,
+    Pattern,
+    PlaceVariable,
+    Reaction,
+    hand,
+    make_match,
+    matches,
+    move_host_to,
+    moved,
+    relinked,
+    stays_forest,
+)
+from semantics.control import applicable
+from semantics.random_programs import arity
+from semantics.state.initial import Beliefs
+from semantics.state.logical_model import LogicalModel
+from semantics.state.physical_model import Placed
+from semantics.state.signature import REGION
+
+# --- a naive enumerator -----------------------------------------------------------------------------------------
+
+
+def domain(term: object, logical: LogicalModel) -> list[str]:
+    nodes = list(logical.nodes())
+    if isinstance(term, NodeVariable):
+        return [node for node in nodes if term.kind in (None, logical.sorting.kind(node))]
+    if isinstance(term, PlaceVariable):
+        return [*nodes, REGION]
+    links = sorted({link for node in nodes for link in logical.links(node)})
+    kind = {link: link.split(":")[0] if ":" in link else None for link in links}
+    return [
+        link
+        for link in links
+        if (term.kind is None or kind[link] == term.kind) and (term.but is None or kind[link] != term.but)
+    ]
+
+
+def variables_of(pattern: Pattern) -> list[object]:
+    terms = [*pattern.nodes, *(term for pair in (*pattern.parents, *pattern.links) for term in pair)]
+    return list(dict.fromkeys(term for term in terms if not isinstance(term, str)))
+
+
+def holds(pattern: Pattern, match: Match, logical: LogicalModel) -> bool:
+    nodes = [match[node] for node in pattern.nodes]
+    if len(set(nodes)) < len(nodes) or any(logical.parent(node) is None for node in nodes):
+        return False
+    if any(logical.parent(match[node]) != match[place] for node, place in pattern.parents):
+        return False
+    if any(match[link] not in logical.links(match[node]) for link, node in pattern.links):
+        return False
+    for node in pattern.closed:
+        inside = [match[child] for child, place in pattern.parents if place == node]
+        if any(logical.parent(child) == match[node] and child not in inside for child in logical.nodes()):
+            return False
+    around = [place for node in nodes for place in logical.ancestors(node)]
+    return not any(logical.sorting.signature[logical.sorting.kind(place)].passive for place in around)
+
+
+def naive_matches(pattern: Pattern, logical: LogicalModel) -> set[Match]:
+    variables = variables_of(pattern)
+    domains = [domain(variable, logical) for variable in variables]
+    size = 1
+    for each in domains:
+        size *= len(each)
+    assume(size <= 5000)
+    found = (make_match(dict(zip(variables, values, strict=True))) for values in product(*domains))
+    return {match for match in found if holds(pattern, match, logical)}
+
+
+@given(st.data())
+def test_matching_finds_what_a_naive_enumerator_finds(data):
+    world = data.draw(strategies.worlds())
+    logical = world.initial(beliefs=data.draw(strategies.beliefs(world))).structure.logical
+    pattern = data.draw(strategies.patterns(sorted(world.kinds)))
+    found = matches(pattern, logical)
+    assert set(found) == naive_matches(pattern, logical)
+    assert len(set(found)) == len(found)
+
+
+# --- matching ---------------------------------------------------------------------------------------------------
+
+
+def logical_of(*names, **more) -> LogicalModel:
+    return mission(names, **more).structure.logical
+
+
+def test_two_node_variables_stand_for_two_nodes_and_a_place_variable_for_any():
+    logical = logical_of("base", "u0", "u1")
+    n, m, x = NodeVariable("n", "Uav"), NodeVariable("m", "Uav"), PlaceVariable("x")
+    found = matches(Pattern((n, m, "base"), ((n, x), (m, x))), logical)
+    assert [[match[n], match[m], match[x]] for match in found] == [["u1", "u0", "base"], ["u0", "u1", "base"]]
+
+
+def test_a_name_that_is_not_believed_matches_nothing():
+    assert matches(Pattern(("u0",)), logical_of("u0", beliefs=Beliefs({"u0": None}))) == ()
+
+
+def test_a_node_written_without_a_site_has_no_other_child():
+    logical = logical_of("base", "u0", "u1")
+    assert matches(Pattern(("base", "u0"), (("u0", "base"),), closed=("base",)), logical) == ()
+    assert matches(Pattern(("base", "u0"), (("u0", "base"),)), logical)
+
+
+def test_nothing_reacts_inside_what_is_passive():
+    placed = {"u0": Placed(point(37.15, -8.3))}
+    assert logical_of("bunker", "u0", placed=placed).parent("u0") == "bunker"
+    assert matches(Pattern(("u0",)), logical_of("bunker", "u0", placed=placed)) == ()
+    assert matches(Pattern(("bunker",)), logical_of("bunker", "u0", placed=placed))
+
+
+def test_link_variables_keep_to_their_kind():
+    logical = logical_of("u0", channels={"u0": ["control:gcs0", "wifi"]})
+    for term, links in (
+        (LinkVariable("c"), ["control:gcs0", "wifi"]),
+        (LinkVariable("c", kind="control"), ["control:gcs0"]),
+        (LinkVariable("c", but="control"), ["wifi"]),
+    ):
+        found = matches(Pattern(("u0",), links=((term, "u0"),)), logical)
+        assert [match[term] for match in found] == links
+
+
+def test_a_match_is_found_once_even_if_two_relations_say_the_same():
+    n = NodeVariable("n")
+    pattern = Pattern((n,), ((n, "base"), (n, PlaceVariable("x"))))
+    assert len(matches(pattern, logical_of("base", "u0"))) == 1
+
+
+# --- commands ---------------------------------------------------------------------------------------------------
+
+
+def test_moving_to_where_the_host_is_believed_is_the_identity():
+    logical = logical_of("base", "u0")
+    reaction = move_host_to("u0", "base")
+    (match,) = matches(reaction.redex, logical)
+    assert moved(reaction, match) == ()
+
+
+def test_a_host_does_not_move_into_itself_or_into_what_is_inside_it():
+    logical = logical_of("sea", "ship", "crate", placed={"crate": aboard("ship", "crate")})
+    assert matches(move_host_to("ship", "ship").redex, logical) == ()
+    reaction = move_host_to("ship", "crate")
+    (match,) = matches(reaction.redex, logical)
+    assert not stays_forest(reaction, match, logical)
+
+
+HANDED = {"gcs0": ["control:0"], "gcs1": ["control:1"]}
+
+
+def test_handing_over_is_the_identity_if_the_vehicle_is_on_that_channel_already():
+    logical = logical_of("u0", "gcs0", "gcs1", channels=HANDED | {"u0": ["control:0", "control:1"]})
+    reaction = hand("gcs0", "u0", "gcs1")
+    found = matches(reaction.redex, logical)
+    assert found
+    assert all(not lost for match in found for _, lost, _ in relinked(reaction, match, logical))
+
+
+def test_handing_over_changes_the_vehicles_channel_and_nothing_else():
+    logical = logical_of("u0", "gcs0", "gcs1", channels=HANDED | {"u0": ["control:0", "wifi"]})
+    reaction = hand("gcs0", "u0", "gcs1")
+    (match,) = matches(reaction.redex, logical)
+    assert relinked(reaction, match, logical) == (("u0", frozenset({"control:0"}), frozenset({"control:1"})),)
+
+
+def test_who_has_no_authority_cannot_hand_over():
+    logical = logical_of("u0", "gcs0", "gcs1", channels=HANDED | {"u0": ["control:1"]})
+    assert matches(hand("gcs0", "u0", "gcs1").redex, logical) == ()
+
+
+def test_every_command_prints_as_it_is_written():
+    shown = [str(COMMANDS[name](*"huv"[: 1 + arity(name)])) for name in sorted(COMMANDS)]
+    assert shown == [
+        "CONNECT_HOST_TO u",
+        "DISCONNECT_HOST_FROM u",
+        "HAND u TO v",
+        "MOVE u TO v",
+        "MOVE_HOST_TO u",
+        "PUT u IN v",
+    ]
+
+
+def test_moves_print_their_ways_and_name_them_as_context():
+    moving = COMMANDS["MOVE_HOST_TO"]("u0", "area", "base", "sea")
+    assert str(moving) == "MOVE_HOST_TO area VIA base, sea"
+    assert str(COMMANDS["MOVE"]("gcs0", "u0", "area", "base")) == "MOVE u0 TO area VIA base"
+    assert moving.via == ("base", "sea")
+    assert moving.redex.nodes == moving.reactum.nodes == ("u0", "area", "base", "sea")
+    straight = move_host_to("u0", "area")
+    assert (moving.redex.parents, moving.reactum.parents) == (
+        straight.redex.parents,
+        straight.reactum.parents,
+    )
+
+
+@pytest.mark.parametrize("way", [("area",), ("u0",), ("base", "base"), ("nowhere",)])
+def test_a_way_by_what_is_named_twice_or_not_believed_matches_nothing(way):
+    logical = logical_of("sea", "base", "area", "u0")
+    assert matches(move_host_to("u0", "area", "sea").redex, logical)
+    assert matches(move_host_to("u0", "area", *way).redex, logical) == ()
+
+
+def test_a_reaction_that_does_not_involve_the_host_is_not_applicable():
+    n = NodeVariable("n", "Uav")
+    reaction = Reaction("r", Pattern((n,)), Pattern((n,)))
+    c = mission(["u0", "u1"], agents={"a": ("u0", ())})
+    assert [match[n] for match in applicable(c, "a", reaction)] == ["u0"]
