@@ -126,7 +126,7 @@ def test_damaged_files_are_refused(engine, data):
 
 def test_files_of_workers_that_were_exchanged_are_refused():
     files = kept_cluster()
-    one, other = sorted(name for name in files if "share" in name)
+    one, other = sorted(name for name in files if "shard" in name)
     with pytest.raises(CheckpointError, match="number of workers"):
         resumed("cluster", {**files, one: files[other], other: files[one]})
 
