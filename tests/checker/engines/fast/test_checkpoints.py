@@ -133,7 +133,7 @@ def test_files_of_workers_that_were_exchanged_are_refused():
 
 def parts_of(path):
     """Return the schema and the arrays of a file."""
-    if path.name.startswith("share"):
+    if path.name.startswith("shard"):
         return shards.SCHEMA, shards.KINDS
     return (shards.SCHEMA, {}) if path.name == shards.LATEST else (checkpoint.SCHEMA, checkpoint.KINDS)
 
