@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import lru_cache
 from typing import Final
 
 from adapters.mavlink.items import Item
@@ -155,11 +156,7 @@ class Vehicle:
     @property
     def polygon(self) -> Geometry | None:
         """The polygon that is on board, if it is one."""
-        corners = self.store.items.get(MissionType.FENCE, ())
-        try:
-            return polygon([(corner.x / 1e7, corner.y / 1e7) for corner in corners])
-        except PhysicalError:
-            return None
+        return _polygon(tuple((each.x, each.y) for each in self.store.items.get(MissionType.FENCE, ())))
 
     @property
     def configured(self) -> Fence:
@@ -248,7 +245,8 @@ class Vehicle:
 
     def holds(self, latitude: float, longitude: float, height: float) -> bool:
         """Tell whether somewhere is inside all fences that are on."""
-        inside = self.fence is None or contains(self.fence, point(latitude, longitude))
+        fence = self.fence
+        inside = fence is None or contains(fence, point(latitude, longitude))
         if Fence.CIRCLE in self.fences:
             away = metres_to(Body(*self.home[:2]), latitude, longitude)[0]
             inside = inside and away <= self.parameters["FENCE_RADIUS"]
@@ -327,3 +325,12 @@ class Vehicle:
             self.body = moved(self.body, limits, circling, limits.speed, self.body.height, seconds)
         elif not limits.must_move:
             self.body = moved(self.body, limits, self.body.course, 0.0, self.body.height, seconds)
+
+
+@lru_cache(maxsize=64)
+def _polygon(corners: tuple[tuple[int, int], ...]) -> Geometry | None:
+    """Return the polygon of corners in 1e-7 degrees, None if they make none; it is asked for at each step."""
+    try:
+        return polygon([(latitude / 1e7, longitude / 1e7) for latitude, longitude in corners])
+    except PhysicalError:
+        return None
