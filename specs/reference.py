@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from typing import Final
 
 from specs import syntax as s
-from specs.codes import code_table
 from specs.grammar import RESERVED, grammar_text
 
 INTRODUCTION: Final = """\
@@ -31,7 +30,11 @@ and have `:`, `-` and `.` between its parts: `control:gcs0`, `3g`, `wifi-1`. A n
 string stands in double quotes, with `\"`, `\\`, `\n` and `\t` in it. These words cannot be names:
 """
 
-MISTAKES: Final = "`bigactors explain CODE` prints one of these.\n"
+MISTAKES: Final = """\
+## Mistakes
+
+What can be wrong with a mission, code by code: [codes.md](codes.md).
+"""
 
 # For each heading of the grammar: what is shown under it, and a mission that uses it.
 NODES: Final[dict[str, tuple[type[s.Node], ...]]] = {
@@ -264,7 +267,7 @@ def language_reference() -> str:
         if heading in EXAMPLES:
             parts += ["Example:\n", _fenced(EXAMPLES[heading], "mission")]
     reserved = ", ".join(f"`{word}`" for word in sorted(RESERVED))
-    parts += ["## Words\n", WORDS, f"{reserved}\n", "## Mistakes\n", MISTAKES, code_table()]
+    parts += ["## Words\n", WORDS, f"{reserved}\n", MISTAKES]
     return "\n".join(parts)
 
 
