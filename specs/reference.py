@@ -25,8 +25,8 @@ times, `x+` at least once. `bigactors fmt` writes a mission in the layout used h
 """
 
 WORDS: Final = r"""A name is a letter, followed by letters, digits and underscores. A channel's name may begin with a
-digit and contain `:`, `-` and `.` between its parts: `control:gcs0`, `3g`, `wifi-1`. A number is decimal: `37.04`, `4e2`.
-A string is written in double quotes, with the escapes `\"`, `\\`, `\n` and `\t`. These words cannot be names:
+digit and contain `:`, `-` and `.` between its parts: `control:gcs0`, `3g`, `wifi-1`. A number is decimal: `37.04`,
+`4e2`. A string is written in double quotes, with the escapes `\"`, `\\`, `\n` and `\t`. These words cannot be names:
 """
 
 MISTAKES: Final = """\
