@@ -482,8 +482,8 @@ class Code(Enum):
     NOTHING_QUANTIFIED = (
         "LS701",
         "quantifier over nothing",
-        """A property quantifies over a kind that has no entity: `forall` is always true, `exists` never. Declare one (it
-        may be `absent` at first), or quantify over another kind.""",
+        """A property quantifies over a kind that has no entity: `forall` is always true, `exists` never. Declare one
+        (it may be `absent` at first), or quantify over another kind.""",
     )
 
     FAR_FROM_THE_REST = (
