@@ -86,3 +86,16 @@ def test_the_maps_name_modules_of_their_folders():
 def test_a_map_of_the_checker_names_every_module(folder):
     modules = {path.stem for path in (ROOT / folder).glob("*.py")} - {"__init__"}
     assert modules - set(maps()[folder]) == set()
+
+
+def test_a_decision_is_a_short_record_with_a_claim_for_its_title():
+    page = (ROOT / "docs" / "decisions.md").read_text(encoding="utf-8")
+    records = [record.split("\n\n")[0].partition("\n") for record in page.split("\n### ")[1:]]
+    assert len(records) > 60
+    for title, _, text in records:
+        labels = re.findall(r"\*(\w+):\*", text)
+        assert labels == [
+            each for each in ("Context", "Decision", "Consequence", "Rejected") if each in labels
+        ], title
+        assert "Decision" in labels, title
+        assert len(text.split()) <= 100, title
