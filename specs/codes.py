@@ -117,8 +117,8 @@ class Code(Enum):
     MISSING_DESTINATION = (
         "LS109",
         "control action without its destination",
-        """Control actions are written `MOVE_HOST_TO place` or `MOVE entity TO place`, each optionally followed by
-        `VIA place, place`; `CONNECT_HOST_TO node`, `DISCONNECT_HOST_FROM node`, `HAND entity
+        """Control actions are written `MOVE_HOST_TO place`, `MOVE entity TO place`, both with `VIA place, place`
+        behind where something is to be passed, `CONNECT_HOST_TO node`, `DISCONNECT_HOST_FROM node`, `HAND entity
         TO station`, `PUT entity IN place`, `rule(arguments)` or `{ redex -> reactum }`.""",
     )
     MISSPELT_KEYWORD = (
@@ -215,8 +215,8 @@ class Code(Enum):
     MISPLACED_VIA = (
         "LS127",
         "'VIA' where nothing travels",
-        """Only moves pass places: `MOVE_HOST_TO place VIA gate0, gate1` and `MOVE entity TO place VIA gate0,
-        gate1`. VIA is written once, after the destination.""",
+        """Only moves have a way: `MOVE_HOST_TO place VIA gate0, gate1` and `MOVE entity TO place VIA gate0,
+        gate1`. VIA stands once, behind the destination.""",
     )
     # --- LS2: names and kinds
     UNKNOWN_NAME = (
