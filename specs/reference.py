@@ -287,9 +287,7 @@ def forms(node: type[s.Node]) -> tuple[str, ...]:
 
 def _constructs(heading: str) -> Iterator[str]:
     for node in NODES[heading]:
-        shown, _, _ = _documentation(node).partition(
-            "\n\nAttributes:"
-        )  # the tree's business, not the language's
+        shown, _, _ = _documentation(node).partition("\n\nAttributes:")  # those are about the tree
         yield f"- {' '.join(shown.split())}"
     yield ""
 

@@ -16,9 +16,9 @@ from specs.syntax.nodes import Name, Node
 class MoveHost(Node):
     """`MOVE_HOST_TO e` or `MOVE_HOST_TO e VIA v, w`: move the agent's host into a place.
 
-    It passes the places after VIA in this order: at most twenty, each named once. They are context: L must contain
-    them and P must show them; nothing else is asked of them. On the way the host is in transit to its destination, and
-    in none of these places. Live, the places are uploaded to the vehicle as a mission.
+    It passes the places behind VIA on its way, in their order: twenty at the most, each named once. These are context:
+    L has to have them, P has to show them, and nothing else is asked of them. On its way it is in none of them: what
+    flies is in transit to its destination. Live, the vehicle gets the way as a mission on board.
     """
 
     destination: Expression
@@ -36,14 +36,14 @@ class Move(Node):
 
 @dataclass(frozen=True, slots=True)
 class Connect(Node):
-    """`CONNECT_HOST_TO e`: the host joins a channel of a node."""
+    """`CONNECT_HOST_TO e`: join a channel of a node."""
 
     node: Expression
 
 
 @dataclass(frozen=True, slots=True)
 class Disconnect(Node):
-    """`DISCONNECT_HOST_FROM e`: the host leaves the channels that it shares with a node."""
+    """`DISCONNECT_HOST_FROM e`: leave the channels shared with a node."""
 
     node: Expression
 
@@ -58,7 +58,7 @@ class HandOver(Node):
 
 @dataclass(frozen=True, slots=True)
 class Put(Node):
-    """`PUT x IN e`: put what a carrier holds into the place where the carrier is, or into a carrier."""
+    """`PUT x IN e`: put what a carrier holds where the carrier is, or into a carrier."""
 
     entity: Expression
     place: Expression
@@ -66,7 +66,7 @@ class Put(Node):
 
 @dataclass(frozen=True, slots=True)
 class ApplyRule(Node):
-    """`land(uav0, base0)`: apply a named reaction rule to arguments."""
+    """`land(uav0, base0)`: a named reaction rule, its parameters given."""
 
     rule: Name
     arguments: tuple[Expression, ...]
