@@ -10,6 +10,7 @@ PAGES = [ROOT / "ARCHITECTURE.md", ROOT / "README.md", *sorted((ROOT / "docs").g
 ROOMS = "adapters|bigactors|bigraphs|checker|physical|semantics|specs"
 
 PATH = re.compile(rf"`((?:{ROOMS}|tests|benchmarks|docs)/[\w./]*)`")
+FILE = re.compile(r"`(\w+\.py)`")
 MODULE = re.compile(rf"`((?:{ROOMS})(?:\.\w+)+)`")
 LINK = re.compile(r"\]\((?!https?:)([^)#\s]*)(?:#([^)\s]+))?\)")
 FOLDER = re.compile(rf"`((?:{ROOMS})/[\w/]+)/`")
@@ -44,6 +45,17 @@ def anchors(page):
 def test_every_path_on_a_page_exists(page):
     paths = PATH.findall(page.read_text(encoding="utf-8"))
     assert [path for path in paths if not (ROOT / path).exists() and WRITTEN_BY_BENCHMARKS not in path] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_file_that_a_page_names_without_its_folder_exists(page):
+    names = set(FILE.findall(page.read_text(encoding="utf-8")))
+    known = {
+        path.name
+        for folder in (*ROOMS.split("|"), "tests", "benchmarks")
+        for path in (ROOT / folder).rglob("*.py")
+    }
+    assert names - known == set()
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
