@@ -31,5 +31,5 @@ def varying(parser: Parser) -> None:
         action="append",
         default=[],
         type=substitute,
-        help='read FILE in place of from "NAME"; may be repeated',
+        help='read FILE where the mission has from "NAME"; may be repeated',
     )

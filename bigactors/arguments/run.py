@@ -111,7 +111,7 @@ def fill(parser: Parser) -> None:
         action="append",
         default=[],
         type=substitute,
-        help='read FILE in place of from "NAME"; may be repeated',
+        help='read FILE where the mission has from "NAME"; may be repeated',
     )
 
 
