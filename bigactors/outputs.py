@@ -139,7 +139,7 @@ def check_line(mission: ElaboratedMission) -> int:
 
 
 def cautions_of(mission: ElaboratedMission) -> tuple[Issue, ...]:
-    """Return what a mission says that is hardly meant."""
+    """Return the warnings on a mission's text."""
     said = (diagnostic_json(each, mission.source) for each in mission.warnings)
     return tuple(_of_text(each, Level.WARNING) for each in said)
 

@@ -17,7 +17,7 @@ CELL: Final = 500_000.0
 RADIUS: Final = 6_371_000.0
 
 REMOTE: Final = 1_000_000.0
-"""Metres from everything else at which something is hardly meant to be."""
+"""Metres from everything else at which a position is probably a mistake."""
 
 MOST: Final = 20
 """How many outliers are told of; each is measured against all that is none."""

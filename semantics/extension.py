@@ -80,7 +80,7 @@ def snd(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def rcv_msg(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Receive a message: the first case that fits it takes it.
+    """Receive a message: take the first case that matches it.
 
     a is at a react with a case x for m      m ∈ mailbox(a)
     ───────────────────────────────────────────────────────────────  ⟨rcv_msg : a, react(m)⟩
@@ -105,7 +105,7 @@ def rcv_msg(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def req_mgr(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Request to be hosted elsewhere.
+    """Request to move to another host.
 
     a is at migrate(h)
     ───────────────────────────────────────────────────  ⟨req_mgr : a, migrate(h)⟩
@@ -142,7 +142,7 @@ def migrate(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def spawn(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Create an agent; one that is there already under that name is a fault.
+    """Create an agent; a second agent of the same name is an error.
 
     a is at spawn b hosted_at h with_behavior B      b ∉ α
     ───────────────────────────────────────────────────  ⟨spawn : a, b⟩
@@ -184,7 +184,7 @@ def node_named(c: Configuration, value: Value) -> Name:
 
 
 def say(c: Configuration, clause: Clause) -> Iterator[Transition]:
-    """Let someone outside, a person or the console, put a message into one mailbox.
+    """Let a person or program outside the mission put a message into a mailbox.
 
     the environment says m to a, and has not said it too often      a ∈ α
     ───────────────────────────────────────────────────  ⟨say : m to a⟩

@@ -25,7 +25,7 @@ Rule = Callable[[Configuration, Name], Iterator[Transition]]
 
 
 def fun(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Compute: all internal steps of an agent up to its next command, react or choose.
+    """Compute: take all internal steps of an agent up to its next command, react or choose.
 
     a's next step is internal, and leads to a′
     ───────────────────────────────────────────────────  ⟨fun : a⟩
@@ -39,7 +39,7 @@ def fun(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def req_obs(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Request an observation; HOST is resolved when asked.
+    """Request an observation; HOST is resolved at the request.
 
     a is at observe(q)
     ───────────────────────────────────────────────────  ⟨req_obs : a, observe(q)⟩
@@ -57,7 +57,7 @@ def req_obs(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def sense(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Observe: interpret the query over the physical structure; L and P become locally consistent there.
+    """Observe: evaluate the query over the physical structure; L and P become locally consistent there.
 
     OBS(a, q) ∈ η, in line      L_q = q(A(P))
     ───────────────────────────────────────────────────────────────────────────────  ⟨sense : OBS(a, q)⟩
@@ -76,7 +76,7 @@ def sense(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def rcv_obs(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Receive an observation: the first case that fits it takes it.
+    """Receive an observation: take the first case that matches it.
 
     a is at a react with a case x for L_q      READY(a, q, L_q) ∈ η, in line
     ────────────────────────────────────────────────────────────────────────  ⟨rcv_obs : a, react(x)⟩
@@ -120,7 +120,7 @@ def req_ctr(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def actuate(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Control, in one step: what takes no flight under `control timed`, everything under `control atomic`.
+    """Control in one step: everything under `control atomic`, and what needs no flight under `control timed`.
 
     CTR(a, R ⇒ R′) ∈ η, in line      m a match of R in L
     S locally consistent w.r.t. m(R)      drive(P, m(R′)) = P′
@@ -138,7 +138,7 @@ def actuate(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def command(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Send a vehicle on its way (`control timed`): L believes nothing yet.
+    """Send a vehicle on its way (`control timed`); L does not change yet.
 
     as actuate      neither what moves nor what carries it is in transit
     ──────────────────────────────────────────────────────────────────────────────  ⟨command : CTR(a, R ⇒ R′)⟩
@@ -158,7 +158,7 @@ def command(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def commit(c: Configuration, a: Name, reach: Reach | None = None) -> Iterator[Transition]:
-    """Arrive (`control timed`): with the place where it is now, and R as it still holds.
+    """Arrive (`control timed`): the destination is where it is now, and R must still match.
 
     FLY(a, m, R′) ∈ η, in line      R still matches, but for where the moved node is now
     its unmoved part is consistent      drive(P, m(R′)) = P′
@@ -176,7 +176,7 @@ def commit(c: Configuration, a: Name, reach: Reach | None = None) -> Iterator[Tr
 
 
 def env(c: Configuration, clause: Clause | Observed) -> Iterator[Transition]:
-    """Let the world change as the mission's environment says it may.
+    """Let the world change as the mission's environment section allows.
 
     the environment allows P → P′
     ───────────────────────────────────────────────────  ⟨env : P′⟩

@@ -13,7 +13,7 @@ RANGES: Final = {
     "LS4": "behaviour",
     "LS5": "reaction rules",
     "LS6": "environment, checks and live runs",
-    "LS7": "warnings: what is allowed, and hardly meant",
+    "LS7": "warnings: allowed, but probably not meant",
 }
 
 
@@ -29,7 +29,7 @@ class Code(Enum):
     FILE_TOO_LARGE = (
         "LS001",
         "file too large",
-        """A mission file holds one megabyte at the most. Large worlds belong into GeoJSON files: `from
+        """A mission file has at most one megabyte. Put large worlds into GeoJSON files: `from
         "harbour.geojson"`.""",
     )
     NOT_UTF8 = (
@@ -41,26 +41,26 @@ class Code(Enum):
     CONTROL_CHARACTER = (
         "LS003",
         "control character",
-        """A mission file has no NUL bytes and no other control characters than tabs and line ends: it is
-        probably not a mission file, or in UTF-16.""",
+        """A mission file contains no control characters except tabs and line ends. This is
+        probably not a mission file, or it is in UTF-16.""",
     )
     WORD_TOO_LONG = (
         "LS004",
         "word too long",
-        """A single name, number, string or rule body holds ten kilobytes at the most. Is a quote or a
+        """A single name, number, string or rule body has at most ten kilobytes. Is a quote or a
         brace missing?""",
     )
     NESTED_TOO_DEEPLY = (
         "LS005",
         "nested too deeply",
-        """Brackets, blocks and operators nest two hundred levels deep at the most. Define behaviours
+        """Brackets, blocks and operators nest at most two hundred levels deep. Define behaviours
         with `def`, name values with `let`, and split long conditions.""",
     )
     TOO_MANY_WORDS = (
         "LS006",
         "too many words",
-        """A mission file holds sixty thousand words and symbols at the most. Large worlds
-        belong into GeoJSON files: `from "harbour.geojson"`.""",
+        """A mission file has at most sixty thousand words and symbols. Put large worlds into
+        GeoJSON files: `from "harbour.geojson"`.""",
     )
     UNREADABLE_FILE = (
         "LS007",
@@ -72,13 +72,12 @@ class Code(Enum):
     UNEXPECTED = (
         "LS101",
         "unexpected word",
-        """Something stands where it cannot; the message lists what can stand there. The mistake may be
-        just before it.""",
+        """This word is not allowed here; the message lists what is. The mistake may be just before it.""",
     )
     UNEXPECTED_END = (
         "LS102",
         "the file ends too early",
-        """The file ends inside a declaration. Mostly a closing brace is missing; the hint says which one
+        """The file ends inside a declaration. Usually a closing brace is missing; the hint says which one
         is open.""",
     )
     UNCLOSED_BRACKET = (
@@ -89,7 +88,7 @@ class Code(Enum):
     UNOPENED_BRACKET = (
         "LS104",
         "bracket never opened",
-        """A closing bracket has no opening one. Mostly there is one too many, or the opening one was
+        """A closing bracket has no opening one. Usually there is one too many, or the opening one was
         commented out.""",
     )
     UNCLOSED_STRING = (
@@ -101,8 +100,8 @@ class Code(Enum):
     UNKNOWN_CHARACTER = (
         "LS106",
         "unknown character",
-        """A character that has no meaning in a mission. Quotes pasted from a document are often the
-        typographic ones: strings take straight double quotes.""",
+        """This character has no meaning in a mission. Quotes pasted from a document are often
+        typographic; strings need straight double quotes.""",
     )
     MISSING_ARROW = (
         "LS107",
@@ -125,13 +124,12 @@ class Code(Enum):
     MISSPELT_KEYWORD = (
         "LS110",
         "misspelt keyword",
-        """A word stands where the language has words of its own, and it nearly is one of them. Case
-        matters.""",
+        """Only a keyword is allowed here, and this word is close to one. Upper and lower case differ.""",
     )
     RESERVED_WORD = (
         "LS111",
         "reserved word used as a name",
-        """The words that begin statements or stand in expressions cannot be names. Choose another name.""",
+        """Words that begin statements or occur in expressions cannot be names. Choose another name.""",
     )
     BAD_NUMBER = (
         "LS112",
@@ -147,13 +145,13 @@ class Code(Enum):
     REPEATED_CLAUSE = (
         "LS114",
         "repeated clause",
-        """Each of the clauses that may follow a kind or an entity is written once.""",
+        """Each clause after a kind or an entity may be written once.""",
     )
     UNKNOWN_OPTION = (
         "LS115",
         "unknown option",
-        """`scheduler` is program_order, unordered or fcfs; `control` is atomic or timed; a pattern's
-        type is Observation or Message.""",
+        """`scheduler` is program_order, unordered or fcfs; `control` is atomic or timed; the type of a
+        pattern is Observation or Message.""",
     )
     MISSING_COMMA = (
         "LS116",
@@ -173,13 +171,13 @@ class Code(Enum):
     MISPLACED_STATEMENT = (
         "LS119",
         "statement outside a behaviour",
-        """Statements stand in the body of a bigActor, `BigActor a hosted_at h with_behavior { ... }`, or
+        """Statements belong in the body of a bigActor, `BigActor a hosted_at h with_behavior { ... }`, or
         of a behaviour, `def b() = { ... }`.""",
     )
     MISSING_BRACE = (
         "LS120",
         "missing '{'",
-        """Sections, behaviours, blocks and rule bodies stand in braces.""",
+        """Sections, behaviours, blocks and rule bodies are enclosed in braces.""",
     )
     MISSING_HOST = (
         "LS121",
@@ -196,8 +194,8 @@ class Code(Enum):
     MISSING_KIND = (
         "LS123",
         "entity without a kind",
-        """An entity is declared as `name: Kind`, then where it is: `uav0: UAV = point (37.08, -8.55)`. A
-        rule's parameter has a kind too: `rule land(u: UAV, b: Location) { ... }`.""",
+        """An entity is declared with its kind, and then its placement: `uav0: UAV = point (37.08, -8.55)`. A
+        parameter of a rule has a kind too: `rule land(u: UAV, b: Location) { ... }`.""",
     )
     BAD_COORDINATE = (
         "LS124",
@@ -207,12 +205,12 @@ class Code(Enum):
     REPEATED_HEADER = (
         "LS125",
         "misplaced header",
-        """`mission name` stands once, before all declarations.""",
+        """`mission name` is written once, before all declarations.""",
     )
     BAD_ESCAPE = (
         "LS126",
         "unknown escape",
-        """In a string, a backslash stands before a quote, a backslash, `n` or `t`.""",
+        """In a string, a backslash is followed by a quote, a backslash, `n` or `t`.""",
     )
     MISPLACED_VIA = (
         "LS127",
@@ -224,8 +222,8 @@ class Code(Enum):
     UNKNOWN_NAME = (
         "LS201",
         "unknown name",
-        """A name is used that nothing declares: no entity, place, channel, bigActor, behaviour, rule, function
-        or variable in scope.""",
+        """No entity, place, channel, bigActor, behaviour, rule, function or variable in scope has this
+        name.""",
     )
     UNKNOWN_KIND = (
         "LS202",
@@ -235,15 +233,14 @@ class Code(Enum):
     DUPLICATE_NAME = (
         "LS203",
         "name declared twice",
-        """Every entity, kind, bigActor and channel has a name of its own, and so has each rule among the rules
-        and each behaviour among the behaviours. `region` is taken: it is what lies around
-        everything.""",
+        """Entities, kinds, bigActors and channels all have different names; so do rules among each other, and
+        behaviours. `region` is reserved for the outermost place.""",
     )
     WRONG_SORT = (
         "LS204",
         "name of another sort",
-        """The name is declared, but as something else than what can stand here: a bigActor where a node is
-        expected, a kind where an entity is.""",
+        """The name is declared as something that is not allowed here: a bigActor where a node is expected, or a
+        kind where an entity is.""",
     )
     UNUSABLE_NAME = (
         "LS205",
@@ -256,54 +253,54 @@ class Code(Enum):
         "LS301",
         "no geometry on the earth",
         """Latitudes are between -90 and 90 degrees, longitudes between -180 and 180; borders do not cross
-        themselves; circles have a radius; a band of altitudes has its lower end first.""",
+        themselves; the radius of a circle is positive; an altitude band begins with its lower end.""",
     )
     NO_WHEREABOUTS = (
         "LS302",
         "entity without one placement",
-        """An entity has one of: a placement (`= point (37.08, -8.55)`), a carrier (`carried by vessel0`), or
-        neither, `absent`, until it appears.""",
+        """An entity has a placement (`= point (37.08, -8.55)`) or a carrier (`carried by vessel0`), or is
+        `absent` until it appears.""",
     )
     BAD_CARRIER = (
         "LS303",
         "nothing to be carried by",
-        """Who is carried needs a carrier that is there, of a kind that carries its kind: `kind Vessel carries
+        """A carrier must be in the world, and of a kind that carries the kind of its cargo: `kind Vessel carries
         Drifter`.""",
     )
     CYCLIC_NESTING = (
         "LS304",
         "cyclic nesting",
-        """Nothing is inside itself, neither directly nor by way of others.""",
+        """Nothing is inside itself, neither directly nor through others.""",
     )
     PLACES_OVERLAP = (
         "LS305",
         "places that do not nest",
-        """Two places that never move, each of a kind that may contain something, must nest or be apart: else
-        what is in both has no one parent.""",
+        """Two places that never move, each of a kind that may contain something, must nest or be disjoint:
+        otherwise an entity in both has no unique parent.""",
     )
     BAD_FILE = (
         "LS306",
         "mistake in a world file",
-        """A file named with `from` has a mistake, or what is asked of it does not fit its format. The message
+        """A file named with `from` has a mistake, or the clauses after it do not fit its format. The message
         says which.""",
     )
     TOO_MANY_ENTITIES = (
         "LS307",
         "too many entities",
-        """A mission has two thousand entities at the most, and so many places that not more than a hundred thousand
-        times it is to be asked which place contains whom. Of a file, `within` keeps an area, `keep` the kinds that
-        matter, `limit` the first so many.""",
+        """A mission has at most two thousand entities, and its entities and places make at most a hundred thousand
+        pairs to test for containment. Reduce a file with `within` (an area), `keep` (some kinds) or `limit` (a
+        number).""",
     )
     MISSING_EXTRA = (
         "LS308",
         "extra not installed",
-        """Recordings of AIS are read with pyais, which the extra `ais` installs.""",
+        """AIS recordings are read with pyais, which the extra `ais` installs.""",
     )
     BAD_BELIEF = (
         "LS309",
         "impossible belief",
-        """What L holds at first is a bigraph: nodes are in the region or in nodes of L whose kind may contain
-        them, and each is said to be in one place only.""",
+        """The initial L is a bigraph: each node is in the region or in a node of L whose kind may contain it,
+        and in one place only.""",
     )
     # --- LS4: behaviour
     WRONG_ARITY = (
@@ -313,14 +310,14 @@ class Code(Enum):
     )
     UNBOUND_VARIABLE = (
         "LS402",
-        "assignment to no variable",
-        """`x = e` gives a variable another value. A new one is bound by `let x = e`.""",
+        "assignment to an unbound variable",
+        """`x = e` assigns to a variable that is bound already. `let x = e` binds a new one.""",
     )
     UNBOUNDED_RECURSION = (
         "LS403",
-        "recursion that is not the last thing",
-        """A behaviour may call itself, or those that call it, as the last thing it does only: otherwise what
-        is left to run grows without bound.""",
+        "recursion that is not a tail call",
+        """A behaviour may call itself, or a behaviour that calls it, only as its last statement. Otherwise the
+        rest of the program grows without bound.""",
     )
     EMPTY_LOOP = (
         "LS404",
@@ -335,14 +332,14 @@ class Code(Enum):
     WRONG_QUERY = (
         "LS406",
         "query of what has no answer",
-        """`HOSTED_AT(q)` gives bigActors, and these have no parents, children or links: it stands outermost
-        only.""",
+        """`HOSTED_AT(q)` yields bigActors, which have no parents, children or links. So it can only be the
+        outermost relation of a query.""",
     )
     WRONG_VALUE = (
         "LS407",
         "value of another type",
-        """A number, a truth value, a tuple or a text that is no name stands where a node or a bigActor is
-        expected.""",
+        """A node or a bigActor is expected, and this is a number, a truth value, a tuple or a text that is no
+        name.""",
     )
     # --- LS5: reaction rules
     RULE_SYNTAX = (
@@ -354,32 +351,31 @@ class Code(Enum):
     CREATES_OR_DELETES = (
         "LS502",
         "rule that creates or deletes",
-        """A control moves and links what is there; nothing creates or deletes a node. Both sides of a rule
-        name the same nodes, and each node has a name.""",
+        """Controls move and link existing nodes; nothing creates or deletes a node. Both sides of a rule name the
+        same nodes, and each node has a name.""",
     )
     MOVED_CONTENT = (
         "LS503",
         "rule that moves unknown content",
-        """A site `$0` stands for whatever else is in a node, and in missions it stays there: on both sides it
-        is under the same node.""",
+        """A site `$0` stands for the other contents of a node. In missions, contents do not move: a site is
+        under the same node on both sides.""",
     )
     UNPLACED_NODE = (
         "LS504",
         "node moved to no place",
-        """A node that moves goes into a node of the rule, or beside one that stays: `b.(u | $0) -> b.$0 | u`
+        """A node that moves goes into a node of the rule, or beside a node that stays: `b.(u | $0) -> b.$0 | u`
         puts u beside b.""",
     )
     RULE_WITHOUT_HOST = (
         "LS505",
         "rule without its host",
-        """A bigActor controls what its host takes part in: the redex names `HOST`, or a node that can be the
-        host.""",
+        """A control involves the host of its bigActor: the redex names `HOST`, or a node that can be the host.""",
     )
     UNREALISABLE = (
         "LS506",
         "unrealisable control",
-        """What the control asks for can never be made true: nothing can drive the node, its new place may not
-        contain its kind, or has no room for it.""",
+        """The control can never be carried out: nothing can drive the node, or its new place may not contain its
+        kind or has no room for it.""",
     )
     KIND_MISMATCH = (
         "LS507",
@@ -389,113 +385,112 @@ class Code(Enum):
     BAD_WAY = (
         "LS508",
         "way that cannot be taken",
-        """Behind VIA stand the places that a move passes on its way: twenty at the most, each named once, none of
-        them what travels or where it goes, and each of a kind that may contain what travels.""",
+        """VIA lists the places that a move passes: at most twenty, each named once, none of them the mover or its
+        destination, and each of a kind that may contain the mover.""",
     )
     # --- LS6: environment and checks
     SAME_PLACEMENT = (
         "LS601",
         "placement listed twice",
-        """The placements among which something drifts, or at which it appears, differ from each other.""",
+        """All placements of a `drifts among` or `appears at` clause must be different.""",
     )
     TWO_DRIFTS = (
         "LS602",
         "entity with two drifts",
-        """An entity drifts by one clause. List all its placements in it.""",
+        """An entity has at most one `drifts` clause. List all its placements there.""",
     )
     INEXACT_DRIFT = (
         "LS603",
         "drift within that would not be exact",
-        """`drifts within` explores finitely many placements for infinitely many, which is exact for one entity
-        among places that stand still. Elsewhere list placements: `drifts among`.""",
+        """`drifts within` replaces infinitely many placements by finitely many. That is exact for one entity among
+        places that do not move. Otherwise list placements: `drifts among`.""",
     )
     POINTLESS_CLAUSE = (
         "LS604",
         "clause that can never apply",
-        """The environment is said to do what it never can: bring something in that is there already, return
-        something to a channel that it never was on.""",
+        """The environment can never do this: bring in an entity that is present already, or return an entity to
+        a channel that it was never on.""",
     )
     NO_RECIPIENT = (
         "LS605",
         "saying without a recipient",
-        """`says` needs `to` and a bigActor, unless there is exactly one.""",
+        """`says` needs `to` and a bigActor, unless there is exactly one bigActor.""",
     )
     REPEATED_SETTING = (
         "LS606",
         "said twice",
-        """`scheduler` and `control` are said once, and each property, channel drop, departure and
-        precaution is named once.""",
+        """`scheduler`, `control` and each property, channel drop, departure and precaution may be written once.""",
     )
     FORMULA_TOO_LARGE = (
         "LS607",
         "formula too large",
-        """Quantifiers are written out over all entities of their kind, and `<->` doubles its sides: the properties
-        of a mission may come to fifty thousand atoms.""",
+        """Quantifiers are expanded over all entities of their kind, and `<->` doubles its sides. After that, the
+        properties of a mission may have at most fifty thousand atoms.""",
     )
     NOT_QUANTIFIED = (
         "LS608",
         "comparison of two fixed names",
-        """In properties `x == y` compares names of which one at least is quantified: `forall x: UAV . forall
-        y: UAV . x == y or ...`.""",
+        """In properties, at least one side of `x == y` is a quantified name: `forall x: UAV . forall y: UAV .
+        x == y or ...`.""",
     )
     NOT_CONSTANT = (
         "LS609",
-        "value that is not fixed",
-        """What someone outside says, and what a property compares a variable with, is fixed: a text, number,
+        "value that is not constant",
+        """A message of `says`, and a value that a property compares a variable with, is constant: a text, number,
         truth value, name, or a tuple or set of these.""",
     )
     TOO_MANY_MISTAKES = (
         "LS610",
         "more mistakes",
-        """A hundred mistakes are shown at the most; the others are counted.""",
+        """At most a hundred mistakes are shown; the others are counted.""",
     )
 
     WRONG_LOGIC = (
         "LS611",
         "operator of another logic",
-        """`invariant` and `reachable` are about configurations one by one. `ltl` is about every run: `[]`, `<>`, X,
-        U, R and W in any combination, `taken`, no A and no E. `ctl` is about the tree of runs: each operator of
-        paths stands directly behind A or E. `env` and `say` are nobody's rules.""",
+        """`invariant` and `reachable` are about single configurations. `ltl` is about every run: `[]`, `<>`, X, U, R
+        and W in any combination, and `taken`, without A and E. `ctl` is about the tree of runs: each path operator
+        directly follows A or E. `env` and `say` are steps of no bigActor.""",
     )
 
     NOT_COMPARABLE = (
         "LS613",
         "comparison that says nothing",
-        """`<`, `<=`, `>` and `>=` compare numbers. A variable that only ever has values of one type is compared with
-        a value of that type.""",
+        """`<`, `<=`, `>` and `>=` compare numbers. If a variable only has values of one type, compare it with a value
+        of that type.""",
     )
 
     BAD_TIME_LIMIT = (
         "LS612",
         "time limit out of bounds",
-        """In the `live` section a request has more than no time, and a week at the most.""",
+        """A time limit of the `live` section is more than zero, and at most a week.""",
     )
 
     EMPTY_MISSION = (
         "LS614",
         "nothing to check",
-        """The file declares nothing, so that there is nothing to check or to fly. Is it the right file?""",
+        """The file declares nothing, so there is nothing to check or to fly. Is it the right file?""",
     )
 
     NO_BIGACTOR = (
         "LS615",
         "mission without a bigActor",
-        """What is checked is what bigActors do. A mission without one can be shown, and recordings can be replayed
+        """A check is about what bigActors do. A mission without bigActors can be shown, and recordings can be replayed
         in its places, but a verdict on it would say nothing.""",
     )
     # --- LS7: warnings
     NOTHING_QUANTIFIED = (
         "LS701",
         "quantifier over nothing",
-        """There is no entity of the kind that a property quantifies over: `forall` is true whatever happens, `exists`
-        never. Declare one (it may be `absent` at first), or quantify over another kind.""",
+        """A property quantifies over a kind that has no entity: `forall` is always true, `exists` never. Declare one
+        (it may be `absent` at first), or quantify over another kind.""",
     )
 
     FAR_FROM_THE_REST = (
         "LS702",
         "far from everything else",
-        """An entity lies a thousand kilometres or more from the others. Mostly latitude and longitude are
-        swapped: missions say (latitude, longitude), GeoJSON says [longitude, latitude].""",
+        """An entity is a thousand kilometres or more from all others. Usually latitude and longitude are swapped:
+        missions use (latitude, longitude), GeoJSON uses [longitude, latitude].""",
     )
 
     @property

@@ -8,30 +8,32 @@ from collections.abc import Iterator
 from typing import Final
 
 from specs import syntax as s
-from specs.codes import code_table
 from specs.grammar import RESERVED, grammar_text
 
 INTRODUCTION: Final = """\
 # The mission language
 
-A mission is one text file in UTF-8. White space and line ends separate words and mean nothing else, outside
-strings; `//` and `#` begin comments that reach to the end of the line; `;` may stand between declarations and
-between statements. A program pasted from print with its line numbers, such as the paper's Figure 8, is read
-without them.
+A mission is one text file in UTF-8. Outside strings, white space and line ends only separate words. `//` and `#` begin
+comments, which end with the line. `;` may separate declarations and statements. Line numbers in front of a program,
+such as those of the paper's Figure 8, are ignored.
 
-Files over a megabyte, words over ten kilobytes, more than sixty thousand words and nesting over two hundred are
-refused.
+A file has at most one megabyte and sixty thousand words; a word has at most ten kilobytes; brackets nest at most two
+hundred deep.
 
-The grammar of each part is shown in EBNF: words in quotes are literal, `[x]` may be missing, `x*` may repeat, `x+`
-repeats at least once. `bigactors fmt` writes any mission in the layout used here.
+The grammar of each part is shown in EBNF: words in quotes are literal, `[x]` is optional, `x*` repeats any number of
+times, `x+` at least once. `bigactors fmt` writes a mission in the layout used here.
 """
 
-WORDS: Final = r"""A name is a letter, then letters, digits and underscores. A channel's name may begin with a digit
-and have `:`, `-` and `.` between its parts: `control:gcs0`, `3g`, `wifi-1`. A number is decimal: `37.04`, `4e2`. A
-string stands in double quotes, with `\"`, `\\`, `\n` and `\t` in it. These words cannot be names:
+WORDS: Final = r"""A name is a letter, followed by letters, digits and underscores. A channel's name may begin with a
+digit and contain `:`, `-` and `.` between its parts: `control:gcs0`, `3g`, `wifi-1`. A number is decimal: `37.04`,
+`4e2`. A string is written in double quotes, with the escapes `\"`, `\\`, `\n` and `\t`. These words cannot be names:
 """
 
-MISTAKES: Final = "`bigactors explain CODE` prints one of these.\n"
+MISTAKES: Final = """\
+## Mistakes
+
+[codes.md](codes.md) lists the diagnostics of missions, with meaning and remedy.
+"""
 
 # For each heading of the grammar: what is shown under it, and a mission that uses it.
 NODES: Final[dict[str, tuple[type[s.Node], ...]]] = {
@@ -264,7 +266,7 @@ def language_reference() -> str:
         if heading in EXAMPLES:
             parts += ["Example:\n", _fenced(EXAMPLES[heading], "mission")]
     reserved = ", ".join(f"`{word}`" for word in sorted(RESERVED))
-    parts += ["## Words\n", WORDS, f"{reserved}\n", "## Mistakes\n", MISTAKES, code_table()]
+    parts += ["## Words\n", WORDS, f"{reserved}\n", MISTAKES]
     return "\n".join(parts)
 
 
@@ -285,8 +287,8 @@ def forms(node: type[s.Node]) -> tuple[str, ...]:
 
 def _constructs(heading: str) -> Iterator[str]:
     for node in NODES[heading]:
-        first, _, rest = _documentation(node).partition("\n")
-        yield f"- {first}" + (f" {' '.join(rest.split())}" if rest.strip() else "")
+        shown, _, _ = _documentation(node).partition("\n\nAttributes:")  # those are about the tree
+        yield f"- {' '.join(shown.split())}"
     yield ""
 
 

@@ -44,9 +44,9 @@ def make_parser() -> tuple[Parser, dict[str, Parser]]:
     whole = Parser(
         prog="bigactors",
         description=(
-            "Logical-space programming: check a mission in every interleaving, look at it, run it, replay it."
+            "Logical-space programming: check a mission in every interleaving, draw it, fly it, replay it."
         ),
-        epilog="bigactors COMMAND --help says more of each command, with examples.\n\n" + EXITS,
+        epilog="bigactors COMMAND --help describes a command, with examples.\n\n" + EXITS,
     )
     whole.add_argument("--version", action="version", version=f"bigactors {__version__}")
     commands = whole.add_subparsers(dest="command", metavar="COMMAND", title="commands", parser_class=Parser)

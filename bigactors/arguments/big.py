@@ -96,7 +96,7 @@ def _sim(task: Parser) -> None:
         "--until",
         metavar="TIME",
         type=seconds,
-        help="of an sbrs: go no further than TIME (default: no limit)",
+        help="in an sbrs, simulate up to TIME (default: no limit)",
     )
     task.add_argument(
         "--json", metavar="FILE", type=named, help="the run as data; - for standard output, alone"

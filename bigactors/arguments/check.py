@@ -53,8 +53,8 @@ def _several_processes(parser: Parser) -> None:
         "--address",
         metavar="ADDRESS",
         type=named,
-        help="the Ray cluster to join, such as 10.0.0.1:6379, or auto for the one of this machine (default: one of its "
-        "own on this machine alone)",
+        help="the Ray cluster to join, such as 10.0.0.1:6379, or auto for the one on this machine (default: a new one "
+        "on this machine)",
     )
 
 
@@ -86,7 +86,7 @@ def _report(parser: Parser) -> None:
         "--verdict",
         metavar="FILE",
         type=named,
-        help="write the verdict that `run` asks for (docs/live.md); of one mission, with --control timed",
+        help="write the verdict that `run` needs (docs/live.md); of one mission, with --control timed",
     )
     group.add_argument(
         "--sign",
@@ -99,8 +99,8 @@ def _report(parser: Parser) -> None:
         metavar="N",
         type=at_least_one,
         default=5,
-        help="show no more than N different violations of each property, each with a shortest trace; the others are "
-        "counted (default 5)",
+        help="show at most N different violations of each property, each with a shortest trace; count the others "
+        "(default 5)",
     )
     group.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
 
@@ -118,7 +118,7 @@ def _limits(parser: Parser) -> None:
         "--max-time",
         metavar="SECONDS",
         type=seconds,
-        help="explore and decide no longer than SECONDS; the fast explorer takes half of it (default: no limit)",
+        help="explore and decide for at most SECONDS; the fast explorer takes at most half (default: no limit)",
     )
     group.add_argument(
         "--max-memory",
@@ -133,8 +133,8 @@ def _exploring(parser: Parser) -> None:
     group.add_argument(
         "--engine",
         choices=("reference", "fast", "ray"),
-        help="how it explores; verdicts are the same (default: reference or fast, whichever is quicker for the "
-        "mission's size)",
+        help="the engine that explores; verdicts are the same (default: reference or fast, whichever is quicker for "
+        "the mission's size)",
     )
     group.add_argument(
         "--reduce",
@@ -152,7 +152,7 @@ def _long_runs(parser: Parser) -> None:
         "--checkpoint",
         metavar="DIR",
         type=named,
-        help="keep in DIR, every minute and at the end, what is needed to go on after the process was killed",
+        help="save in DIR, every minute and at the end, what is needed to go on after the process was killed",
     )
     group.add_argument(
         "--every", metavar="SECONDS", type=seconds, default=60.0, help="between two checkpoints (default 60)"
@@ -164,22 +164,21 @@ def _long_runs(parser: Parser) -> None:
         "--spill",
         metavar="DIR",
         type=named,
-        help="when --max-memory is reached, go on with configurations in files in DIR, which should be on a disk; they "
-        "have no names and are gone at the end",
+        help="when --max-memory is reached, move configurations to files in DIR, which should be on a disk; the files "
+        "are unnamed and deleted at the end",
     )
     group.add_argument(
         "--hash-compact",
         metavar="BITS",
         type=tag_bits,
-        help=f"keep {LEAST_TAG} to {MOST_TAG} bits of each hash in memory and compare nothing else; what that may "
-        "leave out is told with its probability, and what holds of everything is incomplete (by --engine fast only; "
+        help=f"keep only {LEAST_TAG} to {MOST_TAG} bits of the hash of each configuration; the report gives the "
+        "probability of omissions, and what would hold everywhere is incomplete (with --engine fast only; "
         "docs/performance.md)",
     )
     group.add_argument(
         "--paranoid",
         metavar="N",
         type=at_least_one,
-        help="let the interpreter work out once more what follows from N configurations, and stop at a difference; "
-        "with --reduce, hold what rules and properties do there to what the reduction takes for granted (not with "
-        "--engine ray)",
+        help="let the interpreter re-check the successors of N configurations, and stop at a difference; with "
+        "--reduce, also check what the reduction assumes of rules and properties there (not with --engine ray)",
     )

@@ -10,17 +10,17 @@ exit codes:
   0  every property holds
   1  a property is violated; a trace does not replay; a file would be formatted
   2  a mistake in the input
-  3  incomplete: a bound was reached or the machine failed, nothing is decided beyond it
+  3  incomplete: a bound was reached or the machine failed; nothing is decided beyond it
   4  a bug of bigactors
 
-Of several missions the gravest counts: 4, then 2, 1, 3, 0."""
+With several missions the gravest code counts: 4, then 2, 1, 3, 0."""
 
 MISSION: Final = "a mission file, or the name of a mission that ships with bigactors, such as oil_spill"
 
 
 def varying(parser: Parser) -> None:
     """Add the options that put something else in the place of what a mission says."""
-    group = parser.add_argument_group("the mission, but for what it says of")
+    group = parser.add_argument_group("replace what the mission says")
     group.add_argument(
         "--scheduler", choices=("program_order", "unordered", "fcfs"), help="which request is served next"
     )
@@ -31,5 +31,5 @@ def varying(parser: Parser) -> None:
         action="append",
         default=[],
         type=substitute,
-        help='read FILE where the mission says from "NAME"; may be repeated',
+        help='read FILE where the mission has from "NAME"; may be repeated',
     )

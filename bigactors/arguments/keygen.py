@@ -14,7 +14,7 @@ def fill(parser: Parser) -> None:
 COMMAND = Command(
     "keygen",
     "make a key pair to sign verdicts with",
-    "Write a new Ed25519 key into FILE (PEM), which only its owner may read, and into FILE.pub what others trust.\n"
+    "Write a new Ed25519 private key into FILE (PEM), readable by its owner only, and the public key into FILE.pub.\n"
     "It has no passphrase: keep it where verdicts are reached, and nowhere else.",
     (
         "bigactors keygen release.key",

@@ -18,21 +18,21 @@ def fill_links(parser: Parser) -> None:
         "--fence",
         metavar="PLACE",
         default="world",
-        help="the geofence that vehicles are given before they are armed: a place of the mission, 'none', or 'world' "
-        "(default): the place that holds all places where vehicles may be, else a box around them",
+        help="the geofence that vehicles get before they are armed: a place of the mission, 'none', or 'world' "
+        "(default): the smallest place that contains all places where vehicles may be, or a box around them",
     )
     parser.add_argument(
         "--key",
         metavar="FILE",
         type=named,
-        help="sign with the MAVLink 2 key in FILE, and believe only what is signed by it; the newest time stamps are "
-        "kept there (python -m adapters.mavlink.new_key FILE makes one)",
+        help="sign with the MAVLink 2 key in FILE, and accept only what is signed with it; the newest time stamps are "
+        "saved there (python -m adapters.mavlink.new_key FILE makes one)",
     )
     parser.add_argument(
         "--within",
         metavar="SOUTH,WEST,NORTH,EAST",
         type=corners,
-        help="of AIS, only what is inside this box, in degrees",
+        help="take only the AIS positions in this box, in degrees",
     )
     parser.add_argument(
         "--kinds",
@@ -40,8 +40,8 @@ def fill_links(parser: Parser) -> None:
         action="append",
         default=[],
         type=kinds,
-        help="of a feed, only these kinds, such as ais=Vessel,BaseStation or detections=OilSpill (default: of AIS "
-        "all, of detections the mission's that nothing drives); may be repeated",
+        help="take only these kinds from a feed, such as ais=Vessel,BaseStation or detections=OilSpill (default: all "
+        "of AIS; of detections, the mission's kinds that are not driven); may be repeated",
     )
     parser.add_argument(
         "--time-to-live",
@@ -49,15 +49,15 @@ def fill_links(parser: Parser) -> None:
         action="append",
         default=[],
         type=living,
-        help="how long a position counts that nothing newer follows: "
+        help="how long a position is valid without a newer one: "
         f"{', '.join(f'{feed} ({time:.0f})' for feed, time in LIVING.items())}; may be repeated",
     )
     parser.add_argument(
         "--token",
         metavar="FILE",
         type=named,
-        help="posts of detections must carry the token in FILE (Authorization: Bearer ...); without one, "
-        "detections=http:PORT hears this machine only",
+        help="posted detections must carry the token in FILE (Authorization: Bearer ...); without a token, "
+        "detections=http:PORT accepts posts from this machine only",
     )
 
 

@@ -25,7 +25,7 @@ def fill(parser: Parser) -> None:
         "--mission",
         metavar="FILE",
         type=named,
-        help="replay it on this mission (default: the one that it names)",
+        help="the mission to replay it on (default: the one that it names)",
     )
     parser.add_argument(
         "--speed",
@@ -39,7 +39,7 @@ def fill(parser: Parser) -> None:
         action="append",
         default=[],
         type=identity,
-        help="what the mission calls who is in a recording of others: mavlink:1=uav0, mmsi:244660274=drifter0",
+        help="the name of a source in a recording by other programs: mavlink:1=uav0, mmsi:244660274=drifter0",
     )
     parser.add_argument(
         "--waypoints",

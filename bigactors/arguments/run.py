@@ -18,7 +18,7 @@ exit codes:
   0  the mission came to its end
   1  an assumption broke, the recording or a plugin failed, or the world was otherwise at the beginning
   2  a mistake in the input, no verdict, a vehicle that is not heard
-  3  it was stopped before its end: by --for, Ctrl-C, SIGTERM or SIGHUP; vehicles go on as they were told last"""
+  3  it was stopped before its end, by --for, Ctrl-C, SIGTERM or SIGHUP; vehicles go on as they were told last"""
 
 ADDRESS: Final = "udp:127.0.0.1:14550"
 
@@ -56,13 +56,13 @@ def fill(parser: Parser) -> None:
         "--peers",
         metavar="FILE",
         type=named,
-        help="the stations (TOML): where each is reached, what it hosts; what one sees all know (docs/stations.md)",
+        help="the stations (TOML): where each is reached, what it hosts; all share what one sees (docs/stations.md)",
     )
     parser.add_argument(
         "--station-log",
         metavar="FILE",
         type=named,
-        help="what this station has said, to be asked for again (default: MISSION.STATION.log, here)",
+        help="the log of what this station publishes, from which others catch up (default: MISSION.STATION.log, here)",
     )
     parser.add_argument(
         "--name",
@@ -70,7 +70,7 @@ def fill(parser: Parser) -> None:
         action="append",
         default=[],
         type=identity,
-        help="what the mission calls whom: a transponder (mmsi:244660274=drifter0), a vehicle by its system id "
+        help="the name of a source in the mission: a transponder (mmsi:244660274=drifter0), a vehicle by its system id "
         "(mavlink:3=uav0) or by its autopilot's serial number (serial:2F003B=uav0); may be repeated",
     )
     fill_links(parser)
@@ -84,7 +84,7 @@ def fill(parser: Parser) -> None:
         "--resume",
         metavar="FILE",
         type=named,
-        help="go on where the run that was recorded in FILE was killed; vehicles are compared first",
+        help="resume the run that was recorded in FILE, after comparing the vehicles",
     )
     parser.add_argument(
         "--verdict", metavar="FILE", type=named, help="the verdict (default: beside the mission, or here)"
@@ -93,16 +93,16 @@ def fill(parser: Parser) -> None:
         "--trust",
         metavar="KEY.pub",
         type=named,
-        help="fly only by a verdict that is signed with the key of which this is the public half (check --sign)",
+        help="fly only with a verdict that is signed by the private key of KEY.pub (check --sign)",
     )
-    parser.add_argument("--unverified", action="store_true", help="fly without a verdict, and say so")
+    parser.add_argument("--unverified", action="store_true", help="fly without a verdict, with a warning")
     parser.add_argument("--for", metavar="SECONDS", dest="duration", type=seconds, help="end after SECONDS")
     parser.add_argument(
         "--wait",
         metavar="SECONDS",
         type=seconds,
         default=60.0,
-        help="wait so long for every vehicle to be heard (default 60)",
+        help="wait at most SECONDS until every vehicle is heard (default 60)",
     )
     parser.add_argument("--socket", metavar="FILE", type=named, help="where `bigactors say` reaches it")
     parser.add_argument(
@@ -111,7 +111,7 @@ def fill(parser: Parser) -> None:
         action="append",
         default=[],
         type=substitute,
-        help='read FILE where the mission says from "NAME"; may be repeated',
+        help='read FILE where the mission has from "NAME"; may be repeated',
     )
 
 

@@ -13,7 +13,7 @@ def fill(parser: Parser) -> None:
         "--out",
         metavar="FILE",
         type=named,
-        help="the picture, .svg or .png (default: the mission's name .svg, here), or a page that steps through the "
+        help="the picture, .svg or .png (default: MISSION.svg, here), or a page that steps through the "
         "whole trace, .html",
     )
     parser.add_argument(
@@ -38,7 +38,7 @@ def fill(parser: Parser) -> None:
         "--against",
         metavar="TRACE",
         type=named,
-        help="say where the trace and this one part, and what differs after that; draw nothing",
+        help="print where the trace and this one differ; draw nothing",
     )
     parser.add_argument(
         "--name",
@@ -46,7 +46,7 @@ def fill(parser: Parser) -> None:
         action="append",
         default=[],
         type=identity,
-        help="what the mission calls who is in a recording of others: mavlink:1=uav0, mmsi:244660274=drifter0",
+        help="the name of a source in a recording by other programs: mavlink:1=uav0, mmsi:244660274=drifter0",
     )
     varying(parser)
 

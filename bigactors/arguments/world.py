@@ -6,8 +6,8 @@ from bigactors.arguments.parser import Command, Parser
 from bigactors.arguments.values import corners, named, time_of
 
 DESCRIPTION: Final = """\
-Read what is where from GeoJSON, waypoint files, plans of QGroundControl and AIS recordings together, print the
-bigraph A(P) that it makes, and what of the recordings could not be used."""
+Read GeoJSON, waypoint files, plans of QGroundControl and AIS recordings into one world, print its bigraph A(P),
+and count what of the recordings could not be used."""
 
 
 def fill(parser: Parser) -> None:
@@ -22,13 +22,13 @@ def fill(parser: Parser) -> None:
         "--at",
         metavar="TIME",
         type=time_of,
-        help="as of a time of the recording, such as 2020-04-07T21:42:00Z",
+        help="the time of the recording, such as 2020-04-07T21:42:00Z",
     )
     parser.add_argument(
         "--within",
         metavar="SOUTH,WEST,NORTH,EAST",
         type=corners,
-        help="only what is inside this box, in degrees",
+        help="take only what is in this box, in degrees",
     )
     parser.add_argument("--kinds", metavar="KIND,...", help="only entities of these kinds")
     parser.add_argument("--output", metavar="FILE", type=named, help="draw it too: a picture, .svg or .png")
@@ -36,7 +36,7 @@ def fill(parser: Parser) -> None:
 
 COMMAND = Command(
     "world",
-    "print and draw the bigraph of what files say is where",
+    "print and draw the bigraph of places and recordings",
     DESCRIPTION,
     (
         "bigactors world harbour.geojson --output harbour.svg",

@@ -64,7 +64,7 @@ class Result:
         failures: Why it was not.
         check_line: The line of its `check` section, 1 without one: where properties belong that nobody wrote.
         text: What the mission says, to quote its lines.
-        cautions: What it says that is hardly meant.
+        cautions: Warnings on its text.
     """
 
     name: str
@@ -102,7 +102,7 @@ class Result:
             )
 
     def warnings(self) -> Iterator[Issue]:
-        """Yield what is hardly meant, what holds and says less than it seems to, and what no run reaches."""
+        """Yield warnings: on the text, on verdicts that mean less than they seem to, and on what no run reaches."""
         if self.report is None:
             return
         yield from self.cautions
@@ -171,7 +171,7 @@ def issue_text(issue: Issue) -> str:
 
 
 def caution_text(name: str, caution: Issue) -> Iterator[str]:
-    """Yield what a mission says that is hardly meant, as it stands in a report."""
+    """Yield the warnings on a mission's text, as a report has them."""
     yield f"  {name}:{caution.line}: warning: {caution.rule}: {caution.message}"
     yield from (f"    {detail}" for detail in caution.details)
 

@@ -93,7 +93,7 @@ class Process:
         self.rests_on = (rests_on,) * len(block) + self.rests_on
 
     def passing(self, tests: Provenance) -> None:
-        """Let what is left rest on tests that had to turn out so to come there; the next turn of a loop looks anew."""
+        """Let the rest of the program depend on the tests that led there; the next iteration of a loop does not."""
         if tests:
             turns = (isinstance(self.program.statements[number], LOOPS) for number in self.code)
             kept = zip(self.rests_on, turns, strict=True)

@@ -176,7 +176,7 @@ def _counters(c: Configuration, a: Name) -> tuple[Cell, ...]:
 
 
 def leave(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Let leave what is here of an agent that runs elsewhere.
+    """Send away what this station has of an agent that runs elsewhere.
 
     a runs at station s, which is not this one      something of a is here
     ──────────────────────────────────────────────────────────────────────────  ⟨leave : a, s⟩
@@ -192,7 +192,7 @@ def leave(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def enter(c: Configuration, station: Station, number: int, parcel: Parcel) -> Iterator[Transition]:
-    """Let enter what another station had of an agent, each parcel once and in order.
+    """Take in what another station had of an agent: each parcel once, and in order.
 
     the number-th parcel from station s has mail for a, or a itself      number − 1 parcels from s have entered
     ─────────────────────────────────────────────────────────────────────────────────────────  ⟨enter : a, s⟩
@@ -270,7 +270,7 @@ def _asked(query: Query) -> tuple[Name, ...]:
 
 
 def learn(c: Configuration, a: Name, host: Name) -> Iterator[Transition]:
-    """Learn where an agent is that runs at another station: as far as it concerns this one, nothing else has changed.
+    """Learn the host of an agent that runs at another station; nothing else of it is known here.
 
     a does not run here      h is a host of another station, and not the one known
     ────────────────────────────────────────────────────────────────────────────────  ⟨learn : a, h⟩
@@ -286,7 +286,7 @@ def learn(c: Configuration, a: Name, host: Name) -> Iterator[Transition]:
 
 
 def believe(c: Configuration, belief: Belief) -> Iterator[Transition]:
-    """Take over what another station's `sense`, `actuate` or `commit` has written into L: there is one L for all.
+    """Take over what another station's `sense`, `actuate` or `commit` has written into L: all stations share one L.
 
     station s has written parent(n) = p, or links(n) = l      L stays a forest
     ──────────────────────────────────────────────────────────────────────────  ⟨believe : n⟩

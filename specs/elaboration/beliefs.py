@@ -61,7 +61,7 @@ def _check_known(mission: s.Mission, parents: dict[str, str | None], names: Name
 
 
 def settled(beliefs: Beliefs, actual: Configuration) -> Beliefs:
-    """Add what follows: what is in a place that L doesn't know is in the place around that.
+    """Complete beliefs: a node in a place that L does not know is in the place around it.
 
     `actual` is the first configuration without beliefs.
     """

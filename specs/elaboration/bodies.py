@@ -41,7 +41,7 @@ class Bodies:
 
     @cached_property
     def spawned(self) -> dict[str, list[SpawnSite]]:
-        """Return where each bigActor is spawned that is."""
+        """Return where each spawned bigActor is spawned."""
         found: dict[str, list[SpawnSite]] = {}
         for body in self.all():
             for site in body.spawns:

@@ -22,7 +22,7 @@ LIST_THEM: Final = "list its placements: drifts among ..."
 
 @dataclass(slots=True)
 class Spots:
-    """Turns what stands for a placement, written out or a place's name, into one for an entity."""
+    """Turns a written placement, or the name of a place, into a placement of an entity."""
 
     names: Names
     world: World

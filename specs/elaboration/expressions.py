@@ -34,7 +34,7 @@ _ANY: Final = Literal("")
 
 
 def elaborate_expression(node: s.Expression, scope: Scope, names: Names) -> Expression:
-    """Return an expression with its names resolved; reports those that mean nothing."""
+    """Return an expression with its names resolved; reports unknown names."""
     match node:
         case s.Name():
             return _name(node, scope, names)

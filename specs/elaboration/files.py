@@ -38,7 +38,7 @@ class Refused(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Library:
-    """Where the files of a world are: beside the mission, but for those that others are put in the place of."""
+    """Where the files of a world are: beside the mission, unless other files replace them."""
 
     directory: Path
     instead: Mapping[str, Path] = field(default_factory=dict)

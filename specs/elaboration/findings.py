@@ -34,13 +34,13 @@ class Findings:
         self._found.setdefault(Diagnostic(code, span, message, hint))
 
     def warn(self, code: Code, where: Node | Span, message: str, hint: str = "") -> None:
-        """Note what is allowed and hardly meant, once."""
+        """Note a warning, once."""
         span = where if isinstance(where, Span) else where.span
         self._warned.setdefault(Diagnostic(code, span, message, hint))
 
     @property
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """What is allowed and hardly meant, by position."""
+        """The warnings, by position."""
         return MissionError(self.source, self._warned).diagnostics
 
     def unknown(

@@ -92,7 +92,7 @@ class Formulas:
 
     @property
     def full(self) -> bool:
-        """Whether so many atoms were counted that the properties which follow are not looked at."""
+        """Whether there are so many atoms that the following properties are skipped."""
         return self.atoms > MOST_ATOMS
 
     def report(self, formula: s.Formula, error: TooLarge) -> None:
@@ -101,7 +101,7 @@ class Formulas:
         self.names.findings.add(Code.FORMULA_TOO_LARGE, formula, message, hint)
 
     def proposition(self, node: s.Formula, around: Context) -> Proposition:
-        """Return a formula with what is quantified around it replaced."""
+        """Return a formula as a proposition, the quantified names around it replaced."""
         match node:
             case s.Negation(operand):
                 return Not(self.proposition(operand, around.denied()))

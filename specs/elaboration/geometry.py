@@ -50,6 +50,6 @@ def _band(node: s.AltitudeBand) -> Band:
 
 
 def moved_to(shape: Placed | None, at: Geometry) -> Placed:
-    """Return a shape with its centre where something else has its own; without a shape, that point."""
+    """Return a shape, centred where another geometry has its centre; without a shape, that centre."""
     centre = centroid(at)
     return Placed(centre) if shape is None else Placed(translate_to(shape.geometry, centre), shape.altitude)

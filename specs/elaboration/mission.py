@@ -49,7 +49,7 @@ class ElaboratedMission:
         fixed: Entities whose place neither agents nor the environment can ever change.
         spans: Where each name is declared, by sort (entity, kind, channel, agent, rule, behaviour) and name.
         precautions: What is done when a live run goes otherwise.
-        warnings: What is allowed and hardly meant, by position.
+        warnings: What is allowed but probably not meant, by position.
         begin: Makes the first configuration under a setting, of the world as it was read.
     """
 

@@ -155,7 +155,7 @@ def region_places(before: Side, after: Side) -> RegionPlaces:
 
 
 def _same(old: list[set[NodeTerm]], new: list[set[NodeTerm]]) -> dict[int, int | None]:
-    """Return for each region of the reactum the redex's that it is."""
+    """Return for each region of the reactum the same region of the redex."""
     sharing = {
         index: [place for place, there in enumerate(old) if there & roots] for index, roots in enumerate(new)
     }

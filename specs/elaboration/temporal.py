@@ -90,7 +90,7 @@ class TemporalFormulas:
         return t.Now(Always(True))
 
     def _claim(self, node: s.Formula, around: Context) -> t.Temporal:
-        """Return a formula with what is quantified around it replaced."""
+        """Return a formula as a claim on runs, the quantified names around it replaced."""
         if id(node) not in self.of_runs:
             return t.Now(self.formulas.proposition(node, around))
         match node:
@@ -190,7 +190,7 @@ class TemporalFormulas:
     # --- steps and fairness
 
     def fairness(self, declared: s.Fairness) -> Iterable[t.Fairness]:
-        """Yield what is owed to each of the steps that a declaration lists."""
+        """Yield a fairness condition for each of the steps that a declaration lists."""
         for each in declared.steps:
             steps, per = self.steps(each)
             word = " ".join(name.text for name in each.words)

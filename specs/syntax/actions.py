@@ -76,8 +76,10 @@ class ApplyRule(Node):
 class RuleBody(Node):
     """`{ u[c] || b.$0 -> b.(u[c] | $0) }`: a reaction rule in the notation of the paper's runtime.
 
-    `text` has its white space collapsed; `raw` is what stands between the braces, comments blanked
-    out, so that an offset into it is an offset from `raw_start` in the mission.
+    Attributes:
+        text: What it says, its white space collapsed.
+        raw: The text between the braces, its comments replaced by spaces: offsets in it count from `raw_start`.
+        raw_start: Where that text begins in the mission.
     """
 
     text: str

@@ -1,4 +1,4 @@
-"""Declarations: what a mission file is made of beside its world."""
+"""Declarations: the parts of a mission file, except its world."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from specs.syntax.world import Believes, Placement, Signature, World
 
 @dataclass(frozen=True, slots=True)
 class Parameter(Node):
-    """`u: UAV`: a parameter of a reaction rule and the kind of node it stands for."""
+    """`u: UAV`: a parameter of a reaction rule, and the kind of node that it stands for."""
 
     name: Name
     kind: Name
@@ -28,7 +28,7 @@ class Parameter(Node):
 class Rule(Node):
     """`rule land(u: UAV, b: Location) { u[c] || b.$0 -> b.(u[c] | $0) }`.
 
-    A named reaction rule; parameters optional.
+    A named reaction rule. The parameters are optional.
     """
 
     name: Name
@@ -49,9 +49,8 @@ class Definition(Node):
 class BigActor(Node):
     """`BigActor a hosted_at uav0 with_behavior { ... }`.
 
-    An agent; the name is optional, as in the paper's Figure 8.
-
-    `with_behavior visit(oilSpill0)` is read as `with_behavior { visit(oilSpill0) }`.
+    An agent. The name is optional, as in the paper's Figure 8. `with_behavior visit(oilSpill0)` is short for
+    `with_behavior { visit(oilSpill0) }`.
     """
 
     name: Name | None
@@ -66,9 +65,8 @@ class BigActor(Node):
 class DriftsAmong(Node):
     """`oilSpill0 drifts among circle (37.0, -8.7) radius 400 m, searchArea1`.
 
-    Placements, or the centroids of places. What is absent, carried or under command does not drift: a vehicle in
-    transit is on its way to its destination until its flight ends (or, where nothing says that it arrives, may never
-    end), and is nowhere that the wind could take it from. From where it has arrived it drifts again.
+    The entity may move to any of these placements at any time; a place stands for its centroid. An entity that is
+    absent, carried or in transit does not drift. A vehicle drifts again from where its flight has ended.
     """
 
     entity: Name
@@ -77,7 +75,7 @@ class DriftsAmong(Node):
 
 @dataclass(frozen=True, slots=True)
 class DriftsWithin(Node):
-    """`boat0 drifts within harbour0`: anywhere in a place."""
+    """`boat0 drifts within harbour0`: the entity may move to any point of the place."""
 
     entity: Name
     place: Name
@@ -85,7 +83,7 @@ class DriftsWithin(Node):
 
 @dataclass(frozen=True, slots=True)
 class Drops(Node):
-    """`wifi drops`, `wifi drops and returns`: a whole channel."""
+    """`wifi drops`, `wifi drops and returns`: a channel is lost for all its members."""
 
     channel: Name
     returns: bool = False
@@ -93,7 +91,7 @@ class Drops(Node):
 
 @dataclass(frozen=True, slots=True)
 class Leaves(Node):
-    """`uav0 leaves wifi`, `uav0 leaves wifi and returns`: one entity's membership of a channel."""
+    """`uav0 leaves wifi`, `uav0 leaves wifi and returns`: one entity loses a channel."""
 
     entity: Name
     channel: Name
@@ -104,7 +102,7 @@ class Leaves(Node):
 class Appears(Node):
     """`tanker0 appears at point (37.0, -8.7), searchArea1 linked ais`.
 
-    At any of the placements, with these links.
+    An absent entity appears at any of these placements, with these links.
     """
 
     entity: Name
@@ -114,7 +112,7 @@ class Appears(Node):
 
 @dataclass(frozen=True, slots=True)
 class Vanishes(Node):
-    """`tanker0 vanishes`: it leaves P."""
+    """`tanker0 vanishes`: an entity leaves P."""
 
     entity: Name
 
@@ -123,7 +121,8 @@ class Vanishes(Node):
 class Says(Node):
     """`says "handover" to a at most 3 times`, or `someone says ...`.
 
-    `to a` is optional where there is one bigActor, and the default is `at most once`.
+    Someone outside sends a message to a bigActor. `to a` is optional if there is one bigActor; the default is
+    `at most once`.
     """
 
     message: Expression
@@ -133,7 +132,7 @@ class Says(Node):
 
 @dataclass(frozen=True, slots=True)
 class Arrives(Node):
-    """`uav0 arrives`: its flights always end, so that commit is fair."""
+    """`uav0 arrives`: its flights always end, so `commit` is fair."""
 
     entity: Name
 
@@ -145,7 +144,7 @@ EnvironmentClause: TypeAlias = (
 
 @dataclass(frozen=True, slots=True)
 class Environment(Node):
-    """`environment { ... }`: everything that may happen without an agent."""
+    """`environment { ... }`: everything that may happen without an agent's doing."""
 
     clauses: tuple[EnvironmentClause, ...]
 
@@ -155,28 +154,28 @@ class Environment(Node):
 
 @dataclass(frozen=True, slots=True)
 class Scheduler(Node):
-    """`scheduler program_order`: program_order (the default), unordered or fcfs."""
+    """`scheduler program_order`: which request is served next: program_order (the default), unordered or fcfs."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class ControlMode(Node):
-    """`control atomic`: atomic (the default) or timed."""
+    """`control atomic`: whether control takes time: atomic (the default) or timed."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class StandardProperty(Node):
-    """`local_consistency`, `race_freedom`, `deadlock_freedom` or `arrival`."""
+    """`local_consistency`, `race_freedom`, `deadlock_freedom` or `arrival`: the standard properties."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class Invariant(Node):
-    """`invariant "never in the basin": not (actually uav0 in basin0)`: holds in every configuration."""
+    """`invariant "never in the basin": not (actually uav0 in basin0)`: true in every configuration."""
 
     label: TextLiteral
     formula: Formula
@@ -184,7 +183,7 @@ class Invariant(Node):
 
 @dataclass(frozen=True, slots=True)
 class Reachable(Node):
-    """`reachable "found": uav0 in oilSpill0`: holds in some configuration."""
+    """`reachable "found": uav0 in oilSpill0`: true in some configuration."""
 
     label: TextLiteral
     formula: Formula
@@ -195,7 +194,7 @@ Property: TypeAlias = StandardProperty | Invariant | Reachable | TemporalPropert
 
 @dataclass(frozen=True, slots=True)
 class Check(Node):
-    """`check { ... }`: the properties to check; without it the first three standard ones."""
+    """`check { ... }`: the properties to check. Without it, the first three standard ones are checked."""
 
     properties: tuple[Property, ...]
 
@@ -219,7 +218,7 @@ D = TypeVar("D", bound=Node)
 
 @dataclass(frozen=True, slots=True)
 class Mission(Node):
-    """`mission oil_spill` and declarations in any order; the header is optional (`name` is None)."""
+    """`mission oil_spill` and declarations in any order. The header is optional."""
 
     name: Name | None
     declarations: tuple[Declaration, ...]

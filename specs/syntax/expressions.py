@@ -10,14 +10,14 @@ from specs.syntax.nodes import Name, Node
 
 @dataclass(frozen=True, slots=True)
 class TextLiteral(Node):
-    """`"handover"`: a string, its escapes resolved."""
+    """`"handover"`: a string."""
 
     value: str
 
 
 @dataclass(frozen=True, slots=True)
 class IntegerLiteral(Node):
-    """`3`: a whole number; a negative one is written `-3` and is a `UnaryOperation`."""
+    """`3`: a whole number. A negative one is written `-3`."""
 
     value: int
 
@@ -31,7 +31,7 @@ class TruthLiteral(Node):
 
 @dataclass(frozen=True, slots=True)
 class HostReference(Node):
-    """`HOST`: the node on which the agent is, resolved when asked; in expressions and in queries."""
+    """`HOST`: the node that hosts the agent at that moment, in expressions and in queries."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class SelfReference(Node):
 
 @dataclass(frozen=True, slots=True)
 class TupleLiteral(Node):
-    """`("found", oilSpill0)`: two values or more, in order."""
+    """`("found", oilSpill0)`: a tuple of two or more values."""
 
     items: tuple[Expression, ...]
 
@@ -55,7 +55,7 @@ class SetLiteral(Node):
 
 @dataclass(frozen=True, slots=True)
 class UnaryOperation(Node):
-    """`not e` (also `!e`) or `-e`: `operator` is `not` or `-`."""
+    """`not e` (also `!e`), `-e`: negation."""
 
     operator: str
     operand: Expression
@@ -65,8 +65,7 @@ class UnaryOperation(Node):
 class BinaryOperation(Node):
     """`a or b`, `a and b`, `a in b`, `a not in b`, `a == b`, `a != b`, `a < b`, `a + b`, `a - b`.
 
-    Also `<=`, `>` and `>=`. `operator` is the operator as written here; `||` and `&&` are read as
-    `or` and `and`.
+    Also `<=`, `>` and `>=`. `||` is another way to write `or`, and `&&` to write `and`.
     """
 
     operator: str
@@ -76,7 +75,7 @@ class BinaryOperation(Node):
 
 @dataclass(frozen=True, slots=True)
 class OfKind(Node):
-    """`obs of Vessel`: the elements of that kind."""
+    """`obs of Vessel`: the elements of a kind."""
 
     operand: Expression
     kind: Name
@@ -84,7 +83,7 @@ class OfKind(Node):
 
 @dataclass(frozen=True, slots=True)
 class FunctionCall(Node):
-    """`size(obs)`: a built-in function of the host language applied to its arguments."""
+    """`size(obs)`: a built-in function applied to its arguments."""
 
     function: Name
     arguments: tuple[Expression, ...]
@@ -92,17 +91,15 @@ class FunctionCall(Node):
 
 @dataclass(frozen=True, slots=True)
 class AllNodes(Node):
-    """`ALL`: the query for every node there is."""
+    """`ALL`: all nodes."""
 
 
 @dataclass(frozen=True, slots=True)
 class QueryApplication(Node):
     """`PARENT(q)`, `CHILDREN(q)`, `LINKED_TO(q)` or `HOSTED_AT(q)`.
 
-    A relation followed from a query's answer.
-
-    `LINKED_TO_HOST` is read as `LINKED_TO(HOST)`, and so for the other three; its `HOST` then has the
-    span of the whole.
+    A relation, applied to each node that the inner query yields. `PARENT_HOST`, `CHILDREN_HOST`, `LINKED_TO_HOST` and
+    `HOSTED_AT_HOST` are short for the relation applied to `HOST`.
     """
 
     relation: str

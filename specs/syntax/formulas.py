@@ -11,14 +11,14 @@ from specs.syntax.nodes import Name, Node
 
 @dataclass(frozen=True, slots=True)
 class Negation(Node):
-    """`not F` (also `!F`); `X != Y` is read as `not X == Y`."""
+    """`not F` (also `!F`). `X != Y` is short for `not X == Y`."""
 
     operand: Formula
 
 
 @dataclass(frozen=True, slots=True)
 class Connective(Node):
-    """`F and G`, `F or G`, `F -> G`, `F <-> G`: binding loosest last, `->` to the right."""
+    """`F and G`, `F or G`, `F -> G`, `F <-> G`: `and` binds tightest and `<->` loosest; `->` binds to the right."""
 
     operator: str
     left: Formula
@@ -27,7 +27,7 @@ class Connective(Node):
 
 @dataclass(frozen=True, slots=True)
 class Quantified(Node):
-    """`forall x: UAV . F` or `exists x: UAV . F`: over the entities of a kind; F reaches as far as it can."""
+    """`forall x: UAV . F` or `exists x: UAV . F`: all entities of a kind, or some; F extends as far as possible."""
 
     quantifier: str
     variable: Name
@@ -39,7 +39,7 @@ class Quantified(Node):
 class Inside(Node):
     """`X in Y`, `X directly in Y`, `actually X in Y`, `actually X directly in Y`.
 
-    X is somewhere, or directly, inside Y: in L, or with `actually` in P.
+    X is inside Y, at any depth or directly: in L, or with `actually` in P.
     """
 
     entity: Name
@@ -52,7 +52,7 @@ class Inside(Node):
 class LinkedTo(Node):
     """`X linked N`, `actually X linked N`.
 
-    N is a node that shares a link with X, or a channel of X: in L, or with `actually` in P.
+    N is a channel of X, or a node that shares a channel with X: in L, or with `actually` in P.
     """
 
     entity: Name
@@ -78,7 +78,7 @@ class Known(Node):
 class Pending(Node):
     """`pending a`, `pending CTR a`.
 
-    Agent a has a request, or one of that sort (OBS READY CTR FLY SND MGR), in η.
+    Agent a has a request in η: any, or one of that sort (`OBS`, `READY`, `CTR`, `FLY`, `SND` or `MGR`).
     """
 
     agent: Name
@@ -94,14 +94,14 @@ class Ended(Node):
 
 @dataclass(frozen=True, slots=True)
 class Waiting(Node):
-    """`waiting a`: agent a is at a `react`."""
+    """`waiting a`: agent a is at a `react` statement."""
 
     agent: Name
 
 
 @dataclass(frozen=True, slots=True)
 class HostedAt(Node):
-    """`a hosted_at X`: agent a is on X."""
+    """`a hosted_at X`: X hosts agent a."""
 
     agent: Name
     host: Name
@@ -109,7 +109,7 @@ class HostedAt(Node):
 
 @dataclass(frozen=True, slots=True)
 class SameName(Node):
-    """`x == y`: two names, of which at least one is quantified, are one."""
+    """`x == y`: two names are the same; at least one of them is quantified."""
 
     left: Name
     right: Name
@@ -117,10 +117,11 @@ class SameName(Node):
 
 @dataclass(frozen=True, slots=True)
 class Stored(Node):
-    """`a.x == 3`, `a.x < 3`, `a.x <= 3`, `a.x > 3`, `a.x >= 3`: how agent a's variable x compares with that value.
+    """`a.x == 3`, `a.x < 3`, `a.x <= 3`, `a.x > 3`, `a.x >= 3`: compare agent a's variable x with a value.
 
-    It keeps its last value to the end of the run. Before it has one, the comparison neither violates nor fulfils
-    (temporal.md). What is no number has no value for `<`, `<=`, `>` and `>=`.
+    The variable keeps its last value to the end of the run. Before it has one, the comparison neither violates nor
+    fulfils a property ([temporal.md](temporal.md#variables-in-properties)).
+    `<`, `<=`, `>` and `>=` compare numbers only.
     """
 
     agent: Name
@@ -147,8 +148,8 @@ SIGNS = {"G": "[]", "F": "<>", "X": "X"}
 class PathPrefix(Node):
     """`[] F`, `<> F`, `X F`, `always F`, `eventually F`, `next F`, `infinitely often F`.
 
-    F now and ever after, now or later, after the next step. `G F` is `[] F` and `F F` is `<> F`. The signs bind like
-    `not`; the words reach as far as they can.
+    `always` (`[]` or `G`): now and ever after. `eventually` (`<>` or `F`): now or later. `next` (`X`): after the next
+    step. The signs bind like `not`; the words extend as far as possible.
     """
 
     operator: str
@@ -159,8 +160,8 @@ class PathPrefix(Node):
 class PathOperation(Node):
     """`F U G`, `F R G`, `F W G`, `F until G`.
 
-    F until G (which comes), G until F and G are true together or for ever, F until G or for ever. They bind tighter
-    than `and`, to the right.
+    `U` or `until`: F until G, and G comes. `R`: G until F and G are true together, or for ever. `W`: F until G, or for
+    ever. They bind tighter than `and`, and to the right.
     """
 
     operator: str
@@ -170,7 +171,7 @@ class PathOperation(Node):
 
 @dataclass(frozen=True, slots=True)
 class LeadsTo(Node):
-    """`F leads to G`: whenever F, then G or eventually G; `[] (F -> <> G)`. It binds loosest."""
+    """`F leads to G`: whenever F is true, G is true then or later: `[] (F -> <> G)`. It binds loosest."""
 
     left: Formula
     right: Formula
@@ -178,7 +179,7 @@ class LeadsTo(Node):
 
 @dataclass(frozen=True, slots=True)
 class PathQuantifier(Node):
-    """`AG F`, `EF F`, `AX F`, `A (F U G)`, `E (F W G)`: on all runs from here, or on some; in `ctl` only."""
+    """`AG F`, `EF F`, `AX F`, `A (F U G)`, `E (F W G)`: on all runs from here, or on some. In `ctl` only."""
 
     quantifier: str
     operand: Formula
@@ -191,7 +192,8 @@ class PathQuantifier(Node):
 class Steps(Node):
     """`sense a`, `a`, `sense`, `agents`, `rules`, `requests`, `environment`.
 
-    Steps by one rule of a bigActor, all its steps, those by a rule, those of the bigActors, those of the world.
+    The steps of a bigActor by one rule, all its steps, all steps by one rule, those of the bigActors, or those of the
+    environment. [temporal.md](temporal.md#fairness) lists what each means under fairness.
     """
 
     words: tuple[Name, ...]
@@ -199,14 +201,14 @@ class Steps(Node):
 
 @dataclass(frozen=True, slots=True)
 class Taken(Node):
-    """`taken sense a`: the next step is one of these; in `ltl` only."""
+    """`taken sense a`: the next step is one of these. In `ltl` only."""
 
     steps: Steps
 
 
 @dataclass(frozen=True, slots=True)
 class Enabled(Node):
-    """`enabled sense a`: one of these steps is possible; in `ltl` and `ctl`."""
+    """`enabled sense a`: one of these steps is possible. In `ltl` and `ctl`."""
 
     steps: Steps
 
@@ -243,8 +245,9 @@ Formula: TypeAlias = (
 class Fairness(Node):
     """`weak fairness of a, b`, `strong fairness of actuate`.
 
-    Runs that never take these steps, though from some time on they always could (weak), or could again and again
-    (strong), are left out. A rule, `agents`, `rules` and `requests` mean each bigActor, rule or request by itself.
+    Only fair runs count. Weak: steps that are enabled for ever from some time on are taken infinitely often. Strong:
+    steps that are enabled infinitely often are taken infinitely often. A rule, `agents`, `rules` and `requests` mean
+    each bigActor, rule or request by itself.
     """
 
     strength: str
@@ -255,8 +258,8 @@ class Fairness(Node):
 class TemporalProperty(Node):
     """`ltl "served": pending CTR a leads to not pending CTR a`, `ctl "home": AG EF uav0 in base0`.
 
-    True of every run; true of the tree of all runs. `ltl "served" under weak fairness of agents: ...` looks at fair
-    runs only.
+    `ltl`: true of every run. `ctl`: true of the tree of all runs. With `under weak fairness of agents` after the name,
+    only fair runs count.
     """
 
     logic: str
@@ -269,8 +272,8 @@ class TemporalProperty(Node):
 class Progress(Node):
     """`progress`, `progress under strong fairness of actuate`.
 
-    Every pending request is eventually served, under weak fairness of each rule and request, and what is added.
-    Flights end only where the environment says that they arrive. `progress "served in time" under ...` has a name.
+    Every pending request is eventually served, under weak fairness of each rule and request, and the fairness that is
+    added. Flights end only if the environment says that they arrive. A name is optional: `progress "served in time"`.
     """
 
     fairness: tuple[Fairness, ...] = ()

@@ -1,4 +1,4 @@
-"""The `live` section: what is done when a live run goes otherwise than it was checked, or takes too long."""
+"""The `live` section: what vehicles do when an assumption breaks or a request takes too long."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from specs.syntax.nodes import Name, Node
 
 @dataclass(frozen=True, slots=True)
 class Duration(Node):
-    """`90 s`, `10 min`, `1.5 h`: `unit` is `s`, `min` or `h`."""
+    """`90 s`, `10 min`, `1.5 h`: seconds, minutes or hours."""
 
     value: float
     unit: str
@@ -25,7 +25,7 @@ class Duration(Node):
 class OnBroken(Node):
     """`on broken assumption: return`: hold (the default), return or continue.
 
-    What vehicles do when the world does what the environment section does not say.
+    What vehicles do when the world does what the environment section does not allow.
     """
 
     fallback: str
@@ -35,8 +35,8 @@ class OnBroken(Node):
 class TimeLimit(Node):
     """`FLY a within 10 min: return`, `anyone within 1 min: continue`.
 
-    How long a request of an agent may stand at the head of its line, and what is done then; `OBS`, `CTR`, `FLY`, `SND`
-    or `MGR` may say which.
+    How long a request of an agent may be first in its line, and what is done then. `OBS`, `CTR`, `FLY`, `SND` or `MGR`
+    restricts the limit to one sort of request.
     """
 
     request: str | None
@@ -50,6 +50,6 @@ Precaution: TypeAlias = OnBroken | TimeLimit
 
 @dataclass(frozen=True, slots=True)
 class Live(Node):
-    """`live { ... }`: precautions for live runs; nothing of it changes what is checked."""
+    """`live { ... }`: precautions for live runs. They do not change what is checked."""
 
     precautions: tuple[Precaution, ...]

@@ -32,7 +32,7 @@ class Node:
 class Name(Node):
     """`uav0`, `control:gcs0`.
 
-    A name, of whatever the place it stands in asks for (entity, kind, channel, variable).
+    A name of an entity, a kind, a channel or a variable: the context decides.
     """
 
     text: str

@@ -1,4 +1,4 @@
-"""Patterns: what a case of `react` or `match` takes."""
+"""Patterns: what a case of `react` or `match` matches."""
 
 from __future__ import annotations
 
@@ -11,47 +11,47 @@ from specs.syntax.nodes import Name, Node
 
 @dataclass(frozen=True, slots=True)
 class ObservationPattern(Node):
-    """`obs: Observation` or `_: Observation`: an observation; `variable` is None for `_`."""
+    """`obs: Observation` or `_: Observation`: any observation."""
 
     variable: Name | None
 
 
 @dataclass(frozen=True, slots=True)
 class MessagePattern(Node):
-    """`m: Message` or `_: Message`: any message; `variable` is None for `_`."""
+    """`m: Message` or `_: Message`: any message."""
 
     variable: Name | None
 
 
 @dataclass(frozen=True, slots=True)
 class VariablePattern(Node):
-    """`x`: whatever comes, and it is called x; as the whole pattern of a `react` case, an observation."""
+    """`x`: any value, bound to x. As the whole pattern of a `react` case, any observation."""
 
     variable: Name
 
 
 @dataclass(frozen=True, slots=True)
 class Wildcard(Node):
-    """`_`: whatever comes."""
+    """`_`: any value."""
 
 
 @dataclass(frozen=True, slots=True)
 class LiteralPattern(Node):
-    """`"handover"`, `3`, `true`: this value."""
+    """`"handover"`, `3`, `true`: exactly this value."""
 
     value: TextLiteral | IntegerLiteral | TruthLiteral
 
 
 @dataclass(frozen=True, slots=True)
 class ConstantPattern(Node):
-    """`=uav0`: this name, not a variable."""
+    """`=uav0`: exactly this name; without `=` it is a new variable."""
 
     name: Name
 
 
 @dataclass(frozen=True, slots=True)
 class TuplePattern(Node):
-    """`("found", x, _)`: a tuple of that many values, each of which fits its pattern."""
+    """`("found", x, _)`: a tuple of as many values, each of which matches its pattern."""
 
     items: tuple[Pattern, ...]
 

@@ -36,7 +36,7 @@ class Control(Node):
 
 @dataclass(frozen=True, slots=True)
 class React(Node):
-    """`react { case ... }`: wait for an observation or a message that a case takes."""
+    """`react { case ... }`: wait for an observation or a message that a case matches."""
 
     cases: tuple[Case, ...]
 
@@ -68,7 +68,7 @@ class Call(Node):
 class Spawn(Node):
     """`spawn(visit(place0), hosted_at uav0)`, or `spawn b hosted_at uav0 with_behavior visit(place0)`.
 
-    Start an agent.
+    Start a new bigActor.
     """
 
     name: Name | None
@@ -78,7 +78,7 @@ class Spawn(Node):
 
 @dataclass(frozen=True, slots=True)
 class Display(Node):
-    """`display(e)`: show a value to whoever watches; no effect on the configuration."""
+    """`display(e)`: show a value to the observer of the run. The configuration does not change."""
 
     value: Expression
 
@@ -93,7 +93,7 @@ class Let(Node):
 
 @dataclass(frozen=True, slots=True)
 class Assign(Node):
-    """`x = e`: give a variable that is bound already another value."""
+    """`x = e`: give a bound variable another value."""
 
     variable: Name
     value: Expression
@@ -101,7 +101,13 @@ class Assign(Node):
 
 @dataclass(frozen=True, slots=True)
 class If(Node):
-    """`if e { ... } else if e { ... } else { ... }`: an `else if` is an `If` alone in `otherwise`."""
+    """`if e { ... } else if e { ... } else { ... }`: a conditional.
+
+    Attributes:
+        condition: The first condition.
+        then: What is done if it is true.
+        otherwise: What is done if not; for `else if`, a single `If`.
+    """
 
     condition: Expression
     then: tuple[Statement, ...]
@@ -110,14 +116,14 @@ class If(Node):
 
 @dataclass(frozen=True, slots=True)
 class Loop(Node):
-    """`loop { ... }`: for ever."""
+    """`loop { ... }`: repeat for ever."""
 
     body: tuple[Statement, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class While(Node):
-    """`while e { ... }`: as long as the condition holds."""
+    """`while e { ... }`: repeat while the condition is true."""
 
     condition: Expression
     body: tuple[Statement, ...]
@@ -125,7 +131,7 @@ class While(Node):
 
 @dataclass(frozen=True, slots=True)
 class For(Node):
-    """`for x in e { ... }`: once for each element, in the order of the names."""
+    """`for x in e { ... }`: repeat for each element, in the order of their names."""
 
     variable: Name
     collection: Expression
@@ -134,7 +140,7 @@ class For(Node):
 
 @dataclass(frozen=True, slots=True)
 class Match(Node):
-    """`match e { case ... }`: the first case that fits a stored observation, message or value."""
+    """`match e { case ... }`: take the first case that matches a value."""
 
     subject: Expression
     cases: tuple[Case, ...]
@@ -149,14 +155,14 @@ class Alternative(Node):
 
 @dataclass(frozen=True, slots=True)
 class Choose(Node):
-    """`choose { case => ... case => ... }`, or `choose { ... } or { ... }`: any of the alternatives."""
+    """`choose { case => ... case => ... }`, or `choose { ... } or { ... }`: take any alternative; all are explored."""
 
     alternatives: tuple[Alternative, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class ChooseFrom(Node):
-    """`choose x in e { ... }`: once, for any one element."""
+    """`choose x in e { ... }`: bind x to any one element; all are explored."""
 
     variable: Name
     collection: Expression
@@ -165,7 +171,7 @@ class ChooseFrom(Node):
 
 @dataclass(frozen=True, slots=True)
 class Skip(Node):
-    """`skip`: nothing."""
+    """`skip`: do nothing."""
 
 
 Statement: TypeAlias = (

@@ -1,4 +1,4 @@
-"""The signature, the world and what is believed of it."""
+"""The signature, the world and the initial beliefs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from specs.syntax.nodes import Name, Node
 
 @dataclass(frozen=True, slots=True)
 class Length(Node):
-    """`400 m`, `1.5 km`: `unit` is `m` or `km`."""
+    """`400 m`, `1.5 km`: metres or kilometres."""
 
     value: float
     unit: str
@@ -28,7 +28,7 @@ class Length(Node):
 class Coordinate(Node):
     """`(37.04, -8.59)`.
 
-    Latitude, then longitude, WGS 84, in degrees; finite, but not yet known to be in range.
+    Latitude, then longitude, in degrees (WGS 84).
     """
 
     latitude: float
@@ -37,7 +37,7 @@ class Coordinate(Node):
 
 @dataclass(frozen=True, slots=True)
 class Point(Node):
-    """`point (37.08, -8.55)`."""
+    """`point (37.08, -8.55)`: one position."""
 
     position: Coordinate
 
@@ -54,7 +54,7 @@ class Box(Node):
 class Polygon(Node):
     """`polygon (37.10, -8.60) (37.10, -8.50) (37.06, -8.50)`.
 
-    The corners in order, the last joined to the first.
+    The corners in order. The last is joined to the first.
     """
 
     corners: tuple[Coordinate, ...]
@@ -62,7 +62,7 @@ class Polygon(Node):
 
 @dataclass(frozen=True, slots=True)
 class Circle(Node):
-    """`circle (37.00, -8.70) radius 400 m`."""
+    """`circle (37.00, -8.70) radius 400 m`: a centre and a radius."""
 
     centre: Coordinate
     radius: Length
@@ -73,7 +73,7 @@ Geometry: TypeAlias = Point | Box | Polygon | Circle
 
 @dataclass(frozen=True, slots=True)
 class AltitudeBand(Node):
-    """`altitude 100 m to 300 m`, or `altitude 100 m` for a band of no height."""
+    """`altitude 100 m to 300 m`, or `altitude 100 m` for a single altitude."""
 
     lowest: Length
     highest: Length
@@ -83,7 +83,7 @@ class AltitudeBand(Node):
 class Placement(Node):
     """`circle (37.00, -8.70) radius 400 m altitude 0 m to 50 m`.
 
-    Where something is, the altitude optional.
+    Where an entity is. The altitude is optional.
     """
 
     geometry: Geometry
@@ -97,7 +97,9 @@ class Placement(Node):
 class Kind(Node):
     """`kind Vessel driven carries Drifter, Station contains Person passive`.
 
-    What follows the name in any order, or not.
+    A kind of node. `contains` lists the kinds that may be inside it, `carries` those that it may carry; `driven` means
+    that control actions can move it; no
+    reaction applies inside a `passive` one. All clauses are optional, in any order.
     """
 
     name: Name
@@ -109,7 +111,7 @@ class Kind(Node):
 
 @dataclass(frozen=True, slots=True)
 class Signature(Node):
-    """`signature { kind ... }`: the kinds of nodes there are."""
+    """`signature { kind ... }`: the kinds of nodes."""
 
     kinds: tuple[Kind, ...]
 
@@ -121,8 +123,8 @@ class Signature(Node):
 class Entity(Node):
     """`uav0: UAV = point (37.08, -8.55) altitude 90 m to 300 m linked control:gcs0, wifi`.
 
-    Also `drifter0: Drifter carried by vessel0` and `ghost0: UAV absent`, which is declared and appears
-    later. Everything after the kind is optional.
+    Everything after the kind is optional. `drifter0: Drifter carried by vessel0` is on a carrier; `ghost0: UAV absent`
+    is not in the world at first.
     """
 
     name: Name
@@ -135,7 +137,7 @@ class Entity(Node):
 
 @dataclass(frozen=True, slots=True)
 class ChannelDeclaration(Node):
-    """`channel wifi`: a channel, declared without a member."""
+    """`channel wifi`: a channel without members."""
 
     name: Name
 
@@ -144,7 +146,7 @@ class ChannelDeclaration(Node):
 class Keep(Node):
     """`BaseStation as Station`, or `Vessel` for `Vessel as Vessel`.
 
-    Which kind of the recording becomes which of the mission.
+    Keep a kind of the recording, as a kind of the mission.
     """
 
     recorded: Name
@@ -155,8 +157,8 @@ class Keep(Node):
 class FromSource(Node):
     """`from "workum.nmea" at "2020-04-07T21:42:00Z" within box (53.1, 5.3) (52.9, 5.5) limit 12`.
 
-    A file of places (GeoJSON, a waypoint file, a plan) or an AIS recording beside the mission; everything after the
-    file is optional. Before `limit`, `keep Vessel, BaseStation as Station` may choose among the recorded kinds.
+    Entities from a file beside the mission: places (GeoJSON, a waypoint file, a plan) or an AIS recording. Everything
+    after the file is optional: the time, an area, the kinds (`keep Vessel, BaseStation as Station`) and a number.
     """
 
     file: TextLiteral
@@ -181,7 +183,7 @@ class World(Node):
 
 @dataclass(frozen=True, slots=True)
 class BelievedIn(Node):
-    """`uav0 in searchArea0`, or `uav0 in region` for whereabouts unknown (`place` is None)."""
+    """`uav0 in searchArea0`, or `uav0 in region` where its place is unknown."""
 
     entity: Name
     place: Name | None
@@ -189,7 +191,7 @@ class BelievedIn(Node):
 
 @dataclass(frozen=True, slots=True)
 class BelievedUnknown(Node):
-    """`oilSpill0 unknown`: not in L at all."""
+    """`oilSpill0 unknown`: not in L."""
 
     entity: Name
 
@@ -207,6 +209,6 @@ Belief: TypeAlias = BelievedIn | BelievedUnknown | BelievedLinked
 
 @dataclass(frozen=True, slots=True)
 class Believes(Node):
-    """`believes { ... }`: what L holds at first where it differs from A(P)."""
+    """`believes { ... }`: where the initial L differs from A(P)."""
 
     beliefs: tuple[Belief, ...]

@@ -1,0 +1,113 @@
+"""What the documentation says is where: every path, module and map of modules in it exists."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "ARCHITECTURE.md", ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+ROOMS = "adapters|bigactors|bigraphs|checker|physical|semantics|specs"
+
+PATH = re.compile(rf"`((?:{ROOMS}|tests|benchmarks|docs)/[\w./]*)`")
+FILE = re.compile(r"`(\w+\.py)`")
+MODULE = re.compile(rf"`((?:{ROOMS})(?:\.\w+)+)`")
+LINK = re.compile(r"\]\((?!https?:)([^)#\s]*)(?:#([^)\s]+))?\)")
+FOLDER = re.compile(rf"`((?:{ROOMS})/[\w/]+)/`")
+WRITTEN_BY_BENCHMARKS = "benchmarks/results/"
+
+
+def maps():
+    """Return each fenced list of modules, by the last folder that is named before it."""
+    _, *parts = re.split("^```$", (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    blocks = zip(parts[1::2], parts[2::2], strict=False)
+    return {FOLDER.findall(before)[-1]: re.findall(r"^\w+", block, re.MULTILINE) for before, block in blocks}
+
+
+def exists(name):
+    """Tell whether a dotted name is a module or package, or something that a module defines."""
+    path = ROOT.joinpath(*name.split("."))
+    if path.is_dir() or path.with_suffix(".py").exists():
+        return True
+    module = path.parent / "__init__.py" if path.parent.is_dir() else path.parent.with_suffix(".py")
+    return module.exists() and bool(
+        re.search(rf"^(?:class|def) {path.name}\b", module.read_text("utf-8"), re.MULTILINE)
+    )
+
+
+def anchors(page):
+    """Return the anchors of a page's headings, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_path_on_a_page_exists(page):
+    paths = PATH.findall(page.read_text(encoding="utf-8"))
+    assert [path for path in paths if not (ROOT / path).exists() and WRITTEN_BY_BENCHMARKS not in path] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_file_that_a_page_names_without_its_folder_exists(page):
+    names = set(FILE.findall(page.read_text(encoding="utf-8")))
+    known = {
+        path.name
+        for folder in (*ROOMS.split("|"), "tests", "benchmarks")
+        for path in (ROOT / folder).rglob("*.py")
+    }
+    assert names - known == set()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_module_on_a_page_exists(page):
+    assert [name for name in MODULE.findall(page.read_text(encoding="utf-8")) if not exists(name)] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_link_of_a_page_leads_somewhere(page):
+    dead = []
+    for path, anchor in LINK.findall(page.read_text(encoding="utf-8")):
+        target = page.parent / path if path else page
+        if not target.exists() or (anchor and target.suffix == ".md" and anchor not in anchors(target)):
+            dead.append(f"{path}#{anchor}")
+    assert dead == []
+
+
+def test_the_maps_name_modules_of_their_folders():
+    found = maps()
+    assert list(found) == [
+        "checker/engines/fast",
+        "checker/engines/cluster",
+        "checker/properties/temporal",
+        "bigraphs/engine",
+        "adapters/live",
+        "adapters/stations",
+    ]
+    missing = [
+        f"{folder}/{name}"
+        for folder, names in found.items()
+        for name in names
+        if not (ROOT / folder / f"{name}.py").exists()
+    ]
+    assert missing == []
+
+
+@pytest.mark.parametrize(
+    "folder", ["checker/engines/fast", "checker/engines/cluster", "checker/properties/temporal"]
+)
+def test_a_map_of_the_checker_names_every_module(folder):
+    modules = {path.stem for path in (ROOT / folder).glob("*.py")} - {"__init__"}
+    assert modules - set(maps()[folder]) == set()
+
+
+def test_a_decision_is_a_short_record_with_a_claim_for_its_title():
+    page = (ROOT / "docs" / "decisions.md").read_text(encoding="utf-8")
+    records = [record.split("\n\n")[0].partition("\n") for record in page.split("\n### ")[1:]]
+    assert len(records) > 60
+    for title, _, text in records:
+        labels = re.findall(r"\*(\w+):\*", text)
+        assert labels == [
+            each for each in ("Context", "Decision", "Consequence", "Rejected") if each in labels
+        ], title
+        assert "Decision" in labels, title
+        assert len(text.split()) <= 100, title
