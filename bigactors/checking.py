@@ -120,7 +120,7 @@ def check_mission(
             report = check(
                 mission.initial,
                 mission.properties,
-                limits,
+                replace(limits, interruption=watch.interruption),
                 watch,
                 mission.notes,
                 how.engine,
@@ -139,7 +139,9 @@ def check_mission(
         tell(str(mistake))
         return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
     except KeyboardInterrupt:
-        return Failed(name, Exit.INCOMPLETE, "interrupted before it was explored", interrupted=True)
+        message = "interrupted: nothing is decided of it"
+        tell(f"{name}: {message}")
+        return Failed(name, Exit.INCOMPLETE, message, interrupted=True)
     except Exception as error:  # whatever it is, it is our bug, and other missions are to be checked
         tell(f"{name}:\n{describe_bug(error)}")
         return Failed(name, Exit.BUG, f"internal error: {type(error).__name__}: {error}")

@@ -10,30 +10,29 @@ from types import FrameType
 from typing import TextIO
 
 from bigactors.terminal import is_terminal, paint, write
-from checker import Progress
+from checker import Interruption, Progress
 
 
 class Watch:
-    """What is told about an exploration now and then: shows a line, and ends it if the user has pressed Ctrl-C.
+    """What is told about an exploration now and then, and shows it on a line; it knows whether to end.
 
     Attributes:
-        interrupted: Whether Ctrl-C was pressed.
+        interruption: Whether the user has pressed Ctrl-C.
     """
 
     def __init__(self, name: str, stream: TextIO) -> None:
         self.name = name
         self.stream = stream
         self.shown = 0
-        self.interrupted = False
+        self.interruption = Interruption()
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C was pressed."""
+        return self.interruption.is_due()
 
     def __call__(self, progress: Progress) -> None:
-        """Show the progress.
-
-        Raises:
-            KeyboardInterrupt: The user has asked for the end; between two configurations, so that all counts hold.
-        """
-        if self.interrupted:
-            raise KeyboardInterrupt
+        """Show the progress."""
         if is_terminal(self.stream):
             self.rewrite(describe(self.name, progress))
 
@@ -52,7 +51,7 @@ class Watch:
 
     def interrupt(self, signum: int, frame: FrameType | None) -> None:  # noqa: ARG002 - as signal handlers are called
         """Note a Ctrl-C; the next one ends the program at once."""
-        self.interrupted = True
+        self.interruption.wish()
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 

@@ -15,7 +15,7 @@ from checker.engines.contract import (
     MachineError,
     Progress,
 )
-from checker.limits import Limits
+from checker.limits import Interruption, Limits
 from checker.properties.ownership import owned
 from checker.reduction import Reduction, RefusedError
 from checker.reports.report import report_json, report_text
@@ -28,6 +28,7 @@ __all__ = [
     "ClusterError",
     "Engine",
     "Exploration",
+    "Interruption",
     "Keeping",
     "Limits",
     "MachineError",

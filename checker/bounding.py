@@ -1,7 +1,8 @@
 """Bounds on whatever is done within them: work that may take long looks at the clock and at memory now and then.
 
 An exploration that meets a bound keeps what it has. What comes after (surveys of all that was explored, temporal logic)
-has no half result: it is given up, and what it would have decided stays undecided.
+has no half result: it is given up, and what it would have decided stays undecided. An interruption is such a bound: it
+ends an exploration between two configurations, and what comes after a little later.
 """
 
 from collections.abc import Iterator
@@ -10,11 +11,11 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from time import monotonic
 
-from checker.limits import Limits, is_full, memory_met, time_met
+from checker.limits import GRACE, INTERRUPTION, Limits, is_full, memory_met, time_met
 
 
 class BoundMet(Exception):  # what it is
-    """Time or memory has come to its end; the text says which."""
+    """Time, memory or the user's patience has come to its end; the text says which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +24,8 @@ class _Bounds:
     started: float
 
     def met(self) -> str | None:
+        if self.limits.interruption.is_due(GRACE):
+            return INTERRUPTION
         most = self.limits.seconds
         if most is not None and monotonic() - self.started + self.limits.spent > most:
             return time_met(most)

@@ -3,13 +3,32 @@
 import math
 import resource
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from time import monotonic
 
 MOST_PENDING = 64
 """Requests of one agent, or messages in one mailbox, beyond which a configuration is not explored further."""
 
 INTERRUPTION = "an interruption"
 """The bound that is met where the user has asked for the end."""
+
+GRACE = 2.0
+"""For how many seconds what was explored is looked at after that."""
+
+
+class Interruption:
+    """The wish of the user for the end, made by a signal's handler at any moment and asked for where time is."""
+
+    def __init__(self) -> None:
+        self.wished: float | None = None
+
+    def wish(self) -> None:
+        """Ask for the end."""
+        self.wished = monotonic() if self.wished is None else self.wished
+
+    def is_due(self, grace: float = 0.0) -> bool:
+        """Tell whether the end was asked for, so many seconds ago."""
+        return self.wished is not None and monotonic() - self.wished >= grace
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +42,7 @@ class Limits:
         spent: How many of the seconds are gone already.
         memory: How many bytes the process may take; looked at now and then, so that it may be a little more.
         spill: The folder in which the fast explorer has files for its rows when memory ends; None for nowhere.
+        interruption: Whether the user has asked for the end.
     """
 
     configurations: int | None = 2_000_000
@@ -31,6 +51,7 @@ class Limits:
     spent: float = 0.0
     memory: int | None = None
     spill: str | None = None
+    interruption: Interruption = field(default_factory=Interruption, compare=False, repr=False)
 
 
 def limit_met(most: int) -> str:
@@ -41,6 +62,14 @@ def limit_met(most: int) -> str:
 def time_met(seconds: float) -> str:
     """Say that the time was over."""
     return f"the time limit of {seconds:g} s"
+
+
+def end_met(limits: Limits, seconds: float, part: float = 1.0) -> str | None:
+    """Return why exploring ends after so many seconds: the user wants that, or a part of the time is over."""
+    if limits.interruption.is_due():
+        return INTERRUPTION
+    most = limits.seconds
+    return time_met(most) if most is not None and seconds + limits.spent > part * most else None
 
 
 def is_full(limits: Limits) -> bool:

@@ -31,8 +31,8 @@ COMMAND = Command(
     "check",
     "decide the properties of missions",
     "Explore every interleaving of a mission and decide its properties, with a shortest trace for each that\n"
-    "fails and a witness for each that holds. Ctrl-C, SIGTERM and SIGHUP end the exploration with what was\n"
-    "found so far.\n\n" + EXITS,
+    "fails and a witness for each that holds. Ctrl-C, SIGTERM and SIGHUP end it within seconds with what was\n"
+    "found so far; a second one ends it at once.\n\n" + EXITS,
     (
         "bigactors check oil_spill.mission",
         "bigactors check --no-traces specs/missions/*.mission",

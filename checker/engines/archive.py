@@ -40,14 +40,18 @@ def write_archive(path: Path, head: dict[str, Any], kinds: Kinds, arrays: Sequen
         found.update(each.view(np.uint8).data)
     partial = path.with_suffix(".partial")
     path.parent.mkdir(parents=True, exist_ok=True)
-    with partial.open("wb") as file:
-        file.write(b"bigactors archive 1 %s %d\n" % (found.hexdigest().encode(), len(about)))
-        file.write(about)
-        for each in rows:
-            file.write(each.view(np.uint8).data)
-        file.flush()
-        os.fsync(file.fileno())
-    partial.replace(path)
+    try:
+        with partial.open("wb") as file:
+            file.write(b"bigactors archive 1 %s %d\n" % (found.hexdigest().encode(), len(about)))
+            file.write(about)
+            for each in rows:
+                file.write(each.view(np.uint8).data)
+            file.flush()
+            os.fsync(file.fileno())
+        partial.replace(path)
+    except BaseException:
+        partial.unlink(missing_ok=True)
+        raise
 
 
 def read_archive(path: Path, schema: str, kinds: Kinds) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:

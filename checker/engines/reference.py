@@ -6,10 +6,11 @@ It visits each configuration once, in the order of its distance from the first, 
 import time
 from collections.abc import Callable
 
+from checker.bounding import BoundMet, bounded, look
 from checker.engines.contract import Exploration, Inspect, Keeping, Progress, Reducer, Report, sample
 from checker.engines.edges import Edges
 from checker.engines.estimate import estimate
-from checker.limits import INTERRUPTION, Limits, crowd_met, is_full, limit_met, memory_met, time_met
+from checker.limits import Limits, crowd_met, end_met, is_full, limit_met, memory_met
 from semantics.state.configuration import Configuration, Transition
 from semantics.successors import Expansion, expand
 
@@ -31,9 +32,15 @@ def explore_one_by_one(  # noqa: PLR0913, PLR0917  # as `explore`
     if reduce is None:
         return explorer.run()
     explorer.reduce_by(reduce)
+    began = time.monotonic()
     found = explorer.run()
-    for number in sample(found.expanded, keeping.doubted):
-        reduce.hold(found.configurations[number])
+    try:
+        with bounded(limits, began):
+            for number in sample(found.expanded, keeping.doubted):
+                look()
+                reduce.hold(found.configurations[number])
+    except BoundMet as bound:
+        explorer.bound(f"{bound}, in looking at what was explored")
     return found
 
 
@@ -66,10 +73,7 @@ class _Explorer:
 
     def run(self) -> Exploration:
         started = time.monotonic()
-        try:
-            self.visit_all(started)
-        except KeyboardInterrupt:
-            self.bound(INTERRUPTION)
+        self.visit_all(started)
         self.found.seconds = time.monotonic() - started
         self.found.depth = self.depths[-1]
         self.found.bounds.sort()
@@ -79,9 +83,8 @@ class _Explorer:
         reported = started
         for number, configuration in enumerate(self.configurations):  # grows while it is gone through
             now = time.monotonic()
-            most = self.limits.seconds
-            if most is not None and now - started + self.limits.spent > most:
-                self.bound(time_met(most))
+            if (end := end_met(self.limits, now - started)) is not None:
+                self.bound(end)
                 break
             if number % 1024 == 0 and is_full(self.limits):
                 self.bound(memory_met(self.limits))
@@ -94,8 +97,8 @@ class _Explorer:
     def expand(self, number: int, configuration: Configuration) -> None:
         expansion = expand(configuration)
         self.found.expanded = number + 1
-        for look in self.inspect:
-            look(number, configuration, expansion)
+        for inspection in self.inspect:
+            inspection(number, configuration, expansion)
         if crowded(configuration, self.limits.pending):
             self.bound(crowd_met(self.limits.pending))
             self.missing(number)

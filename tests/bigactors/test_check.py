@@ -223,6 +223,46 @@ def test_an_interrupted_exploration_is_incomplete_and_reports_what_it_found(numb
     assert b"Traceback" not in shown
 
 
+@pytest.mark.usefixtures("missions")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda each: each.name)
+def test_a_second_signal_ends_a_check_at_once(number):
+    ours, theirs = os.openpty()
+    words = ("check", "endless.mission", "holds.mission", "--no-traces", "--engine", "reference")
+    shown = b""
+    with begun([sys.executable, "-c", STUCK, *words], stdout=subprocess.PIPE, stderr=theirs) as process:
+        os.close(theirs)
+        while b"stuck" not in shown:
+            shown += os.read(ours, 1000)
+        process.send_signal(number)
+        while b"heard" not in shown:
+            shown += os.read(ours, 1000)
+        process.send_signal(number)
+        out = process.communicate(timeout=60)[0].decode()
+        shown += os.read(ours, 1000)
+    os.close(ours)
+    assert process.returncode == 3
+    assert "endless.mission: interrupted: nothing is decided of it" in shown.decode()
+    assert "? endless.mission  incomplete  interrupted" in out
+    assert "holds.mission    incomplete  not begun" in out
+
+
+STUCK = """
+import sys, time
+from bigactors import cli
+from checker import exploration
+
+def stuck(self, number, configuration):
+    print("stuck", file=sys.stderr, flush=True)
+    while True:
+        time.sleep(0.01)
+        if self.limits.interruption.is_due():
+            print("heard", file=sys.stderr, flush=True)
+            time.sleep(3600)
+
+exploration._Explorer.expand = stuck
+sys.exit(cli.main(sys.argv[1:]))
+"""
+
 OWNING = """
 import fcntl, os, sys, termios
 fcntl.ioctl(0, termios.TIOCSCTTY, 0)  # its session's terminal

@@ -50,12 +50,14 @@ def test_nothing_is_shown_in_a_pipe():
     assert stream.getvalue() == ""
 
 
-def test_ctrl_c_ends_the_exploration_between_two_configurations():
+def test_ctrl_c_is_a_wish_that_is_asked_for_where_it_can_be_fulfilled():
     with watching("m") as watch:
+        assert not watch.interrupted
         signal.raise_signal(signal.SIGINT)  # does not raise here
-        with pytest.raises(KeyboardInterrupt):
-            watch(PROGRESS)
+        watch(PROGRESS)
     assert watch.interrupted
+    assert watch.interruption.is_due()
+    assert not watch.interruption.is_due(3600.0)
 
 
 def test_a_second_ctrl_c_ends_it_at_once():

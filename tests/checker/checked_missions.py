@@ -1,8 +1,10 @@
 """Small missions as text over one world, checked; and a naive depth-first enumeration beside the explorer."""
 
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
-from checker import Limits, Report, Trace, Verdict, Violation, check
+from checker import Interruption, Limits, Progress, Report, Trace, Verdict, Violation, check
 from semantics.state.configuration import Configuration
 from semantics.successors import expand
 from specs import parse_bytes
@@ -35,6 +37,17 @@ world {
 """Two UAVs and a vessel on one mesh, three stations on the internet, and an empty gate."""
 
 SPARE = Limits(configurations=20_000)
+
+
+def interrupted_at(size: int, limits: Limits = SPARE) -> tuple[Limits, Callable[[Progress], None]]:
+    """Return limits, and what wishes for the end when it is told of so many configurations."""
+    limits = replace(limits, interruption=Interruption())
+
+    def report(progress: Progress) -> None:
+        if progress.configurations >= size:
+            limits.interruption.wish()
+
+    return limits, report
 
 
 def load(text: str, world: str = WORLD) -> ElaboratedMission:

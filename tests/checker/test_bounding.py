@@ -7,8 +7,10 @@ import pytest
 
 import checker.bounding
 import checker.engines.fast.explorer
-from checker import Engine, Limits, Outcome, check
+from checker import Engine, Keeping, Limits, Outcome, check, explore
 from checker.bounding import BoundMet, bounded, look
+from checker.engines.fast import crosscheck
+from checker.limits import GRACE
 from specs.elaboration import load_mission
 
 CHECK = import_module("checker.check")  # its name is taken by the function
@@ -57,6 +59,23 @@ def test_memory_is_looked_at():
         look()
 
 
+def test_an_interruption_is_a_bound_a_little_later():
+    limits = Limits()
+    limits.interruption.wish()
+    with bounded(limits):
+        look()
+        limits.interruption.wished -= GRACE
+        with pytest.raises(BoundMet, match="an interruption"):
+            look()
+
+
+def test_what_is_doubted_is_bounded():
+    mission = load_mission(MISSIONS / "surveillance.mission")
+    space = explore(mission.initial, engine=Engine.FAST).survey.space
+    with bounded(Limits(seconds=-1.0)), pytest.raises(BoundMet):
+        crosscheck.doubt(space, 1)
+
+
 def test_inner_bounds_end_with_their_block(clock):
     with bounded(Limits(seconds=10.0)):
         with bounded(Limits(seconds=1.0)):
@@ -91,6 +110,52 @@ def test_temporal_properties_are_not_decided_when_the_time_is_over(clock, monkey
     assert {each.outcome for each in report.verdicts} == {Outcome.INCOMPLETE}
     assert {each.note for each in report.verdicts} == {"not decided: the time limit of 86400 s was met"}
     assert report.exit_code == 3
+
+
+def wishing_before(monkeypatch, place, name, limits):
+    """Let the user have asked for the end long ago when something begins."""
+    within = getattr(place, name)
+
+    def late(*words, **named):
+        limits.interruption.wish()
+        limits.interruption.wished -= GRACE
+        return within(*words, **named)
+
+    monkeypatch.setattr(place, name, late)
+
+
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_temporal_properties_are_not_decided_after_an_interruption(monkeypatch, engine):
+    mission, limits = load_mission(MISSIONS / "surveillance.mission"), Limits()
+    asked = [each for each in mission.properties if each.kind in ("ltl", "ctl", "progress")]
+    wishing_before(monkeypatch, CHECK._Check, "decide_temporal", limits)
+    report = check(mission.initial, asked, limits, engine=engine)
+    assert {each.note for each in report.verdicts} == {"not decided: an interruption was met"}
+    assert report.exit_code == 3
+
+
+def test_an_interruption_in_looking_at_what_was_explored_ends_the_check(monkeypatch):
+    mission, limits = load_mission(MISSIONS / "oil_spill.mission"), Limits()
+    wishing_before(monkeypatch, checker.engines.fast.explorer, "inspect_fast", limits)
+    report = check(mission.initial, mission.properties, limits, engine=Engine.FAST)
+    assert report.bounds[0] == "an interruption, in looking at what was explored"
+    assert report.exit_code == 3
+
+
+def test_after_an_interruption_one_checkpoint_is_written_at_most(monkeypatch, tmp_path):
+    mission, limits = load_mission(MISSIONS / "oil_spill.mission"), Limits()
+    monkeypatch.setattr(checker.engines.fast.explorer, "CHUNK", 1)
+    saved = []
+
+    def save(space, *_):
+        saved.append(space.expanded)
+        limits.interruption.wish()
+
+    monkeypatch.setattr(checker.engines.fast.explorer, "save", save)
+    keeping = Keeping(str(tmp_path), every=0.0)
+    found = explore(mission.initial, limits=limits, engine=Engine.FAST, keeping=keeping)
+    assert found.bounds == ["an interruption"]
+    assert saved == [1]
 
 
 def test_the_time_that_the_first_explorer_took_is_not_given_twice(monkeypatch):

@@ -25,7 +25,7 @@ from checker.engines.contract import (
     Progress,
     Report,
 )
-from checker.limits import INTERRUPTION, Limits, crowd_met, limit_met, memory_met, time_met
+from checker.limits import Limits, crowd_met, end_met, limit_met, memory_met
 from semantics.state.configuration import Configuration
 
 MOST_LOSSES = 5
@@ -49,7 +49,6 @@ class Expedition:
         standings: How far each worker has come.
         bounds: What has ended it early.
         is_lost: Whether a worker has died since all began.
-        is_whole: Whether nothing is on its way between workers.
         is_kept: Whether the last checkpoint is of where they are.
     """
 
@@ -75,7 +74,7 @@ class Expedition:
         self.standings: list[Standing] = []
         self.bounds: list[str] = []
         self.is_lost = True
-        self.is_whole = self.is_kept = False
+        self.is_kept = False
         self.losses = 0
         self.began = time.monotonic() - (self.latest.seconds if self.latest else 0.0)
         self.reported = self.kept = time.monotonic()
@@ -153,14 +152,9 @@ class Expedition:
             self.begin()
         if self.is_done():
             return
-        try:
-            while not self.is_done():
-                self.go_round()
-        except KeyboardInterrupt:
-            self.bounds.append(INTERRUPTION)
-            self.standings = self.crew.every("halt", self.layer)
-        if self.is_whole:
-            self.save()
+        while not self.is_done():
+            self.go_round()
+        self.save()
 
     def is_done(self) -> bool:
         """Tell whether there is nothing to be expanded, or a bound was met."""
@@ -176,7 +170,7 @@ class Expedition:
         else:
             self.layer = self.latest.layer
             self.standings = self.load(self.latest.number)
-        self.is_lost, self.is_whole = False, True
+        self.is_lost = False
 
     def go_round(self) -> None:
         """Let each worker expand some rows, and the others take what is theirs, unless a bound is met."""
@@ -186,10 +180,9 @@ class Expedition:
         if all(each.expanded == each.end for each in self.standings):
             self.layer += 1
         before = [each.size for each in self.standings]
-        self.is_whole = self.is_kept = False
+        self.is_kept = False
         self.standings = self.crew.exchange("expand", "take", self.layer, ROUND * self.crew.size)
         self.trim(before)
-        self.is_whole = True
         now = time.monotonic()
         if self.report is not None and now - self.reported >= self.every:
             self.report(self.progress(now - self.began))
@@ -211,10 +204,10 @@ class Expedition:
         self.standings = self.crew.every("keep", tuple(sizes))
 
     def look_at_bounds(self, seconds: float) -> None:
-        """Note whether time, or some worker's memory, has come to its end."""
+        """Note whether time, or some worker's memory, has come to its end, or the user wants the end."""
         limits = self.limits
-        if limits.seconds is not None and seconds + limits.spent > limits.seconds:
-            self.bounds.append(time_met(limits.seconds))
+        if (end := end_met(limits, seconds)) is not None:
+            self.bounds.append(end)
         elif limits.memory is not None and max(each.memory for each in self.standings) > limits.memory:
             self.bounds.append(memory_met(limits))
 

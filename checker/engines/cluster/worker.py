@@ -57,11 +57,6 @@ class Worker:
         """Take in what was sent."""
         return self.shard.take(*parcels)
 
-    def halt(self, layer: int) -> Standing:
-        """Return how far it has come, in a layer that all have begun."""
-        self.shard.enter(layer)
-        return self.shard.standing()
-
     def keep(self, sizes: tuple[int, ...]) -> Standing:
         """Keep so many rows; for each worker there is a number."""
         return self.shard.keep(sizes[self.shard.me])

@@ -2,6 +2,7 @@
 
 from collections import Counter
 
+from checker.bounding import look
 from checker.engines.contract import Reducer, sample
 from checker.engines.fast.engine import Space
 from checker.reduction.crosscheck import heed
@@ -21,6 +22,7 @@ def crosscheck(space: Space, count: int, reduce: Reducer | None = None) -> None:
         Disagreement: There is a difference; it says where.
     """
     for number in sample(space.expanded, count):
+        look()
         compare(space, number)
         heed(space.configuration(number))
         if reduce is not None:

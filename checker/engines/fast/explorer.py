@@ -18,15 +18,14 @@ from checker.engines.fast.graph import GraphSurvey
 from checker.engines.fast.inspecting import inspect_fast
 from checker.engines.fast.learner import Learner
 from checker.limits import (
-    INTERRUPTION,
     Limits,
     crowd_met,
+    end_met,
     is_full,
     limit_met,
     memory_left,
     memory_met,
     omission_met,
-    time_met,
 )
 from semantics.state.configuration import Configuration
 
@@ -121,6 +120,7 @@ class _Explorer:
         self.layers = [1]
         self.bounds: list[str] = []
         self.exploring = 1.0
+        self.is_kept = False
 
     def choosing(self) -> "Choosing | None":
         """Return what chooses the transitions that are followed, None where all are."""
@@ -176,8 +176,6 @@ class _Explorer:
             self.bounds.append(str(bound))
         except (OSError, MemoryError) as error:
             self.bounds.append(self.end_of_room(error))
-        except KeyboardInterrupt:
-            self.bounds.append(INTERRUPTION)
 
     def look_at(self, survey: GraphSurvey, inspect: tuple[Inspect, ...]) -> None:
         """Look at what was explored, as long as there is time: what was not looked at to the end has found nothing."""
@@ -203,7 +201,7 @@ class _Explorer:
     def keep(self, seconds: float) -> None:
         """Write a checkpoint, if one is wanted; where it can't be written, the exploration ends with what it has."""
         path = self.checkpoint
-        if path is None:
+        if path is None or self.is_kept:
             return
         journey = replace(self.journey, seconds=seconds, layers=tuple(self.layers))
         try:
@@ -211,6 +209,7 @@ class _Explorer:
         except OSError as error:
             unkept = f"a checkpoint that can't be written to {path}: {error.strerror}"
             self.bounds += [] if unkept in self.bounds else [unkept]
+        self.is_kept = self.limits.interruption.is_due()
 
     def met(self) -> list[str]:
         most = self.limits.configurations
@@ -250,10 +249,9 @@ class _Explorer:
             self.journey = Journey(self.journey.depth + 1, space.size, self.journey.seconds)
 
     def is_over(self, seconds: float) -> bool:
-        """Tell whether time or memory has come to its end, and note it."""
-        most = self.limits.seconds
-        if most is not None and seconds + self.limits.spent > self.exploring * most:
-            self.bounds.append(time_met(most))
+        """Tell whether time or memory has come to its end, or the user wants the end, and note it."""
+        if (end := end_met(self.limits, seconds, self.exploring)) is not None:
+            self.bounds.append(end)
         elif is_full(self.limits) and not self.makes_room():
             self.bounds.append(memory_met(self.limits))
         return bool(self.bounds)

@@ -169,26 +169,29 @@ def test_a_limit_that_only_the_search_for_stale_observations_meets_is_said_to_be
 # --- interruption and progress --------------------------------------------------------------------------------
 
 
-def interrupting(after):
+def interrupting(after, interruption):
     calls = []
 
     def interrupt(*_):
         calls.append(1)
         if len(calls) > after:
-            raise KeyboardInterrupt
+            interruption.wish()
 
     return interrupt
 
 
 @pytest.mark.parametrize("after", [0, 7])
 def test_an_interruption_in_an_inspection_ends_incomplete(after):
-    found = explore(start(SLOW), (interrupting(after),))
+    limits = Limits()
+    found = explore(start(SLOW), (interrupting(after, limits.interruption),), limits)
     assert found.bounds == ["an interruption"]
+    assert found.expanded == after + 1
     assert found.transitions == sum(found.rules.values())
 
 
 def test_an_interruption_while_progress_is_reported_ends_incomplete():
-    found = explore(start(SLOW), report=interrupting(3), every=0.0)
+    limits = Limits()
+    found = explore(start(SLOW), (), limits, interrupting(3, limits.interruption), every=0.0)
     assert found.bounds == ["an interruption"]
     assert len(found.configurations) > 3
 
@@ -202,7 +205,8 @@ def test_an_interrupted_check_ends_at_once_and_decides_nothing(monkeypatch):
         return explore(initial, inspect, limits, report, every=0.0, **more)
 
     monkeypatch.setattr(sys.modules["checker.check"], "explore", once)
-    report = check(mission.initial, mission.properties, report=interrupting(5))
+    asked = Limits()
+    report = check(mission.initial, mission.properties, asked, interrupting(5, asked.interruption))
     assert len(explored) == 1
     assert report.bounds == ("an interruption",)
     assert {verdict.outcome for verdict in report.verdicts} == {Outcome.INCOMPLETE}

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from checked_missions import interrupted_at
 from local_crew import LocalCrew
 
 import checker.limits
@@ -50,14 +51,6 @@ def small_rooms(monkeypatch):
     monkeypatch.setattr(explorer, "CHUNK", 2)
 
 
-def stop_at(size):
-    def stop(progress):
-        if progress.configurations >= size:
-            raise KeyboardInterrupt
-
-    return stop
-
-
 def sizes(most):
     """Return the sizes at which a search is cut."""
     size = 1
@@ -77,7 +70,8 @@ def fast(initial, **options):
 def goes_on_from_every_size(initial, folder):
     whole = seen(fast(initial))
     for size in sizes(whole[0]):
-        fast(initial, keeping=Keeping(str(folder), digest="d"), report=stop_at(size), every=0.0)
+        limits, stop = interrupted_at(size, LIMITS)
+        fast(initial, limits=limits, keeping=Keeping(str(folder), digest="d"), report=stop, every=0.0)
         resumed = fast(initial, keeping=Keeping(str(folder), True, "d"))
         assert seen(resumed) == whole, f"cut at {size}"
 
@@ -191,7 +185,8 @@ def test_workers_go_on_from_every_round(tmp_path, monkeypatch, name):
         folder = str(tmp_path / str(size))
         crew = LocalCrew(initial, 2)
         keeping = Keeping(folder, every=0.0)
-        Expedition(crew, initial, LIMITS, stop_at(size), 0.0, keeping).run(())
+        limits, stop = interrupted_at(size, LIMITS)
+        Expedition(crew, initial, limits, stop, 0.0, keeping).run(())
         again = Expedition(LocalCrew(initial, 2), initial, LIMITS, keeping=Keeping(folder, True)).run(())
         assert len(again.configurations) == len(whole.configurations)
         assert again.transitions == whole.transitions

@@ -8,6 +8,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+from checked_missions import interrupted_at
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from local_crew import LocalCrew
@@ -40,11 +41,6 @@ def whole():
     return len(explore(initial(), engine=Engine.FAST, limits=LIMITS).configurations)
 
 
-def stop(progress):
-    if progress.configurations >= 20:
-        raise KeyboardInterrupt
-
-
 def resume_fast(folder):
     return explore(initial(), engine=Engine.FAST, limits=LIMITS, keeping=Keeping(folder, True, "d"))
 
@@ -59,14 +55,16 @@ def kept_fast():
     with TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
         patch.setattr(explorer, "CHUNK", 8)
         keeping = Keeping(folder, digest="d")
-        explore(initial(), engine=Engine.FAST, limits=LIMITS, keeping=keeping, report=stop, every=0.0)
+        limits, stop = interrupted_at(20, LIMITS)
+        explore(initial(), engine=Engine.FAST, limits=limits, keeping=keeping, report=stop, every=0.0)
         return files_of(folder)
 
 
 @cache
 def kept_cluster():
     with TemporaryDirectory() as folder:
-        Expedition(LocalCrew(initial(), 2), initial(), LIMITS, stop, 0.0, Keeping(folder, every=0.0)).run(())
+        limits, stop = interrupted_at(20, LIMITS)
+        Expedition(LocalCrew(initial(), 2), initial(), limits, stop, 0.0, Keeping(folder, every=0.0)).run(())
         return files_of(folder)
 
 

@@ -5,7 +5,7 @@ import os
 
 import numpy as np
 import pytest
-from checked_missions import load
+from checked_missions import interrupted_at, load
 
 from checker import Engine, Keeping, Limits, explore
 from checker.engines.fast import explorer
@@ -73,13 +73,9 @@ def test_pages_that_find_no_memory_keep_their_numbers():
 @pytest.mark.parametrize("at", [1_500, 20_000])
 def test_what_is_resumed_has_room_for_rows_that_are_wider_than_at_first(tmp_path, monkeypatch, at):
     monkeypatch.setattr(explorer, "CHUNK", 64)
-
-    def stop(progress):
-        if progress.configurations >= at:
-            raise KeyboardInterrupt
-
+    limits, stop = interrupted_at(at, Limits())
     keeping = Keeping(str(tmp_path), digest="hops")
-    cut = explore(hops(), engine=Engine.FAST, keeping=keeping, report=stop, every=0.0)
+    cut = explore(hops(), (), limits, stop, 0.0, Engine.FAST, keeping=keeping)
     assert cut.bounds == ["an interruption"]
     assert at <= len(cut.configurations) < MOST
     resumed = explore(hops(), engine=Engine.FAST, keeping=Keeping(str(tmp_path), True, "hops"))
