@@ -151,9 +151,7 @@ def test_an_interruption_keeps_what_is_whole_and_can_be_gone_on_from(tmp_path, w
         if len(told) == when:
             limits.interruption.wish()
 
-    found = together(
-        initial, 2, limits=limits, report=interrupt, every=0.0, keeping=Keeping(str(tmp_path))
-    )
+    found = together(initial, 2, limits=limits, report=interrupt, every=0.0, keeping=Keeping(str(tmp_path)))
     assert found.bounds == ["an interruption"]
     assert len(found.configurations) == told[-1].configurations < 153
     resumed = together(initial, 2, keeping=Keeping(str(tmp_path), resumed=True))
