@@ -5,6 +5,7 @@ Who listens does so on this machine only, unless another address is written out.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Final
 
@@ -65,14 +66,14 @@ def parse_address(text: str) -> Address:
 
 def _host_and_port(text: str, rest: str) -> tuple[str, int]:
     host, _, port = rest.removeprefix("//").rpartition(":")
-    if not (port.isascii() and port.isdigit() and 0 <= int(port) <= 65_535):
+    if not (re.fullmatch(r"[0-9]{1,5}", port) and int(port) <= 65_535):
         _fail(text, f"{port!r:.40} is no port")
     return host.removeprefix("[").removesuffix("]"), int(port)
 
 
 def _serial(text: str, rest: str) -> Address:
     path, _, baud = rest.rpartition(":")
-    if path and baud.isascii() and baud.isdigit():
+    if path and re.fullmatch(r"[0-9]{1,9}", baud):
         return Address("serial", path=path, baud=int(baud))
     return Address("serial", path=rest) if rest else _fail(text, "it has no device")
 

@@ -18,7 +18,7 @@ from adapters.naming import NamingService
 from adapters.plugin import Aged, Command, Refused, World
 from adapters.transport import Port, Remote, open_port
 from adapters.troubles import Troubles
-from physical import Geometry, PhysicalError, PhysicalProperty, contains
+from physical import Geometry, PhysicalError, PhysicalProperty, contains, open_file
 from physical.ais import Ear, hear
 from physical.ais_reports import AisError, PositionReport
 from physical.ais_world import TIME_TO_LIVE, physical_property
@@ -187,7 +187,7 @@ class AisFeed:
         self.played.set()
 
     def _recorded(self) -> Iterator[bytes]:
-        with open(self._address.path, "rb") as file:
+        with open_file(self._address.path) as file:
             lines = Lines()
             while chunk := file.read(65_536):
                 yield from lines.feed(chunk)

@@ -20,7 +20,7 @@ from adapters.plugin import Aged, Command, Gone, Refused, World
 from adapters.slices import in_slices
 from adapters.troubles import Troubles
 from adapters.web import MAX_BODY, Listen, serve
-from physical import PhysicalError, PhysicalProperty, legible, reading_geojson
+from physical import PhysicalError, PhysicalProperty, legible, open_file, reading_geojson
 
 EVERY: Final = 1.0
 MAX_FILES: Final = 1_000
@@ -154,7 +154,7 @@ class Detections:
 
     async def _read(self, path: Path) -> None:
         try:
-            with path.open("rb") as file:
+            with open_file(path) as file:
                 body = file.read(MAX_BODY + 1)
             await self._take(body)
         except (OSError, PhysicalError) as problem:

@@ -8,7 +8,7 @@ from typing import Final
 
 from adapters.plugin import Command, Gone, Refused, World
 from adapters.troubles import Troubles
-from physical import PhysicalError, PhysicalProperty, read_places
+from physical import PhysicalError, PhysicalProperty, open_file, read_places
 
 EVERY: Final = 1.0
 """Seconds between two looks at the file."""
@@ -80,7 +80,7 @@ def _stamp(path: Path) -> tuple[int, int, int]:
 
 def _read(path: Path) -> bytes:
     try:
-        with path.open("rb") as file:
+        with open_file(path) as file:
             return file.read(MAX_BYTES + 1)  # beyond the limit: for the reader to refuse
     except OSError as problem:
         raise _unreadable(path, problem) from None

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from bigactors.mistakes import Mistake, unreadable
+from physical import PhysicalError, open_file
+from physical import read_json as parse_json
 
 MOST_JSON = 64 * 2**20
 """The most bytes of a trace that are read."""
@@ -16,7 +18,7 @@ MOST_JSON = 64 * 2**20
 def read_bytes(path: str, most: int) -> bytes:
     """Return a file's bytes, one more than `most` if there are more."""
     try:
-        with open(path, "rb") as file:
+        with open_file(path) as file:
             return file.read(most + 1)
     except (OSError, ValueError) as error:
         raise _unreadable(path, error) from error
@@ -24,14 +26,10 @@ def read_bytes(path: str, most: int) -> bytes:
 
 def read_json(path: str) -> Any:
     """Return the value in a JSON file."""
-    data = read_bytes(path, MOST_JSON)
-    if len(data) > MOST_JSON:
-        raise Mistake(f"the file is longer than {MOST_JSON:,} bytes", "is it a trace?", path)
     try:
-        return json.loads(data)
-    except (ValueError, RecursionError) as error:
-        reason = "nested too deeply" if isinstance(error, RecursionError) else str(error)
-        raise Mistake(f"the file is not JSON: {reason:.200}", place=path) from error
+        return parse_json(read_bytes(path, MOST_JSON), MOST_JSON)
+    except PhysicalError as error:
+        raise Mistake(error.message, error.hint, path) from error
 
 
 def write_json(path: str, value: Any) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -73,7 +74,9 @@ def _telemetry(
     kinds = mission.setting.kinds
     systems = ((identity.partition(":"), name) for identity, name in names.items())
     table = {
-        int(number): name for (scheme, _, number), name in systems if scheme == "mavlink" and number.isdigit()
+        int(number): name
+        for (scheme, _, number), name in systems
+        if scheme == "mavlink" and re.fullmatch(r"[0-9]{1,3}", number)
     }
     crafts = {system: Craft(name, kinds.get(name, "UAV"), system) for system, name in table.items()}
     if not crafts:

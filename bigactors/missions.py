@@ -45,7 +45,7 @@ def variation_of(options: Namespace) -> Variation:
     """Return what the options put in the place of what a mission says; raises Mistake for a file that isn't there."""
     sources = {name: Path(file) for name, file in options.source}
     for name, path in sources.items():
-        if not path.is_file():
+        if not path.exists():
             raise Mistake("there is no such file", f"it was to be read in the place of {name}", str(path))
     return Variation(
         Scheduler(options.scheduler) if options.scheduler else None,

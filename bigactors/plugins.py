@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
@@ -104,7 +105,7 @@ def _system(name: str, given: int | None, told: str | None) -> int | None:
     """Return the system id of a vehicle, by --vehicle or by --name."""
     if told is None:
         return given
-    if not told.isdigit() or not 0 < int(told) < 256:
+    if not re.fullmatch(r"[0-9]{1,3}", told) or not 0 < int(told) < 256:
         raise Mistake(f"'mavlink:{told:.20}' is no system id", "they are from 1 to 255")
     if given not in (None, int(told)):
         raise Mistake(f"'{name}' has two system ids: {given} and {told}", "give it one")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import re
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Final
@@ -24,10 +25,15 @@ if TYPE_CHECKING:
 DOMAIN: Final = b"bigactors.verdict/1\0"
 """What stands before each text that is signed, so that no signature of anything else is one of a verdict."""
 
+_ED25519: Final = re.compile(r"[A-Za-z0-9+/]{86}==")
+
 MOST_BYTES: Final = 10_000
 """The most bytes of a key that are read."""
 
 PUBLIC: Final = ".pub"
+_PUBLIC_PEM, _SECRET_PEM = b"PUBLIC KEY-----", b"PRIVATE KEY-----"
+_GIVE_SECRET: Final = f"give FILE of the pair FILE and FILE{PUBLIC}, which bigactors keygen FILE makes"
+_GIVE_PUBLIC: Final = f"give the FILE{PUBLIC} of the one who signs, which bigactors keygen FILE makes"
 
 
 def new_pair(path: Path) -> Path:
@@ -49,15 +55,17 @@ def new_pair(path: Path) -> Path:
 def load_key(path: str) -> SigningKey:
     """Return the key to sign with; raises Mistake for one that is none, or that others may read."""
     crypto, data = _crypto(), read_bytes(path, MOST_BYTES)
+    if _PUBLIC_PEM in data:
+        raise Mistake("this is a public key, and the secret one signs", _GIVE_SECRET, path)
     if mode := others_may_read(Path(path)):
         hint = f"chmod 600 {path}; if others did, make another: bigactors keygen FILE"
         raise Mistake(f"others may read the key: its mode is {mode}", hint, path)
     try:
         key = crypto.serialization.load_pem_private_key(data, password=None)
     except (ValueError, TypeError, crypto.exceptions.UnsupportedAlgorithm) as error:
-        raise _no_key(path, "a key to sign with", error) from error
+        raise Mistake(f"this is no key to sign with: {_reason(error)}", _GIVE_SECRET, path) from error
     if not isinstance(key, crypto.ed25519.Ed25519PrivateKey):
-        raise _no_key(path, "a key to sign with")
+        raise Mistake("this is no key to sign with: it is of another kind than Ed25519", _GIVE_SECRET, path)
     found: SigningKey = key
     return found
 
@@ -65,12 +73,14 @@ def load_key(path: str) -> SigningKey:
 def load_trusted(path: str) -> TrustedKey:
     """Return the public key that is trusted; raises Mistake for one that is none."""
     crypto, data = _crypto(), read_bytes(path, MOST_BYTES)
+    if _SECRET_PEM in data:
+        raise Mistake("this is a secret key, and the public one is trusted", _GIVE_PUBLIC, path)
     try:
         key = crypto.serialization.load_pem_public_key(data)
     except (ValueError, TypeError, crypto.exceptions.UnsupportedAlgorithm) as error:
-        raise _no_key(path, f"a public key, FILE{PUBLIC}", error) from error
+        raise Mistake(f"this is no public key: {_reason(error)}", _GIVE_PUBLIC, path) from error
     if not isinstance(key, crypto.ed25519.Ed25519PublicKey):
-        raise _no_key(path, f"a public key, FILE{PUBLIC}")
+        raise Mistake("this is no public key: it is of another kind than Ed25519", _GIVE_PUBLIC, path)
     found: TrustedKey = key
     return found
 
@@ -85,16 +95,19 @@ def check_signature(signature: Any, text: bytes, trusted: TrustedKey, path: str)
     """Refuse a verdict whose signature is not the trusted key's; raises Mistake with what is wrong."""
     hint = "the one who is trusted signs it: bigactors check --verdict FILE --sign KEY"
     match signature:
-        case {"key": str(whose), "ed25519": str(value)}:
+        case {"key": str(whose), "ed25519": str(value)} if _ED25519.fullmatch(value):
             pass
-        case _:
+        case None:
             raise Mistake("the verdict bears no signature", hint, path)
+        case _:
+            form = "an object with 'key' and 'ed25519', which is 64 bytes in base64"
+            raise Mistake(f"the verdict's signature is malformed: it should be {form}", hint, path)
     if whose != fingerprint(trusted):
         said = f"the verdict is signed by another key: {whose:.80}, and {fingerprint(trusted)} is trusted"
         raise Mistake(said, hint, path)
     try:
-        trusted.verify(base64.b64decode(value, validate=True), DOMAIN + text)
-    except (ValueError, _crypto().exceptions.InvalidSignature) as error:
+        trusted.verify(base64.b64decode(value), DOMAIN + text)
+    except _crypto().exceptions.InvalidSignature as error:
         raise Mistake("the verdict was changed after it was signed", hint, path) from error
 
 
@@ -113,9 +126,8 @@ def _public_pem(key: TrustedKey) -> bytes:
     return key.public_bytes(form.Encoding.PEM, form.PublicFormat.SubjectPublicKeyInfo)
 
 
-def _no_key(path: str, wanted: str, error: Exception | None = None) -> Mistake:
-    reason = "it needs a passphrase" if isinstance(error, TypeError) else "it is no Ed25519 key in PEM"
-    return Mistake(f"this is not {wanted}: {reason}", "make a pair: bigactors keygen FILE", path)
+def _reason(error: Exception) -> str:
+    return "it needs a passphrase" if isinstance(error, TypeError) else "it is not in PEM, or is damaged"
 
 
 def _crypto() -> Any:

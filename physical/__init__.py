@@ -8,6 +8,7 @@ from physical.altitude import Band, band_contains
 from physical.containment import Conflict, Place, PlaceIndex, check_places, holds
 from physical.drift import Face, drift_faces, face_at
 from physical.errors import GeometryError, PhysicalError
+from physical.files import open_file
 from physical.geojson import GeoJSONError, read_geojson, reading_geojson, write_geojson
 from physical.measure import area, centroid, distance, interior_point, waypoint
 from physical.mobility import JoinChannel, LeaveChannel, MobilityCommand, Waypoint, go_to, rechannel
@@ -54,6 +55,7 @@ __all__ = [
     "is_word",
     "legible",
     "nearest_placement",
+    "open_file",
     "overlaps",
     "point",
     "polygon",

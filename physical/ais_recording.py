@@ -9,6 +9,7 @@ from typing import IO
 
 from physical.ais import Ear, hear
 from physical.ais_reports import AisError, PositionReport, Report, StaticReport
+from physical.files import open_file
 from physical.nmea import MAX_LINE, Reason
 
 MAX_RECORDING = 256 * 2**20
@@ -68,7 +69,7 @@ def read_recording(
     if not isinstance(source, str | PathLike):
         return record(_bounded(source, limit))
     try:
-        with open(source, "rb") as file:
+        with open_file(source) as file:
             return record(_lines(file, limit))
     except OSError as error:
         message, hint = f"cannot read it: {error.strerror or error}", "give the path of a file of NMEA lines"

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from collections import Counter
 from typing import Final, NoReturn, TypeGuard
 
 from physical.errors import PhysicalError
@@ -15,6 +16,9 @@ from physical.errors import PhysicalError
 MAX_WORD: Final = 200
 MAX_TEXT: Final = 2_000
 """Characters of a message or of a reason."""
+
+MAX_DIGITS: Final = 400
+"""Digits of a whole number in JSON: more than any that is written here has, and few enough to be read at once."""
 
 _SURROGATE: Final = re.compile(rb"\\u[dD][89a-fA-F]|\xed[\xa0-\xbf]")
 """How JSON writes half of a surrogate pair: with an escape, or in bytes that are no UTF-8."""
@@ -56,13 +60,14 @@ def read_json(text: str | bytes, most: int) -> object:
     """Return what a JSON text says; all of it can be written again.
 
     Raises PhysicalError where it is longer than `most` bytes or characters, is no UTF-8 or no JSON, is nested too
-    deeply, or has a number that is infinite or none, or half of a surrogate pair.
+    deeply, says a key of an object twice, or has a number that is infinite, none or of more than 400 digits, or half
+    of a surrogate pair.
     """
     if len(text) > most:
         raise PhysicalError("too-large", f"the text is over {most:,} bytes", "simplify it")
     try:
         said = text if isinstance(text, str) else text.decode("utf-8-sig")
-        value: object = json.loads(said, parse_constant=_no_number, parse_float=_finite)
+        value: object = _DECODER.decode(said)
         if _SURROGATE.search(said.encode("utf-8", "surrogatepass")):
             json.dumps(value, ensure_ascii=False).encode()
     except UnicodeDecodeError as problem:
@@ -78,6 +83,22 @@ def read_json(text: str | bytes, most: int) -> object:
     return value
 
 
+def _each_once(pairs: list[tuple[str, object]]) -> dict[str, object]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        twice = next(key for key, count in Counter(key for key, _ in pairs).items() if count > 1)
+        raise ValueError(f"the key {legible(twice, 60)!r} is there twice in one object")
+    return found
+
+
+def _whole(digits: str) -> int:
+    return int(digits) if len(digits) <= MAX_DIGITS else _too_long(digits)
+
+
+def _too_long(digits: str) -> NoReturn:
+    raise ValueError(f"a number of {len(digits):,} digits is longer than {MAX_DIGITS}")
+
+
 def _no_number(name: str) -> NoReturn:
     raise ValueError(f"{name} is no number")
 
@@ -85,3 +106,8 @@ def _no_number(name: str) -> NoReturn:
 def _finite(digits: str) -> float:
     value = float(digits)
     return value if math.isfinite(value) else _no_number(f"{digits:.40}")
+
+
+_DECODER: Final = json.JSONDecoder(
+    object_pairs_hook=_each_once, parse_float=_finite, parse_int=_whole, parse_constant=_no_number
+)

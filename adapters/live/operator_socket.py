@@ -94,9 +94,10 @@ async def _say(path: Path, said: dict[str, str]) -> str:
     line = json.dumps(said).encode() + b"\n"
     if len(line) > MOST_BYTES:
         return f"a message of more than {MOST_BYTES:,} bytes"
-    match json.loads(await _exchange(path, line)):
-        case {"refusal": str(refusal)}:
-            return refusal
+    with suppress(PhysicalError):
+        match read_json(await _exchange(path, line), MOST_BYTES):
+            case {"refusal": str(refusal)}:
+                return refusal
     raise NobodyListens(f"what listens at {path} is no run of bigactors")
 
 

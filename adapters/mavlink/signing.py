@@ -10,15 +10,16 @@ from __future__ import annotations
 import hashlib
 import hmac
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from adapters.mavlink.message import Message, say
 from adapters.private import open_private, others_may_read
-from physical import PhysicalError, read_json
+from physical import PhysicalError, open_file, read_json
 
 EPOCH: Final = 1_420_070_400
 """2015-01-01 in seconds since 1970: where time stamps count from."""
@@ -35,6 +36,7 @@ For as long a vehicle is not believed after a crash: until its own time stamps h
 
 KEY_BYTES: Final = 32
 MOST_BYTES: Final = 1_000_000
+_STREAM: Final = re.compile(r"[0-9]{1,3}\.[0-9]{1,3}\.[0-9]{1,3}")
 _BLOCK: Final = 13  # link id, time stamp, signature
 
 
@@ -118,20 +120,34 @@ def load(path: Path) -> Signing:
     hint = "make one: python -m adapters.mavlink.new_key FILE"
     try:
         exposed = others_may_read(path)
-        with path.open("rb") as file:
-            data: Any = read_json(file.read(MOST_BYTES + 1), MOST_BYTES)
-        key, timestamp = bytes.fromhex(data["key"]), int(data["timestamp"])
-        streams = {_stream(name): int(time) for name, time in data["streams"].items()}
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as problem:
-        raise PhysicalError(
-            "signing-file", f"cannot read the signing key: {problem}", hint, str(path)
-        ) from None
+        with open_file(path) as file:
+            found = _signing(read_json(file.read(MOST_BYTES + 1), MOST_BYTES))
+    except (OSError, PhysicalError) as problem:
+        reason = problem.strerror if isinstance(problem, OSError) else problem.message
+        message = f"cannot read the signing key: {reason}"
+        raise PhysicalError("signing-file", message, hint, str(path)) from None
     if exposed:
         told = f"others may read the signing key: its mode is {exposed}"
         raise PhysicalError("signing-file", told, f"chmod 600 {path}; if others did, {hint}", str(path))
-    if len(key) != KEY_BYTES:
-        raise PhysicalError("signing-file", f"the key has {len(key)} bytes, not {KEY_BYTES}", hint, str(path))
-    return Signing(key, timestamp, streams)
+    return found
+
+
+def _signing(data: object) -> Signing:
+    """Return the state that a file says; raises PhysicalError."""
+    match data:
+        case {"key": str(key), "timestamp": int(timestamp), "streams": dict(streams)}:
+            pass
+        case _:
+            raise _bad("it is no object with 'key', 'timestamp' and 'streams'")
+    if not re.fullmatch(rf"[0-9a-fA-F]{{{2 * KEY_BYTES}}}", key):
+        raise _bad(f"its key is not {2 * KEY_BYTES} hexadecimal digits")
+    if not all(_STREAM.fullmatch(name) and type(time) is int for name, time in streams.items()):
+        raise _bad("its streams are not LINK.SYSTEM.COMPONENT with the time of each")
+    return Signing(bytes.fromhex(key), timestamp, {_stream(name): time for name, time in streams.items()})
+
+
+def _bad(message: str) -> PhysicalError:
+    return PhysicalError("signing-file", message)
 
 
 def save(signing: Signing, path: Path) -> None:

@@ -10,7 +10,7 @@ from adapters.mavlink.codec import Decoder, Garbage
 from adapters.mavlink.fleet import Craft
 from adapters.mavlink.message import Message
 from adapters.mavlink.telemetry import Telemetry, absorb, property_of
-from physical import PhysicalError, PhysicalProperty
+from physical import PhysicalError, PhysicalProperty, open_file
 
 _V1, _V2 = 0xFE, 0xFD
 _SIGNED: Final = 1
@@ -27,7 +27,7 @@ def read_tlog(path: str | PathLike[str]) -> Iterator[tuple[float, Message]]:
     Raises PhysicalError where the file can't be read or is no such log.
     """
     try:
-        with open(path, "rb") as file:
+        with open_file(path) as file:
             yield from _messages(file)
     except OSError as problem:
         raise PhysicalError("tlog", f"cannot read it: {problem.strerror}", "", str(path)) from None

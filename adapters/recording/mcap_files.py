@@ -15,6 +15,7 @@ from typing import Any, BinaryIO, Final
 from adapters.disk import writing
 from adapters.private import open_private
 from adapters.recording.decompression import opened
+from physical import PhysicalError, open_file, read_json
 
 MAGIC: Final = b"\x89MCAP0\r\n"
 FOOTER, CHANNEL, MESSAGE, CHUNK = 0x02, 0x04, 0x05, 0x06
@@ -104,7 +105,7 @@ class Reading:
         """
         topics: dict[int, str] = {}
         self.torn = True
-        with path.open("rb") as file:
+        with open_file(path) as file:
             if file.read(len(MAGIC)) != MAGIC:
                 raise RecordingError("this is no recording: it does not begin as MCAP")
             for kind, content in _unchunked(file):
@@ -187,9 +188,9 @@ def _message(content: bytes, topics: Mapping[int, str]) -> Message:
 
 def _parsed(data: bytes) -> Any:
     try:
-        return json.loads(data)
-    except (ValueError, RecursionError) as error:
-        raise RecordingError(f"a message is not JSON: {error!s:.100}") from error
+        return read_json(data, MOST_BYTES)
+    except PhysicalError as error:
+        raise RecordingError(f"a message cannot be read: {error.message:.150}") from error
 
 
 def _writer() -> Any:

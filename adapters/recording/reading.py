@@ -8,6 +8,7 @@ from typing import Any
 
 from adapters.recording.mcap_files import MAGIC, Message, Reading, RecordingError
 from adapters.recording.schemas import VERSION
+from physical import open_file
 
 MOST_MESSAGES = 20_000_000
 
@@ -40,7 +41,7 @@ class Recording:
 def is_recording(path: str) -> bool:
     """Tell whether a file is MCAP, by its first bytes."""
     try:
-        with open(path, "rb") as file:
+        with open_file(path) as file:
             return file.read(len(MAGIC)) == MAGIC
     except (OSError, ValueError):
         return False

@@ -16,6 +16,7 @@ from typing import Any, BinaryIO, Final
 from adapters.disk import writing
 from adapters.private import open_private
 from adapters.stations.entries import MOST_BYTES, Content, Entry, Posted, Took, entry_of, entry_text
+from physical import PhysicalError, read_json
 
 SCHEMA: Final = "bigactors.station/2"
 UNSUMMED: Final = "bigactors.station/1"
@@ -180,9 +181,9 @@ class Journal:
                 raise ValueError("its checksum is not that of what it says")
             self._sum = found
         try:
-            return json.loads(text)
-        except (ValueError, RecursionError) as error:
-            raise ValueError(f"it is not JSON: {error!s:.100}") from error
+            return read_json(text, 2 * MOST_BYTES)
+        except PhysicalError as error:
+            raise ValueError(f"{error.message:.150}") from error
 
     def _take(self, data: Any) -> None:
         match data:

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from physical import PhysicalError
+from physical import PhysicalError, open_file
 
 MOST_BYTES: Final = 65_536
 MOST_STATIONS: Final = 32
@@ -90,15 +90,27 @@ def read_peers(path: Path, station: str) -> Peers:
         PhysicalError: It says something else; with the place and the remedy.
         OSError: It cannot be read.
     """
-    with path.open("rb") as file:
+    with open_file(path) as file:
         data = file.read(MOST_BYTES + 1)
     if len(data) > MOST_BYTES:
         raise _mistake(f"it has more than {MOST_BYTES:,} bytes", "a station is a few lines of it")
     try:
         said = tomllib.loads(data.decode())
-    except (ValueError, RecursionError) as error:  # no TOML, no UTF-8, or a number of thousands of digits
-        raise _mistake(f"it is no TOML: {error!s:.200}", "see docs/stations.md") from error
+    except (ValueError, RecursionError) as error:
+        raise _mistake(f"it is no TOML: {_reason(error):.200}", "see docs/stations.md") from error
     return peers_of(said, station, path.parent)
+
+
+def _reason(error: Exception) -> str:
+    """Return what a TOML text has wrong."""
+    match error:
+        case tomllib.TOMLDecodeError():
+            return str(error)
+        case UnicodeDecodeError():
+            return f"byte {error.start} is no UTF-8"
+        case RecursionError():
+            return "it is nested too deeply"
+    return "it has a number of thousands of digits"
 
 
 def peers_of(data: Mapping[str, Any], station: str, folder: Path) -> Peers:

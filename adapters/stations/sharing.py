@@ -50,13 +50,14 @@ from adapters.stations.entries import (
 )
 from adapters.stations.journal import Journal
 from adapters.stations.merge import MOST_ENTITIES, Merge, channels_of, on
-from adapters.stations.messages import MOST_ENTRIES, Message, fitting, read, written
+from adapters.stations.messages import MOST_BYTES, MOST_ENTRIES, Message, fitting, read, written
 from adapters.stations.outgoing import believed, entered, moved, told
 from adapters.stations.peers import Peers
 from adapters.stations.remote_station import Other
 from adapters.stations.shared import Shared
 from adapters.stations.skew import measured
 from adapters.troubles import Troubles
+from physical import PhysicalError, read_json
 
 NAME: Final = "stations"
 """What the plugin is called."""
@@ -277,8 +278,8 @@ class Sharing:
     def _answer(self, _key: str, question: bytes) -> bytes:
         """Answer what was said after a number."""
         after = 0
-        with suppress(ValueError, RecursionError):
-            match json.loads(question):
+        with suppress(PhysicalError):
+            match read_json(question, MOST_BYTES):
                 case {"after": int(number)}:
                     after = number
         texts, upto = fitting(*self._journal.after(after, MOST_ENTRIES))

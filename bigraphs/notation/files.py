@@ -30,6 +30,8 @@ def load_system(path: Path | str, *, constants: Mapping[str, Value] | None = Non
 
 def read_text(file: Path) -> str:
     """Return the text of a file, of which no more is read than a text may be long."""
+    if file.exists() and not file.is_file():
+        raise BigraphError("file", f"'{file}' is a folder, a pipe or a device", "give a file")
     try:
         with file.open("rb") as opened:
             content = opened.read(MAX_BYTES + 1)

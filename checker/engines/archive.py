@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.contract import CheckpointError
+from physical import open_file, read_json
 
 FIRST = re.compile(rb"bigactors archive 1 ([0-9a-f]{64}) ([0-9]{1,9})\n")
 MOST_FIRST, MOST_ABOUT = 128, 1 << 27
@@ -61,9 +62,7 @@ def read_archive(path: Path, schema: str, kinds: Kinds) -> tuple[dict[str, Any],
         CheckpointError: It is none, is not what was written, or is of another schema.
     """
     try:
-        if not path.is_file():
-            raise ValueError("it is no file")
-        with path.open("rb") as file:
+        with open_file(path) as file:
             return _read(file, schema, kinds)
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         raise CheckpointError(f"{path}: this is no checkpoint: {error}") from error
@@ -74,7 +73,9 @@ def _read(file: BinaryIO, schema: str, kinds: Kinds) -> tuple[dict[str, Any], di
     if first is None or int(first[2]) > MOST_ABOUT:
         raise ValueError("it does not begin like one")
     about = file.read(int(first[2]))
-    data = json.loads(about)
+    data = read_json(about, MOST_ABOUT)
+    if not isinstance(data, dict):
+        raise ValueError("it does not say what it holds")
     head, lengths = data["head"], data["lengths"]
     if not isinstance(head, dict) or head.get("schema") != schema:
         raise ValueError(f"it is not of the schema {schema}")

@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
-from physical import GeoJSONError, Geometry, PhysicalError, PhysicalProperty, contains, read_places
+from physical import GeoJSONError, Geometry, PhysicalError, PhysicalProperty, contains, open_file, read_places
 from physical.ais_recording import read_recording
 from physical.ais_reports import AisError
 from physical.ais_world import world_at
@@ -55,7 +55,7 @@ class Library:
                     "give it relative to the mission",
                 )
             path = (self.directory / name).resolve()
-            if not path.is_file():
+            if not path.exists():
                 raise Refused(
                     Code.UNREADABLE_FILE,
                     f"there is no file '{shorten(name)}' beside the mission",
@@ -106,7 +106,7 @@ def _read(entry: s.FromSource, path: Path, area: Geometry | None) -> tuple[Physi
 
 def _places(suffix: str, path: Path) -> tuple[PhysicalProperty, ...]:
     try:
-        with path.open("rb") as file:
+        with open_file(path) as file:
             data = file.read(MAX_GEOJSON + 1)
         return read_places(suffix, data)
     except OSError as error:

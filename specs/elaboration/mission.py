@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
+from physical import open_file
 from semantics.contingencies import Precautions
 from semantics.properties.property import Property, watched
 from semantics.state.configuration import Configuration
@@ -163,7 +164,7 @@ def load_mission(path: str | Path, variation: Variation = AS_WRITTEN) -> Elabora
     path = Path(path)
     name = str(path)
     try:
-        with path.open("rb") as file:
+        with open_file(path) as file:
             data = file.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)

@@ -66,7 +66,7 @@ def licensed(path):
 
 
 def peered(path):
-    with suppress(PhysicalError):
+    with suppress(PhysicalError, OSError):
         read_peers(path, "gcs0")
 
 
@@ -117,7 +117,7 @@ FILES = {
     "trace": (
         lambda: made("check", "broken_deadlock", "--trace", "DIR", name="trace.json"),
         "trace.json",
-        lambda path: command("replay", path, MISSIONS / "broken_deadlock.mission"),
+        lambda path: command("replay", path, "--mission", MISSIONS / "broken_deadlock.mission"),
     ),
     "verdict": (
         lambda: made("check", "two_gates", "--verdict", "DIR/v.json", name="v.json"),
@@ -229,6 +229,16 @@ def test_files_that_are_nothing_are_told(kind, data):
         path = Path(folder) / name
         path.write_bytes(data)
         read(path)
+
+
+@pytest.mark.parametrize("kind", FILES)
+def test_a_pipe_that_nobody_writes_into_is_not_waited_for(kind, capsys):
+    _, name, read = FILES[kind]
+    with TemporaryDirectory() as folder:
+        os.mkfifo(Path(folder) / name)
+        read(Path(folder) / name)
+    told = capsys.readouterr().err
+    assert not told or "a pipe" in told
 
 
 @pytest.mark.parametrize("properties", [[1], [[]], [None], {}, None, "x"])

@@ -26,6 +26,12 @@ RUN = (
     "s",
 )
 
+MALFORMED = """\
+v.json: the verdict's signature is malformed: \
+it should be an object with 'key' and 'ed25519', which is 64 bytes in base64
+  hint: the one who is trusted signs it: bigactors check --verdict FILE --sign KEY
+"""
+
 
 @pytest.fixture
 def there(tmp_path, monkeypatch, bigactors):
@@ -79,16 +85,27 @@ def test_a_verdict_that_was_changed_and_sealed_again_does_not_fly(there, bigacto
     )
 
 
-@pytest.mark.parametrize("signature", [None, "x", {}, {"key": 1, "ed25519": "x"}])
-def test_a_verdict_without_a_signature_does_not_fly(there, bigactors, signature):
-    changed(there / "v.json", signature=signature)
+def test_a_verdict_without_a_signature_does_not_fly(there, bigactors):
+    changed(there / "v.json", signature=None)
     assert "the verdict bears no signature" in bigactors(*RUN, "--trust", "own.key.pub")[2]
 
 
-@pytest.mark.parametrize("value", ["", "!", "QUJD", "A" * 88])
-def test_a_signature_that_is_none_does_not_fly(there, bigactors, value):
+@pytest.mark.parametrize("signature", ["x", 7, {}, {"key": 1, "ed25519": "x"}])
+def test_a_malformed_signature_does_not_fly(there, bigactors, signature):
+    changed(there / "v.json", signature=signature)
+    assert bigactors(*RUN, "--trust", "own.key.pub")[2] == MALFORMED
+
+
+@pytest.mark.parametrize("value", ["", "!", "QUJD", "A" * 88, "ſ" * 86 + "=="])
+def test_a_signature_that_is_no_base64_of_64_bytes_does_not_fly(there, bigactors, value):
     data = json.loads((there / "v.json").read_text(encoding="utf-8"))
     changed(there / "v.json", signature=data["signature"] | {"ed25519": value})
+    assert bigactors(*RUN, "--trust", "own.key.pub")[2] == MALFORMED
+
+
+def test_a_signature_of_something_else_does_not_fly(there, bigactors):
+    data = json.loads((there / "v.json").read_text(encoding="utf-8"))
+    changed(there / "v.json", signature=data["signature"] | {"ed25519": "A" * 86 + "=="})
     assert "the verdict was changed after it was signed" in bigactors(*RUN, "--trust", "own.key.pub")[2]
 
 
@@ -103,9 +120,21 @@ def test_the_signature_of_another_key_does_not_fly(bigactors):
 def test_what_is_no_key_is_told_before_anything_is_explored(there, bigactors):
     (there / "none").write_text("no key", encoding="utf-8")
     (there / "none").chmod(0o600)
+    made = "openssl genpkey -algorithm RSA -out rsa.key && openssl pkey -in rsa.key -pubout -out rsa.key.pub"
+    subprocess.run(["sh", "-c", f"umask 077; {made}"], check=True, cwd=there, capture_output=True)
     for path, said in (
-        ("none", "no Ed25519 key"),
-        ("own.key.pub", "others may read"),
+        (
+            "none",
+            "none: this is no key to sign with: it is not in PEM, or is damaged\n  hint: give FILE of the pair",
+        ),
+        (
+            "rsa.key",
+            "rsa.key: this is no key to sign with: it is of another kind than Ed25519\n  hint: give FILE",
+        ),
+        (
+            "own.key.pub",
+            "own.key.pub: this is a public key, and the secret one signs\n  hint: give FILE of the pair",
+        ),
         ("nowhere", "No such file"),
     ):
         code, out, err = bigactors(*CHECK, "--sign", path)
@@ -116,7 +145,21 @@ def test_what_is_no_key_is_told_before_anything_is_explored(there, bigactors):
         "its mode is 0640\n  hint: chmod 600 own.key; if others did, "
         in bigactors(*CHECK, "--sign", "own.key")[2]
     )
-    assert "this is not a public key, FILE.pub" in bigactors(*RUN, "--trust", "own.key")[2]
+    for path, said in (
+        (
+            "none",
+            "none: this is no public key: it is not in PEM, or is damaged\n  hint: give the FILE.pub of the one",
+        ),
+        (
+            "rsa.key.pub",
+            "rsa.key.pub: this is no public key: it is of another kind than Ed25519\n  hint: give the",
+        ),
+        (
+            "own.key",
+            "own.key: this is a secret key, and the public one is trusted\n  hint: give the FILE.pub of",
+        ),
+    ):
+        assert said in bigactors(*RUN, "--trust", path)[2]
 
 
 @pytest.mark.usefixtures("there")

@@ -140,8 +140,8 @@ def test_the_mission_of_a_trace_is_found_beside_it(bigactors, missions, monkeypa
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("", "the file is not JSON"),
-        ("[" * 100_000, "the file is not JSON: nested too deeply"),
+        ("", "the text is not JSON"),
+        ("[" * 100_000, "the text is nested too deeply"),
         ("[]", "the file says no mission"),
         ('{"mission": 3}', "the file says no mission"),
         ('{"mission": "holds.mission"}', "this is no trace"),

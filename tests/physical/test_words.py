@@ -20,6 +20,8 @@ from physical import PhysicalError, is_text, is_word, legible, read_json
         (b"-Infinity", "json"),
         (b"[" * 100_000, "json"),
         (b"{", "json"),
+        (b'{"a": 1, "b": 2, "a": 1}', "json"),
+        (b"9" * 401, "json"),
         (b" " * 1_001, "too-large"),
     ],
 )
@@ -27,6 +29,20 @@ def test_json_that_could_not_be_written_again_is_refused(said, code):
     with pytest.raises(PhysicalError) as found:
         read_json(said, 200_000 if said[:2] == b"[[" else 1_000)
     assert found.value.code == code
+
+
+@pytest.mark.parametrize(
+    ("said", "reason"),
+    [
+        (b'[{"holds": false, "holds": true}]', "the key 'holds' is there twice in one object"),
+        (b'{"a": 1, "\\u0061": 2}', "the key 'a' is there twice in one object"),
+        (b"[" + b"1" * 5_000 + b"]", "a number of 5,000 digits is longer than 400"),
+    ],
+)
+def test_what_others_could_read_otherwise_is_refused_in_our_own_words(said, reason):
+    with pytest.raises(PhysicalError) as found:
+        read_json(said, 10_000)
+    assert found.value.message == f"the text is not JSON: {reason}"
 
 
 def test_what_passes_is_what_json_says():
