@@ -52,6 +52,7 @@ class ElaboratedMission:
         precautions: What is done when a live run goes otherwise.
         warnings: What is allowed but probably not meant, by position.
         begin: Makes the first configuration under a setting, of the world as it was read.
+        empty: Whether its text declares nothing.
     """
 
     name: str
@@ -65,6 +66,7 @@ class ElaboratedMission:
     precautions: Precautions
     warnings: tuple[Diagnostic, ...]
     begin: Callable[[Setting], Configuration] = field(repr=False)
+    empty: bool
 
     def under(self, scheduler: Scheduler, control: Control) -> ElaboratedMission:
         """Return the same mission under another scheduler and kind of control; no file is read again."""
@@ -137,6 +139,7 @@ def elaborate(
         precautions,
         names.findings.warnings,
         begin,
+        not mission.declarations,
     )
 
 
@@ -144,13 +147,13 @@ def require_bigactor(mission: ElaboratedMission) -> None:
     """Refuse a mission in which nobody acts: nothing checked is no pass; raises MissionError."""
     if mission.initial.alpha.names():
         return
-    if mission.spans:
+    if mission.empty:
+        found = Diagnostic(Code.EMPTY_MISSION, _START, "the file declares nothing", "is it the right file?")
+    else:
         hint = "add one: BigActor a hosted_at HOST with_behavior { ... }"
         found = Diagnostic(
             Code.NO_BIGACTOR, _START, "there is no bigActor in it: nothing would be checked", hint
         )
-    else:
-        found = Diagnostic(Code.EMPTY_MISSION, _START, "the file declares nothing", "is it the right file?")
     raise MissionError(mission.source, [found])
 
 

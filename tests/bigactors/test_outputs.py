@@ -186,7 +186,14 @@ def test_what_is_hardly_meant_is_told_in_every_format_and_fails_nothing(missions
 
 @pytest.mark.parametrize(
     ("text", "said"),
-    [("", "LS614: the file declares nothing"), ("signature { kind A }", "LS615: there is no bigActor in it")],
+    [
+        ("", "LS614: the file declares nothing"),
+        ("mission x // and no more", "LS614: the file declares nothing"),
+        ("signature { kind A }", "LS615: there is no bigActor in it"),
+        ("check {}", "LS615: there is no bigActor in it"),
+        ("world {}", "LS615: there is no bigActor in it"),
+        ("scheduler fcfs", "LS615: there is no bigActor in it"),
+    ],
 )
 def test_where_nothing_would_be_checked_there_is_no_pass(missions, bigactors, text, said):
     (missions / "nothing.mission").write_text(text, encoding="utf-8")

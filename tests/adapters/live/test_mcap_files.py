@@ -124,7 +124,7 @@ def test_malformed_chunks_are_refused(tmp_path, compression, spoil):
         (record(5, b"short"), "a record is damaged"),
         (record(5, struct.pack("<HIQQ", 7, 0, 0, 0) + b"{}"), "a record is damaged"),
         (record(4, struct.pack("<HHI", 1, 0, 2) + b"\xff\xff"), "a record is damaged"),
-        (CHANNEL + record(5, struct.pack("<HIQQ", 1, 0, 0, 0) + b"[" * 100_000), "not JSON"),
+        (CHANNEL + record(5, struct.pack("<HIQQ", 1, 0, 0, 0) + b"[" * 100_000), "nested too deeply"),
         (struct.pack("<BQ", 5, 2**63), "a record of 9,223,372,036,854,775,808 bytes"),
         (chunk("", EMPTY[:-1], len(EMPTY) - 1), "a chunk ends amid a record"),
     ],
