@@ -47,6 +47,12 @@ class Aged:
 Published = PhysicalProperty | Aged | Gone
 """A bare property stands until another or `Gone` replaces it; all of an entity's property is said each time."""
 
+
+def entity_of(published: Published) -> str:
+    """Return whom a publication is about."""
+    return published.property.entity if isinstance(published, Aged) else published.entity
+
+
 # --- what a plugin is told --------------------------------------------------------------------------
 
 
@@ -418,4 +424,5 @@ __all__ = [
     "Trouble",
     "Underway",
     "World",
+    "entity_of",
 ]

@@ -17,7 +17,6 @@ from adapters.live.turn import Turning
 from adapters.live.unannounced import comes_in, place_strangers, remove_strangers
 from adapters.plugin import (
     Accepted,
-    Aged,
     Arrived,
     Believes,
     Broken,
@@ -34,6 +33,7 @@ from adapters.plugin import (
     TakenOver,
     Trouble,
     Underway,
+    entity_of,
 )
 from semantics.behaviours.values import show
 from semantics.environment import Appears, Leaves, Says
@@ -79,8 +79,7 @@ def hear(turning: Turning, heard: Iterable[Heard]) -> None:
 
 
 def _merge(turning: Turning, heard: Heard) -> Name | None:
-    published = heard.published
-    entity = published.property.entity if isinstance(published, Aged) else published.entity
+    entity = entity_of(heard.published)
     found = sighting_of(heard, turning.seen.get(entity), turning.plan, turning.now)
     if isinstance(found, Refusal):
         turning.find("trouble", found.entity, found.reason, once=True)

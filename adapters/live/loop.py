@@ -22,7 +22,6 @@ from adapters.live.core import advance, is_over, is_refused, watch
 from adapters.live.state import Answer, Batch, Finding, Heard, LiveState, Plan, Said, Saying, Turn
 from adapters.live.watchers import Watcher, Watchers
 from adapters.plugin import (
-    Aged,
     Command,
     Failed,
     Follow,
@@ -33,6 +32,7 @@ from adapters.plugin import (
     Refused,
     Rejected,
     Report,
+    entity_of,
 )
 from adapters.troubles import Troubles
 from physical import is_text
@@ -121,7 +121,7 @@ class Inbox:
             return
         heard = Heard(plugin, published)
         self.watchers.arrived(heard, self.now())
-        entity = _entity(published)
+        entity = entity_of(published)
         waiting = self.heard if entity in self.named else self.strangers
         waiting.pop((plugin, entity), None)  # in the order said: of two of one time the later counts
         waiting[plugin, entity] = heard
@@ -164,10 +164,6 @@ class Inbox:
         if not self.strangers:
             self.awake.clear()
         return batch, answers
-
-
-def _entity(published: Published) -> str:
-    return published.property.entity if isinstance(published, Aged) else published.entity
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,7 @@ from adapters.mavlink.pilot import Outcome, Pilot
 from adapters.mavlink.roster import Roster
 from adapters.mavlink.signing import Verdict
 from adapters.plugin import Aged, Command, Failed, GoTo, LinkLost, Rebind, Refused, Report, World
+from adapters.ration import Ration
 from adapters.transport import Port, Remote, open_port
 from adapters.troubles import Troubles
 from physical import Geometry, PhysicalError
@@ -31,8 +32,11 @@ HEARTBEAT: Final = 1.0
 MAX_REMOTES: Final = 64
 """Remote addresses with a parser each; of those that no vehicle is at the one unheard the longest gives way."""
 
+MOST_LOGGED: Final = 1_000
+"""Packets heard that are logged in a second."""
+
 Tap = Callable[[float, bytes], None]
-"""Who wants every frame heard and said, with its time: a tlog."""
+"""Who wants every frame heard and said, with its time: a tlog. Of a flood it gets so many a second."""
 
 
 class Autopilot:
@@ -70,6 +74,7 @@ class Autopilot:
         self._strangers: set[int] = set()
         self._keeper = keeper
         self._tap = tap
+        self._logged: Ration[None] = Ration(MOST_LOGGED)
         self._decoders: OrderedDict[Remote, Decoder] = OrderedDict()
         self._encoders: dict[int, Encoder] = {}
         self._routes: dict[int, Remote] = {}
@@ -175,7 +180,11 @@ class Autopilot:
 
     def _hear(self, remote: Remote, message: Message) -> None:
         assert self._world is not None
-        self._log(self._world.now(), message.raw)
+        now = self._world.now()
+        if self._logged.takes(None, now):
+            self._log(now, message.raw)
+        for _, count in self._logged.left_out(now):
+            self._troubles.note("not logged", f"{count:,} packets, over {MOST_LOGGED:,} in a second")
         if message.system in self._stations.ids.values() or message.fields.get("type") == GROUND_STATION:
             self._overheard(message)
             return

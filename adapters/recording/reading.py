@@ -31,6 +31,12 @@ class Recording:
         """Return the messages of a topic."""
         return tuple(message for message in self.messages if message.topic == topic)
 
+    @property
+    def left_out(self) -> int:
+        """How many arrivals were not recorded."""
+        counts = (message.data.get("arrivals") for message in self.of("left_out"))
+        return sum(count for count in counts if type(count) is int)
+
     def trace(self, schema: str) -> dict[str, Any]:
         """Return the steps as a trace, in the step schema."""
         steps = [{**message.data, "changes": [], "time": message.time} for message in self.of("steps")]

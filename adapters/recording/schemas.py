@@ -88,6 +88,15 @@ ARRIVAL: Final = _object(
     gone={"const": True},
 )
 
+LEFT_OUT: Final = _object(
+    "How many arrivals were not recorded, of an entity or of all that the mission does not name: more came in a second "
+    "than are written.",
+    ("plugin", "entity", "arrivals"),
+    plugin=_TEXT,
+    entity={**_TEXT, "description": "Empty for all that the mission does not name."},
+    arrivals={"type": "integer", "minimum": 1},
+)
+
 STEP: Final = _object(
     "A transition, as the step of a trace (docs/trace.schema.json) has it.",
     ("number", "label", "choice", "digest"),
@@ -181,6 +190,7 @@ END: Final = _object("How the run ended.", ("reason",), reason=_TEXT)
 SCHEMAS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
     "run": (f"bigactors.run/{VERSION}", RUN),
     "arrivals": (f"bigactors.arrival/{VERSION}", ARRIVAL),
+    "left_out": (f"bigactors.left_out/{VERSION}", LEFT_OUT),
     "steps": (f"bigactors.step/{VERSION}", STEP),
     "commands": (f"bigactors.command/{VERSION}", COMMAND),
     "reports": (f"bigactors.plugin_report/{VERSION}", REPORT),

@@ -7,7 +7,12 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
-from adapters.plugin import Aged, Gone, Published
+from adapters.plugin import (
+    Aged,
+    Gone,
+    Published,
+    entity_of,
+)
 from physical import PhysicalProperty, Velocity, is_word
 from semantics.state.serialization import band_of, geometry_json, geometry_of
 
@@ -163,11 +168,6 @@ class Entry:
     station: str
     number: int
     content: Content
-
-
-def entity_of(published: Published) -> str:
-    """Return whom a publication is about."""
-    return published.property.entity if isinstance(published, Aged) else published.entity
 
 
 def stamped_at(published: Published, time: float) -> Published:

@@ -31,6 +31,7 @@ from adapters.plugin import (
     Trouble,
     Underway,
     World,
+    entity_of,
 )
 from adapters.stations.authority import Authority, is_silent
 from adapters.stations.bus import Bus
@@ -44,7 +45,6 @@ from adapters.stations.entries import (
     Said,
     Sent,
     Took,
-    entity_of,
     entry_of,
     stamped,
 )

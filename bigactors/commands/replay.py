@@ -133,6 +133,8 @@ def _read_recording(path: str, mission_file: str | None, open_mission: Open) -> 
 def _introduce(recording: Recording) -> None:
     if recording.run.get("verified") is not True:
         tell(paint("nothing was verified of this run", "red", sys.stderr), "!")
+    if recording.left_out:
+        tell(f"{recording.left_out:,} arrivals were not recorded: more came in a second than are written")
     if recording.torn:
         tell("the recording has no end: the run was killed")
 

@@ -165,7 +165,7 @@ def _tape(flight: Flight) -> Tape | None:
     if path is None:
         return None
     try:
-        recorder = Recorder(Path(path), run_json(flight), time.time())
+        recorder = Recorder(Path(path), run_json(flight), time.time(), flight.mission.setting.kinds)
     except RecordingError as error:
         raise Mistake(str(error), place=path) from error
     except OSError as error:

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import time
+from collections import Counter
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
@@ -22,6 +23,8 @@ from adapters.detections import Detections
 from adapters.live.core import started
 from adapters.live.loop import LiveRun
 from adapters.live.state import Saying
+from adapters.mavlink import autopilot
+from adapters.mavlink.codec import Decoder
 from adapters.plugin import Aged, Failed, GoTo, Hold, Return, Trouble
 from adapters.recording.reading import read_recording
 from adapters.recording.writing import Recorder
@@ -260,6 +263,23 @@ def test_a_telemetry_log_that_is_full_is_said_once_and_the_link_goes_on():
 
     simulated(main())
     full.close()
+
+
+def test_of_a_flood_of_packets_so_many_are_logged_and_the_rest_counted(monkeypatch):
+    monkeypatch.setattr(autopilot, "MOST_LOGGED", 3)
+    heard = []
+
+    async def main():
+        async with flight(
+            tap=lambda time, frame: heard.append((int(time), Decoder().feed(frame)[0].system))
+        ) as f:
+            await until(lambda: any(each.what == "not logged" for each in f.world.of(Trouble)))
+            await f.plugin.command(Hold("r1", "uav0"))
+
+    simulated(main())
+    of_the_vehicle = Counter(second for second, system in heard if system == 1)
+    assert max(of_the_vehicle.values()) == 3
+    assert any(system != 1 for _, system in heard)  # all that is said is logged
 
 
 def test_a_flood_at_a_station_leaves_room_for_what_its_other_feeds_tell(tmp_path):

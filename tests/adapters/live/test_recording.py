@@ -14,7 +14,7 @@ from adapters.recording.encoding import arrival_json
 from adapters.recording.mcap_files import RecordingError
 from adapters.recording.reading import is_recording, read_recording
 from adapters.recording.schemas import SCHEMAS
-from adapters.recording.writing import Recorder
+from adapters.recording.writing import MOST_ARRIVALS, Recorder
 from checker import ReplayError, replay, to_json
 from checker.traces import SCHEMA
 from physical import Band, PhysicalProperty, Velocity, box
@@ -98,6 +98,28 @@ def test_every_message_is_as_its_schema_says(recorded):
     }
     for message in recording.messages:
         jsonschema.validate(message.data, SCHEMAS[message.topic][1])
+
+
+def test_of_a_flood_so_much_is_recorded_and_every_step(tmp_path):
+    path = tmp_path / "run.mcap"
+    recorder = Recorder(path, HEADER, 0.0, mission(FLIGHT).setting.kinds)
+    for k in range(1_000):
+        recorder.arrival(boat(EAST, k / 1_000, f"mmsi{k}"), k / 1_000)
+        recorder.arrival(seen("uav0", WEST, k / 1_000), k / 1_000)
+    recorder.arrival(boat((37.04, -8.7), 0.5), 0.5)
+    run = fly(recorder)
+    recorder.close("done", 3.0)
+    recording = read_recording(path, arrivals=True)
+    entities = [message.data["entity"] for message in recording.of("arrivals") if message.time < 1.0]
+    assert (entities.count("uav0"), entities.count("boat0")) == (MOST_ARRIVALS, 2)
+    assert sum(entity.startswith("mmsi") for entity in entities) == MOST_ARRIVALS
+    left_out = {message.data["entity"]: message.data["arrivals"] for message in recording.of("left_out")}
+    assert left_out == {"": 900, "uav0": 901}
+    assert recording.left_out == 1_801
+    for message in recording.messages:
+        jsonschema.validate(message.data, SCHEMAS[message.topic][1])
+    trace = replay(mission(FLIGHT).initial, recording.trace(SCHEMA))
+    assert trace.configurations[-1] == run.state.configuration
 
 
 @pytest.mark.parametrize(
