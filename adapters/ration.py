@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable
 from typing import Generic, TypeVar
 
 Source = TypeVar("Source", bound=Hashable)
@@ -14,21 +15,24 @@ class Ration(Generic[Source]):
 
     def __init__(self, most: int) -> None:
         self._most = most
-        self._second = 0
+        self._end = -math.inf
         self._met: Counter[Source] = Counter()
         self._left_out: Counter[Source] = Counter()
 
     def takes(self, source: Source, now: float) -> bool:
         """Count one of a source, and tell whether it is kept."""
-        if int(now) != self._second:
-            self._second, self._met = int(now), Counter()
+        self._end_second(now)
         self._met[source] += 1
-        if self._met[source] > self._most:
-            self._left_out[source] += 1
         return self._met[source] <= self._most
 
-    def left_out(self, now: float | None = None) -> Iterator[tuple[Source, int]]:
-        """Yield, once, how many of each source were not kept in the seconds before this one; in all, without a time."""
-        if now is None or int(now) != self._second:
-            yield from self._left_out.items()
-            self._left_out = Counter()
+    def left_out(self, now: float = math.inf) -> tuple[tuple[Source, int], ...]:
+        """Return, once, how many of each source were not kept in the seconds that are over."""
+        self._end_second(now)
+        found, self._left_out = tuple(self._left_out.items()), Counter()
+        return found
+
+    def _end_second(self, now: float) -> None:
+        if now >= self._end:
+            over = {source: met - self._most for source, met in self._met.items() if met > self._most}
+            self._left_out.update(over)
+            self._met, self._end = Counter(), now + 1.0

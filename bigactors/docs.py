@@ -59,10 +59,10 @@ a run ended by `kill -9` leaves a readable recording, without an index at its en
 is in the file before it is sent. Beside it, `FILE.tlog` has every MAVLink frame heard and said, as other ground
 stations read it. Log times are in nanoseconds since 1970 UTC.
 
-A flood does not fill the disk. In a second 100 arrivals of each entity of the mission are written, and 100 of all others that
-one plugin tells of; `left_out` says how many more came. What was taken as a step is written always, with what was observed, so
-that a replay needs no arrival. The telemetry log takes 1,000 packets heard a second of each link; a report says of how many
-it did not.
+A flood does not fill the disk. In a second 100 arrivals of each entity of the mission are written, and 100 of all
+others that one plugin tells of; `left_out` says how many more came. What was taken as a step is written always, with
+what was observed, so that a replay needs no arrival. The telemetry log takes 1,000 packets heard in a second of each
+link; a report says how many it did not take.
 
 `bigactors replay FILE.mcap` runs the steps again through the rules: where they don't allow one, or where it leads to
 another configuration than it did (`digest`), the step is named and the exit code is 1. `run --resume FILE.mcap` goes on
