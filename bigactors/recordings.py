@@ -113,7 +113,8 @@ def _taken(recording: Recording) -> Iterator[Message]:
     """Yield the messages that say that a vehicle was taken over or given back."""
     for message in recording.messages:
         taken = message.topic == "reports" and message.data.get("report") == "TakenOver"
-        if taken or (message.topic == "given_back" and not message.data.get("refusal")):
+        back = message.topic == "given_back" and not (message.data.get("refusal") or message.data.get("at"))
+        if taken or back:
             yield message
 
 

@@ -12,7 +12,7 @@ from adapters.live.flying import arrive, ask_anew, doubt, obey, refuse, renew
 from adapters.live.orders import is_authority
 from adapters.live.other_stations import hear_of
 from adapters.live.sightings import Refusal, placement_seen, sighting_of
-from adapters.live.state import Answer, Batch, Heard, Said, Saying
+from adapters.live.state import Answer, Batch, GivingBack, Heard, Said, Saying
 from adapters.live.turn import Turning
 from adapters.live.unannounced import comes_in, place_strangers, remove_strangers
 from adapters.plugin import (
@@ -45,8 +45,8 @@ from semantics.state.partition import is_here, station_of
 from semantics.state.physical_model import Carried, Placed, Placement, channels_cell, placement_cell
 from semantics.state.signature import REGION, Name
 
-_IS_AT = re.compile(r"is at (\[?([0-9a-fA-F:.]+)\]?:([0-9]{1,5}))")
-"""What is said of a vehicle that sends from another address than before: a number, since nobody waits for names."""
+_ADDRESS = re.compile(r"\[?([0-9a-fA-F:.]+)\]?:([0-9]{1,5})")
+"""Where a vehicle sends from: a number, since nobody waits for names."""
 
 MOST_PORT = 65_535
 
@@ -301,15 +301,21 @@ def answer(turning: Turning, said: Said) -> None:
     if isinstance(said, Saying):
         say_to(turning, said)
     else:
-        turning.answers.append(Answer(said, _give_back(turning, said.vehicle)))
+        turning.answers.append(Answer(said, _hear_operator(turning, said)))
+
+
+def _hear_operator(turning: Turning, said: GivingBack) -> str:
+    """Do what an operator says of a vehicle; return why not, nothing if it is done."""
+    vehicles = turning.plan.vehicles
+    if said.vehicle not in vehicles:
+        return f"there is no vehicle '{said.vehicle:.60}'; there are {', '.join(sorted(vehicles))}"
+    return _rebind(turning, said.vehicle, said.at) if said.at else _give_back(turning, said.vehicle)
 
 
 def _give_back(turning: Turning, entity: Name) -> str:
     """Command a vehicle again that was taken over or has refused; return why not, nothing if it is done."""
     told = (turning.orders.get(entity), turning.handing.get(entity))
     refused = any(order.refused for order in told if order is not None)
-    if entity not in turning.plan.vehicles:
-        return f"there is no vehicle '{entity:.60}'; there are {', '.join(sorted(turning.plan.vehicles))}"
     if entity not in turning.taken and not refused:
         return f"{entity} was not taken over here, and has refused nothing"
     turning.taken.pop(entity, None)
@@ -323,9 +329,6 @@ def _give_back(turning: Turning, entity: Name) -> str:
 def say_to(turning: Turning, saying: Saying) -> None:
     """Put a message into a mailbox, if the mission says that somebody may say it, and not too often."""
     agents = turning.c.alpha
-    if saying.agent in turning.plan.vehicles and saying.agent not in agents:
-        turning.answers.append(Answer(saying, _rebind(turning, saying)))
-        return
     if saying.agent in agents and not is_here(turning.c, saying.agent):
         there = station_of(turning.c, saying.agent)
         turning.answers.append(
@@ -342,21 +345,25 @@ def say_to(turning: Turning, saying: Saying) -> None:
                 turning.answers.append(Answer(saying))
                 return
     left = [f"{show(each.message)} to {each.agent}" for each in clauses if turning.c.read(each.counter)]
-    who = "" if saying.agent in agents else f"there is no bigActor '{saying.agent:.60}'; "
+    is_vehicle = saying.agent in turning.plan.vehicles
+    nobody = f"there is no bigActor '{saying.agent:.60}'{', which is a vehicle' if is_vehicle else ''}; "
+    who = "" if saying.agent in agents else nobody
     what = f"what may be said now: {', '.join(left)}" if left else "nothing may be said any more"
     turning.answers.append(Answer(saying, f"{who}the mission does not say that this is said; {what}"))
 
 
-def _rebind(turning: Turning, saying: Saying) -> str:
-    """Let a vehicle be heard from another address, as an operator says; return why not, nothing if it is told so."""
-    found = _IS_AT.fullmatch(saying.message)
-    if found is None or not _is_number(found[2]) or int(found[3]) > MOST_PORT:
+def _rebind(turning: Turning, entity: Name, at: str) -> str:
+    """Believe a vehicle from another address; return why not, nothing if it is told so."""
+    found = _ADDRESS.fullmatch(at)
+    if found is None or not _is_number(found[1]) or int(found[2]) > MOST_PORT:
         return (
-            f"{saying.agent} is a vehicle, of which is said where it is heard from now on: 'is at HOST:PORT'"
+            f"'{at:.60}' is no HOST:PORT with HOST as a number, such as 192.168.1.7:14555 or [fd00::7]:14555"
         )
-    if saying.agent not in turning.lost:
-        return f"the link to {saying.agent} is not lost; it can be believed elsewhere once it is silent where it was"
-    turning.commands.append(Rebind(turning.request_of("operator"), saying.agent, found[1]))
+    if entity not in turning.lost:
+        return (
+            f"the link to {entity} is not lost; it can be believed elsewhere once it is silent where it was"
+        )
+    turning.commands.append(Rebind(turning.request_of("operator"), entity, at))
     return ""
 
 

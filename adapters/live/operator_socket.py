@@ -70,9 +70,9 @@ async def _answer(line: bytes, listener: Listener) -> str:
         match read_json(line, MOST_BYTES):
             case {"agent": str(agent), "message": str(message)} if is_text(agent) and is_text(message):
                 return await listener(Saying(agent, message))
-            case {"give_back": str(vehicle)} if is_text(vehicle):
-                return await listener(GivingBack(vehicle))
-    expected = "an object with 'agent' and 'message', or 'give_back', in valid Unicode"
+            case {"give_back": str(vehicle), "at": str(at)} if is_text(vehicle) and is_text(at):
+                return await listener(GivingBack(vehicle, at))
+    expected = "an object with 'agent' and 'message', or 'give_back' and 'at', in valid Unicode"
     return f"this is no saying: {expected}, was expected"
 
 
@@ -85,9 +85,9 @@ async def say(path: Path, agent: str, message: str) -> str:
     return await _say(path, {"agent": agent, "message": message})
 
 
-async def give_back(path: Path, vehicle: str) -> str:
-    """Give a vehicle that was taken over back to the run that listens at a path; as `say`."""
-    return await _say(path, {"give_back": vehicle})
+async def give_back(path: Path, vehicle: str, at: str = "") -> str:
+    """Give a vehicle back to the run that listens at a path, or say at which HOST:PORT it is now; as `say`."""
+    return await _say(path, {"give_back": vehicle, "at": at})
 
 
 async def _say(path: Path, said: dict[str, str]) -> str:

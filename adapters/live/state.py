@@ -169,15 +169,22 @@ class Saying:
 
 @dataclass(frozen=True, slots=True)
 class GivingBack:
-    """An operator's word that a vehicle that was taken over may be commanded again."""
+    """An operator's word of a vehicle: that it may be commanded again, or where it is believed from now on.
+
+    Attributes:
+        vehicle: Which.
+        at: HOST:PORT where it is heard now; empty where it may be commanded again.
+        number: Names the word in the answer.
+    """
 
     vehicle: Name
+    at: str = ""
     number: int = 0
 
     @property
     def texts(self) -> tuple[str, ...]:
         """What in it came from outside."""
-        return (self.vehicle,)
+        return self.vehicle, self.at
 
 
 Said = Saying | GivingBack

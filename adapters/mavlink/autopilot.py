@@ -207,7 +207,7 @@ class Autopilot:
             detail = (
                 f"{entity} is believed from {_shown(bound)} alone, and something speaks for it from {there}"
             )
-            remedy = f"if it has moved, say so once it is silent: bigactors say {entity} 'is at {there}'"
+            remedy = f"if it has moved, say so once it is silent: bigactors give-back {entity} --at {there}"
             self._troubles.note(f"second source of {entity}", f"{detail}; {remedy}")
         return False
 

@@ -80,5 +80,6 @@ class Recorder:
 def _answer_json(answer: Answer, now: float) -> tuple[str, float, dict[str, Any]]:
     said = answer.saying
     if isinstance(said, GivingBack):
-        return "given_back", now, {"vehicle": said.vehicle, "refusal": answer.refusal}
+        where = {"at": said.at} if said.at else {}
+        return "given_back", now, {"vehicle": said.vehicle, **where, "refusal": answer.refusal}
     return "sayings", now, {"agent": said.agent, "message": said.message, "refusal": answer.refusal}

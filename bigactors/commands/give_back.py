@@ -1,4 +1,4 @@
-"""`bigactors give-back`: a vehicle that was taken over, back to a running mission."""
+"""`bigactors give-back`: a vehicle that was taken over, or that is heard elsewhere, back to a running mission."""
 
 from argparse import Namespace
 
@@ -7,12 +7,16 @@ from bigactors.commands.say import heard_at
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say
+from physical import is_text
 
 
 def run(options: Namespace) -> Exit:
     """Give it back, and print what came of it."""
-    refusal = heard_at(options.socket, lambda path: give_back(path, options.vehicle))
+    vehicle, at = options.vehicle, options.at or ""
+    if not (is_text(vehicle) and is_text(at)):
+        raise Mistake("a vehicle and an address have to be text in valid Unicode")
+    refusal = heard_at(options.socket, lambda path: give_back(path, vehicle, at))
     if refusal:
-        raise Mistake(refusal, "the mission says which vehicles were taken over")
-    say(f"{options.vehicle} is given back")
+        raise Mistake(refusal, "the terminal of the run says which vehicles were taken over, or are silent")
+    say(f"{vehicle} is believed at {at} from now on" if at else f"{vehicle} is given back")
     return Exit.HOLDS

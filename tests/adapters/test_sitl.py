@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from worlds import AREA, HOME, ROUND, World, running, until
 
-from adapters.live.operator_socket import give_back, say
+from adapters.live.operator_socket import give_back
 from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.codec import Encoder
 from adapters.mavlink.command import long, set_parameter
@@ -234,7 +234,9 @@ class Seen:
 
     def elsewhere(self):
         """The addresses from which something speaks for the vehicle that is not believed."""
-        return re.findall("'is at ([^']+)'", "".join(finding.message for finding in self.findings))[-1:]
+        return re.findall(
+            r"give-back uav0 --at (\S+)", "".join(finding.message for finding in self.findings)
+        )[-1:]
 
     def kinds(self):
         return {finding.kind for finding in self.findings}
@@ -320,7 +322,7 @@ def test_a_real_plane_that_boots_anew_on_the_ground_where_it_was_to_go_has_not_a
             while "taken over" not in seen.kinds():
                 await asyncio.sleep(5.0)
                 for there in seen.elsewhere():  # it speaks from another port now
-                    await say(Path("s"), "uav0", f"is at {there}")
+                    await give_back(Path("s"), "uav0", there)
             await asyncio.sleep(1_000.0)
 
     monkeypatch.chdir(tmp_path)

@@ -611,12 +611,12 @@ def test_a_channel_that_nothing_shows_to_be_joined_is_never_committed():
 def test_an_operator_says_that_a_vehicle_is_heard_from_another_address():
     run = Run(plan_of(TOUR, Precautions(Fallback.CONTINUE)))
     run.turn(0.0, reports=[LinkLost("uav0", 0.0, -5.0)])
-    for number, message in enumerate(
-        ("is at 127.0.0.1:5555", "is at home", "is at [::1]:99", "is at ::1", "is at 127.0.0.1:65536")
-    ):
-        run.turn(float(number), sayings=[Saying("uav0", message)])
-    refusal = "uav0 is a vehicle, of which is said where it is heard from now on: 'is at HOST:PORT'"
-    assert [answer.refusal for answer in run.answers] == ["", refusal, "", refusal, refusal]
+    for number, at in enumerate(("127.0.0.1:5555", "home", "[::1]:99", "::1", "127.0.0.1:65536")):
+        run.turn(float(number), sayings=[GivingBack("uav0", at)])
+    no = "' is no HOST:PORT with HOST as a number, such as 192.168.1.7:14555 or [fd00::7]:14555"
+    assert [answer.refusal for answer in run.answers] == [
+        "", f"'home{no}", "", f"'::1{no}", f"'127.0.0.1:65536{no}",
+    ]  # fmt: skip
     assert run.commands == [
         Rebind("operator-1", "uav0", "127.0.0.1:5555"),
         Rebind("operator-2", "uav0", "[::1]:99"),
@@ -624,9 +624,26 @@ def test_an_operator_says_that_a_vehicle_is_heard_from_another_address():
     assert [str(step.transition.label) for step in run.steps] == ["⟨env : uav0 is off control:gcs0⟩"]
 
 
+def test_who_was_taken_over_stays_so_though_an_operator_says_where_it_is():
+    run = Run(plan_of(TOUR, Precautions(Fallback.CONTINUE)))
+    run.turn(0.0, reports=[TakenOver("uav0", 0.0, "it is in RTL"), LinkLost("uav0", 0.0, -5.0)])
+    run.turn(1.0, sayings=[GivingBack("uav0", "127.0.0.1:5555")])
+    assert run.state.taken == {"uav0": "it is in RTL"}
+    assert run.commands == [Rebind("operator-1", "uav0", "127.0.0.1:5555")]
+
+
+def test_a_vehicle_has_no_mailbox():
+    run = Run(plan_of(TOUR))
+    run.turn(0.0, sayings=[Saying("uav0", "go")])
+    (answer,) = run.answers
+    assert answer.refusal.startswith(
+        "there is no bigActor 'uav0', which is a vehicle; the mission does not say"
+    )
+
+
 def test_a_vehicle_is_believed_elsewhere_only_while_its_link_is_lost():
     run = Run(plan_of(TOUR, Precautions(Fallback.CONTINUE)))
-    said = Saying("uav0", "is at 127.0.0.1:5555")
+    said = GivingBack("uav0", "127.0.0.1:5555")
     run.turn(1.0, seen("uav0", WEST, 1.0), sayings=[said])
     run.turn(9.0, reports=[LinkLost("uav0", 9.0, 1.0)], sayings=[said])
     run.turn(10.0, reports=[LinkRestored("uav0", 10.0)], sayings=[said])
