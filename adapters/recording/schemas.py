@@ -169,8 +169,8 @@ SAYING: Final = _object(
 )
 
 GIVEN_BACK: Final = _object(
-    "That an operator gave a vehicle back that had been taken over, or said where it is heard from now on; and why that "
-    "was not taken, if it was not.",
+    "That an operator gave a vehicle back that had been taken over, or said where it is heard from now on; and why "
+    "that was not taken, if it was not.",
     ("vehicle", "refusal"),
     vehicle=_TEXT,
     at={**_TEXT, "description": "Where it is heard from now on; it is not given back by that."},
