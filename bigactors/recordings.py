@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from adapters.live.state import Outgoing
+from adapters.live.state import Finding, Outgoing, is_breach
 from adapters.recording.mcap_files import Message, RecordingError
 from adapters.recording.reading import Recording, read_recording
 from bigactors.missions import as_mistake, digest_of
@@ -75,7 +75,8 @@ class Resumed:
         configuration: Where it was.
         steps: How many steps it took.
         orders: How many orders it gave.
-        messages: Its steps, and who was taken over and given back, to be recorded again.
+        messages: Its steps, who was taken over and given back, and what broke, to be recorded again.
+        broken: What broke in it, and what it fell back on.
         taken: Which vehicles were taken over and not given back, and how.
         station: Which part of the mission it flew, None for the whole.
         left: What left for other stations, in its order.
@@ -85,6 +86,7 @@ class Resumed:
     steps: int
     orders: int
     messages: tuple[Message, ...]
+    broken: tuple[Finding, ...]
     taken: Mapping[str, str]
     station: Parting | None = None
     left: tuple[Outgoing, ...] = ()
@@ -101,21 +103,39 @@ def resume(path: str, mission: ElaboratedMission) -> Resumed:
         trace = trace_of(recording, mission)
     except ReplayError as error:
         raise Mistake(f"it cannot be resumed: {error}", place=path) from error
-    orders, taken = len(recording.of("commands")), tuple(_taken(recording))
-    kept = tuple(message for message in recording.messages if message.topic == "steps" or message in taken)
-    left = tuple(_left(trace))
+    kept = tuple(message for message in recording.messages if message.topic == "steps" or _goes_on(message))
+    found = (_finding(message) for message in kept if message.topic == "findings")
     return Resumed(
-        trace.configurations[-1], len(trace), orders, kept, _still_taken(taken), parting_of(recording), left
+        trace.configurations[-1],
+        len(trace),
+        len(recording.of("commands")),
+        kept,
+        tuple(found),
+        _still_taken(message for message in kept if message.topic in ("reports", "given_back")),
+        parting_of(recording),
+        tuple(_left(trace)),
     )
 
 
-def _taken(recording: Recording) -> Iterator[Message]:
-    """Yield the messages that say that a vehicle was taken over or given back."""
-    for message in recording.messages:
-        taken = message.topic == "reports" and message.data.get("report") == "TakenOver"
-        back = message.topic == "given_back" and not (message.data.get("refusal") or message.data.get("at"))
-        if taken or back:
-            yield message
+def _goes_on(message: Message) -> bool:
+    """Tell whether a message that is no step says something that is still so when another run goes on."""
+    said = message.data
+    match message.topic:
+        case "reports":  # a vehicle was taken over
+            return bool(said.get("report") == "TakenOver")
+        case "given_back":
+            return not (said.get("refusal") or said.get("at"))
+        case "findings":
+            return is_breach(_finding(message))
+    return False
+
+
+def _finding(message: Message) -> Finding:
+    """Return what an operator was told."""
+    kind, about, told, fallback = (
+        str(message.data.get(key) or "") for key in ("kind", "about", "message", "fallback")
+    )
+    return Finding(kind, about, told, message.time, fallback)
 
 
 def _still_taken(messages: Iterable[Message]) -> dict[str, str]:

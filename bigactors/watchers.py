@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,6 +22,12 @@ from bigactors.terminal import paint, say_text, tell
 
 TOLD = frozenset({"env", "say", "command", "commit", "actuate", "migrate", "spawn"})
 """The rules whose steps an operator is shown; the others are in the recording."""
+
+DONE = {"hold": "vehicles hold", "return": "vehicles return"}
+"""What is done when the mission falls back."""
+
+MOST_BREACHES = 10
+"""How much of what broke in a run is said when another goes on from it."""
 
 Resting = Callable[[Finding], tuple[str, ...]]
 """Returns the properties whose verdicts rest on what a finding says is otherwise."""
@@ -41,6 +47,23 @@ class Terminal:
     broken: bool = field(default=False)
     began: float | None = None
     taken: Mapping[str, str] = field(default_factory=dict)
+
+    def goes_on(self, broken: Sequence[Finding], taken: Mapping[str, str]) -> None:
+        """Say what broke in the run that this one goes on from, and who is taken over."""
+        self.broken, self.taken = any(map(_breaks, broken)), taken
+        told = tuple(dict.fromkeys((finding.kind, finding.message, finding.fallback) for finding in broken))
+        for kind, message, fallback in told[:MOST_BREACHES]:
+            back = f"; {DONE[fallback]}, as the mission says" if fallback in DONE else ""
+            tell(f"{message}{back}", f"{kind}, before it was resumed:")
+        if len(told) > MOST_BREACHES:
+            tell(f"  and {len(told) - MOST_BREACHES:,} more")
+        if told:
+            tell("  it goes on where the world is as the mission says again, or by --unverified")
+        for vehicle, how in sorted(taken.items()):
+            tell(
+                f"{vehicle}: {how}; nobody here commands it until `bigactors give-back {vehicle}`",
+                "taken over:",
+            )
 
     def arrived(self, heard: Heard, now: float) -> None:
         """Print nothing: positions come all the time."""
@@ -67,9 +90,7 @@ class Terminal:
                     )
                 )
         for finding in turn.findings:
-            self.broken |= finding.kind == "broken assumption" or (
-                finding.kind == "failed" and bool(finding.fallback)
-            )
+            self.broken |= _breaks(finding)
             with _flying_on():
                 self._tell(finding)
         with _flying_on():
@@ -82,10 +103,13 @@ class Terminal:
             if verdicts:
                 tell(f"  these verdicts rest on it: {', '.join(verdicts)}")
         if finding.fallback:
-            done = {"hold": "vehicles hold", "return": "vehicles return"}.get(
-                finding.fallback, "the mission goes on"
-            )
+            done = DONE.get(finding.fallback, "the mission goes on")
             tell(f"  {paint(done, 'yellow', sys.stderr)}, as the mission says")
+
+
+def _breaks(finding: Finding) -> bool:
+    """Tell whether the run is not as it was verified: a late request alone is foreseen."""
+    return finding.kind == "broken assumption" or (finding.kind == "failed" and bool(finding.fallback))
 
 
 @contextmanager

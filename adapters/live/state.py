@@ -247,6 +247,11 @@ class Finding:
     elsewhere: bool = False
 
 
+def is_breach(finding: Finding) -> bool:
+    """Tell whether it is a breach of what the mission assumes, or what it falls back for."""
+    return finding.kind == "broken assumption" or bool(finding.fallback)
+
+
 @dataclass(frozen=True, slots=True)
 class Answer:
     """What came of what was said: an empty text if it was taken, else why it was not."""

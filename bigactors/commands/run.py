@@ -73,6 +73,8 @@ def run(options: Namespace) -> Exit:
     """Fly a mission, if there is a verdict that everything holds."""
     flight = prepare(options)
     terminal = Terminal(flight.resting)
+    if flight.resumed is not None:
+        terminal.goes_on(flight.resumed.broken, flight.resumed.taken)
     try:
         with record(flight) as tape:
             lookers = (terminal, tape, flight.company and flight.company.sharing)  # recorded first, then said
@@ -87,7 +89,8 @@ def run(options: Namespace) -> Exit:
 
 def conclude(ending: Ending, *, broken: bool) -> Exit:
     """Say how a run ended, and return its exit code."""
-    say(f"{ending.reason} after {ending.state.number} steps{_taken_over(ending.state.taken)}")
+    breach = "; not all was as the mission says" if broken else ""
+    say(f"{ending.reason} after {ending.state.number} steps{breach}{_taken_over(ending.state.taken)}")
     if broken:
         return Exit.VIOLATED
     done = ending.reason == "the mission has ended" and not ending.state.taken

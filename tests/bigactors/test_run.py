@@ -7,13 +7,16 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from processes import begun
 
 from adapters.live.loop import Ending
-from adapters.live.state import LiveState
+from adapters.live.state import Finding, LiveState, Turn
+from adapters.plugin import TakenOver
+from adapters.recording.writing import Recorder
 from bigactors.cli import main
 from bigactors.commands.run import conclude
 from bigactors.foreign import watched
@@ -22,6 +25,7 @@ from bigactors.mistakes import Mistake
 from bigactors.pictures.scene import palette_of
 from bigactors.recordings import open_recording
 from bigactors.sockets import folder, only_socket, socket_of
+from bigactors.watchers import Terminal
 from specs.elaboration import Variation
 
 UAV = "--vehicle=uav0=udp:127.0.0.1:0"
@@ -204,7 +208,13 @@ TAKEN = {"uav0": "it is in RTL"}
     ("reason", "taken", "broken", "code", "last"),
     [
         ("the mission has ended", {}, False, 0, "the mission has ended after 7 steps"),
-        ("the mission has ended", {}, True, 1, "the mission has ended after 7 steps"),
+        (
+            "the mission has ended",
+            {},
+            True,
+            1,
+            "the mission has ended after 7 steps; not all was as the mission says",
+        ),
         (
             "what was left to be done was refused",
             {},
@@ -232,6 +242,41 @@ def test_the_last_line_and_the_exit_code_say_how_a_run_ended(capsys, reason, tak
     state = LiveState(open_mission("oil_spill", Variation()).initial, number=7, taken=taken)
     assert conclude(Ending(reason, state), broken=broken) == code
     assert capsys.readouterr().out == f"{last}\n"
+
+
+BREACH = Finding("broken assumption", "boat0", "boat0 is seen in east0", 1.0, "return")
+RESUMED = """\
+broken assumption, before it was resumed: boat0 is seen in east0; vehicles return, as the mission says
+late, before it was resumed: CTR(a, MOVE_HOST_TO p) waits for 9 s; vehicles hold, as the mission says
+  it goes on where the world is as the mission says again, or by --unverified
+taken over: uav0: it is in RTL; nobody here commands it until `bigactors give-back uav0`
+"""
+
+
+@pytest.mark.usefixtures("there")
+def test_a_run_that_is_resumed_says_what_broke_before_and_who_is_taken_over(capsys):
+    line = ["run", "oil_spill", UAV, "--unverified", "--wait", "0.2"]
+    assert main([*line, "--record", "first.mcap"]) == 2  # no vehicle is heard
+    recorder = Recorder(Path("broken.mcap"), open_recording("first.mcap").run, 0.0)
+    late = Finding("late", "a", "CTR(a, MOVE_HOST_TO p) waits for 9 s", 2.0, "hold")
+    trouble = Finding("trouble", "ais", "ais: bad checksum", 2.0)
+    state = LiveState(open_mission("oil_spill", Variation()).initial)
+    recorder.turn(Turn(state, findings=(BREACH, trouble, late, BREACH)), 2.0, lambda _: ())
+    recorder.report(TakenOver("uav0", 3.0, "it is in RTL"), 3.0)
+    recorder.close("killed", 4.0)
+    for before, after in (("broken.mcap", "second.mcap"), ("second.mcap", "third.mcap")):
+        capsys.readouterr()
+        assert main([*line, "--resume", before, "--record", after]) == 2
+        assert RESUMED in capsys.readouterr().err
+
+
+def test_a_run_that_goes_on_from_a_broken_one_is_broken():
+    terminal = Terminal(lambda _: ())
+    terminal.goes_on([BREACH], TAKEN)
+    assert terminal.broken
+    assert terminal.taken == TAKEN
+    terminal.goes_on([replace(BREACH, kind="late")], {})
+    assert not terminal.broken
 
 
 @pytest.mark.usefixtures("there")

@@ -162,7 +162,7 @@ def test_a_run_that_is_resumed_posts_what_had_left_and_acknowledges_what_had_ent
     part = parted(mission.initial, parting)
     (entered,) = enter(part, "gcs1", 1, Parcel("op0", ("yours",)))
     left = (Outgoing("gcs1", 1, Parcel("op1", ("yours",))), Outgoing("gcs1", 2, Parcel("op1", ("again",))))
-    before = Resumed(entered.target, 3, 0, (), {}, parting, left)
+    before = Resumed(entered.target, 3, 0, (), (), {}, parting, left)
     journal = log(mission)
     journal.add([Posted("gcs1", 1, parcel_json(left[0].parcel)), Broke("it rains", 1.0)])
     journal.close()

@@ -53,7 +53,7 @@ OWN = {
     "bigactors/docs.py",
     "bigactors/pages/trace_page.py",
     "bigraphs/examples/__init__.py",
-    "checker/cluster/ray_crew.py",
+    "checker/engines/cluster/ray_crew.py",
     "specs/grammar.py",
 }
 """Which read files of ours."""
