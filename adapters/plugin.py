@@ -9,10 +9,11 @@ another clock (`adapters.simulated.clock`) runs every plugin faster.
 
 from __future__ import annotations
 
+import errno
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
-from physical import Band, Geometry, PhysicalProperty
+from physical import Band, Geometry, PhysicalError, PhysicalProperty
 
 # --- what a plugin publishes ------------------------------------------------------------------------
 
@@ -324,9 +325,22 @@ class Failed:
     @classmethod
     def by(cls, error: OSError | ValueError, source: str, time: float) -> Failed:
         """Say that something fails by an error; a file that the error names is what failed."""
-        if isinstance(error, OSError):
-            return cls(str(error.filename or source), error.strerror or str(error), time)
-        return cls(source, str(error), time)
+        failed = error.filename if isinstance(error, OSError) and error.filename else source
+        return cls(str(failed), _reason(error), time)
+
+
+def _reason(error: OSError | ValueError) -> str:
+    """Return why something fails, in one line, with the remedy where there is one."""
+    match error:
+        case OSError(errno=errno.EADDRINUSE):
+            return "something else listens there: end it, or give another port"
+        case OSError(errno=errno.EADDRNOTAVAIL):
+            return "this machine has no such address: give one that it has, or 0.0.0.0 for all"
+        case OSError():
+            return error.strerror or str(error) or type(error).__name__
+        case PhysicalError():
+            return str(error).replace("\nhint: ", "; ")
+    return str(error)
 
 
 Elsewhere = Delivered | Underway | Hosts | Believes | Broken

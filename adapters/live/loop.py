@@ -357,18 +357,24 @@ class LiveRun:
         """Report plugins that have failed; a run that has not begun ends with the first."""
         for task in tuple(self._tasks):
             if task.done() and not task.cancelled() and (error := task.exception()) is not None:
-                if not self._begun and not isinstance(error, OSError | ValueError):
-                    raise error
                 if not self._begun:
-                    raise PluginFailed(f"{task.get_name()}: {error}") from error
+                    raise self._not_begun(task.get_name(), error)
                 self._tasks.remove(task)
                 self._fail(task.get_name(), error)
 
+    def _not_begun(self, plugin: str, error: BaseException) -> BaseException:
+        if not isinstance(error, OSError | ValueError):
+            return error
+        failed = Failed.by(error, plugin, self.clock())
+        return PluginFailed(f"{failed.source}: {failed.reason}")
+
     def _fail(self, plugin: str, error: BaseException) -> None:
         """Report that a plugin failed; if by a bug, with all that is known of it."""
-        if not isinstance(error, OSError | ValueError):
-            known = {"message": f"a bug of bigactors or of the plugin {plugin}", "exception": error}
-            asyncio.get_running_loop().call_exception_handler(known)
+        if isinstance(error, OSError | ValueError):
+            self.inbox.report(Failed.by(error, plugin, self.clock()))
+            return
+        known = {"message": f"a bug of bigactors or of the plugin {plugin}", "exception": error}
+        asyncio.get_running_loop().call_exception_handler(known)
         self.inbox.report(Failed(plugin, str(error) or type(error).__name__, self.clock()))
 
     # --- commands

@@ -100,6 +100,8 @@ def test_a_vehicle_is_known_by_what_the_table_says():
     [
         (["--name=mavlink:3=uav0"], "--vehicle=uav0:4=udp:1", "'uav0' has two system ids: 4 and 3"),
         (["--name=mavlink:300=uav0"], UAV, "'mavlink:300' is no system id"),
+        (["--name=mavlink:²=uav0"], UAV, "'mavlink:²' is no system id"),
+        ([], f"--vehicle=uav0=udp:127.0.0.1:{'9' * 5_000}", "is no port"),
         (["--name=mavlink:3=uav0", "--name=serial:2F=uav0"], UAV, "would be called uav0, as serial:2F is"),
         (["--name=mmsi:263999001=uav0"], UAV, "mmsi:263999001 would be called uav0, as vehicle:uav0 is"),
         (["--name=mmsi:263999001=uav0"], "--vehicle=uav0:3=udp:1", "would be called uav0, as mavlink:3 is"),

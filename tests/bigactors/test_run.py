@@ -2,6 +2,7 @@
 
 import os
 import signal
+import socket
 import stat
 import subprocess
 import sys
@@ -71,6 +72,47 @@ def test_without_a_verdict_run_says_how_to_get_one(capsys):
     told = capsys.readouterr().err
     assert "no verdict" in told
     assert "bigactors check --control timed --verdict oil_spill.verdict.json oil_spill" in told
+
+
+@pytest.mark.usefixtures("there")
+@pytest.mark.parametrize(
+    ("kind", "option"),
+    [
+        (socket.SOCK_DGRAM, "--vehicle=uav0=udp:127.0.0.1:{}"),
+        (socket.SOCK_STREAM, "--vehicle=uav0=tcpin:127.0.0.1:{}"),
+        (socket.SOCK_DGRAM, "--feed=ais=udp:127.0.0.1:{}"),
+        (socket.SOCK_STREAM, "--feed=detections=tcpin:127.0.0.1:{}"),
+    ],
+)
+def test_a_port_in_use_is_told_with_the_remedy(capsys, kind, option):
+    with socket.socket(socket.AF_INET, kind) as other:
+        other.bind(("127.0.0.1", 0))
+        if kind == socket.SOCK_STREAM:
+            other.listen()
+        given = option.format(other.getsockname()[1])
+        vehicle = [] if given.startswith("--vehicle") else [UAV]
+        assert main(["run", "oil_spill", "--unverified", *vehicle, given]) == 2
+    told = capsys.readouterr().err
+    assert told.endswith(": something else listens there: end it, or give another port\n")
+    assert "Errno" not in told
+
+
+@pytest.mark.usefixtures("there")
+def test_an_address_of_another_machine_is_told_with_the_remedy(capsys):
+    assert main(["run", "oil_spill", "--unverified", "--vehicle=uav0=udp:192.0.2.1:14550"]) == 2
+    assert (
+        "this machine has no such address: give one that it has, or 0.0.0.0 for all"
+        in capsys.readouterr().err
+    )
+
+
+@pytest.mark.parametrize("feed", ["ais", "places"])
+def test_a_feed_from_a_pipe_is_refused(there, capsys, feed):
+    os.mkfifo(there / "feed.geojson")
+    assert main(["run", "oil_spill", "--unverified", UAV, f"--feed={feed}=file:feed.geojson"]) == 2
+    told = capsys.readouterr().err
+    assert "feed.geojson: " in told
+    assert "this is a pipe, not a file: save what it yields, and give that" in told
 
 
 def test_a_vehicle_that_is_not_heard_ends_the_run_and_its_recording(there, capsys):

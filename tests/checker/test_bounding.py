@@ -73,7 +73,7 @@ def test_what_is_doubted_is_bounded():
     mission = load_mission(MISSIONS / "surveillance.mission")
     space = explore(mission.initial, engine=Engine.FAST).survey.space
     with bounded(Limits(seconds=-1.0)), pytest.raises(BoundMet):
-        crosscheck.doubt(space, 1)
+        crosscheck.crosscheck(space, 1)
 
 
 def test_inner_bounds_end_with_their_block(clock):
