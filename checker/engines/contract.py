@@ -140,6 +140,9 @@ class Surveyed(Protocol):
     def valuation(self, asked: Iterable[Proposition]) -> "Mapping[Proposition, Bools]":
         """Return where each proposition is true."""
 
+    def is_still(self, asked: Iterable[Proposition]) -> bool:
+        """Tell whether nothing that propositions without connectives ask of configurations ever changes."""
+
     def pending(self) -> "Mapping[Request, Numbers]":
         """Return for each request the configurations in which it is pending, in their order."""
 

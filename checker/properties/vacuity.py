@@ -10,6 +10,7 @@ from functools import reduce
 from operator import and_, or_
 from typing import Any, Final
 
+from checker.bounding import look
 from checker.properties.occurrences import STILL, Part, few, never_needed, unneeded
 from semantics.properties.propositions import Always, And, Atom, Not, Or, Proposition, holds
 from semantics.state import cells
@@ -82,6 +83,17 @@ class Valuations:
         if not self.atoms:
             return ()
         return few(tuple(remarks_on(self.formula, self.columns, len(self.met), kinds)))
+
+
+def is_still(configurations: Iterable[Configuration], atoms: tuple[Atom, ...]) -> bool:
+    """Tell whether nothing that atoms ask of configurations ever changes."""
+    valuations = Valuations(And(atoms))
+    for c in configurations:
+        look()
+        valuations.compare(c)
+        if valuations.still is None:
+            return False
+    return True
 
 
 Answers = dict[tuple[Cell, Question, tuple[Any, ...]], bool]

@@ -130,6 +130,10 @@ class Survey:
             formula: self.found.spread([each[rank] for each in told]) for rank, formula in enumerate(formulas)
         }
 
+    def is_still(self, asked: Iterable[Proposition]) -> bool:
+        """Tell whether nothing that atoms ask of configurations ever changes."""
+        return all(self.found.every("is_still", tuple(asked)))
+
     def pending(self) -> dict[Request, NDArray[Any]]:
         """Return for each request the configurations in which it is pending, in their order."""
         gathered: dict[Request, list[NDArray[np.int64]]] = {}

@@ -13,13 +13,13 @@ from checker.engines.cluster.transfer import Parcel
 from checker.engines.contract import Inspect
 from checker.engines.fast import kernel as loops
 from checker.engines.fast.graph import general, pending_in_space
-from checker.engines.fast.inspecting import inspect_fast, truths
+from checker.engines.fast.inspecting import inspect_fast, is_still, truths
 from checker.engines.fast.kernel import AT, GATHERED
 from checker.engines.fast.survey import Survey
 from checker.properties.inspections import Invariant
 from checker.properties.vacuity import asked, atoms_of
 from checker.properties.visited import Visited
-from semantics.properties.propositions import Proposition
+from semantics.properties.propositions import Atom, Proposition
 from semantics.state.cells import Row
 from semantics.state.configuration import Configuration, Label
 from semantics.state.requests import Request
@@ -124,11 +124,10 @@ class Worker:
             if isinstance(each, Visited):
                 each.happened |= shard.happened_before
             if isinstance(each, Invariant) and shard.expanded and each.valuations.still is not None:
-                each.valuations.still = {} if self._answers_as_first(each.formula) else None
+                each.valuations.still = {} if self._answers_as_first(tuple(atoms_of(each.formula))) else None
         return inspections
 
-    def _answers_as_first(self, formula: Proposition) -> bool:
-        atoms = tuple(atoms_of(formula))
+    def _answers_as_first(self, atoms: tuple[Atom, ...]) -> bool:
         return asked(atoms, self.initial) == asked(atoms, self.shard.configuration(0))
 
     # --- what temporal properties ask -----------------------------------------------------------------------------
@@ -137,6 +136,12 @@ class Worker:
         """Return where propositions are true."""
         survey = Survey(self.shard)
         return [truths(survey, each, self.shard.size) for each in formulas]
+
+    def is_still(self, atoms: tuple[Atom, ...]) -> bool:
+        """Tell whether atoms ask all its configurations what the first one answers alike."""
+        if not self.shard.expanded:
+            return True
+        return is_still(Survey(self.shard), atoms) and self._answers_as_first(atoms)
 
     def pending(self) -> dict[Request, NDArray[Any]]:
         """Return where each request is pending."""

@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 
-from checker.engines.fast.inspecting import truths
+from checker.engines.fast.inspecting import is_still, truths
 from checker.engines.fast.survey import Survey
 from checker.engines.graph import Graph
 from semantics.behaviours.observations import Observation
@@ -25,6 +25,10 @@ class GraphSurvey(Survey):
     def valuation(self, asked: Iterable[Proposition]) -> dict[Proposition, np.ndarray]:
         """Return where each proposition is true."""
         return {each: truths(self, each, self.space.size) for each in dict.fromkeys(asked)}
+
+    def is_still(self, asked: Iterable[Proposition]) -> bool:
+        """Tell whether nothing that atoms ask of configurations ever changes."""
+        return is_still(self, asked)
 
     def pending(self) -> dict[Request, np.ndarray]:
         """Return for each request the configurations in which it is pending, in their order."""

@@ -302,6 +302,11 @@ def truths(survey: Survey, formula: Proposition, size: int) -> Bools:
             return survey.where(partial(holds, formula), size)
 
 
+def is_still(survey: Survey, atoms: Iterable[Proposition]) -> bool:
+    """Tell whether nothing that atoms ask of configurations ever changes."""
+    return not any(survey.where_with_change(partial(holds, atom))[1] for atom in dict.fromkeys(atoms))
+
+
 def look_at_invariant(survey: Survey, inspection: Invariant) -> None:
     """Collect where an invariant is violated, and which valuations of its atoms there are."""
     valuations, size = inspection.valuations, survey.size

@@ -2,8 +2,11 @@
 
 from collections.abc import Iterable, Iterator
 
+from checker.bounding import BoundMet
 from checker.engines.contract import Exploration
 from checker.engines.graph import Graph, graph_of
+from checker.properties import vacuity
+from checker.properties.occurrences import STILL
 from checker.properties.temporal.automaton import TooLargeError
 from checker.properties.temporal.branching import Branching
 from checker.properties.temporal.components import Conditions
@@ -19,7 +22,7 @@ from checker.traces import Trace, replay, step_of, to_json
 from checker.verdicts import Outcome, Verdict, Violation
 from semantics.properties.property import Property
 from semantics.properties.propositions import Proposition
-from semantics.properties.temporal import Fairness, Now, atoms
+from semantics.properties.temporal import Fairness, Now, Temporal, atoms
 
 
 def kept_graph(found: Exploration) -> Graph:
@@ -35,6 +38,23 @@ def where_true(found: Exploration, propositions: list[Proposition]) -> Valuation
     if found.survey is not None:
         return found.survey.valuation(propositions)
     return valuation(found.configurations, propositions)
+
+
+def is_still(found: Exploration, formula: Temporal) -> bool:
+    """Tell whether nothing that a formula asks of configurations ever changes, and it asks nothing else.
+
+    Where a bound is met meanwhile, it is not said: the verdict is known by then.
+    """
+    asked = tuple(atoms(formula))
+    if not all(isinstance(each, Now) for each in asked):
+        return False
+    parts = tuple(atom for each in asked if isinstance(each, Now) for atom in atoms_of(each.proposition))
+    try:
+        if found.survey is not None:
+            return found.survey.is_still(parts)
+        return vacuity.is_still(found.configurations, parts)
+    except BoundMet:
+        return False
 
 
 def where_pending(found: Exploration) -> Pending:
@@ -83,8 +103,7 @@ class Decider:
         if lasso is None:
             outcome, judged = self.unless_violated(), Judged()
             if outcome is Outcome.HOLDS:
-                fairness = self.conditions(asked.fairness)
-                judged = judge_linear(self.truth, asked.temporal, fairness, self.setting.kinds)
+                judged = self.judged(asked.temporal, self.conditions(asked.fairness))
             return Verdict(
                 asked,
                 outcome,
@@ -99,6 +118,12 @@ class Decider:
         violation = Violation(asked.kind, message, self.trace(lasso), tuple(self.pauses(lasso)))
         return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
 
+    def judged(self, formula: Temporal, fairness: Conditions) -> Judged:
+        """Return what there is to say of a formula that holds of all fair runs."""
+        if is_still(self.found, formula):
+            return Judged((STILL,))
+        return judge_linear(self.truth, formula, fairness, self.setting.kinds)
+
     # --- branching time
 
     def branching(self, asked: Property) -> Verdict:
@@ -111,7 +136,8 @@ class Decider:
         if perhaps:
             outcome, witness = self.unless_violated(), tree.evidence(formula) if surely else None
             if outcome is Outcome.HOLDS:
-                judged = judge_branching(tree, formula, self.setting.kinds)
+                still = is_still(self.found, formula)
+                judged = Judged((STILL,)) if still else judge_branching(tree, formula, self.setting.kinds)
                 remarks += judged.remarks
                 witness = judged.witness or witness
             return Verdict(

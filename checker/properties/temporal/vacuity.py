@@ -11,7 +11,7 @@ from typing import Final, cast
 
 from checker.bounding import BoundMet
 from checker.engines.graph import Graph
-from checker.properties.occurrences import STILL, Formula, Part, at, few, never_needed, unneeded
+from checker.properties.occurrences import Formula, Part, at, few, never_needed, unneeded
 from checker.properties.temporal.automaton import TooLargeError
 from checker.properties.temporal.branching import Branching
 from checker.properties.temporal.components import Conditions, fair_components
@@ -22,9 +22,8 @@ from checker.properties.temporal.lassos import Lasso, component_of, fair_cycle, 
 from checker.properties.temporal.linear import conjuncts, counterexample
 from checker.properties.temporal.shortest import shortest_false
 from checker.properties.temporal.truth import Truth
-from checker.properties.vacuity import atoms_of
 from semantics.properties.propositions import Always, Not, Or
-from semantics.properties.temporal import Denied, Either, Globally, Now, OnAllPaths, State, Temporal, atoms
+from semantics.properties.temporal import Denied, Either, Globally, Now, OnAllPaths, Temporal
 from semantics.state.signature import Name
 
 MOST_EDGES: Final = 1_000_000
@@ -102,8 +101,6 @@ def judge_branching(tree: Branching, formula: Temporal, kinds: Mapping[Name, str
 
 def _remarks(truth: Truth, formula: Temporal, kinds: Mapping[Name, str], trials: _Trials) -> tuple[str, ...]:
     """Return what is said of parts, as far as bounds let it be known."""
-    if not any(_speaks(atom) for atom in atoms(formula)):
-        return (STILL,)
     found = list(_never_begun(truth, formula))
     if found:
         return tuple(found)
@@ -112,11 +109,6 @@ def _remarks(truth: Truth, formula: Temporal, kinds: Mapping[Name, str], trials:
     except (Exhausted, TooLargeError, BoundMet):
         trials.left = 0
     return few(found)
-
-
-def _speaks(atom: State) -> bool:
-    """Tell whether an atom is about anything: what is quantified over a kind without entities is not."""
-    return not isinstance(atom, Now) or any(True for _ in atoms_of(atom.proposition))
 
 
 def _never_begun(truth: Truth, formula: Temporal) -> Iterator[str]:
