@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.contract import CheckpointError
-from physical import open_file, read_json
+from physical import PhysicalError, open_file, read_json
 
 FIRST = re.compile(rb"bigactors archive 1 ([0-9a-f]{64}) ([0-9]{1,9})\n")
 MOST_FIRST, MOST_ABOUT = 128, 1 << 27
@@ -64,7 +64,11 @@ def read_archive(path: Path, schema: str, kinds: Kinds) -> tuple[dict[str, Any],
     try:
         with open_file(path) as file:
             return _read(file, schema, kinds)
-    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+    except OSError as error:
+        raise CheckpointError(f"{path}: this checkpoint can't be read: {error.strerror}") from error
+    except PhysicalError as error:
+        raise CheckpointError(f"{path}: this is no checkpoint: {error.message}") from error
+    except (ValueError, KeyError, TypeError) as error:
         raise CheckpointError(f"{path}: this is no checkpoint: {error}") from error
 
 

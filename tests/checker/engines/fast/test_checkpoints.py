@@ -195,6 +195,27 @@ def test_numbers_that_no_search_has_are_told(part, number):
         resumed("fast", kept_fast(), alter)
 
 
+def test_a_pipe_in_the_place_of_a_checkpoint_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "exploration.checkpoint")
+    with pytest.raises(CheckpointError, match="this checkpoint can't be read: this is a pipe, not a file"):
+        resume_fast(str(tmp_path))
+
+
+def test_a_checkpoint_that_says_a_key_twice_is_refused():
+    def alter(folder):
+        path = folder / "exploration.checkpoint"
+        data = path.read_bytes()
+        at = data.index(b'"depth": ')
+        about = data[data.index(b"\n") + 1 :]
+        twice = data[data.index(b"\n") + 1 : at] + b'"depth": 1, ' + data[at:]
+        first = data[: data.index(b"\n")].split()
+        length = int(first[-1]) + len(twice) - len(about)
+        path.write_bytes(b" ".join([*first[:-1], b"%d" % length]) + b"\n" + twice)
+
+    with pytest.raises(CheckpointError, match="the key 'depth' is there twice in one object"):
+        resumed("fast", kept_fast(), alter)
+
+
 def test_a_checkpoint_that_cannot_be_written_is_a_bound(tmp_path):
     (tmp_path / "exploration.checkpoint").mkdir()
     (tmp_path / "exploration.checkpoint" / "in the way").touch()
