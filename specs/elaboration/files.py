@@ -55,7 +55,7 @@ class Library:
                     "give it relative to the mission",
                 )
             path = (self.directory / name).resolve()
-            if not path.exists():
+            if not path.exists() or path.is_dir():
                 raise Refused(
                     Code.UNREADABLE_FILE,
                     f"there is no file '{shorten(name)}' beside the mission",
