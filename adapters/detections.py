@@ -1,4 +1,4 @@
-"""The plugin of detections: GeoJSON features that a vision system posts over HTTP, or puts into a folder.
+"""The detections plugin: GeoJSON features that a vision system posts over HTTP or puts into a folder.
 
 `POST /detections` takes a FeatureCollection; `DELETE /detections/NAME` withdraws one. A detection can't take the name
 of a vehicle, or be of a kind that nobody expects.

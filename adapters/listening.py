@@ -1,4 +1,4 @@
-"""The time for which we listened: silence is judged by it, so that a stall of our own is nobody's silence.
+"""The time that this process has listened: its own stalls do not count as the silence of others.
 
 A process that is stopped, a machine that is suspended or too busy: the clock jumps, and what was said meanwhile waits
 unread, or was never heard. So of what passes between two looks at the clock only a little counts.

@@ -1,4 +1,4 @@
-"""The plugin of a location service: positions by HTTP and JSON from something that already knows them.
+"""The location plugin: positions by HTTP and JSON from a location service.
 
 It is asked again and again for a document like this, in which altitude (metres above sea level), speed (m/s), course
 (degrees true), time (seconds since 1970) and channels may be missing:

@@ -1,4 +1,4 @@
-"""The naming service: which entity of the mission an identity of the world is, and that no two share a name.
+"""The naming service: maps identities of the world to entities of the mission, each name to one identity.
 
 An identity is a kind of number and the number: `mavlink:1` (a system id), `serial:2F003B` (an autopilot's own),
 `mmsi:244660274`, or `name:oilSpill1` of what already comes with one. The mission's own table goes first; what it

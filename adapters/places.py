@@ -1,4 +1,4 @@
-"""The plugin of static places: a GeoJSON file, a waypoint file or a plan, read again when it changes."""
+"""The static places plugin: a GeoJSON file, a waypoint file or a plan, read again when it changes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bytes from and to UDP, TCP and serial lines by asyncio; who reads sees chunks and where they came from.
+"""Bytes from and to UDP, TCP and serial lines by asyncio; readers get chunks with their source addresses.
 
 A connection that breaks is made again until the port is closed. What can't be sent at once is dropped beyond a bound:
 everything here is said again anyway.

@@ -1,4 +1,4 @@
-"""Troubles, collected: a flood of the same is one report a second."""
+"""Troubles, collected: repeated ones are reported once a second."""
 
 from __future__ import annotations
 

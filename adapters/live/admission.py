@@ -1,4 +1,4 @@
-"""What plugins say is looked at once more where it enters a run: all of it can be printed, encoded and recorded."""
+"""Check what plugins publish where it enters a run: all of it can be printed, encoded and recorded."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The monitor: whether what the world does is what the mission's environment section says it may do.
+"""The assumption monitor: compares the world with the mission's environment section.
 
 A verdict rests on that section. What was seen is compared by its relations: an entity may stand where it contains, and
 is contained by, the same as in one of the placements that the mission lists, in the world as it is now.

@@ -1,4 +1,4 @@
-"""One turn of a live run: what came in, and every step that follows, by the rules that were checked.
+"""One turn of a live run: take in what arrived, then make every step that follows, by the checked rules.
 
 `advance` is a function of a state, a batch and a time. It knows no clock, no device and no file: tests, replays and
 the loop call the same.

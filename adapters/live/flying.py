@@ -1,4 +1,4 @@
-"""Flights: when they end, when their place has moved on, and what is known of them in a run that is resumed."""
+"""Flights: their ends, changes of their destinations, and their state in a resumed run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Taking the world in: sightings become `env` and `commit`, reports become findings, sayings become `say`."""
+"""Take in the world: sightings become `env` and `commit`, reports findings, operator messages `say`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Time limits: requests that wait longer than the mission says, and what is done then."""
+"""Time limits of requests, and the fallback after each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The loop: plugins publish into it, `advance` moves the configuration, commands go out, and nothing blocks it.
+"""The live loop: plugins publish into it, `advance` moves the configuration, commands go out; it never blocks.
 
 What comes in is looked at where it enters (`admission`). Nothing behind that ends a run: if the recording or a plugin
 fails, the mission does what its `live` section says of broken assumptions.

@@ -1,4 +1,4 @@
-"""Saying something to a running mission, to an agent or of a vehicle: a Unix socket, a line of JSON each way."""
+"""The operator's Unix socket: messages to a running mission, one line of JSON each way."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From requests to what vehicles are told, and when what they were told is done."""
+"""Turn requests into commands to vehicles, and decide when a command is done."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What other stations do: parcels enter, vehicles are under way, agents move, assumptions break."""
+"""Take in other stations: parcels enter, vehicles are under way, agents move, assumptions break."""
 
 from __future__ import annotations
 

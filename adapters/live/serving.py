@@ -1,4 +1,4 @@
-"""Which step is next: agents go on in turn and at their pace, requests are served first come, first served."""
+"""Choose the next step: agents take turns at a limited pace, requests are served first come, first served."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From what plugins publish to where entities are: newest first, within time limits, and as P has it."""
+"""Turn what plugins publish into placements: the newest within its time limit, compared with P."""
 
 from __future__ import annotations
 

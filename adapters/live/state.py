@@ -1,4 +1,4 @@
-"""The state of a live run, and what moves it: frozen values, no clock, no input or output."""
+"""The state of a live run and the changes to it: frozen values, no clock, no input or output."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The working copy of a turn: takes steps, lets agents go on, serves their requests, gives orders."""
+"""The working copy of a turn: make steps, let agents compute, serve their requests, give orders."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What nobody announced: entities that the mission does not name, seen in its places.
+"""Entities that the mission does not name, seen in its places.
 
 Anybody who can send a position can make any number of them. So they are taken in by shares, and all of a turn in one
 step: a step costs as much as there are entities, and what one more costs must not grow with those that are there.

@@ -1,4 +1,4 @@
-"""Who looks on at a run: a terminal, a recording, other stations. One that fails looks on no more; the run goes on."""
+"""Watchers of a run: the terminal, the recording, other stations. A watcher that fails is dropped; the run goes on."""
 
 from __future__ import annotations
 

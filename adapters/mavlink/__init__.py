@@ -1,4 +1,4 @@
-"""Autopilots over MAVLink: state, links and control authority out; places, paths, hand-overs in.
+"""Autopilots over MAVLink: publishes state, links and control authority; takes places, paths and hand-overs.
 
 `pilot` is the whole behaviour towards one vehicle, as a pure state machine made of smaller ones (`telemetry`, `plan`,
 `task`, `sync`, `upload`, `download`, `command`, `streams`, `link`, `signing`); `autopilot` is the plugin that

@@ -1,4 +1,4 @@
-"""MAVLink frames to messages and back: the only file that imports pymavlink, and only when called.
+"""Convert MAVLink frames to messages and back: the only file that imports pymavlink, and only when called.
 
 Of pymavlink its dialect class alone is used, as a pure codec. Signatures of what arrives are not left to it: it
 remembers the time stamp of a packet before it has checked the signature, so that one forged packet silences a vehicle

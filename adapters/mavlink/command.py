@@ -1,4 +1,4 @@
-"""Tell a vehicle something until its state shows that it does it: the command protocol, a pure state machine.
+"""The command protocol: repeat a command until the vehicle's state shows it; a pure state machine.
 
 An ACK can be lost, come twice, or belong to an earlier attempt; accepted is not done. So a command is sent again until
 whoever sends it sees what it was for, or a final no.

@@ -1,4 +1,4 @@
-"""Read back the mission or fence that is on board: a pure state machine.
+"""Read back the mission or fence on board: a pure state machine.
 
 Every message is asked for again by timer until it comes; nothing is believed that was not asked for.
 """

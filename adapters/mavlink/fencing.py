@@ -1,4 +1,4 @@
-"""The fences that a vehicle has of its own, beside the polygon that it is given: a circle around home, a ceiling."""
+"""A vehicle's own fences beside the polygon that it is given: a circle around home, and a ceiling."""
 
 from __future__ import annotations
 

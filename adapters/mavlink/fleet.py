@@ -1,4 +1,4 @@
-"""What a mission's author says of vehicles and stations: names, MAVLink ids, fence."""
+"""The vehicles and stations of a mission: names, MAVLink ids, fences."""
 
 from __future__ import annotations
 

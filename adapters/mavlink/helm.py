@@ -1,4 +1,4 @@
-"""Who has the helm of a vehicle: whether it is as it was ordered here, or somebody else or itself has taken it over.
+"""Detect that a vehicle was taken over: by a pilot, another ground station, a fail-safe or itself.
 
 A pilot, another ground station, a fail-safe and a reboot look alike from here: the vehicle is in a mode that nobody
 here ordered, disarmed, or goes elsewhere. Whoever sends it anything then overrules them, so nobody does until an

@@ -1,4 +1,4 @@
-"""Mission items: what is uploaded, and when two are the same on board and here."""
+"""Mission items: what is uploaded, and how uploaded and stored items are compared."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Keys on disk: a signing key with its newest time stamps, shared by all links that sign with it.
+"""Key files: a signing key with its newest time stamps, shared by all links that sign with it.
 
 The file is always ahead of what was sent and believed: it is written before that, and then not again for a while.
 """

@@ -1,4 +1,4 @@
-"""Whether a vehicle is heard: lost after a silence, restored when it speaks again, or booted anew meanwhile."""
+"""The state of a vehicle's link: lost after a silence, then restored, or restarted by a reboot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A MAVLink message as a plain value: what the state machines hear and say, whoever encodes it."""
+"""A MAVLink message as a plain value, independent of its encoding."""
 
 from __future__ import annotations
 

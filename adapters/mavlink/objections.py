@@ -1,4 +1,4 @@
-"""Why a vehicle can't do what it is told: what is known before anything is sent."""
+"""Reasons why a vehicle cannot carry out a command, known before anything is sent."""
 
 from __future__ import annotations
 

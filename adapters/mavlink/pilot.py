@@ -1,4 +1,4 @@
-"""One vehicle, as its ground station sees it: messages and time in, messages, properties and reports out.
+"""The ground station's state of one vehicle: takes messages and time, yields messages, properties and reports.
 
 A pure state machine: no socket, no clock, no randomness.
 """

@@ -1,4 +1,4 @@
-"""What to do next towards a command: a pure function of what the vehicle's state shows.
+"""The next action towards a command: a pure function of the vehicle's state.
 
 Hardly anything is remembered but what is known to be on board, so that lost packets, answers that came twice and a
 vehicle that booted anew need no cases of their own: the first thing that is not yet so is done next.

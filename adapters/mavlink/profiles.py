@@ -1,4 +1,4 @@
-"""What differs between vehicles: modes, how they take off, and how well they can stay at a place.
+"""Profiles of vehicle types: modes, take-off, and how well they hold a position.
 
 The numbers are ArduPilot 4.6's; the kind comes from HEARTBEAT.
 """

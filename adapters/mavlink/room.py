@@ -1,4 +1,4 @@
-"""How much room a vehicle needs to stay somewhere: the circle that it says it flies, and what the wind makes of it."""
+"""The room that a vehicle needs to stay at a place: the circle that it flies, and the effect of wind."""
 
 from __future__ import annotations
 

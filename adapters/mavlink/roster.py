@@ -1,4 +1,4 @@
-"""Who is who on a link: which vehicle of the mission a system is, by its id or serial number, or as the first heard.
+"""Map the systems on a link to the mission's vehicles, by system id, serial number, or order of arrival.
 
 A pure state machine. A vehicle that is known by its serial number is asked for it (AUTOPILOT_VERSION) until it tells,
 and until then nothing that it says counts: a system id is quickly set to another's.

@@ -1,4 +1,4 @@
-"""MAVLink 2 signing: which packets are believed, and what stands on disk between two runs.
+"""MAVLink 2 signing: which packets are accepted, and the state on disk between runs.
 
 A pure state machine. A signature's time stamp is in units of 10 µs since 2015; for each stream (link, system,
 component) it must grow, and a new stream may be at most a minute behind. A stream is remembered only after its

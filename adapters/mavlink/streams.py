@@ -1,4 +1,4 @@
-"""Ask a vehicle for the messages that we need, as long as they do not come."""
+"""Request message streams from a vehicle until they arrive."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Make sure that a mission or fence is on board: upload, read back, compare, again until they are the same."""
+"""Synchronise a mission or fence: upload, read back, compare, repeated until they are equal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One command on its way: the step it is at, how it is going, and how it ends."""
+"""One command in progress: its current step, its status, and how it ends."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a vehicle's messages show of it: a fold, without a clock of its own.
+"""A vehicle's state as its messages show it: a fold, without a clock of its own.
 
 Everything is stamped by our clock when it arrives; of the vehicle's own clock, which may run at any speed and be wrong,
 only the order of its messages and a reboot are told.

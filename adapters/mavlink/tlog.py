@@ -1,4 +1,4 @@
-"""Telemetry logs: 8 bytes of microseconds since 1970, most significant first, then one raw frame, again and again."""
+"""Telemetry logs: for each frame 8 bytes of microseconds since 1970, most significant first, then the raw frame."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Give a vehicle its mission or fence: the ground's side of the upload, a pure state machine.
+"""Upload a mission or fence: the ground's side of the protocol, a pure state machine.
 
 The vehicle asks for item after item, again after a second, and gives up after eight; so only the count is ever sent by
 timer. ArduPlane asks with MISSION_REQUEST, others with MISSION_REQUEST_INT: both get MISSION_ITEM_INT. What an ACK

@@ -1,4 +1,4 @@
-"""Event loops with another clock: tests of minutes take seconds, and demonstrations fly faster.
+"""Event loops with a faster clock, so that tests of minutes take seconds.
 
 Nobody who waits by asyncio notices. Real sockets on this machine work in both: what is sent there has arrived when the
 sender goes on.

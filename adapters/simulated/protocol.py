@@ -1,4 +1,4 @@
-"""What a simulated vehicle answers: commands, parameters, missions, signing; and whom it obeys."""
+"""The answers of a simulated vehicle: commands, parameters, missions, signing; and whom it obeys."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a simulated vehicle says by itself: heartbeats, positions, states, each at its own interval."""
+"""The periodic messages of a simulated vehicle: heartbeats, positions, states, each at its interval."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Put simulated vehicles on a link: real sockets, real packets, as bad as it is asked for."""
+"""Serve simulated vehicles on a link: real sockets and packets, with the requested disturbance."""
 
 from __future__ import annotations
 

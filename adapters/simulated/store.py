@@ -1,4 +1,4 @@
-"""The vehicle's side of mission upload and download, with the habits of ArduPilot.
+"""The vehicle's side of mission upload and download, as ArduPilot does it.
 
 It asks for item after item, again after a second, and gives up after eight; answers an item that it did not ask for by
 INVALID_SEQUENCE; overwrites item 0 by home; and serves one ground station at a time: it answers DENIED to whoever else

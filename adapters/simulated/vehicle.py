@@ -1,4 +1,4 @@
-"""A simulated vehicle: what it is, where it goes in each mode, and how it boots.
+"""A simulated vehicle: its state, its behaviour in each mode, and its start-up.
 
 Commands and messages are `protocol`'s and `reporting`'s business, packets `serving`'s.
 """

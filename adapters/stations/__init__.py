@@ -1,4 +1,4 @@
-"""Stations: several runs of one mission that share what they see, and carry messages and bigActors between them.
+"""Stations: several runs of one mission that share observations, and exchange messages and bigActors.
 
 The paper's communication service. `entries` are what a station says, `merge` makes one world of what all say (pure),
 `authority` tells whom vehicles obey by several links, `journal` keeps a station's own entries on disk, `outgoing`

@@ -1,4 +1,4 @@
-"""Whom a vehicle obeys, as several links know it: each reads it now and then, and another has handed it on meanwhile.
+"""The authority over a vehicle, merged from several links that read it at different times.
 
 No message of a vehicle says when it began to obey whom, a vehicle may answer nobody else, and the network between
 stations may be faster than a link. So a change counts at once where it was commanded, and where our own link is lost.

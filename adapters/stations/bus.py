@@ -1,4 +1,4 @@
-"""Between stations: what is put to all, and what is asked of one. By Zenoh; the only file that imports it.
+"""The transport between stations: broadcast, and requests to one. By Zenoh; the only file that imports it.
 
 Endpoints are explicit: nothing is scouted, no multicast, no gossip. Each station writes under keys of its own, and with
 mutual TLS it is held to them by the common name of its certificate.

@@ -1,4 +1,4 @@
-"""What a station says, entry by entry: numbered, and as plain data within bounds."""
+"""The entries of a station's log: numbered, and encoded as plain data within bounds."""
 
 from __future__ import annotations
 

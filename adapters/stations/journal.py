@@ -1,4 +1,4 @@
-"""A station's own entries on disk: appended before anybody is told of them, so that no number is given twice."""
+"""A station's log on disk: entries are appended before they are sent, so no number is used twice."""
 
 from __future__ import annotations
 

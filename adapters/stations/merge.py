@@ -1,4 +1,4 @@
-"""The merge: one world of what all stations say, whatever was lost, doubled or reordered on the way.
+"""The merge: one world from the entries of all stations, in spite of loss, duplication and reordering.
 
 Each station's word on an entity is a register: its newest by number. Registers are joined by `newer`, which is
 commutative, associative and idempotent, so the same words come to the same registers in whatever order they are heard.

@@ -1,4 +1,4 @@
-"""The messages between stations: which mission, what time it is, and entries of a log, up to where they tell all."""
+"""The messages between stations: the mission, the time, and entries of a log up to a number."""
 
 from __future__ import annotations
 

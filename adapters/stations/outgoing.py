@@ -1,4 +1,4 @@
-"""What a station tells the others of a turn of its run: what leaves, what has entered, who flies, who is where."""
+"""What a station tells the others of a turn: parcels left and entered, flights, and the hosts of agents."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The peers file: which stations there are, where each is reached, what runs where, and whom to believe.
+"""The peers file: the stations, their addresses, the hosts that each runs, and their certificates.
 
 [gcs0]
 listen = ["tcp/0.0.0.0:7447"]            # where it listens; without it, this machine only: `connect`

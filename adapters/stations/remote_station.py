@@ -1,4 +1,4 @@
-"""What is known of another station: how much of its log, its parcels that wait, its clock, whether it is reached."""
+"""What is known of another station: its log so far, its waiting parcels, its clock, its reachability."""
 
 from __future__ import annotations
 

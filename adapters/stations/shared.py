@@ -1,4 +1,4 @@
-"""A plugin of a station: whatever it publishes, and is told to do, is told to the station, which tells all."""
+"""A station's own plugin, wrapped: the station shares its publications and commands with all others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A station among others, as a plugin: what its own plugins see goes to the others, and what those see comes here.
+"""The station as a plugin: it shares what its own plugins publish, and publishes what the others share.
 
 Everything that it says is an entry of its log, appended before anybody hears of it. Entries are put to all at once, and
 asked for by whoever has missed some: what is lost on the way is only late. A parcel stands in the log until the other

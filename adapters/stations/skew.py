@@ -1,4 +1,4 @@
-"""How far another station's clock is ahead of ours, measured by round trips."""
+"""The offset of another station's clock, measured by round trips."""
 
 from __future__ import annotations
 
