@@ -1,4 +1,4 @@
-"""Temporal formulas over the predicates and rules of a system of bigraphs, in the words of a mission's `ltl` and `ctl`.
+"""Temporal formulas over a system's predicates and rules, in the syntax of a mission's `ltl` and `ctl`.
 
 Atoms are the predicates of the system, and `taken` and `enabled` with a rule of it.
 """

@@ -1,4 +1,4 @@
-"""LTL and CTL on systems of bigraphs: the checker's engine, given a transition system that bigraphs explored.
+"""LTL and CTL on systems of bigraphs: the checker's engine on the transition system of a system.
 
 Runs are infinite: where nothing can happen, a run stays. Nothing is assumed to be fair. Weights play no part, but that
 what has a weight may happen.

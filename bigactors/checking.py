@@ -1,4 +1,4 @@
-"""One mission checked: its report, or why there is none."""
+"""Check one mission: its report, or the reason why there is none."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

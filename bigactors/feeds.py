@@ -1,4 +1,4 @@
-"""From what the command line says of feeds to the plugins that hear them."""
+"""Make the plugins of feeds from the command line's options."""
 
 from __future__ import annotations
 

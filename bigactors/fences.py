@@ -1,4 +1,4 @@
-"""The geofence of a mission's vehicles: what its world says of where they may ever be."""
+"""The geofence of a mission's vehicles, from its world."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recordings that others made, as feeds: the world that a telemetry log or an AIS recording shows, and its bigraph."""
+"""Foreign recordings as feeds: telemetry logs and AIS recordings, and the bigraph of the world that they show."""
 
 from __future__ import annotations
 

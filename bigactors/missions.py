@@ -1,4 +1,4 @@
-"""Missions by the path or the name that the user gives, with a digest of all that they say."""
+"""Missions by path or name, with a digest of their content."""
 
 import hashlib
 from argparse import Namespace

@@ -1,4 +1,4 @@
-"""From what the command line says of vehicles and feeds to the plugins that serve them."""
+"""Make the plugins of vehicles and feeds from the command line's options."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What of a mission no vehicle here can do: said before take-off, not when a request turns out to wait for ever.
+"""Checks before take-off: parts of a mission that no vehicle here can carry out.
 
 A control is committed when something has shown that it is done. Vehicles show where they are, and whom they obey. That
 one is aboard another, that a load was put down, or that a channel was joined, nothing shows.

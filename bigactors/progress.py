@@ -1,4 +1,4 @@
-"""How far an exploration has come, on one line of a terminal; and its end by Ctrl-C."""
+"""The progress of an exploration, on one line of a terminal; and its end by Ctrl-C."""
 
 import shutil
 import signal

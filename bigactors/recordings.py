@@ -1,4 +1,4 @@
-"""Recordings of live runs as missions with traces: replayed, and gone on from."""
+"""Recordings of live runs as missions with traces: to be replayed or resumed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Signals that ask for the end: those of service managers and of terminals that close do what Ctrl-C does."""
+"""Signals that end a run: those of service managers and closing terminals act like Ctrl-C."""
 
 from __future__ import annotations
 

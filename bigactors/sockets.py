@@ -1,4 +1,4 @@
-"""Where running missions listen for what is said to them: sockets in a folder that is their user's alone."""
+"""The sockets of running missions, in a folder that only their user may open."""
 
 from __future__ import annotations
 

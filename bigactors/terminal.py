@@ -1,4 +1,4 @@
-"""Printing: safe in any encoding, quiet when nobody reads any more, coloured on a terminal only."""
+"""Printing to the terminal: safe in any encoding, quiet after a closed pipe, coloured on a terminal only."""
 
 import codecs
 import errno

@@ -1,4 +1,4 @@
-"""Verdict files: what `check` decided of exactly one mission, and what `run` asks for before anything flies."""
+"""Verdict files: what `check` decided for exactly one mission, and what `run` requires before take-off."""
 
 from __future__ import annotations
 

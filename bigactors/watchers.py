@@ -1,4 +1,4 @@
-"""Who looks on while a mission flies: the operator's terminal, and the recording."""
+"""Watchers of a flying mission: the operator's terminal, and the recording."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Full transition systems: breadth first over all that can happen."""
+"""Explore a system: its full transition system, breadth first."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""SVG made fit to stand in a page: what matplotlib writes, cut down to shapes and text that nothing is loaded for.
+"""SVG that can stand in a page: matplotlib's output reduced to self-contained shapes and text.
 
 Only known elements and attributes are passed on, references only to what is in the picture itself; ids are its own, so
 that several pictures may stand in one page. Text stays text, as wide as it was measured, whatever font the reader has.

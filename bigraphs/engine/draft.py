@@ -1,4 +1,4 @@
-"""A state while it is rewritten: every change is made through here and noted."""
+"""A state during rewriting: every change goes through here and is recorded."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which nodes of a reactum are nodes of the redex: how a node keeps its identity through a reaction."""
+"""Node identity in a rule: which nodes of the reactum are nodes of the redex."""
 
 from __future__ import annotations
 
