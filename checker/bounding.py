@@ -1,4 +1,4 @@
-"""Bounds on whatever is done within them: work that may take long looks at the clock and at memory now and then.
+"""Bounds on long computations: they check the clock and the memory from time to time.
 
 An exploration that meets a bound keeps what it has. What comes after (surveys of all that was explored, temporal logic)
 has no half result: it is given up, and what it would have decided stays undecided.

@@ -1,4 +1,4 @@
-"""What an actor may do next, and what it may ever do: footprints as functions of a few cells' values.
+"""The footprints of actors, now and for ever: functions of a few cells' values.
 
 An agent is several actors, since it doesn't wait for what it has asked: its *program* (what is left of it to run), its
 *line* (of which the first request may be served), and each *request* that stands in no line. A clause of the

@@ -1,4 +1,4 @@
-"""Partial-order reduction: of the steps that a configuration allows, as many as must be followed.
+"""Partial-order reduction: the ample subset of the steps that a configuration allows.
 
 Steps of different actors that have nothing to do with each other are followed in one order only. docs/reduction.md
 says why nothing is lost by it, and which properties it is refused for.

@@ -1,4 +1,4 @@
-"""What is alike in a mission: transpositions of names that map all of it onto itself, and why others don't."""
+"""The automorphisms of a mission: transpositions of names that preserve it, and why others don't."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, fields, is_dataclass

@@ -1,4 +1,4 @@
-"""Bounds: what may ever hold, carry or contain what in a mission, from its kinds and the world that it starts in."""
+"""Bounds: what a mission's entities may ever hold, carry or contain, from its kinds and its first world."""
 
 from collections.abc import Callable, Iterable
 from functools import cache

@@ -1,4 +1,4 @@
-"""Messages as far as the text tells them, and which `react` may take which."""
+"""Messages, statically: what may be sent, and which `react` may take it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

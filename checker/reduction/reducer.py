@@ -1,4 +1,4 @@
-"""What an exploration is given to visit less: partial-order reduction, symmetry, or both."""
+"""The reductions of an exploration: partial-order reduction, symmetry, or both."""
 
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""What reductions are called, and what they are refused for, with the reason."""
+"""The names of reductions, and the reasons for refusing them."""
 
 from enum import Enum
 

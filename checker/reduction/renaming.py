@@ -1,4 +1,4 @@
-"""Renamings: what another naming of agents and entities makes of a configuration, value by value.
+"""Renamings: a configuration under other names of agents and entities, value by value.
 
 A renaming is a permutation of names, and of the statements and variables of agents whose texts are alike. What is kept
 sorted by name is sorted anew.

@@ -1,4 +1,4 @@
-"""Roles: where each agent may come to in the program, what its variables may name, and where it may be hosted.
+"""Roles: the statements that each agent may reach, the values of its variables, and its possible hosts.
 
 A least fixpoint over the text, not over runs: an agent's variables hold the names that any statement it may come to
 may give them. What is not a constant, a host or a place in which something was seen may be any name.

@@ -1,4 +1,4 @@
-"""Slots: what reductions keep apart in a configuration, and footprints over them as bits of whole numbers.
+"""Slots: the parts of a configuration that reductions distinguish, and footprints as bits over them.
 
 A slot is mostly a cell. Where one question of a cell has an answer of its own that changes far less often (is an entity
 there at all? may a message wake this `react`?) the question is a slot beside the cell.

@@ -1,4 +1,4 @@
-"""Symmetry: agents and entities that are interchangeable, and one configuration in the place of all its likes.
+"""Symmetry: interchangeable agents and entities, and one representative of symmetric configurations.
 
 A class has members that any permutation may exchange. The representative of a configuration is the one in which the
 members stand in the order of what is said of each, names left out. Where that leaves several orders, all are tried,

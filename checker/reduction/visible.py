@@ -1,4 +1,4 @@
-"""What properties see: the questions about cells that decide the truth of a proposition."""
+"""Visible slots: the questions about cells that decide the truth of a proposition."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass

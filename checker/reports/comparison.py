@@ -1,4 +1,4 @@
-"""Two traces side by side: where they part, which steps they share after that, and how their ends differ."""
+"""Compare two traces: where they diverge, which steps they still share, and how their ends differ."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Coverage as text, as compilers write warnings, and as plain data."""
+"""Coverage as text, in the form of compiler warnings, and as plain data."""
 
 from collections.abc import Iterator
 from typing import Any, Final

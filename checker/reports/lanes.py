@@ -1,4 +1,4 @@
-"""Lanes: a trace with each step in its actor's lane, and beside it only what it changed."""
+"""Lanes: a trace with a column for each actor, and the changes of each step."""
 
 import textwrap
 from collections.abc import Iterator, Sequence

@@ -1,4 +1,4 @@
-"""The lines of a mission's text that a run went through, and the one that a violation is about."""
+"""The lines of a mission's text on a run, and the line of a violation."""
 
 from collections import Counter
 from collections.abc import Iterator

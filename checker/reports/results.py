@@ -1,4 +1,4 @@
-"""Results of several missions in the shape that other programs' formats share: what there is to say, and where."""
+"""The results of several missions in the common shape of other programs' formats."""
 
 import re
 from collections.abc import Iterator
