@@ -1,4 +1,4 @@
-"""Hear AIS line by line: a pure state machine from NMEA lines to reports.
+"""Decode AIS line by line: a pure state machine from NMEA lines to reports.
 
 `hear(ear, line)` is a function of its arguments alone; recordings fold it over a file, live feeds over a
 socket. The state holds what one line leaves for later ones: the clock of the recording, the parts of messages

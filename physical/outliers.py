@@ -1,4 +1,4 @@
-"""What lies so far from everything else that it is hardly meant: maps say how far, checks warn of it."""
+"""Outliers: entities suspiciously far from all others; maps show their distance, checks warn of them."""
 
 from __future__ import annotations
 

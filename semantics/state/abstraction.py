@@ -1,4 +1,4 @@
-"""A(P) from physical properties: the paper's Bigraph Driver (3.2.2), and the merging of what several stations saw."""
+"""The abstraction A(P): the paper's Bigraph Driver (3.2.2), and the merging of several stations' observations."""
 
 from collections.abc import Iterable
 

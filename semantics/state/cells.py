@@ -1,4 +1,4 @@
-"""Cells: a configuration is a finite map from cells to values; agents, structure and requests are views over it.
+"""Cells: a configuration maps cells to values; agents, structure and requests are views over it.
 
 Rules see a configuration only through `read` and `test`, and answer with `Changes`. Whoever wants to know what a rule
 looked at puts another `Cells` in the place of a configuration: nothing in `semantics/` can tell the difference.

@@ -1,4 +1,4 @@
-"""The pending requests η as a view over cells, and the lines in which the three schedulers serve them."""
+"""The pending requests η as a view over cells, and the queues in which the three schedulers serve them."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple

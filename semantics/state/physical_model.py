@@ -1,4 +1,4 @@
-"""The physical model P as a view over cells: where everything is, and σ_P = {contains, carries, connected}."""
+"""The physical model P as a view over cells: placements, and σ_P = {contains, carries, connected}."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
