@@ -136,7 +136,7 @@ class Detections:
         if self._kinds is not None and feature.kind not in self._kinds:
             expected = ", ".join(sorted(self._kinds))
             raise PhysicalError(
-                "kind", f"nobody expects {feature.kind} to be detected", f"kinds are {expected}"
+                "kind", f"{feature.kind} is not a kind that may be detected", f"kinds are {expected}"
             )
         self._naming.name(f"name:{feature.entity}", feature.kind)
 

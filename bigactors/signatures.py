@@ -88,7 +88,7 @@ def check_signature(signature: Any, text: bytes, trusted: TrustedKey, path: str)
         case {"key": str(whose), "ed25519": str(value)}:
             pass
         case _:
-            raise Mistake("the verdict bears no signature", hint, path)
+            raise Mistake("the verdict has no signature", hint, path)
     if whose != fingerprint(trusted):
         said = f"the verdict is signed by another key: {whose:.80}, and {fingerprint(trusted)} is trusted"
         raise Mistake(said, hint, path)

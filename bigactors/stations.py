@@ -55,9 +55,9 @@ def own_station(options: Namespace) -> str | None:
     if len(found) > 1:
         raise Mistake(f"a run is one station, not {' and '.join(found)}", "start another run for the other")
     if found and options.peers is None:
-        raise Mistake(f"who are the others of station '{found[0]}'?", "say so: --peers FILE")
+        raise Mistake(f"the peers of station '{found[0]}' are not given", "give them: --peers FILE")
     if options.peers is not None and not found:
-        raise Mistake("which of the stations is this?", "say so: --station NAME")
+        raise Mistake("the name of this station is not given", "give it: --station NAME")
     return found[0] if found else None
 
 

@@ -37,10 +37,8 @@ def broken_by_place(plan: Plan, c: Configuration, entity: Name, seen: Placement 
     if isinstance(drift, Drifts):
         return f"{where}; the mission lets it drift among {', '.join(drift.names)}"
     if entity in plan.vehicles:
-        return (
-            f"{where}; it was not sent there, and has not stayed where it was: wind, or somebody else's doing"
-        )
-    return f"{where}; the mission does not say that it drifts, and nobody sent it"
+        return f"{where}; it was not sent there, and has not stayed where it was: wind, or another operator"
+    return f"{where}; the mission does not say that it drifts, and it was not sent"
 
 
 def _broken_by_appearing(plan: Plan, c: Configuration, entity: Name, now: Relations) -> str:

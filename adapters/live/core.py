@@ -45,9 +45,7 @@ def watch(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turn:
 def _taken_in(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turning:
     turning = Turning(plan, state.later(batch.missed) if batch.missed else state, now)
     if batch.missed >= LONG:
-        missed = (
-            f"nothing was listened to for {batch.missed:.0f} s: nobody is taken to have been silent meanwhile"
-        )
+        missed = f"this process did not listen for {batch.missed:.0f} s; that time does not count as silence"
         turning.find("trouble", "", missed)
     take_in(turning, batch)
     return turning

@@ -238,7 +238,7 @@ def _on_channel(turning: Turning, entity: Name, channel: Name) -> None:
     back = channel in turning.missing.get(channels_cell(entity), ())  # type: ignore[operator]
     if turning.observe(sight, happening(turning.c, sight)) and not back:
         turning.breaks(
-            f"{entity} is on {channel}; nobody handed it there, and nothing says that it returns", entity
+            f"{entity} is on {channel}; it was not handed there, and no clause lets it return", entity
         )
 
 
@@ -261,7 +261,7 @@ def note(turning: Turning, report: Report) -> None:
             doubt(turning, entity)
         case TakenOver(entity, _, reason):
             turning.taken[entity] = reason
-            back = f"nobody here commands it until `bigactors give-back {entity}`"
+            back = f"it gets no commands until `bigactors give-back {entity}`"
             turning.find("taken over", entity, f"{entity} was taken over: {reason}; {back}")
         case LinkLost(entity, _, since):
             _lose(turning, entity, since)

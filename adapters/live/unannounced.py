@@ -41,7 +41,7 @@ def comes_in(turning: Turning, plugin: str, found: Sighting) -> bool:
     full = taken >= SHARE or sum(share for share, _ in turning.shares.values()) >= MOST_STRANGERS
     if full or (is_place and places >= MOST_PLACES):
         what = f"{taken:,} entities" if full else f"{places} places"
-        message = f"'{plugin}': {what} that nobody announced are taken in; others are left out"
+        message = f"'{plugin}': {what} that the mission does not name are taken in; more are ignored"
         turning.find("trouble", plugin, message, once=True)
         return False
     turning.shares[plugin] = taken + 1, places + is_place

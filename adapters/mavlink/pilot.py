@@ -144,7 +144,7 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
 def _check_not_rejected(before: Task | None, told: Command) -> None:
     """Refuse a rejected request again: a moving place must not take a vehicle back from its pilot."""
     if before is not None and before.rejection and before.command.request == told.request:
-        raise Refused(f"the request was rejected: {before.rejection}", "ask anew")
+        raise Refused(f"the request was rejected: {before.rejection}", "request it again")
 
 
 def _continued(before: Task | None, task: Task) -> Task:

@@ -14,7 +14,7 @@ COMMAND = Command(
     "give-back",
     "give a vehicle that was taken over back to a running mission",
     "Let a running mission command a vehicle again that a pilot, another station, a fail-safe or a reboot has taken\n"
-    "over, or that has refused a command. What it was told before it is told anew, in whatever mode it is: look first.",
+    "over, or that has refused a command. Its command is sent again, in whatever mode it is: check the vehicle first.",
     ("bigactors give-back uav0",),
     fill,
 )

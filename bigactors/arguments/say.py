@@ -12,7 +12,7 @@ def fill(parser: Parser) -> None:
     parser.add_argument(
         "message",
         metavar="MESSAGE",
-        help="what its environment section says may be said; of a vehicle 'is at HOST:PORT'",
+        help="a message that the environment section allows; for a vehicle 'is at HOST:PORT'",
     )
     add_socket(parser)
 
@@ -30,9 +30,8 @@ def add_socket(parser: Parser) -> None:
 COMMAND = Command(
     "say",
     "say something to a bigActor of a running mission",
-    "Put a message into the mailbox of a bigActor, as the mission's environment section says that someone may:\n"
-    "what it does not say is refused, with what may be said instead. Of a vehicle on an unsigned link it is said\n"
-    "where it is heard from now on, once it is silent at the address before.",
+    "Put a message into the mailbox of a bigActor, if the mission's environment section allows it; a refusal lists\n"
+    "the allowed messages. For a vehicle on an unsigned link, give its new address once it is silent at the old one.",
     ("bigactors say op handover", "bigactors say uav0 'is at 192.168.1.7:14555'"),
     fill,
 )

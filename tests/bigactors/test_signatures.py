@@ -82,7 +82,7 @@ def test_a_verdict_that_was_changed_and_sealed_again_does_not_fly(there, bigacto
 @pytest.mark.parametrize("signature", [None, "x", {}, {"key": 1, "ed25519": "x"}])
 def test_a_verdict_without_a_signature_does_not_fly(there, bigactors, signature):
     changed(there / "v.json", signature=signature)
-    assert "the verdict bears no signature" in bigactors(*RUN, "--trust", "own.key.pub")[2]
+    assert "the verdict has no signature" in bigactors(*RUN, "--trust", "own.key.pub")[2]
 
 
 @pytest.mark.parametrize("value", ["", "!", "QUJD", "A" * 88])
