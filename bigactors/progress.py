@@ -70,7 +70,7 @@ def describe(name: str, progress: Progress) -> str:
 
 
 def describe_rest(progress: Progress) -> str:
-    """Say how much more there may be, if that can be said: a range, since nobody knows.
+    """Describe the estimated rest of an exploration as a range, if there is an estimate.
 
     >>> from checker.engines.estimate import Estimate
     >>> describe_rest(Progress(12_000, 30_000, 7, 450, 10.0, Estimate(12_000, 13_150)))

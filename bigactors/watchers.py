@@ -21,20 +21,20 @@ from bigactors.mistakes import Mistake
 from bigactors.terminal import paint, say_text, tell
 
 TOLD = frozenset({"env", "say", "command", "commit", "actuate", "migrate", "spawn"})
-"""The rules whose steps an operator is shown; the others are in the recording."""
+"""The rules whose steps are shown to the operator; the recording has the others too."""
 
 Resting = Callable[[Finding], tuple[str, ...]]
-"""Returns the properties whose verdicts rest on what a finding says is otherwise."""
+"""Returns the properties whose verdicts depend on a finding's assumption."""
 
 
 @dataclass(slots=True)
 class Terminal:
-    """Prints what happens: steps that change the world, what agents display, what is otherwise than it should be.
+    """Prints steps that change the world, the displays of agents, and findings.
 
     Attributes:
-        resting: Which verdicts rest on what broke.
+        resting: The verdicts that depend on a finding's assumption.
         broken: Whether an assumption broke, or the recording or a plugin failed.
-        taken: Which vehicles were taken over, and how.
+        taken: The vehicles that were taken over, and how.
     """
 
     resting: Resting
@@ -43,13 +43,13 @@ class Terminal:
     taken: Mapping[str, str] = field(default_factory=dict)
 
     def arrived(self, heard: Heard, now: float) -> None:
-        """Print nothing: positions come all the time."""
+        """Print nothing: positions are too frequent."""
 
     def reported(self, report: Report, now: float) -> None:
-        """Print nothing: what matters of it becomes a finding."""
+        """Print nothing: important reports become findings."""
 
     def turned(self, turn: Turn, now: float) -> None:
-        """Print what a turn came to."""
+        """Print the result of a turn."""
         self.began = now if self.began is None else self.began
         self.taken = turn.state.taken
         for step in turn.steps:
@@ -90,7 +90,7 @@ class Terminal:
 
 @contextmanager
 def _flying_on() -> Iterator[None]:
-    """Say that the output can't be written, where that is so: it ends no flight."""
+    """Report an output that can't be written; this does not end the flight."""
     try:
         yield
     except Mistake as mistake:
@@ -119,14 +119,14 @@ class Tape:
 
 
 class Log:
-    """A telemetry log: every frame heard and said, with its time, as other ground stations read it."""
+    """A telemetry log: every frame received and sent, with its time, in the format of other ground stations."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
         self._file: BinaryIO | None = None
 
     def __call__(self, time: float, frame: bytes) -> None:
-        """Write a frame at once: what was written survives the process."""
+        """Write a frame at once, so that it survives the process."""
         if self._file is None:
             self._file = open_private(self._path, "ab", buffering=0)
         said = entry(time, frame)

@@ -1,6 +1,6 @@
 """Check text from outside: names, JSON, and quotations of either.
 
-What passes here can be printed, encoded and recorded, so that nobody behind has to look again.
+Checked text can be printed, encoded and recorded without further checks.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ DEFAULT: Final = {
     "SYSTEM_TIME": 1.0,
     "MISSION_CURRENT": 1.0,
 }
-"""Seconds between two of a kind, before anybody asks for others."""
+"""The default seconds between two messages of a kind."""
 
 SHORTEST: Final = 0.05
 CAPABILITIES: Final = 2 | 4 | 8 | 8192 | 16384

@@ -93,7 +93,7 @@ class Draft:
         return slot
 
     def remove(self, slot: int) -> None:
-        """Take a node away; what is still in it must be moved or removed by whoever does so."""
+        """Remove a node; the caller must move or remove its content."""
         state = self.state
         self.move(slot, ())
         self.relink(slot, ())

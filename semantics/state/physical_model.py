@@ -174,7 +174,7 @@ class PhysicalModel:
         """Tell σ_P's `contains`.
 
         An entity in transit is contained only by what contains both ends of its flight, the destination itself
-        excepted: nobody sees it arrived before it has. What is carried contains nothing: it has no room of its own.
+        excepted, so no agent sees it arrive early. A carried entity contains nothing: it has no area of its own.
         """
         if place == entity or self.carrier(place) is not None:
             return False
