@@ -133,7 +133,7 @@ REPORTS: Final = (
 """Those of a vehicle or a feed, then those of other stations."""
 
 REPORT: Final = _object(
-    "What a plugin reported of a request, a link or its input.",
+    "A plugin's report on a request, a link or its input.",
     ("report",),
     report={"enum": [*REPORTS]},
     request=_TEXT,
@@ -170,7 +170,7 @@ GIVEN_BACK: Final = _object(
 )
 
 FINDING: Final = _object(
-    "What the operator was told: a broken assumption, a refusal, a lost link, a request that takes too long.",
+    "A message to the operator: a broken assumption, a refusal, a lost link, a request that takes too long.",
     ("kind", "about", "message"),
     kind=_TEXT,
     about=_TEXT,
