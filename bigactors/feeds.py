@@ -26,14 +26,14 @@ LONGEST_TOKEN = 1_000
 
 @dataclass(frozen=True, slots=True)
 class Hearing:
-    """How feeds are to be heard.
+    """The settings of feeds.
 
     Attributes:
-        naming: Whose names are whose.
-        kinds: The kinds of which a feed may speak; all where there are none.
-        area: Of AIS, what lies outside is passed over.
-        token: What posts must carry.
-        living: For how many seconds a position of each feed counts.
+        naming: The naming service.
+        kinds: The kinds that a feed may report; all if there are none.
+        area: AIS positions outside are ignored.
+        token: The token of posts.
+        living: The seconds for which a position of each feed counts.
     """
 
     naming: NamingService
@@ -56,7 +56,7 @@ def feeds_of(options: Namespace, mission: ElaboratedMission, naming: NamingServi
 
 
 def _told(options: Namespace, mission: ElaboratedMission) -> dict[str, frozenset[str]]:
-    """Return the kinds that are told; those of detections are the mission's."""
+    """Return the given kinds; those of detections must be the mission's."""
     told = dict(options.kinds)
     known = mission.setting.signature.kinds
     for kind in sorted(told.get("detections", frozenset()) - known.keys()):
@@ -66,7 +66,7 @@ def _told(options: Namespace, mission: ElaboratedMission) -> dict[str, frozenset
 
 
 def _expected(mission: ElaboratedMission) -> frozenset[str]:
-    """Return the kinds that may be detected: of the mission, and nothing that is driven."""
+    """Return the kinds that may be detected: the mission's that are not driven."""
     kinds = mission.setting.signature.kinds.values()
     return frozenset(kind.name for kind in kinds if not kind.driven)
 
@@ -125,7 +125,7 @@ FEEDS: dict[str, Callable[[str, str, Hearing], Plugin]] = {
     "locations": _locations,
     "places": _places,
 }
-"""For each kind of feed what makes its plugin from a name, an address and how it is to be heard."""
+"""The function that makes each kind of feed from a name, an address and the settings."""
 
 
 def _feed(kind: str, address: str, number: int, hearing: Hearing) -> Plugin:

@@ -28,10 +28,10 @@ class Shown:
     """What a recording shows of a mission's world.
 
     Attributes:
-        trace: What happened in it: steps of `env` alone.
-        times: When each step was.
-        findings: What the mission's environment section does not say.
-        positions: How many positions there were.
+        trace: Its steps, all of `env`.
+        times: The time of each step.
+        findings: Events that the mission's environment section does not allow.
+        positions: The number of positions.
     """
 
     trace: Trace

@@ -14,7 +14,7 @@ from checker import Progress
 
 
 class Watch:
-    """What is told about an exploration now and then: shows a line, and ends it if the user has pressed Ctrl-C.
+    """Watches an exploration: shows a line now and then, and ends it if the user has pressed Ctrl-C.
 
     Attributes:
         interrupted: Whether Ctrl-C was pressed.
@@ -38,14 +38,14 @@ class Watch:
             self.rewrite(describe(self.name, progress))
 
     def rewrite(self, text: str) -> None:
-        """Put a text in the place of the last."""
+        """Replace the last text."""
         width = shutil.get_terminal_size().columns - 1
         text = text[:width]
         write(self.stream, "\r" + paint(text.ljust(min(self.shown, width)), "faint", self.stream), flush=True)
         self.shown = len(text)
 
     def clear(self) -> None:
-        """Take the line away."""
+        """Clear the line."""
         if self.shown:
             write(self.stream, "\r" + " " * self.shown + "\r", flush=True)
             self.shown = 0
@@ -84,7 +84,7 @@ def describe_rest(progress: Progress) -> str:
 
 
 def rounded(number: int, least: int) -> int:
-    """Return a number to two digits, but no less than is known.
+    """Return a number rounded to two digits, but at least the known minimum.
 
     >>> rounded(1_234_567, 0), rounded(101_000, 100_900)
     (1200000, 100900)

@@ -22,7 +22,7 @@ from specs.parser import parse
 
 
 def open_recording(path: str) -> Recording:
-    """Return what a file holds; raises Mistake."""
+    """Return the content of a recording; raises Mistake."""
     try:
         return read_recording(Path(path))
     except RecordingError as error:
@@ -32,7 +32,7 @@ def open_recording(path: str) -> Recording:
 
 
 def mission_of(recording: Recording) -> ElaboratedMission:
-    """Return the mission that was flown: its text is in the recording, files that it names are where they were."""
+    """Return the mission that was flown; its text is in the recording, files that it names are read again."""
     run = recording.run
     sources = run.get("sources")
     found = {name: Path(str(file)) for name, file in sources.items()} if isinstance(sources, dict) else {}
@@ -55,7 +55,7 @@ def trace_of(recording: Recording, mission: ElaboratedMission) -> Trace:
 
 
 def parting_of(recording: Recording) -> Parting | None:
-    """Return which part of its mission a recording is of, None where it is of the whole; raises Mistake."""
+    """Return the part of its mission that a recording covers, None for the whole; raises Mistake."""
     match recording.run.get("station"):
         case None:
             return None
@@ -69,16 +69,16 @@ def parting_of(recording: Recording) -> Parting | None:
 
 @dataclass(frozen=True, slots=True)
 class Resumed:
-    """A run that another goes on from.
+    """A run that another one resumes.
 
     Attributes:
-        configuration: Where it was.
+        configuration: Its last configuration.
         steps: How many steps it took.
         orders: How many orders it gave.
-        messages: Its steps, and who was taken over and given back, to be recorded again.
-        taken: Which vehicles were taken over and not given back, and how.
-        station: Which part of the mission it flew, None for the whole.
-        left: What left for other stations, in its order.
+        messages: Its steps, take-overs and give-backs, to be recorded again.
+        taken: The vehicles that were taken over and not given back, and how.
+        station: Its part of the mission, None for the whole.
+        left: The parcels that left for other stations, in order.
     """
 
     configuration: Configuration
@@ -91,7 +91,7 @@ class Resumed:
 
 
 def resume(path: str, mission: ElaboratedMission) -> Resumed:
-    """Return where a recorded run was; raises Mistake for one of another mission."""
+    """Return the last state of a recorded run; raises Mistake for one of another mission."""
     recording = open_recording(path)
     if recording.run["digest"] != digest_of(mission):
         raise Mistake(
@@ -110,7 +110,7 @@ def resume(path: str, mission: ElaboratedMission) -> Resumed:
 
 
 def _taken(recording: Recording) -> Iterator[Message]:
-    """Yield the messages that say that a vehicle was taken over or given back."""
+    """Yield the messages about take-overs and give-backs."""
     for message in recording.messages:
         taken = message.topic == "reports" and message.data.get("report") == "TakenOver"
         if taken or (message.topic == "given_back" and not message.data.get("refusal")):
@@ -128,7 +128,7 @@ def _still_taken(messages: Iterable[Message]) -> dict[str, str]:
 
 
 def _left(trace: Trace) -> Iterator[Outgoing]:
-    """Yield what left for other stations: it is what the configuration before had of the agent."""
+    """Yield the parcels that left for other stations, from the agent's state in the configuration before."""
     for step, before in zip(trace.steps, trace.configurations, strict=False):
         if isinstance(step.sight, Passage) and step.sight.parcel is None:
             parcel = parcel_of(before, step.sight.agent)

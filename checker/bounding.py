@@ -1,7 +1,7 @@
 """Bounds on long computations: they check the clock and the memory from time to time.
 
-An exploration that meets a bound keeps what it has. What comes after (surveys of all that was explored, temporal logic)
-has no half result: it is given up, and what it would have decided stays undecided.
+An exploration that meets a bound keeps its result. Later work (surveys of all configurations, temporal logic) has no
+partial result: it is abandoned, and its properties stay undecided.
 """
 
 from collections.abc import Iterator
@@ -14,7 +14,7 @@ from checker.limits import Limits, is_full, memory_met, time_met
 
 
 class BoundMet(Exception):  # what it is
-    """Time or memory has come to its end; the text says which."""
+    """The limit of time or memory is reached; the text says which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ _BOUNDS: ContextVar[_Bounds | None] = ContextVar("bounds", default=None)
 
 @contextmanager
 def bounded(limits: Limits, started: float | None = None) -> Iterator[None]:
-    """Hold what is done within to limits of time and memory; the time begins now unless it is said when it began."""
+    """Limit time and memory within the context; the time begins now unless its start is given."""
     token = _BOUNDS.set(_Bounds(limits, monotonic() if started is None else started))
     try:
         yield
@@ -43,7 +43,7 @@ def bounded(limits: Limits, started: float | None = None) -> Iterator[None]:
 
 
 def look() -> None:
-    """Look whether a bound is met; where nobody has set any, none is.
+    """Check whether a bound is met; without bounds none is.
 
     Raises:
         BoundMet: It is.
