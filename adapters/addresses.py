@@ -1,4 +1,4 @@
-"""Where plugins listen and connect, as text: `udp:127.0.0.1:14550`, `tcp:host:port`, `serial:/dev/ttyUSB0:57600`.
+"""Addresses of links as text: `udp:127.0.0.1:14550`, `tcp:host:port`, `serial:/dev/ttyUSB0:57600`.
 
 Who listens does so on this machine only, unless another address is written out.
 """

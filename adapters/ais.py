@@ -1,7 +1,7 @@
 """The AIS plugin: vessels, base stations and buoys from a receiver or a recording, named by their MMSI.
 
-What a line means is `physical.ais`' business; here lines arrive, are filtered and stamped. Nothing that a transponder
-says of its time is believed beyond the receiver's clock.
+`physical.ais` decodes lines; this module receives, filters and stamps them. A transponder's time is not believed beyond
+the receiver's clock.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ class AisFeed:
     """A plugin that hears AIS.
 
     Arguments:
-        name: What reports call it.
-        address: Where the receiver is, such as `udp:127.0.0.1:10110`, or `file:PATH` of a recording, which is
-            played at the pace of its times as if it were heard now.
-        naming: Which entities of the mission transponders are.
-        area: What lies outside is passed over.
+        name: Its name in reports.
+        address: The receiver's address, such as `udp:127.0.0.1:10110`, or `file:PATH` of a recording, which is replayed
+            in real time as if it were received now.
+        naming: The naming service.
+        area: Positions outside are ignored.
         kinds: Kinds of stations that count; all if None.
         time_to_live: Seconds for which a position counts.
 
@@ -88,17 +88,17 @@ class AisFeed:
         return self._port.local if self._port else None
 
     def owns(self, entity: str) -> bool:  # noqa: ARG002 - a plugin's interface
-        """Nobody takes commands over AIS."""
+        """Vessels take no commands over AIS."""
         return False
 
     async def command(self, command: Command) -> None:
-        """Refuse: nobody takes commands over AIS."""
+        """Refuse: vessels take no commands over AIS."""
         raise Refused(f"{command.entity} takes no commands over AIS")
 
     async def run(self, world: World) -> None:
         """Hear until cancelled."""
         self._world = world
-        hear(Ear(), b"")  # an extra that is missing is said at once
+        hear(Ear(), b"")  # report a missing extra at once
         try:
             if self._address.scheme == "file":
                 await asyncio.gather(self._play(world), self._reporting(world))
@@ -131,7 +131,7 @@ class AisFeed:
         return self._streams[remote]
 
     def _line(self, ear: Ear, line: bytes, now: float, shift: float = 0.0) -> Ear:
-        """Hear one line; `shift` makes the times of a recording those of today."""
+        """Hear one line; `shift` moves the times of a recording to today."""
         heard = hear(ear, line, None if shift else now)
         for reason in heard.reasons:
             self._troubles.note(reason.value, repr(line[:100]))
@@ -173,7 +173,7 @@ class AisFeed:
     # --- recordings -------------------------------------------------------------------------------
 
     async def _play(self, world: World) -> None:
-        """Hear a recording at the pace of its times."""
+        """Replay a recording in real time."""
         ear, shift = Ear(), 0.0
         for line in self._recorded():
             clock = _clock(ear, line)

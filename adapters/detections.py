@@ -1,7 +1,7 @@
-"""The plugin of detections: GeoJSON features that a vision system posts over HTTP, or puts into a folder.
+"""The detections plugin: GeoJSON features that a vision system posts over HTTP or puts into a folder.
 
 `POST /detections` takes a FeatureCollection; `DELETE /detections/NAME` withdraws one. A detection can't take the name
-of a vehicle, or be of a kind that nobody expects.
+of a vehicle, or have a kind that may not be detected.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ from physical import PhysicalError, PhysicalProperty, legible, open_file, readin
 
 EVERY: Final = 1.0
 MAX_FILES: Final = 1_000
-"""Files of a folder that are looked at: the newest."""
+"""How many files of a folder are read: the newest."""
 
 MAX_KNOWN: Final = 10_000
-"""Detections that can be withdrawn: the newest."""
+"""How many detections can be withdrawn: the newest."""
 
 PATH: Final = "/detections"
 
 
 class Detections:
-    """A plugin for what is detected.
+    """A plugin for detected entities.
 
     Arguments:
-        name: What reports call it.
+        name: Its name in reports.
         listen: Where to take posts; nowhere if None.
         folder: Where files `*.geojson` are put; each is read again when it changes.
         kinds: Kinds that may be detected; all if None.
@@ -74,11 +74,11 @@ class Detections:
         return self._name
 
     def owns(self, entity: str) -> bool:  # noqa: ARG002 - a plugin's interface
-        """What is detected takes no commands."""
+        """Detected entities take no commands."""
         return False
 
     async def command(self, command: Command) -> None:
-        """Refuse: what is detected takes no commands."""
+        """Refuse: detected entities take no commands."""
         raise Refused(f"{command.entity} was detected, and takes no commands")
 
     async def run(self, world: World) -> None:
@@ -117,7 +117,7 @@ class Detections:
         return 200, "withdrawn"
 
     async def _take(self, body: bytes) -> int:
-        """Publish all features of a collection, or none; one collection at a time, and others are served meanwhile."""
+        """Publish all features of a collection, or none; one collection at a time, without blocking the event loop."""
         assert self._world is not None
         async with self._taking:
             found = [feature async for feature in in_slices(reading_geojson(body))]
@@ -136,7 +136,7 @@ class Detections:
         if self._kinds is not None and feature.kind not in self._kinds:
             expected = ", ".join(sorted(self._kinds))
             raise PhysicalError(
-                "kind", f"nobody expects {feature.kind} to be detected", f"kinds are {expected}"
+                "kind", f"{feature.kind} is not a kind that may be detected", f"kinds are {expected}"
             )
         self._naming.name(f"name:{feature.entity}", feature.kind)
 
@@ -164,5 +164,5 @@ class Detections:
 def _changed(path: Path) -> int:
     try:
         return path.stat().st_mtime_ns
-    except OSError:  # taken away between the listing and the look
+    except OSError:  # deleted after the listing
         return 0

@@ -1,4 +1,4 @@
-"""Errors of writing that name their file: the system says only why."""
+"""Errors of writing, with the file's name: the system's own message gives only the reason."""
 
 from __future__ import annotations
 

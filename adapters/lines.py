@@ -1,4 +1,4 @@
-"""Lines out of chunks of bytes, with bounded memory whatever is sent."""
+"""Lines from chunks of bytes, in bounded memory for any input."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The time for which we listened: silence is judged by it, so that a stall of our own is nobody's silence.
+"""The time that this process has listened: its own stalls do not count as the silence of others.
 
-A process that is stopped, a machine that is suspended or too busy: the clock jumps, and what was said meanwhile waits
-unread, or was never heard. So of what passes between two looks at the clock only a little counts.
+When a process is stopped, or its machine is suspended or overloaded, the clock jumps, and messages wait unread or are
+lost. So of the time between two readings of the clock only a little counts.
 """
 
 from __future__ import annotations
@@ -10,23 +10,23 @@ from dataclasses import dataclass
 from typing import Final
 
 MOST: Final = 1.5
-"""Seconds between two looks that count: whoever listens looks every second at least, and reads in between."""
+"""The most seconds between two readings that count: a listener reads the clock at least every second."""
 
 
 @dataclass(slots=True)
 class Listening:
-    """How long nobody listened.
+    """A clock that counts the time without listening.
 
     Attributes:
-        looked: When the clock was looked at last.
-        missed: The seconds so far that passed unheard.
+        looked: When the clock was read last.
+        missed: The seconds without listening so far.
     """
 
     looked: float
     missed: float = 0.0
 
     def look(self, now: float) -> float:
-        """Look at the clock, and return its time less all that was missed.
+        """Read the clock, and return its time less all missed seconds.
 
         >>> listening = Listening(looked=100.0)
         >>> listening.look(100.5), listening.look(107.5), listening.look(108.0)

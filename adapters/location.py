@@ -1,7 +1,7 @@
-"""The plugin of a location service: positions by HTTP and JSON from something that already knows them.
+"""The location plugin: positions by HTTP and JSON from a location service.
 
-It is asked again and again for a document like this, in which altitude (metres above sea level), speed (m/s), course
-(degrees true), time (seconds since 1970) and channels may be missing:
+It polls the service for a document like this, in which altitude (metres above sea level), speed (m/s), course (degrees
+true), time (seconds since 1970) and channels are optional:
 
     {"entities": [{"name": "drifter0", "kind": "Drifter", "latitude": 37.0, "longitude": -8.7,
                    "altitude": 0, "speed": 0.4, "course": 120, "time": 1600000000, "channels": ["sat"]}]}
@@ -22,7 +22,7 @@ from physical import Band, PhysicalError, PhysicalProperty, Velocity, is_word, p
 
 MAX_ENTITIES: Final = 10_000
 LARGEST: Final = 1e12
-"""No number here is larger: a time in seconds is a thousandth of it."""
+"""The largest number: a thousand times a time in seconds."""
 
 FUTURE: Final = 1.0
 """Seconds by which the service's clock may be ahead of ours."""
@@ -32,10 +32,10 @@ class LocationService:
     """A plugin that polls a location service.
 
     Arguments:
-        name: What reports call it.
-        url: What to ask.
-        every: Seconds between two questions.
-        naming: Whose names are taken already.
+        name: Its name in reports.
+        url: The service's URL.
+        every: Seconds between two requests.
+        naming: The naming service.
         time_to_live: Seconds for which a position counts.
     """
 
@@ -61,15 +61,15 @@ class LocationService:
         return self._name
 
     def owns(self, entity: str) -> bool:  # noqa: ARG002 - a plugin's interface
-        """What it locates takes no commands."""
+        """Located entities take no commands."""
         return False
 
     async def command(self, command: Command) -> None:
-        """Refuse: a location service commands nobody."""
+        """Refuse: located entities take no commands."""
         raise Refused(f"{command.entity} is located, and takes no commands")
 
     async def run(self, world: World) -> None:
-        """Ask until cancelled."""
+        """Poll until cancelled."""
         async with fetching() as fetch:
             while True:
                 try:

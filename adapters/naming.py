@@ -1,12 +1,10 @@
-"""The naming service: which entity of the mission an identity of the world is, and that no two share a name.
+"""The naming service: maps identities of the world to entities of the mission, each name to one identity.
 
 An identity is a kind of number and the number: `mavlink:1` (a system id), `serial:2F003B` (an autopilot's own),
-`mmsi:244660274`, or `name:oilSpill1` of what already comes with one. The mission's own table goes first; what it
-doesn't name is named by its identity. Own vehicles, stations and the places that never move have their names before
-anything is heard: nobody else can take them.
+`mmsi:244660274`, or `name:oilSpill1` for an entity with a name. The mission's own table goes first; other entities are
+named by their identity. The names of own vehicles, stations and places that never move are reserved from the start.
 
-What is not in the table is named by a rule, and nothing is remembered of it: so no flood of made-up identities uses
-anything up.
+Names outside the table follow a rule without state, so a flood of invented identities exhausts nothing.
 """
 
 from __future__ import annotations
@@ -20,7 +18,7 @@ from physical import PhysicalError
 SCHEMES: Final = ("mavlink", "mmsi", "name", "serial")
 
 _NUMBERED: Final = re.compile(r"(mavlink|mmsi)[0-9]+|serial[0-9A-F]+")
-"""Names that are given to numbers: nobody who comes with a name has one of them."""
+"""Names made from numbers: an entity with a name of its own can't have one of them."""
 
 
 class NameClash(PhysicalError):
@@ -32,10 +30,10 @@ class NamingService:
 
     Arguments:
         table: The mission's own names, by identity.
-        own: Names that are taken: whose vehicles and places they are, by identity (`mavlink:1`, `place:harbour0`).
-        kinds: What the mission's entities are: who gives one of them another kind speaks of something else.
+        own: Reserved names of vehicles and places, by identity (`mavlink:1`, `place:harbour0`).
+        kinds: The kinds of the mission's entities: a report with another kind is about another entity.
 
-    Raises NameClash where two identities get one name, PhysicalError where the table has no identity.
+    Raises NameClash if two identities get one name, PhysicalError if the table has an invalid identity.
     """
 
     def __init__(
@@ -59,7 +57,7 @@ class NamingService:
         >>> NamingService({"mmsi:244660274": "tanker0"}).name("mmsi:244660274")
         'tanker0'
 
-        Raises NameClash where its name is another's, or another kind's.
+        Raises NameClash if another identity or kind has its name.
         """
         if identity in self._names:
             return self._names[identity]
@@ -77,7 +75,7 @@ class NamingService:
         return name
 
     def kind_of(self, name: str, said: str) -> str:
-        """Return what an entity is: what the mission has it as, else what is said of it."""
+        """Return the kind of an entity: the mission's, else the reported one."""
         return self._kinds.get(name, said)
 
     def _give(self, identity: str, name: str) -> None:
@@ -96,7 +94,7 @@ def _clash(identity: str, name: str, holder: str) -> NameClash:
 
 
 def _own_name(identity: str) -> str:
-    """Name what the mission's table doesn't: as it calls itself, or by its number.
+    """Name an identity outside the mission's table: by its own name, or by its number.
 
     >>> _own_name("mmsi:002442103"), _own_name("name:oilSpill1")
     ('mmsi002442103', 'oilSpill1')

@@ -1,4 +1,4 @@
-"""The plugin of static places: a GeoJSON file, a waypoint file or a plan, read again when it changes."""
+"""The static places plugin: a GeoJSON file, a waypoint file or a plan, read again when it changes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from adapters.troubles import Troubles
 from physical import PhysicalError, PhysicalProperty, open_file, read_places
 
 EVERY: Final = 1.0
-"""Seconds between two looks at the file."""
+"""Seconds between two checks of the file."""
 
 MAX_BYTES: Final = 10_000_000
 
@@ -19,7 +19,7 @@ MAX_BYTES: Final = 10_000_000
 class StaticPlaces:
     """A plugin for the places of a file: GeoJSON, or by its ending `.waypoints` or `.plan` (waypoint0, waypoint1, ...).
 
-    A file that can't be read any more is reported, and what it said last stays.
+    A file that becomes unreadable is reported, and its last places stay.
     """
 
     def __init__(self, name: str, path: Path) -> None:
@@ -43,9 +43,9 @@ class StaticPlaces:
         raise Refused(f"{command.entity} is a place, and takes no commands")
 
     async def run(self, world: World) -> None:
-        """Publish the places, and again what changes.
+        """Publish the places, and then their changes.
 
-        Raises PhysicalError where the file can't be read at the start.
+        Raises PhysicalError if the file can't be read at the start.
         """
         self._look(world)
         while True:

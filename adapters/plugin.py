@@ -1,9 +1,9 @@
 """The plugin's interface: subscribe mobility commands, publish physical properties (paper §3.2.1).
 
-A plugin stands for what is out there: an autopilot, a receiver, a file of places. It is given a `World` to tell what
-it learns, and is told what its vehicles shall do. It decides nothing: what follows for the logical model is the rules'.
+A plugin represents something outside: an autopilot, a receiver, a file of places. It publishes into a `World`, and gets
+commands for its vehicles. It decides nothing: the rules decide what follows for the logical model.
 
-Time is the world's: `World.now()` stamps, and whoever waits does so by `asyncio.sleep`, so that an event loop with
+Time is the world's: `World.now()` gives time stamps, and plugins wait by `asyncio.sleep`, so that an event loop with
 another clock (`adapters.simulated.clock`) runs every plugin faster.
 """
 
@@ -20,9 +20,9 @@ from physical import Band, Geometry, PhysicalError, PhysicalProperty
 
 @dataclass(frozen=True, slots=True)
 class Gone:
-    """An entity is known to be no more: a place taken out of its file, a detection withdrawn.
+    """An entity is gone: a place was removed from its file, a detection withdrawn.
 
-    What merely ceases to be heard of isn't gone: it grows older than its time to live (see `Aged`).
+    An entity that is merely no longer heard is not gone: it exceeds its time to live (see `Aged`).
     """
 
     entity: str
@@ -36,8 +36,8 @@ class Aged:
 
     Attributes:
         property: What was observed; its `time` is set.
-        time_to_live: For how many seconds from its `time` on it may stand in P, if nothing newer comes.
-        clock: When that was by the entity's own clock, in milliseconds: it orders what several links tell of it.
+        time_to_live: The seconds from its `time` for which it may stay in P, if nothing newer comes.
+        clock: Its time by the entity's own clock, in milliseconds, which orders the reports of several links.
     """
 
     property: PhysicalProperty
@@ -46,7 +46,7 @@ class Aged:
 
 
 Published = PhysicalProperty | Aged | Gone
-"""A bare property stands until another or `Gone` replaces it; all of an entity's property is said each time."""
+"""A bare property is valid until another or `Gone` replaces it; each publication has the entity's whole property."""
 
 
 def entity_of(published: Published) -> str:
@@ -61,7 +61,7 @@ def entity_of(published: Published) -> str:
 class GoTo:
     """Go into a place, and stay there.
 
-    The same request with another geometry means that the place has moved on: go to where it is now.
+    The same request with another geometry means that the place has moved: go to its current position.
 
     Attributes:
         request: Names the request in reports; unique in a run.
@@ -82,8 +82,8 @@ class GoTo:
 class Follow:
     """Pass places in their order, then go into the last and stay there.
 
-    The same request with another path of as many places means that some of them have moved on: go on along the path as
-    it is now.
+    The same request with another path of as many places means that some of them have moved: continue along the new
+    path.
 
     Attributes:
         request: Names the request in reports; unique in a run.
@@ -123,7 +123,7 @@ class Hold:
 
 @dataclass(frozen=True, slots=True)
 class Return:
-    """Go home, as the vehicle understands it."""
+    """Go to the vehicle's own home."""
 
     request: str
     entity: str
@@ -131,7 +131,7 @@ class Return:
 
 @dataclass(frozen=True, slots=True)
 class Rebind:
-    """Believe a vehicle at another address (`HOST:PORT`) than before: an operator says that it has moved there."""
+    """Believe a vehicle at a new address (`HOST:PORT`), confirmed by an operator."""
 
     request: str
     entity: str
@@ -147,11 +147,11 @@ class GiveBack:
 
 
 Command = GoTo | Follow | HandOver | Hold | Return | GiveBack | Rebind
-"""What a vehicle can be told. A new one for the same entity ends what it was told before; HandOver and Rebind don't."""
+"""A command to a vehicle. A new one ends the entity's previous command, except for HandOver and Rebind."""
 
 
 class Refused(Exception):  # an answer, not an error
-    """The command cannot be carried out, and nothing was done towards it; `reason` is in the operator's words."""
+    """The command cannot be carried out, and was not begun; `reason` is in the operator's words."""
 
     def __init__(self, reason: str, hint: str = "") -> None:
         super().__init__(reason)
@@ -164,7 +164,7 @@ class Refused(Exception):  # an answer, not an error
 
 @dataclass(frozen=True, slots=True)
 class Accepted:
-    """The vehicle's own state shows that it does what the request asks: mode, armed, target or mission compared."""
+    """The vehicle's own state shows that it follows the request: mode, arming, target or mission."""
 
     request: str
     entity: str
@@ -175,8 +175,8 @@ class Accepted:
 class Arrived:
     """The vehicle's position, or for a hand-over its authority, shows that the request is done.
 
-    Of a path it says that all of it is behind the vehicle, which no position shows. Whether the request is done in
-    logical space is decided by the rules, from what is published once it was accepted, not from this.
+    For a path it means that the vehicle has passed all of it, which no position shows. This report does not complete
+    the request in logical space: the rules decide that from positions published after it was accepted.
     """
 
     request: str
@@ -186,7 +186,7 @@ class Arrived:
 
 @dataclass(frozen=True, slots=True)
 class Rejected:
-    """A request that was taken on turned out not to be possible: the vehicle refuses, or answers no more."""
+    """An accepted command turned out to be impossible: the vehicle refuses, or no longer answers."""
 
     request: str
     entity: str
@@ -196,9 +196,9 @@ class Rejected:
 
 @dataclass(frozen=True, slots=True)
 class Doubted:
-    """The vehicle may have been taken over, or a message of it came late: nothing is told it until that is certain.
+    """The vehicle may have been taken over, or a message of it was late: it gets no commands until that is certain.
 
-    `TakenOver` follows, or `Accepted` once more; until then where it goes is no arrival.
+    `TakenOver` follows, or `Accepted` again; until then nothing that it does is an arrival.
     """
 
     entity: str
@@ -207,9 +207,9 @@ class Doubted:
 
 @dataclass(frozen=True, slots=True)
 class TakenOver:
-    """The vehicle does what nobody here ordered: a pilot, another station, a fail-safe or a reboot has it.
+    """The vehicle does what was not ordered here: a pilot, another station, a fail-safe or a reboot controls it.
 
-    All that it is told is refused until `GiveBack`, and where it goes is no arrival.
+    Until `GiveBack` commands are refused, and nothing that it does is an arrival.
     """
 
     entity: str
@@ -228,7 +228,7 @@ class LinkLost:
 
 @dataclass(frozen=True, slots=True)
 class LinkRestored:
-    """The vehicle is heard again; `rebooted` if its clock began anew meanwhile."""
+    """The vehicle is heard again; `rebooted` if its clock restarted meanwhile."""
 
     entity: str
     time: float
@@ -237,14 +237,14 @@ class LinkRestored:
 
 @dataclass(frozen=True, slots=True)
 class Trouble:
-    """Something that an operator should know: input that cannot be used, a forged packet, a second commander.
+    """A problem for the operator: unusable input, a forged packet, a second commander.
 
     Attributes:
         source: The plugin's name.
         time: When it was noticed.
-        what: A short word by which equal troubles are counted, such as `bad checksum`.
-        detail: One line more, with the remedy where there is one.
-        count: How often since the last report of the same; plugins collect them, so a flood is one report a second.
+        what: A short name by which equal troubles are counted, such as `bad checksum`.
+        detail: One more line, with the remedy if there is one.
+        count: How often since the last such report; plugins collect them, so a flood is one report a second.
     """
 
     source: str
@@ -259,10 +259,10 @@ class Delivered:
     """A parcel has come from another station: messages for an agent, or an agent (see `semantics.state.partition`).
 
     Attributes:
-        station: Whose it is.
+        station: The sender.
         time: When it came.
-        number: The how-many-th parcel of that station it is; it may come again.
-        parcel: What is in it, as plain data.
+        number: Its index among the sender's parcels; it may come again.
+        parcel: Its content, as plain data.
     """
 
     station: str
@@ -273,7 +273,7 @@ class Delivered:
 
 @dataclass(frozen=True, slots=True)
 class Underway:
-    """Another station has sent a vehicle to a node; with no name: it is not under way any more."""
+    """Another station has sent a vehicle to a node; without a name: it is no longer under way."""
 
     entity: str
     time: float
@@ -291,7 +291,7 @@ class Hosts:
 
 @dataclass(frozen=True, slots=True)
 class Believes:
-    """Another station has written into a slot of L: `parent` (of what L has not, no name) or `links` of a node."""
+    """Another station has written a slot of L: a node's `parent` (no name if L lacks the node) or its `links`."""
 
     node: str
     time: float
@@ -301,7 +301,7 @@ class Believes:
 
 @dataclass(frozen=True, slots=True)
 class Broken:
-    """Another station says which assumption of the mission broke."""
+    """Another station reports a broken assumption of the mission."""
 
     station: str
     time: float
@@ -310,7 +310,7 @@ class Broken:
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """Something that a run needs can't go on: its recording, a log, a plugin.
+    """Something that a run needs has failed: its recording, a log, a plugin.
 
     Attributes:
         source: What failed: a file, or a plugin's name.
@@ -344,7 +344,7 @@ def _reason(error: OSError | ValueError) -> str:
 
 
 Elsewhere = Delivered | Underway | Hosts | Believes | Broken
-"""What is reported of other stations."""
+"""Reports about other stations."""
 
 Report = (
     Accepted
@@ -359,14 +359,14 @@ Report = (
     | Elsewhere
 )
 
-# --- who talks to whom ------------------------------------------------------------------------------
+# --- the interfaces ---------------------------------------------------------------------------------
 
 
 class World(Protocol):
-    """What a plugin is given. None of the three blocks, and all are called in the event loop's thread."""
+    """What a plugin is given. No method blocks, and all are called in the event loop's thread."""
 
     def publish(self, published: Published) -> None:
-        """Take what is known of an entity now."""
+        """Take a publication on an entity."""
         ...
 
     def now(self) -> float:
@@ -374,7 +374,7 @@ class World(Protocol):
         ...
 
     def report(self, report: Report) -> None:
-        """Take what happened to a request, to a link or to the input."""
+        """Take a report on a request, a link or the input."""
         ...
 
 
@@ -382,16 +382,16 @@ class World(Protocol):
 class Plugin(Protocol):
     """A vehicle, a feed, or a service.
 
-    `run` opens what has to be opened (an OSError or `PhysicalError` there says what is wrong with it), serves until
-    it is cancelled, and then closes everything. `command` may be called from then on, also before the vehicle is
-    heard; it returns as soon as the command is taken on, and raises Refused if it never can be. What becomes of it
-    is reported: any number of Accepted, then one Arrived or Rejected, unless another command takes its place. A request
-    that was rejected is refused from then on: who wants it all the same asks anew.
+    `run` opens its resources (an OSError or `PhysicalError` says what is wrong with them), serves until it is
+    cancelled, and then closes everything. `command` may be called from then on, also before the vehicle is heard. It
+    returns as soon as the command is accepted, and raises Refused if it never can be. Reports follow: any number of
+    Accepted, then one Arrived or Rejected, unless another command replaces it. A rejected request is refused from then
+    on: to repeat it, make a new request.
     """
 
     @property
     def name(self) -> str:
-        """What reports call it; unique in a run."""
+        """Its name in reports; unique in a run."""
         ...
 
     async def run(self, world: World) -> None:

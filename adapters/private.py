@@ -1,4 +1,4 @@
-"""Files that are their owner's alone: recordings, logs and keys, whatever the umask is and whoever made them before."""
+"""Files that only their owner may read: recordings, logs and keys, whatever the umask or their former mode."""
 
 from __future__ import annotations
 

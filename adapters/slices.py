@@ -1,4 +1,4 @@
-"""Much at once, a little at a time: whoever takes in a long list lets others be served in between."""
+"""Long lists in slices: the event loop runs other tasks between them."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Bytes from and to UDP, TCP and serial lines by asyncio; who reads sees chunks and where they came from.
+"""Bytes from and to UDP, TCP and serial lines by asyncio; readers get chunks with their source addresses.
 
-A connection that breaks is made again until the port is closed. What can't be sent at once is dropped beyond a bound:
-everything here is said again anyway.
+A broken connection is reopened until the port is closed. Beyond a bound, data that can't be sent at once is dropped:
+all protocols here repeat their messages.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ MAX_UNSENT: Final = 262_144
 """Bytes that may wait in a connection."""
 
 BURST: Final = 1_048_576
-"""Bytes that a socket is asked to hold while something else is served; systems give less."""
+"""The requested size of a socket's buffer in bytes; systems give less."""
 
 MAX_AT_ONCE: Final = 32
-"""Datagrams that are read before others are served, and no more of them once they have `CHUNK` bytes."""
+"""How many datagrams are read at once, up to `CHUNK` bytes."""
 
 MAX_PEERS: Final = 64
 """Connections accepted by one port."""
@@ -36,7 +36,7 @@ Receive = Callable[[Remote, bytes], None]
 
 
 class Port(Protocol):
-    """Something that can send to whom it has heard."""
+    """A port that can send to the remotes that it has heard."""
 
     def send(self, data: bytes, remote: Remote | None = None) -> None:
         """Send to a remote; to the one that we connect to if None."""
@@ -50,9 +50,9 @@ class Port(Protocol):
 
 @asynccontextmanager
 async def open_port(address: Address, receive: Receive) -> AsyncIterator[Port]:
-    """Open a port, and hand every chunk that arrives to `receive`, until the context is left.
+    """Open a port, and pass every received chunk to `receive`, until the context is left.
 
-    Raises OSError where it can't listen there.
+    Raises OSError if it can't listen there.
     """
     match address.scheme:
         case "udp" | "udpout":
@@ -73,7 +73,7 @@ async def open_port(address: Address, receive: Receive) -> AsyncIterator[Port]:
 
 
 class _Datagrams:
-    """One UDP socket. All that waits there is read at once: asyncio's own way reads one datagram between two looks."""
+    """One UDP socket. It reads all waiting datagrams at once: asyncio's own reads one in each pass of the loop."""
 
     def __init__(self, link: socket.socket, receive: Receive, *, connected: bool) -> None:
         self._link = link
@@ -81,7 +81,7 @@ class _Datagrams:
         self._connected = connected
 
     def read(self) -> None:
-        """Hand over what has come in, up to a bound: others want to be served too."""
+        """Pass on the waiting datagrams, up to a bound, so that the loop can serve others."""
         read = 0
         for _ in range(MAX_AT_ONCE):
             if read >= CHUNK:
@@ -91,7 +91,7 @@ class _Datagrams:
             except BlockingIOError:
                 return
             except OSError:
-                continue  # nobody listens where something was sent: somebody may yet
+                continue  # no listener at the remote yet
             read += len(data)
             self._receive((sender[0], sender[1]), data)
 
@@ -129,7 +129,7 @@ async def _udp(address: Address, receive: Receive) -> AsyncIterator[Port]:
 
 async def _resolved(address: Address) -> tuple[int, Any]:
     kind = socket.SOCK_DGRAM
-    with suppress(socket.gaierror):  # nobody has to be asked for a number
+    with suppress(socket.gaierror):  # a numeric address needs no look-up
         family, *_, where = socket.getaddrinfo(
             address.host, address.port, type=kind, flags=socket.AI_NUMERICHOST
         )[0]

@@ -1,4 +1,4 @@
-"""Troubles, collected: a flood of the same is one report a second."""
+"""Troubles, collected: repeated ones are reported once a second."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from adapters.plugin import Trouble, World
 
 EVERY: Final = 1.0
 MAX_KINDS: Final = 64
-"""Different troubles counted at a time; what is beyond is counted together."""
+"""How many different troubles are counted apart; others are counted together."""
 
 
 class Troubles:
-    """What has gone wrong since the last report, by kind."""
+    """The troubles since the last report, by kind."""
 
     def __init__(self, source: str) -> None:
         self._source = source
@@ -26,7 +26,7 @@ class Troubles:
         self._found[kind] = (first, count + 1)
 
     def report(self, world: World, *, now: bool = False) -> None:
-        """Report what there is, if a second has passed since the last time, or at once."""
+        """Report all troubles, if a second has passed since the last report, or at once."""
         time = world.now()
         early = self._reported is not None and time - self._reported < EVERY
         if not self._found or (early and not now):

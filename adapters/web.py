@@ -28,7 +28,7 @@ Handler = Callable[[str, str, bytes], Awaitable[tuple[int, str]]]
 class Listen:
     """Where to listen: any free port if it is 0; on this machine only unless another address is written out.
 
-    With a token, only who knows it is heard (`Authorization: Bearer ...`).
+    With a token, requests need it (`Authorization: Bearer ...`).
     """
 
     port: int
@@ -40,9 +40,8 @@ class Listen:
 async def serve(handler: Handler, where: Listen) -> AsyncIterator[int]:
     """Serve HTTP until the context is left, and say at which port.
 
-    Only JSON is taken, and only what is sent to this machine by its address, so that no web page that is open in a
-    browser here can post, whatever its own name is made to stand for. Raises OSError where it can't
-    listen there.
+    Only JSON is accepted, and only requests to this machine's address, so that no web page in a browser here can post
+    (DNS rebinding). Raises OSError if it can't listen there.
     """
     web = _aiohttp().web
 
@@ -84,14 +83,14 @@ def _refusal(request: Any, where: Listen) -> tuple[int, str] | None:
 
 
 async def _read(request: Any) -> bytes | None:
-    """Return a request's body, None where it is spoilt, or whoever sends it has left."""
+    """Return a request's body, None if it is invalid or the client has disconnected."""
     with suppress(ConnectionError, *_spoilt()):
         return await request.read()  # type: ignore[no-any-return]
     return None
 
 
 def _is_meant(header: str, listening: str) -> bool:
-    """Tell whether a request's Host names what listens at an address; a name that was made to stand for it does not.
+    """Tell whether a request's Host is an address that is listened on; a rebound DNS name is not.
 
     >>> _is_meant("127.0.0.1:8080", "127.0.0.1"), _is_meant("[::1]", "::1"), _is_meant("evil.example:8080", "127.0.0.1")
     (True, True, False)
@@ -116,7 +115,7 @@ def _number(host: str) -> IPv4Address | IPv6Address | None:
 async def fetching() -> AsyncIterator[Callable[[str], Awaitable[bytes]]]:
     """Hand out a function that gets the answer at an address.
 
-    It raises OSError where there is none, or one that is too long or not 200.
+    It raises OSError if there is none, or if it is too long or not 200.
     """
     aiohttp = _aiohttp()
     async with aiohttp.ClientSession(timeout=aiohttp.ClientTimeout(total=TIMEOUT)) as session:
@@ -144,7 +143,7 @@ async def _body(answer: Any) -> bytes:
 
 @cache
 def _log() -> logging.Logger:
-    """Return what aiohttp logs to: mistakes of clients, which they are told themselves, are left out."""
+    """Return the logger of aiohttp, without clients' mistakes, which they get as answers."""
 
     def is_ours(record: logging.LogRecord) -> bool:
         return not (record.exc_info and isinstance(record.exc_info[1], _spoilt()))
@@ -155,7 +154,7 @@ def _log() -> logging.Logger:
 
 
 def _spoilt() -> tuple[type[Exception], ...]:
-    """Return what aiohttp raises where a request can't be read."""
+    """Return the exceptions that aiohttp raises for an unreadable request."""
     aiohttp = _aiohttp()
     return aiohttp.http_exceptions.HttpProcessingError, aiohttp.web.RequestPayloadError
 

@@ -1,4 +1,4 @@
-"""Explore the UAV family beside BigraphER: states and transitions are asserted, then time and memory are printed.
+"""Explore the UAV family and compare with BigraphER: assert the counts, then print time and memory.
 
 Usage: `python benchmarks/bigraph_systems.py [--bigrapher PATH] [--growth] [--output FILE]`. Where BigraphER is not
 found, its seconds are those measured once on another machine, and marked *quoted*. Seconds are of processor time, so

@@ -1,4 +1,4 @@
-"""Measure the patrol with Ray workers beside one process: counts are asserted, then rates, bytes sent and kept.
+"""Measure the patrol with Ray workers and one process: assert the counts, then print rates and bytes.
 
 Usage: `python benchmarks/cluster.py [--workers N,N] [--output FILE] AGENTSxSIDE[+handover] ...`. All workers run on
 this machine: with more workers than cores the figures say what work costs, not how much faster it is done.

@@ -1,4 +1,4 @@
-"""What AIS costs: sentences from a real socket to physical properties; who sends them is in the account.
+"""Measure the cost of AIS: from sentences on a real socket to physical properties, the sender included.
 
 `python -m benchmarks.feeds`: the recording that ships, again and again.
 """

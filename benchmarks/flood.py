@@ -1,4 +1,4 @@
-"""What a flood does to a run: 20,000 AIS positions and 5,000 MAVLink packets a second that nobody asked for.
+"""Measure a run under a flood: 20,000 AIS positions and 5,000 foreign MAVLink packets a second.
 
 Vehicles that fly and vessels that the mission names are one other process, the flood is a second one: vessels with
 made-up numbers inside the mission's places, and packets from another address that speak in the vehicles' names. What

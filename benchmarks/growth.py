@@ -1,8 +1,8 @@
-"""Measure how rate and memory change while a search grows: one search of the patrol, looked at on its way, and plotted.
+"""Measure how rate and memory change as a search grows: sample one search of the patrol, and plot it.
 
 Usage: `python benchmarks/growth.py [--most N] [--no-peer] [--output FILE] [--plot FILE] [SIZE]`, by default 3x5 up to
-10⁸. What the search learns and loads falls before its first mark, a quarter of the next, which is no row of the table.
-SPIN then searches the same, breadth-first like ours, since nobody knows beforehand how deep its stack would have to be.
+10⁸. Learning and loading mostly precede the first mark, a quarter of the next, which is not a row of the table. SPIN
+then searches the same, breadth-first as we do, since the necessary depth of a stack is not known in advance.
 """
 
 import argparse

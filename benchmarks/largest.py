@@ -1,4 +1,4 @@
-"""Look how large an oil spill and a rendezvous can be explored in given time and memory: in full, then reduced.
+"""Find the largest oil spill and rendezvous that time and memory allow: in full, then reduced.
 
 Usage: `python benchmarks/largest.py [--minutes N] [--gigabytes N] [--uavs N] [--spills N] [--robots N]
 [--no-peer] [--peer-minutes N]`.

@@ -1,4 +1,4 @@
-"""What MAVLink costs: frames of many vehicles through decoder and pilot, per message and as a part of a core.
+"""Measure the cost of MAVLink: frames of many vehicles through decoder and pilot, per message and per core.
 
 `python -m benchmarks.link [VEHICLES]`: positions at 10 Hz and six other messages at 1 Hz, of vehicles that carry out a
 command; simulators and sockets outside the account.

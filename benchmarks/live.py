@@ -1,4 +1,4 @@
-"""How long it takes from telemetry to a committed rule: 100 vehicles at 10 Hz, 1,000 vessels at 1 Hz, one loop.
+"""Measure the latency from telemetry to a committed rule: 100 vehicles at 10 Hz, 1,000 vessels at 1 Hz, one loop.
 
 The vehicles are in the same process, as plugins that publish what a decoded message says: what is measured is the loop,
 the rules and the recording. Beside the time that passed stands the processor time of turns, which other work on the

@@ -1,4 +1,4 @@
-"""Say on what was measured: figures of two machines are no pair."""
+"""Describe the machine of a measurement: figures of two machines cannot be compared."""
 
 import importlib.metadata
 import os

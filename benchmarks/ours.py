@@ -1,4 +1,4 @@
-"""Explore a mission in a process of its own, and say what that took.
+"""Explore a mission in its own process, and report time and memory.
 
 Usage: `python benchmarks/ours.py FILE.mission [options]` prints one JSON object, the fields of `Explored`. The other
 scripts call `explored`, which starts such a process, so that its peak of memory and its start are its own.

@@ -1,4 +1,4 @@
-"""The patrol: UAVs that look for a drifting spill on a grid of cells, as a mission and as the same model in Promela.
+"""The patrol: UAVs that search for a drifting spill on a grid, as a mission and as the same model in Promela.
 
 Every rule of the calculus is one step of the Promela and every cell that varies is in its state vector, so both have
 the same configurations and transitions (monitor cells off). Cells are numbered row by row from the south-west.

@@ -1,4 +1,4 @@
-"""The rendezvous with any number of robots, as a mission and in Promela, and how much less the reductions visit.
+"""The rendezvous with any number of robots, as a mission and in Promela, in full and reduced.
 
     python benchmarks/rendezvous.py [--most N] [ROBOTS ...]
 

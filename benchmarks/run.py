@@ -1,4 +1,4 @@
-"""Measure the patrol beside SPIN: counts are asserted, then both run in turns; cold and warm starts stand apart.
+"""Measure the patrol beside SPIN: assert the counts, then run both in turns, with cold and warm starts.
 
 Usage: `python benchmarks/run.py [--turns N] [--output FILE] AGENTSxSIDE[+handover] ...`. The reference engine takes
 part where there are few configurations.

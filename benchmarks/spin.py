@@ -1,4 +1,4 @@
-"""SPIN as a peer: compile a Promela model, search it all or as far as bounds allow, and say what that took."""
+"""Run SPIN as a peer: compile a Promela model, search it in full or within bounds, and read its report."""
 
 import math
 import os

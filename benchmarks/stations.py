@@ -1,4 +1,4 @@
-"""What stations cost: positions published at one, until they are in the other's world, over loopback.
+"""Measure stations: from publications at one to the other's world, over loopback.
 
 `python -m benchmarks.stations --rate 1000 --seconds 10`: two stations in one process, logs on disk, no TLS.
 """

@@ -1,4 +1,4 @@
-"""Write the tables of docs/performance.md from what the benchmarks kept, between its markers.
+"""Write the tables of docs/performance.md from the benchmarks' results, between its markers.
 
 Usage: `python benchmarks/tables.py [--results FOLDER] [--page FILE]`. What was not measured yet stays.
 """

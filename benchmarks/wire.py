@@ -1,4 +1,4 @@
-"""How long it takes from a telemetry packet that is sent to the committed rule, decoding and sockets in the account.
+"""Measure the latency from a sent telemetry packet to the committed rule, sockets and decoding included.
 
 A hundred simulated vehicles, which speak MAVLink at 10 Hz, and a receiver that sends a thousand AIS positions a second
 are another process; here run the autopilot plugin, the AIS plugin, the loop, the rules and the recording. The clock is

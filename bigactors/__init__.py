@@ -1,4 +1,4 @@
-"""Logical-space programming: the public names of all rooms, in one import.
+"""Logical-space programming: the public names of all packages, in one import.
 
     import bigactors
 

@@ -1,4 +1,4 @@
-"""What `bigactors big check` claims of a system, decided, printed and as data."""
+"""The verdicts of `bigactors big check`, as text and as data."""
 
 import sys
 from argparse import Namespace

@@ -1,4 +1,4 @@
-"""Temporal formulas over the predicates and rules of a system of bigraphs, in the words of a mission's `ltl` and `ctl`.
+"""Temporal formulas over a system's predicates and rules, in the syntax of a mission's `ltl` and `ctl`.
 
 Atoms are the predicates of the system, and `taken` and `enabled` with a rule of it.
 """
@@ -17,9 +17,9 @@ from semantics.properties.propositions import Always, Proposition
 
 LOGICS: Final = ("ltl", "ctl")
 MOST_NESTED: Final = 32
-"""So many operators of paths may be inside each other."""
+"""The most path operators inside each other."""
 MOST_PARTS: Final = 2_000
-"""So many parts may a formula have once `<->` and W are written with other operators, which doubles what is in them."""
+"""The most parts of a formula after `<->` and W are rewritten, which doubles their operands."""
 
 _PREFIXES: Final[dict[str, Callable[[t.Temporal], t.Path]]] = {
     "[]": t.Globally,
@@ -65,12 +65,12 @@ class _Part:
     """A part of a formula.
 
     Attributes:
-        formula: What it means.
-        start: Where it stands in the text.
-        end: Where what follows it stands.
-        depth: How many operators of paths in it are inside each other.
-        size: How many parts it has, written without `<->` and W.
-        of_path: Whether it is about a path that nothing quantifies, in CTL.
+        formula: The formula.
+        start: Its start in the text.
+        end: Its end in the text.
+        depth: How many path operators in it are inside each other.
+        size: How many parts it has without `<->` and W.
+        of_path: Whether it is an unquantified path formula, in CTL.
     """
 
     formula: t.Temporal
@@ -82,7 +82,7 @@ class _Part:
 
 
 class _Elaboration:
-    """From what is written to formulas of one logic."""
+    """Builds formulas of one logic from the syntax tree."""
 
     def __init__(self, text: str, logic: str, system: System) -> None:
         self.text, self.logic = text, logic
@@ -99,7 +99,7 @@ class _Elaboration:
         self.labels = {rule.label for rule in rules}
 
     def state(self, part: _Part) -> t.Temporal:
-        """Return a formula that is to be about a state, as all but those behind A and E are in CTL."""
+        """Return a state formula, as all are in CTL except behind A and E."""
         if part.of_path:
             message = "in ctl an operator of paths stands directly behind A or E"
             raise self.wrong("logic", message, part, "write AG, EF, AX or A (F U G)")
@@ -110,7 +110,7 @@ class _Elaboration:
         return NotationError(code, message, self.text, at.start, length=at.end - at.start, hint=hint)
 
     def part(self, term: s.Term) -> _Part:
-        """Return what a term means."""
+        """Return the formula of a term."""
         parts = (self.part(each) if isinstance(each, s.Term) else each for each in term.parts)
         found: _Part = getattr(self, term.kind)(term, *parts)
         return found
@@ -143,7 +143,7 @@ class _Elaboration:
         return t.Steps((label,)) if label in self.labels else t.Steps((), label)
 
     def known(self, word: s.Word, labels: tuple[str, ...], sort: str) -> str:
-        """Return the label that a word is, spaces in its parameters left out."""
+        """Return a word as a label, without spaces in its parameters."""
         name = _unquoted(word.text)
         if name in labels:
             return name
@@ -212,14 +212,14 @@ class _Elaboration:
         return self.over_path(t.Globally(t.Either(before, after)), at, left, right)
 
     def bounded(self, part: _Part) -> _Part:
-        """Return a part, unless what it stands for is too large."""
+        """Return a part, unless its formula is too large."""
         if part.size > MOST_PARTS:
             message = f"written out, a formula of more than {MOST_PARTS} parts"
             raise self.wrong("too-long", message, part, "check its parts one by one")
         return part
 
     def over_path(self, formula: t.Temporal, at: s.Term, *parts: _Part, times: int = 1) -> _Part:
-        """Return what is about a path (in LTL everything is), one operator deeper than its parts."""
+        """Return a path formula (in LTL every formula is one), one operator deeper than its parts."""
         found = self.bounded(_part(formula, at, *parts, times=times))
         if found.depth >= MOST_NESTED:
             message = f"more than {MOST_NESTED} operators of paths inside each other"

@@ -1,4 +1,4 @@
-"""What `bigactors big full` writes."""
+"""The output files of `bigactors big full`."""
 
 from argparse import Namespace
 from collections.abc import Iterator

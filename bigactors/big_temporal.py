@@ -1,7 +1,7 @@
-"""LTL and CTL on systems of bigraphs: the checker's engine, given a transition system that bigraphs explored.
+"""LTL and CTL on systems of bigraphs: the checker's engine on the transition system of a system.
 
-Runs are infinite: where nothing can happen, a run stays. Nothing is assumed to be fair. Weights play no part, but that
-what has a weight may happen.
+Runs are infinite: a run stays in a state without transitions. No fairness is assumed. A weight only says that a step is
+possible.
 """
 
 from collections.abc import Iterable, Iterator
@@ -64,7 +64,7 @@ class Decider:
 
     @cached_property
     def graph(self) -> Graph:
-        """The graph, with a step that changes nothing where nothing can happen."""
+        """The graph, with a self-loop at each state without transitions."""
         return graph_of(self.found).total()
 
     @cached_property
@@ -80,7 +80,7 @@ class Decider:
     def decide(self, logic: str, text: str) -> Decided:
         """Decide a formula of a logic, `ltl` or `ctl`; raises NotationError if it is none.
 
-        An incomplete system never says that a formula holds; what it shows to be violated is.
+        On an incomplete system a formula can be violated, but never holds.
         """
         formula = parse_formula(text, logic, self.found.system)
         claim = f"{logic} {' '.join(text.split())}"
@@ -89,7 +89,7 @@ class Decider:
         return (self.linear if logic == "ltl" else self.branching)(claim, formula)
 
     def linear(self, claim: str, formula: Temporal) -> Decided:
-        """Decide what is claimed of every run."""
+        """Decide a linear-time formula."""
         try:
             lasso = shortest_counterexample(self.graph, self.truth, formula, NO_FAIRNESS)
         except TooLargeError as error:
@@ -103,7 +103,7 @@ class Decider:
         return Decided(claim, Outcome.VIOLATED, self.run(lasso), what)
 
     def branching(self, claim: str, formula: Temporal) -> Decided:
-        """Decide what is claimed of the tree of runs."""
+        """Decide a branching-time formula."""
         tree = Branching(self.graph, self.truth, NO_FAIRNESS)
         surely, perhaps = bool(tree.where(formula)[0]), bool(tree.where(formula, perhaps=True)[0])
         if perhaps:
@@ -117,11 +117,11 @@ class Decider:
         return Decided(claim, Outcome.VIOLATED, self.run(lasso), "a run that shows it")
 
     def unless_violated(self) -> Outcome:
-        """Return what it means that nothing speaks against a formula."""
+        """Return the outcome for a formula without counterexample."""
         return Outcome.HOLDS if self.found.complete else Outcome.INCOMPLETE
 
     def run(self, lasso: Lasso) -> Run:
-        """Return the run that a lasso of edges is."""
+        """Return a lasso of edges as a run."""
         return Run(tuple(self.steps(lasso)), len(lasso.stem) if lasso.loop else None)
 
     def steps(self, lasso: Lasso) -> Iterator[Step]:

@@ -1,4 +1,4 @@
-"""One mission checked: its report, or why there is none."""
+"""Check one mission: its report, or the reason why there is none."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -40,7 +40,7 @@ REFUSALS: dict[type[Exception], tuple[Exit, str]] = {
     MachineError: (Exit.INCOMPLETE, "try again when less else runs here, or leave --engine out"),
     MemoryError: (Exit.INCOMPLETE, "explore less: --max-memory SIZE, --max-configurations N"),
 }
-"""Why a mission is not explored as it was asked for: the exit code, and what to do."""
+"""Reasons why a mission is not explored as requested: the exit code, and the remedy."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,10 +49,10 @@ class Checked:
 
     Attributes:
         name: The mission as the user gave it.
-        mission: What it says.
-        digest: Of what it says.
-        report: What was found.
-        interrupted: Whether the user ended it.
+        mission: The elaborated mission.
+        digest: The digest of its content.
+        report: Its report.
+        interrupted: Whether the user ended the check.
     """
 
     name: str
@@ -97,7 +97,7 @@ class Failed:
 
 @dataclass(frozen=True, slots=True)
 class How:
-    """How missions are checked: what `check` takes by name."""
+    """How missions are checked: the keyword arguments of `check`."""
 
     engine: Engine | None = None
     violations: int = MOST_VIOLATIONS
@@ -112,7 +112,7 @@ def check_mission(
     variation: Variation,
     how: How | None = None,
 ) -> Checked | Failed:
-    """Check one mission; what goes wrong is told on the standard error and returned."""
+    """Check one mission; a failure is printed on the standard error and returned."""
     how = how or How()
     try:
         mission = checkable(open_mission(name, variation))
@@ -148,7 +148,7 @@ def check_mission(
 
 
 def _of_this(keeping: Keeping, mission: ElaboratedMission, limits: Limits) -> Keeping:
-    """Bind what is kept to the mission as it is varied, to the version, and to what is followed."""
+    """Bind checkpoints to the mission with its variations, to the version, and to the limit of pending requests."""
     bound = digest((digest_of(mission), __version__, limits.pending))
     folder = keeping.folder and str(Path(keeping.folder) / file_stem(mission.name))
     return replace(keeping, folder=folder, digest=bound)

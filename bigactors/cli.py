@@ -1,4 +1,4 @@
-"""The command `bigactors`: reads the line, runs the command, and ends with its exit code."""
+"""The command `bigactors`: parse the line, run the command, exit with its code."""
 
 import sys
 from collections.abc import Sequence

@@ -53,11 +53,11 @@ The output of `bigactors --help` and `bigactors COMMAND --help`. [json.md](json.
 RECORDING_HEAD = """\
 # Recordings of live runs
 
-`bigactors run --record FILE.mcap` writes everything that comes in and that follows from it into one
-[MCAP](https://mcap.dev) file of JSON messages, without chunks: what was flushed is there whatever happens next, so that
-a run ended by `kill -9` leaves a readable recording, without an index at its end. What a vehicle is told (`commands`)
-is in the file before it is sent. Beside it, `FILE.tlog` has every MAVLink frame heard and said, as other ground
-stations read it. Log times are in nanoseconds since 1970 UTC.
+`bigactors run --record FILE.mcap` writes all input of a run and everything that follows from it into one
+[MCAP](https://mcap.dev) file of JSON messages. The file has no chunks, so every flushed message survives: a run ended
+by `kill -9` leaves a readable recording without an index at its end. A command to a vehicle (`commands`) is in the file
+before it is sent. `FILE.tlog` beside it has every MAVLink frame received and sent, in the format of other ground
+stations. Log times are in nanoseconds since 1970 UTC.
 
 A flood does not fill the disk. In a second 100 arrivals of each entity of the mission are written, and 100 of all
 others that one plugin tells of; `left_out` says how many more came. What was taken as a step is written always, with
@@ -68,16 +68,15 @@ link; a report says how many it did not take.
 another configuration than it did (`digest`), the step is named and the exit code is 1. `run --resume FILE.mcap` goes on
 where a killed run was; `show --trace FILE.mcap --step K` draws any of its configurations.
 
-A step is the step of a trace ([trace.schema.json](trace.schema.json)). What the world decided is in `observed`: the
+A step is the step of a trace ([trace.schema.json](trace.schema.json)). `observed` holds what the world decided: the
 cells of P that were written, each as `[cell, value]`. A cell is a list of words such as `["placement", "uav0"]`,
 `["channels", "uav0"]`, `["down", "wifi"]`, `["left", "uav0", "wifi"]`. A placement is `null` (absent),
 `{"at": {"ring": ...}, "altitude": [...]}`, `{"by": ..., "shape": ...}` (carried) or `{"from": ..., "to": ...}` (sent by
-another station); a ring gives latitude and longitude
-in 1e-7 degree, with `of` and `anchor` where a polygon is another one, moved. Replayed, an `env` with an observation may
-write nothing but P, and nothing that is in transit; a `commit` places the vehicle where it was observed, and is a step
-only where the rule's premises hold there. Of several stations each has a recording of its part
-([stations.md](stations.md)): `observed` then has the agent with the station, the number and the parcel that has
-entered, with the station and the number of what left, or with the host that was learned.
+another station). A ring gives latitude and longitude in 1e-7 degree, with `of` and `anchor` where a polygon is another
+one, moved. In a replay, an `env` with an observation may write only P, and nothing that is in transit. A `commit`
+places the vehicle where it was observed, and is a step only if the rule's premises hold there. With several stations
+each has a recording of its part ([stations.md](stations.md)). There `observed` has the agent, with the station, the
+number and the parcel that entered, with the station and the number of what left, or with the host that was learned.
 
 The topics, and what their messages hold:
 """

@@ -1,4 +1,4 @@
-"""Pictures as files: what may be asked of them, and what is said where they cannot be written."""
+"""Picture files: which formats are allowed, and the errors where they cannot be written."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,4 +1,4 @@
-"""What the command ends with."""
+"""Exit codes."""
 
 from collections.abc import Iterable
 from enum import IntEnum

@@ -1,4 +1,4 @@
-"""From what the command line says of feeds to the plugins that hear them."""
+"""Make the plugins of feeds from the command line's options."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ LONGEST_TOKEN = 1_000
 
 @dataclass(frozen=True, slots=True)
 class Hearing:
-    """How feeds are to be heard.
+    """The settings of feeds.
 
     Attributes:
-        naming: Whose names are whose.
-        kinds: The kinds of which a feed may speak; all where there are none.
-        area: Of AIS, what lies outside is passed over.
-        token: What posts must carry.
-        living: For how many seconds a position of each feed counts.
+        naming: The naming service.
+        kinds: The kinds that a feed may report; all if there are none.
+        area: AIS positions outside are ignored.
+        token: The token of posts.
+        living: The seconds for which a position of each feed counts.
     """
 
     naming: NamingService
@@ -56,7 +56,7 @@ def feeds_of(options: Namespace, mission: ElaboratedMission, naming: NamingServi
 
 
 def _told(options: Namespace, mission: ElaboratedMission) -> dict[str, frozenset[str]]:
-    """Return the kinds that are told; those of detections are the mission's."""
+    """Return the given kinds; those of detections must be the mission's."""
     told = dict(options.kinds)
     known = mission.setting.signature.kinds
     for kind in sorted(told.get("detections", frozenset()) - known.keys()):
@@ -66,7 +66,7 @@ def _told(options: Namespace, mission: ElaboratedMission) -> dict[str, frozenset
 
 
 def _expected(mission: ElaboratedMission) -> frozenset[str]:
-    """Return the kinds that may be detected: of the mission, and nothing that is driven."""
+    """Return the kinds that may be detected: the mission's that are not driven."""
     kinds = mission.setting.signature.kinds.values()
     return frozenset(kind.name for kind in kinds if not kind.driven)
 
@@ -98,7 +98,7 @@ def _detections(name: str, address: str, hearing: Hearing) -> Plugin:
     at = parse_address(address.replace("http:", "tcpin:", 1))
     if at.host != LOOPBACK and hearing.token is None:
         hint = "say which token posts must carry: --token FILE"
-        raise Mistake(f"whoever reaches {at.host} could post detections", hint, address)
+        raise Mistake(f"anyone who reaches {at.host} could post detections", hint, address)
     return _detector(name, hearing, listen=Listen(at.port, at.host, hearing.token))
 
 
@@ -125,7 +125,7 @@ FEEDS: dict[str, Callable[[str, str, Hearing], Plugin]] = {
     "locations": _locations,
     "places": _places,
 }
-"""For each kind of feed what makes its plugin from a name, an address and how it is to be heard."""
+"""The function that makes each kind of feed from a name, an address and the settings."""
 
 
 def _feed(kind: str, address: str, number: int, hearing: Hearing) -> Plugin:

@@ -1,4 +1,4 @@
-"""The geofence of a mission's vehicles: what its world says of where they may ever be."""
+"""The geofence of a mission's vehicles, from its world."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NONE, WORLD = "none", "world"
 
 
 def fence_of(word: str, mission: ElaboratedMission) -> Geometry | None:
-    """Return the polygon that vehicles are to be kept in: a place, what the world gives, or none; raises Mistake."""
+    """Return the vehicles' fence: a place, the world's default, or none; raises Mistake."""
     if word == NONE:
         return None
     if word == WORLD:
@@ -36,7 +36,7 @@ def fence_of(word: str, mission: ElaboratedMission) -> Geometry | None:
 
 
 def _around(mission: ElaboratedMission) -> Geometry | None:
-    """Return the smallest place that never moves and holds all that vehicles may come to, else a box around that."""
+    """Return the smallest immobile place that contains all that vehicles may reach, else a box around that."""
     grounds = tuple(dict.fromkeys(_grounds(mission)))
     physical = mission.initial.structure.physical
     standing = (physical.placement(name) for name in sorted(mission.fixed))
@@ -50,7 +50,7 @@ def _around(mission: ElaboratedMission) -> Geometry | None:
 
 
 def _grounds(mission: ElaboratedMission) -> Iterator[Geometry]:
-    """Yield where vehicles are at first, and all that may hold them wherever it may be."""
+    """Yield the vehicles' first placements, and all possible placements of what may contain them."""
     setting, physical = mission.setting, mission.initial.structure.physical
     driven = [name for name, kind in setting.kinds.items() if setting.signature[kind].driven]
     for vehicle in driven:
@@ -63,7 +63,7 @@ def _grounds(mission: ElaboratedMission) -> Iterator[Geometry]:
 
 
 def placements_of(place: Name, mission: ElaboratedMission) -> tuple[Geometry, ...]:
-    """Return where a place is at first and wherever the mission lets it be."""
+    """Return a place's first placement and all others that the mission allows."""
     return tuple(dict.fromkeys(at.geometry for at in _placements(place, mission)))
 
 

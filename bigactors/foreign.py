@@ -1,4 +1,4 @@
-"""Recordings that others made, as feeds: the world that a telemetry log or an AIS recording shows, and its bigraph."""
+"""Foreign recordings as feeds: telemetry logs and AIS recordings, and the bigraph of the world that they show."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ class Shown:
     """What a recording shows of a mission's world.
 
     Attributes:
-        trace: What happened in it: steps of `env` alone.
-        times: When each step was.
-        findings: What the mission's environment section does not say.
-        positions: How many positions there were.
+        trace: Its steps, all of `env`.
+        times: The time of each step.
+        findings: Events that the mission's environment section does not allow.
+        positions: The number of positions.
     """
 
     trace: Trace

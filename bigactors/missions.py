@@ -1,4 +1,4 @@
-"""Missions by the path or the name that the user gives, with a digest of all that they say."""
+"""Missions by path or name, with a digest of their content."""
 
 import hashlib
 from argparse import Namespace
@@ -42,7 +42,7 @@ def locate(word: str) -> Path:
 
 
 def variation_of(options: Namespace) -> Variation:
-    """Return what the options put in the place of what a mission says; raises Mistake for a file that isn't there."""
+    """Return the options' variation of a mission; raises Mistake for a missing file."""
     sources = {name: Path(file) for name, file in options.source}
     for name, path in sources.items():
         if not path.exists():
@@ -63,7 +63,7 @@ def open_mission(word: str, variation: Variation) -> ElaboratedMission:
 
 
 def checkable(mission: ElaboratedMission) -> ElaboratedMission:
-    """Return a mission of which there is something to check; raises Mistake where nobody acts."""
+    """Return a mission that can be checked; raises Mistake if it has no agents."""
     try:
         require_bigactor(mission)
     except MissionError as error:
@@ -72,7 +72,7 @@ def checkable(mission: ElaboratedMission) -> ElaboratedMission:
 
 
 def opening(variation: Variation) -> Callable[[str], ElaboratedMission]:
-    """Return what opens missions as `open_mission` does, each of them once, however often it is asked for."""
+    """Return a cached `open_mission`."""
     return cache(partial(open_mission, variation=variation))
 
 
@@ -101,7 +101,7 @@ def diagnostic_json(diagnostic: Diagnostic, source: Source) -> dict[str, object]
 def digest_of(mission: ElaboratedMission) -> str:
     """Return a digest of the mission's text, its scheduler, control and first world, and the version of bigactors.
 
-    Two missions with one digest have the same configurations: what files say that a mission names is in its world.
+    Two missions with one digest have the same configurations: the content of files that they name is in their world.
     """
     initial = mission.initial
     world = dict(initial.state.items())  # type: ignore[attr-defined]  # a stored configuration

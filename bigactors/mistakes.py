@@ -1,4 +1,4 @@
-"""The user's mistakes on the command line and in its files, and what is said of our own bugs."""
+"""The user's mistakes on the command line and in files, and the message after our own bugs."""
 
 import traceback
 from collections.abc import Iterable

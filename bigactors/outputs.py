@@ -1,4 +1,4 @@
-"""What `check` writes for other programs: which formats go where, and the writing."""
+"""The files that `check` writes for other programs: their formats, and the writing."""
 
 import os
 from argparse import Namespace

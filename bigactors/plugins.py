@@ -1,4 +1,4 @@
-"""From what the command line says of vehicles and feeds to the plugins that serve them."""
+"""Make the plugins of vehicles and feeds from the command line's options."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ MOST_STATIONS = 254
 def plugins_of(
     options: Namespace, mission: ElaboratedMission, tap: Tap | None = None
 ) -> tuple[tuple[Plugin, ...], dict[str, str]]:
-    """Return the plugins of a run, and which of them owns each vehicle; `tap` is told every frame; raises Mistake."""
+    """Return the plugins of a run, and the owner of each vehicle; `tap` receives every frame; raises Mistake."""
     try:
         crafts = _crafts(options, mission)
         vehicles = _vehicles(options, mission, crafts, tap)
@@ -60,7 +60,7 @@ def _vehicles(
 
 
 def _crafts(options: Namespace, mission: ElaboratedMission) -> dict[str, Craft]:
-    """Return the vehicles that are given, known by what --vehicle or --name says of them."""
+    """Return the given vehicles, with the ids of --vehicle or --name."""
     found: dict[str, Craft] = {}
     for name, system, _ in options.vehicle:
         if name in found:
@@ -113,11 +113,11 @@ def _system(name: str, given: int | None, told: str | None) -> int | None:
 
 
 def _own_names(options: Namespace, mission: ElaboratedMission, crafts: dict[str, Craft]) -> dict[str, str]:
-    """Return the names that nobody else can take: of the vehicles, the stations, and places that never move.
+    """Return the reserved names: of the vehicles, the stations, and places that never move.
 
-    What the mission has as no entity can't be one: its bigActors, kinds and channels, and `region`.
+    The names of bigActors, kinds and channels, and `region`, are reserved as well.
 
-    A place of a kind that detections are told to be of can be detected: where it is otherwise, an assumption breaks.
+    A place whose kind is given for detections can be detected: if it is elsewhere, an assumption breaks.
     """
     detected = dict(options.kinds).get("detections", frozenset())
     own = {
@@ -139,7 +139,7 @@ def _own_names(options: Namespace, mission: ElaboratedMission, crafts: dict[str,
 
 
 def _stations_of(mission: ElaboratedMission) -> set[str]:
-    """Return what is ours on the ground: the entities that have control authority, and those that host bigActors."""
+    """Return our ground stations: the entities that have control authority, and those that host bigActors."""
     alpha, kinds = mission.initial.alpha, mission.setting.kinds
     hosts = {alpha.host(agent) for agent in alpha.names()}
     channels = {each for name in kinds for each in mission.initial.structure.physical.channels(name)}
@@ -153,9 +153,9 @@ def _has_border(name: str, mission: ElaboratedMission) -> bool:
 
 
 def _check_all_driven(options: Namespace, mission: ElaboratedMission) -> None:
-    """Refuse to fly a mission while a vehicle of it is nowhere: what is sent there would never be seen to arrive.
+    """Refuse to fly a mission without one of its vehicles, whose flights would never be seen to end.
 
-    Of several stations each has its own vehicles.
+    With several stations, each has its own vehicles.
     """
     missing = sorted(driven(mission) - {name for name, _, _ in options.vehicle})
     if missing and own_station(options) is None:

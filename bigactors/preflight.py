@@ -1,7 +1,7 @@
-"""What of a mission no vehicle here can do: said before take-off, not when a request turns out to wait for ever.
+"""Checks before take-off: parts of a mission that no vehicle here can carry out.
 
-A control is committed when something has shown that it is done. Vehicles show where they are, and whom they obey. That
-one is aboard another, that a load was put down, or that a channel was joined, nothing shows.
+A control commits when a report has shown that it is done. Vehicles report where they are, and whom they obey. No report
+shows that one is aboard another, that a load was put down, or that a channel was joined.
 """
 
 from __future__ import annotations
@@ -26,22 +26,22 @@ from semantics.state.signature import Name
 from specs.elaboration import ElaboratedMission
 
 PATIENCE = 15.0
-"""Seconds in which a vehicle should have told what it may do."""
+"""Seconds in which a vehicle should have reported its parameters."""
 
 MOST_INSTANCES = 5_000
-"""Of a control that may be about more than these, the first are looked at."""
+"""How many cases of a control are checked."""
 
 Objection = Callable[[Reaction], str]
-"""Returns what stands against a control, nothing if it can be done."""
+"""Returns the objection to a control, or an empty text."""
 
 
 def check_flyable(mission: ElaboratedMission) -> None:
-    """Refuse controls that nothing would ever confirm, warn of those that may be; raises Mistake."""
+    """Refuse controls that no report would ever confirm, warn of possible ones; raises Mistake."""
     _judge(mission, lambda reaction: next(_unshown(reaction, mission), ""))
 
 
 def check_places(mission: ElaboratedMission, plugins: tuple[Plugin, ...]) -> None:
-    """Refuse places that are too small for a vehicle, now that it has told what it is, or outside a fence of it.
+    """Refuse places that are too small for a vehicle whose kind is now known, or outside one of its fences.
 
     Raises Mistake.
     """
@@ -65,7 +65,7 @@ def check_places(mission: ElaboratedMission, plugins: tuple[Plugin, ...]) -> Non
 
 
 async def get_to_know(plugins: tuple[Plugin, ...]) -> None:
-    """Wait until the vehicles have told how they circle, and which fences they have; not for one that does not tell."""
+    """Wait until the vehicles have reported their circles and fences, or have not answered in time."""
     with suppress(TimeoutError):
         async with asyncio.timeout(PATIENCE):
             while not all(plugin.is_known() for plugin in _pilots(plugins)):
@@ -77,7 +77,7 @@ def _pilots(plugins: tuple[Plugin, ...]) -> list[Autopilot]:
 
 
 def _judge(mission: ElaboratedMission, objection: Objection) -> None:
-    """Raise Mistake for a control that cannot be done whoever it is about, and warn where that depends."""
+    """Raise Mistake for a control that can never be done, and warn of one that may be impossible."""
     for agent, line, reactions in _controls(mission):
         reasons = {str(reaction): objection(reaction) for reaction in reactions}
         bad = [f"{control}: {reason}" for control, reason in reasons.items() if reason]
@@ -95,7 +95,7 @@ def _place(mission: ElaboratedMission, line: int) -> str:
 
 
 def _controls(mission: ElaboratedMission) -> Iterator[tuple[Name, int, tuple[Reaction, ...]]]:
-    """Yield the controls of each agent, with their lines, for all that their arguments may name."""
+    """Yield the controls of each agent, with their lines, for all possible arguments."""
     program, roles = mission.setting.program, Roles(Bounds(mission.initial))
     for agent in roles.agents:
         for number in sorted(roles[agent].statements):
@@ -111,14 +111,14 @@ def _instances(
     mission: ElaboratedMission, make: Callable[..., Reaction], several: Iterable[Sequence[Name]]
 ) -> Iterator[Reaction]:
     for chosen in islice(product(*several), MOST_INSTANCES):
-        with suppress(Fault):  # not every name is one that the command takes
+        with suppress(Fault):  # the command does not take every name
             reaction = make(*chosen)
             if _may_take(mission, reaction):
                 yield reaction
 
 
 def _may_take(mission: ElaboratedMission, reaction: Reaction) -> bool:
-    """Tell whether what a reaction moves may be where it goes and at what it passes, each of them another place."""
+    """Tell whether a reaction's movers may be at its destinations and ways, all different places."""
     moves = tuple(_moves(reaction))
     ways = ((node, place) for node, to in moves for place in (*reaction.via, to))
     each_once = all(len({*reaction.via, to}) == len(reaction.via) + 1 for _, to in moves)
@@ -149,7 +149,7 @@ def _unshown(reaction: Reaction, mission: ElaboratedMission) -> Iterator[str]:
 
 
 def _moves(reaction: Reaction) -> Iterator[tuple[NodeTerm, PlaceTerm]]:
-    """Yield what a reaction moves, and where to."""
+    """Yield the nodes that a reaction moves, and their destinations."""
     before = dict(reaction.redex.parents)
     return ((node, place) for node, place in reaction.reactum.parents if before.get(node) != place)
 

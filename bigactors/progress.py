@@ -1,4 +1,4 @@
-"""How far an exploration has come, on one line of a terminal; and its end by Ctrl-C."""
+"""The progress of an exploration, on one line of a terminal; and its end by Ctrl-C."""
 
 import shutil
 import signal
@@ -37,14 +37,14 @@ class Watch:
             self.rewrite(describe(self.name, progress))
 
     def rewrite(self, text: str) -> None:
-        """Put a text in the place of the last."""
+        """Replace the last text."""
         width = shutil.get_terminal_size().columns - 1
         text = text[:width]
         write(self.stream, "\r" + paint(text.ljust(min(self.shown, width)), "faint", self.stream), flush=True)
         self.shown = len(text)
 
     def clear(self) -> None:
-        """Take the line away."""
+        """Clear the line."""
         if self.shown:
             write(self.stream, "\r" + " " * self.shown + "\r", flush=True)
             self.shown = 0
@@ -69,7 +69,7 @@ def describe(name: str, progress: Progress) -> str:
 
 
 def describe_rest(progress: Progress) -> str:
-    """Say how much more there may be, if that can be said: a range, since nobody knows.
+    """Describe the estimated rest of an exploration as a range, if there is an estimate.
 
     >>> from checker.engines.estimate import Estimate
     >>> describe_rest(Progress(12_000, 30_000, 7, 450, 10.0, Estimate(12_000, 13_150)))
@@ -83,7 +83,7 @@ def describe_rest(progress: Progress) -> str:
 
 
 def rounded(number: int, least: int) -> int:
-    """Return a number to two digits, but no less than is known.
+    """Return a number rounded to two digits, but at least the known minimum.
 
     >>> rounded(1_234_567, 0), rounded(101_000, 100_900)
     (1200000, 100900)

@@ -1,4 +1,4 @@
-"""Recordings of live runs as missions with traces: replayed, and gone on from."""
+"""Recordings of live runs as missions with traces: to be replayed or resumed."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from specs.parser import parse
 
 
 def open_recording(path: str) -> Recording:
-    """Return what a file holds; raises Mistake."""
+    """Return the content of a recording; raises Mistake."""
     try:
         return read_recording(Path(path))
     except RecordingError as error:
@@ -32,7 +32,7 @@ def open_recording(path: str) -> Recording:
 
 
 def mission_of(recording: Recording) -> ElaboratedMission:
-    """Return the mission that was flown: its text is in the recording, files that it names are where they were."""
+    """Return the mission that was flown; its text is in the recording, files that it names are read again."""
     run = recording.run
     sources = run.get("sources")
     found = {name: Path(str(file)) for name, file in sources.items()} if isinstance(sources, dict) else {}
@@ -55,7 +55,7 @@ def trace_of(recording: Recording, mission: ElaboratedMission) -> Trace:
 
 
 def parting_of(recording: Recording) -> Parting | None:
-    """Return which part of its mission a recording is of, None where it is of the whole; raises Mistake."""
+    """Return the part of its mission that a recording covers, None for the whole; raises Mistake."""
     match recording.run.get("station"):
         case None:
             return None
@@ -69,10 +69,10 @@ def parting_of(recording: Recording) -> Parting | None:
 
 @dataclass(frozen=True, slots=True)
 class Resumed:
-    """A run that another goes on from.
+    """A run that another one resumes.
 
     Attributes:
-        configuration: Where it was.
+        configuration: Its last configuration.
         steps: How many steps it took.
         orders: How many orders it gave.
         messages: Its steps, who was taken over and given back, and what broke, to be recorded again.
@@ -93,7 +93,7 @@ class Resumed:
 
 
 def resume(path: str, mission: ElaboratedMission) -> Resumed:
-    """Return where a recorded run was; raises Mistake for one of another mission."""
+    """Return the last state of a recorded run; raises Mistake for one of another mission."""
     recording = open_recording(path)
     if recording.run["digest"] != digest_of(mission):
         raise Mistake(
@@ -149,7 +149,7 @@ def _still_taken(messages: Iterable[Message]) -> dict[str, str]:
 
 
 def _left(trace: Trace) -> Iterator[Outgoing]:
-    """Yield what left for other stations: it is what the configuration before had of the agent."""
+    """Yield the parcels that left for other stations, from the agent's state in the configuration before."""
     for step, before in zip(trace.steps, trace.configurations, strict=False):
         if isinstance(step.sight, Passage) and step.sight.parcel is None:
             parcel = parcel_of(before, step.sight.agent)

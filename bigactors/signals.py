@@ -1,4 +1,4 @@
-"""Signals that ask for the end: those of service managers and of terminals that close do what Ctrl-C does."""
+"""Signals that end a run: those of service managers and closing terminals act like Ctrl-C."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ENDING: Final = tuple(
 
 @contextmanager
 def ending_as_ctrl_c() -> Iterator[None]:
-    """Let them do what Ctrl-C does at that moment; one that is ignored, as by `nohup`, stays so."""
+    """Let them act like Ctrl-C at that moment; an ignored one, as by `nohup`, stays ignored."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -1,4 +1,4 @@
-"""Signatures of verdicts (Ed25519): who reached one, and that nobody has changed it; key pairs as PEM files.
+"""Signatures of verdicts (Ed25519), which show the author and detect changes; key pairs as PEM files.
 
 The only place that knows the library `cryptography`.
 """

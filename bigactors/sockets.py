@@ -1,4 +1,4 @@
-"""Where running missions listen for what is said to them: sockets in a folder that is their user's alone."""
+"""The sockets of running missions, in a folder that only their user may open."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LONGEST = 100
 
 
 def folder() -> Path:
-    """Return the folder of this user's sockets, made if it is not there; raises Mistake where it is another's."""
+    """Return the folder of this user's sockets, made if missing; raises Mistake if it is another user's."""
     runtime = os.environ.get("XDG_RUNTIME_DIR")
     path = Path(runtime) / "bigactors" if runtime else Path(f"/tmp/bigactors-{os.getuid()}")
     try:
@@ -28,7 +28,7 @@ def folder() -> Path:
 
 
 def socket_of(mission: str, given: str | None) -> Path:
-    """Return where a mission listens."""
+    """Return the path of a mission's socket."""
     path = Path(given) if given is not None else folder() / f"{file_stem(mission)}.sock"
     if len(os.fsencode(path.absolute())) > LONGEST:
         raise Mistake(

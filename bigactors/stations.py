@@ -32,37 +32,37 @@ class Company:
 
     Attributes:
         sharing: The plugin by which it shares.
-        parting: Which part of the mission is its own.
+        parting: Its part of the mission.
     """
 
     sharing: Sharing
     parting: Parting
 
     def plan(self, plan: Plan, mission: ElaboratedMission) -> Plan:
-        """Return what stays the same at this station: its part of the mission; others' vehicles are heard from them."""
+        """Return the run's constants at this station: its part of the mission; other stations report their vehicles."""
         elsewhere = dict.fromkeys(driven(mission) - plan.vehicles.keys(), NAME)
         first = parted(mission.initial, self.parting)
         return replace(plan, first=first, vehicles={**plan.vehicles, **elsewhere}, peers=NAME)
 
     def plugins(self, plugins: Sequence[Plugin]) -> tuple[Plugin, ...]:
-        """Return the plugin by which the others are heard, begun first, and ours, each telling them what it learns."""
+        """Return the plugin of the other stations, to be started first, and our own plugins, which share with them."""
         return (self.sharing, *map(self.sharing.sharing, plugins))
 
 
 def own_station(options: Namespace) -> str | None:
-    """Return the station that this run is, None where it is the only one; raises Mistake."""
+    """Return the name of this run's station, None if it is the only one; raises Mistake."""
     found = sorted({name for name, number in options.station if number is None})
     if len(found) > 1:
         raise Mistake(f"a run is one station, not {' and '.join(found)}", "start another run for the other")
     if found and options.peers is None:
-        raise Mistake(f"who are the others of station '{found[0]}'?", "say so: --peers FILE")
+        raise Mistake(f"the peers of station '{found[0]}' are not given", "give them: --peers FILE")
     if options.peers is not None and not found:
-        raise Mistake("which of the stations is this?", "say so: --station NAME")
+        raise Mistake("the name of this station is not given", "give it: --station NAME")
     return found[0] if found else None
 
 
 def company_of(options: Namespace, mission: ElaboratedMission, before: Resumed | None) -> Company | None:
-    """Return the station that a run is among the others, None where it is the only one; raises Mistake."""
+    """Return this run's station among the others, None if it is the only one; raises Mistake."""
     station = own_station(options)
     if station is None:
         return None
@@ -109,7 +109,7 @@ def _peers(options: Namespace, station: str) -> Peers:
 
 
 def _check_hosts(peers: Peers, mission: ElaboratedMission, place: str) -> None:
-    """Refuse stations and hosts that the mission doesn't have, and bigActors that nobody would run."""
+    """Refuse stations and hosts that the mission doesn't have, and bigActors without a station."""
     kinds, alpha = mission.setting.kinds, mission.initial.alpha
     for host, station in peers.hosts.items():
         if host not in kinds:
@@ -128,7 +128,7 @@ def _is_same(flown: Parting | None, peers: Peers) -> bool:
 
 
 def _parting(peers: Peers, journal: Journal, before: Resumed | None) -> Parting:
-    """Return which part of a mission is a station's; a run that is resumed tells its log what it had not yet."""
+    """Return a station's part of a mission; a resumed run writes missing entries to its log."""
     here = peers.own.name
     journal.add([*_amended(journal, before)])
     if before is None:
@@ -146,7 +146,7 @@ def _parting(peers: Peers, journal: Journal, before: Resumed | None) -> Parting:
 
 
 def _amended(journal: Journal, before: Resumed | None) -> Iterator[Content]:
-    """Yield what the log has otherwise than the run: it was killed in between, or begins anew."""
+    """Yield the entries by which the log differs from the run, after a crash or a new start."""
     now = time.time()
     physical = None if before is None else before.configuration.structure.physical
     for entry in list(journal.entries()):
@@ -167,6 +167,6 @@ def _amended(journal: Journal, before: Resumed | None) -> Iterator[Content]:
 
 
 def parting_json(parting: Parting) -> dict[str, Any]:
-    """Return which part of a mission was flown as plain data."""
+    """Return the flown part of a mission as plain data."""
     counts = {"sent": dict(parting.sent), "took": dict(parting.took)}
     return {"here": parting.here, "hosts": dict(parting.hosts), **counts}

@@ -1,4 +1,4 @@
-"""Printing: safe in any encoding, quiet when nobody reads any more, coloured on a terminal only."""
+"""Printing to the terminal: safe in any encoding, quiet after a closed pipe, coloured on a terminal only."""
 
 import codecs
 import errno
@@ -30,7 +30,7 @@ def _plain(error: UnicodeError) -> tuple[str | bytes, int]:
 
 @contextmanager
 def safe_output() -> Iterator[None]:
-    """Print what an encoding lacks in plain letters, and leave nothing unprinted at the end."""
+    """Replace characters that the encoding lacks, and flush the output at the end."""
     codecs.register_error("bigactors.plain", _plain)
     for stream in (sys.stdout, sys.stderr):
         if getattr(stream, "errors", "") in ("strict", "backslashreplace", "surrogateescape"):
@@ -53,9 +53,9 @@ def say_text(text: str, *, flush: bool = False) -> None:
 
 
 def tell(text: str, mark: str = "") -> None:
-    """Print what is not the answer: a mistake, a warning, where a file was written; `mark` stands before it in red.
+    """Print a side message: a mistake, a warning, the path of a written file; `mark` stands before it in red.
 
-    What files say may be quoted in it: signs that would steer a terminal are not passed on.
+    It may quote files, so terminal control characters are removed.
     """
     write(sys.stdout, "", flush=True)
     shown = "".join(
@@ -65,7 +65,7 @@ def tell(text: str, mark: str = "") -> None:
 
 
 def paint(text: str, colour: str, stream: TextIO) -> str:
-    """Return a text in a colour, where the stream shows colours."""
+    """Return a text in a colour, if the stream shows colours."""
     return f"\033[{COLOURS[colour]}m{text}\033[0m" if shows_colours(stream) else text
 
 
@@ -75,12 +75,12 @@ def shows_colours(stream: TextIO) -> bool:
 
 
 def is_terminal(stream: TextIO) -> bool:
-    """Tell whether somebody looks on."""
+    """Tell whether a stream is a terminal."""
     return not stream.closed and stream.isatty()
 
 
 def write(stream: TextIO, text: str, *, flush: bool = False) -> None:
-    """Print to nobody where the reader has gone; raises Mistake for anything else that stands against it."""
+    """Write a text, and discard it after a closed pipe; raises Mistake for any other error."""
     try:
         stream.write(text)
         if flush:
@@ -99,7 +99,7 @@ def _was_terminal(stream: TextIO, error: OSError) -> bool:
 
 
 def _discard(stream: TextIO) -> None:
-    """Let what is still printed vanish: the reader has gone, but the verdict is not changed by that."""
+    """Discard further output: the reader has gone, but the verdict stays the same."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, stream.fileno())
     os.close(nowhere)

@@ -1,4 +1,4 @@
-"""Verdict files: what `check` decided of exactly one mission, and what `run` asks for before anything flies."""
+"""Verdict files: what `check` decided for exactly one mission, and what `run` requires before take-off."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ PARTS = {
     "entities": "the entities that are declared",
     "environment": "the environment section",
 }
-"""What a verdict is bound to, part by part, and how each is called."""
+"""The parts of a mission to which a verdict is bound, with their names."""
 
 
 def verdict_json(checked: Checked, engine: str, key: SigningKey | None = None) -> dict[str, Any]:
@@ -68,13 +68,13 @@ def verdict_json(checked: Checked, engine: str, key: SigningKey | None = None) -
 
 
 def said_by(data: dict[str, Any]) -> bytes:
-    """Return all that a verdict says as one text: what its seal is a digest of, and what is signed."""
+    """Return a verdict's content as one text, from which its seal and signature are computed."""
     said = {name: value for name, value in data.items() if name not in ("seal", "signature")}
     return json.dumps(said, sort_keys=True, ensure_ascii=True).encode("ascii")
 
 
 def _seal(data: dict[str, Any]) -> str:
-    """Return a digest of all that a verdict says: an accident is seen; who means to can work it out as well."""
+    """Return a digest of a verdict's content: it detects accidents, not forgery."""
     return "sha256:" + hashlib.sha256(said_by(data)).hexdigest()
 
 
@@ -94,12 +94,12 @@ def parts_of(mission: ElaboratedMission) -> dict[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class Licence:
-    """The verdict that a run rests on.
+    """The verdict of a run.
 
     Attributes:
         path: The file.
-        data: What it says.
-        resting: The properties whose verdicts rest on the environment section.
+        data: Its content.
+        resting: The properties whose verdicts depend on the environment section.
         scheduler: The scheduler under which it was decided.
     """
 
@@ -123,10 +123,10 @@ def find_verdict(mission: str, given: str | None) -> str | None:
 def licence_for(
     name: str, path: str, mission: ElaboratedMission, trusted: TrustedKey | None = None
 ) -> Licence:
-    """Return the verdict of a file as the right to run a mission; raises Mistake with what stands against it.
+    """Return the verdict of a file if it allows to run a mission; raises Mistake with the reason if not.
 
-    The mission is the one that is to be flown, as it was read: a file that was swapped since changes nothing. Where a
-    key is trusted, the verdict has to be signed by it.
+    The mission is the one that flies, as it was read: replacing its file changes nothing. If a key is trusted, the
+    verdict must be signed with it.
     """
     data = read_json(path)
     if trusted is not None and isinstance(data, dict):
@@ -160,7 +160,7 @@ def _scheduler_of(data: Any, path: str) -> Scheduler:
 
 
 def _differing(data: dict[str, Any], mission: ElaboratedMission) -> str:
-    """Return what of a mission is not as it was when the verdict was reached."""
+    """Return the parts of a mission that have changed since the verdict."""
     if data.get("version") != __version__:
         return f"it was reached by version {data.get('version')!s:.40}, this is {__version__}"
     known = data.get("parts")

@@ -1,4 +1,4 @@
-"""Who looks on while a mission flies: the operator's terminal, and the recording."""
+"""Watchers of a flying mission: the operator's terminal, and the recording."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from bigactors.mistakes import Mistake
 from bigactors.terminal import paint, say_text, tell
 
 TOLD = frozenset({"env", "say", "command", "commit", "actuate", "migrate", "spawn"})
-"""The rules whose steps an operator is shown; the others are in the recording."""
+"""The rules whose steps are shown to the operator; the recording has the others too."""
 
 DONE = {"hold": "vehicles hold", "return": "vehicles return"}
 """What is done when the mission falls back."""
@@ -30,17 +30,17 @@ MOST_BREACHES = 10
 """How much of what broke in a run is said when another goes on from it."""
 
 Resting = Callable[[Finding], tuple[str, ...]]
-"""Returns the properties whose verdicts rest on what a finding says is otherwise."""
+"""Returns the properties whose verdicts depend on a finding's assumption."""
 
 
 @dataclass(slots=True)
 class Terminal:
-    """Prints what happens: steps that change the world, what agents display, what is otherwise than it should be.
+    """Prints steps that change the world, the displays of agents, and findings.
 
     Attributes:
-        resting: Which verdicts rest on what broke.
+        resting: The verdicts that depend on a finding's assumption.
         broken: Whether an assumption broke, or the recording or a plugin failed.
-        taken: Which vehicles were taken over, and how.
+        taken: The vehicles that were taken over, and how.
     """
 
     resting: Resting
@@ -66,13 +66,13 @@ class Terminal:
             )
 
     def arrived(self, heard: Heard, now: float) -> None:
-        """Print nothing: positions come all the time."""
+        """Print nothing: positions are too frequent."""
 
     def reported(self, report: Report, now: float) -> None:
-        """Print nothing: what matters of it becomes a finding."""
+        """Print nothing: important reports become findings."""
 
     def turned(self, turn: Turn, now: float) -> None:
-        """Print what a turn came to."""
+        """Print the result of a turn."""
         self.began = now if self.began is None else self.began
         self.taken = turn.state.taken
         for step in turn.steps:
@@ -114,7 +114,7 @@ def _breaks(finding: Finding) -> bool:
 
 @contextmanager
 def _flying_on() -> Iterator[None]:
-    """Say that the output can't be written, where that is so: it ends no flight."""
+    """Report an output that can't be written; this does not end the flight."""
     try:
         yield
     except Mistake as mistake:
@@ -143,14 +143,14 @@ class Tape:
 
 
 class Log:
-    """A telemetry log: every frame heard and said, with its time, as other ground stations read it."""
+    """A telemetry log: every frame received and sent, with its time, in the format of other ground stations."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
         self._file: BinaryIO | None = None
 
     def __call__(self, time: float, frame: bytes) -> None:
-        """Write a frame at once: what was written survives the process."""
+        """Write a frame at once, so that it survives the process."""
         if self._file is None:
             self._file = open_private(self._path, "ab", buffering=0)
         said = entry(time, frame)

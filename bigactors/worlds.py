@@ -1,4 +1,4 @@
-"""Worlds without a mission: what files say is where, as a configuration without agents."""
+"""Worlds without a mission: files as a configuration without agents."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping

@@ -1,4 +1,4 @@
-"""The algebra of bigraphs: products, composition, nesting, closure, and the elements that they start from."""
+"""The algebra of bigraphs: products, composition, nesting, closure, and the elementary bigraphs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Taking a match apart: target = context ∘ (redex ⊗ identity) ∘ parameter, with every name accounted for."""
+"""Decomposition of a match: target = context ∘ (redex ⊗ identity) ∘ parameter, with all names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a user of bigraphs can get wrong, as data."""
+"""Errors of a user of bigraphs, as data."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Full transition systems: breadth first over all that can happen."""
+"""Explore a system: its full transition system, breadth first."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from bigraphs.system import System, SystemKind
 from bigraphs.transitions import TransitionSystem
 
 MOST_REMEMBERED: Final = 200_000
-"""How many numberings of states are remembered, to save finding their canonical keys once more."""
+"""How many numberings of states are cached, so that their canonical keys are not computed again."""
 LOOK_EVERY: Final = 0.2
-"""After how many seconds whoever watches is told."""
+"""Seconds between two progress reports."""
 
 
 class Progress(NamedTuple):

@@ -1,4 +1,4 @@
-"""Bigraphs as networkx graphs, for whoever wants paths, components or other layouts."""
+"""Bigraphs as networkx graphs, for paths, components and other layouts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Interfaces: what a bigraph shows to be composed by."""
+"""Interfaces: the sites, regions and names by which bigraphs compose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How people are told which node, link or place is meant, wherever a bigraph is shown."""
+"""Labels of nodes, links and places, the same wherever a bigraph is shown."""
 
 from __future__ import annotations
 

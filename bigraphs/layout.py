@@ -1,4 +1,4 @@
-"""Where the boxes of a drawing go: a pure function of the bigraph, in points (1/72 inch), y downwards.
+"""The layout of a drawing's boxes: a pure function of the bigraph, in points (1/72 inch), y downwards.
 
 Boxes are packed into rows bottom-up, as near to a pleasant shape as their order allows, then stretched
 top-down so that rows are flush. Names lie on the rim: outer ones above, inner ones below. A node in several

@@ -1,4 +1,4 @@
-"""Curves around boxes: a link that would cross a box or a label takes the lanes between them where that is shorter."""
+"""Routes around boxes: a link that would cross a box or a label takes the lanes between them if that is shorter."""
 
 from __future__ import annotations
 

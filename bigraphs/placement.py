@@ -1,4 +1,4 @@
-"""The second half of matching: where the regions of a redex lie, and what its sites hold, once its nodes are placed."""
+"""The second half of matching: place a redex's regions and sites once its nodes are placed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Properties of states, in the terms of BigMC: patterns, sizes, and a look at the states before and after."""
+"""Properties of states, as in BigMC: patterns, sizes, and the states before and after."""
 
 from __future__ import annotations
 

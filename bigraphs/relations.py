@@ -1,4 +1,4 @@
-"""Bigraphs from relations: who is in what, and who is on which link."""
+"""Bigraphs from relations: containment, and nodes on links."""
 
 from __future__ import annotations
 

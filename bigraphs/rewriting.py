@@ -1,4 +1,4 @@
-"""Applying a match: the reactum takes the redex's place in the same context."""
+"""Apply a match: the reactum replaces the redex in the same context."""
 
 from __future__ import annotations
 

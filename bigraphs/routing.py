@@ -1,4 +1,4 @@
-"""Where the links of a drawing go: curves from ports on the borders of boxes to each other, a dot or a name."""
+"""Routes of a drawing's links: curves between ports on the borders of boxes, a dot or a name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reaction rules: what is looked for, what is put in its place, and what becomes of the sites."""
+"""Reaction rules: redex, reactum, and an instantiation of the sites."""
 
 from __future__ import annotations
 

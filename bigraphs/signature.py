@@ -1,4 +1,4 @@
-"""Controls: the kinds of node, and what each allows."""
+"""Controls: the kinds of node, and their properties."""
 
 from __future__ import annotations
 

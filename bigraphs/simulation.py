@@ -1,4 +1,4 @@
-"""Runs: one way through a reactive system, chosen by a seed."""
+"""Simulate a system: one run, chosen by a seed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sorts: what a node may hold, and which ports a link may join (Milner's place and link sortings, kept small).
+"""Sorts: what a node may contain, and which ports a link may join (simple place and link sortings, after Milner).
 
 A control that no place sort speaks of holds anything; a port that no link sort speaks of is joined with such
 ports only. `A` speaks of every `A(1)`, `A(2)`, ... of a parametrised control.

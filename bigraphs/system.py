@@ -1,4 +1,4 @@
-"""Reactive systems as values: a signature, a first state, rules in classes of priority, and what to look for.
+"""Reactive systems as values: a signature, a first state, rules in priority classes, and predicates.
 
 This is what a `.big` or a `.bgm` file means once it has been read: every parameter has a value, every
 expression is a bigraph. Nothing here knows how a system is run.

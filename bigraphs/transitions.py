@@ -1,4 +1,4 @@
-"""Transition systems: what exploring a reactive system gives, as arrays and as a graph."""
+"""Transition systems: the result of exploring a reactive system, as arrays and as a graph."""
 
 from __future__ import annotations
 

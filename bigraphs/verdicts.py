@@ -1,4 +1,4 @@
-"""What is claimed of a transition system, decided: predicates and properties in every state, or in some."""
+"""Decide claims about a transition system: predicates and properties in every state, or in some."""
 
 from __future__ import annotations
 

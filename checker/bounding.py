@@ -1,4 +1,4 @@
-"""Bounds on whatever is done within them: work that may take long looks at the clock and at memory now and then.
+"""Bounds on long computations: they check the clock and the memory from time to time.
 
 An exploration that meets a bound keeps what it has. What comes after (surveys of all that was explored, temporal logic)
 has no half result: it is given up, and what it would have decided stays undecided. An interruption is such a bound: it
@@ -37,7 +37,7 @@ _BOUNDS: ContextVar[_Bounds | None] = ContextVar("bounds", default=None)
 
 @contextmanager
 def bounded(limits: Limits, started: float | None = None) -> Iterator[None]:
-    """Hold what is done within to limits of time and memory; the time begins now unless it is said when it began."""
+    """Limit time and memory within the context; the time begins now unless its start is given."""
     token = _BOUNDS.set(_Bounds(limits, monotonic() if started is None else started))
     try:
         yield
@@ -46,7 +46,7 @@ def bounded(limits: Limits, started: float | None = None) -> Iterator[None]:
 
 
 def look() -> None:
-    """Look whether a bound is met; where nobody has set any, none is.
+    """Check whether a bound is met; without bounds none is.
 
     Raises:
         BoundMet: It is.

@@ -1,4 +1,4 @@
-"""Limits of an exploration: whether they are met, and how that is said."""
+"""Limits of an exploration: whether one is met, and the message about it."""
 
 import math
 import resource

@@ -29,10 +29,10 @@ class Step:
     """One transition of a trace.
 
     Attributes:
-        label: What it is called.
-        choice: Which of the successors of that label was taken, from 0.
+        label: Its label.
+        choice: The index of the chosen successor among those with that label.
         target: The configuration after it.
-        sight: What was observed, for a step that the world decided (live).
+        sight: The observation, for a step that the world decided (live).
     """
 
     label: Label
@@ -46,8 +46,8 @@ class Trace:
     """A run from the initial configuration.
 
     Attributes:
-        initial: Where it begins.
-        steps: What is done.
+        initial: The first configuration.
+        steps: Its steps.
         loop: The number of the configuration from which the run repeats for ever: the last is the same. If it is the
             last itself, nothing has to happen there, and the run stays. None where the run is not for ever.
         shortest: Whether it is certain that no other run that shows the same is shorter: not where steps were put

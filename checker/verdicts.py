@@ -1,4 +1,4 @@
-"""Verdicts: what a check comes to, as data."""
+"""Verdicts: the results of a check, as data."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

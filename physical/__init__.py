@@ -1,4 +1,4 @@
-"""The physical model: geometry, altitude and channels of what is on the WGS 84 earth, and where it may move.
+"""The physical model: geometry, altitude and channels of entities on the WGS 84 earth, and their motion.
 
 It reads and writes GeoJSON, waypoint files and plans. It knows nothing of bigraphs, agents or missions. AIS
 recordings are read by `physical.ais` and its neighbours, which need the extra `ais`.

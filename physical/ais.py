@@ -1,8 +1,8 @@
-"""Hear AIS line by line: a pure state machine from NMEA lines to reports.
+"""Decode AIS line by line: a pure state machine from NMEA lines to reports.
 
 `hear(ear, line)` is a function of its arguments alone; recordings fold it over a file, live feeds over a
-socket. The state holds what one line leaves for later ones: the clock of the recording, the parts of messages
-that are not complete yet, and the times of groups of lines. All of it is bounded, whatever is heard.
+socket. The state holds what later lines need: the recording's clock, the parts of incomplete messages, and the
+times of groups of lines. It is bounded for any input.
 """
 
 from dataclasses import dataclass, replace

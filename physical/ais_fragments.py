@@ -1,4 +1,4 @@
-"""Put the parts of multi-part AIS messages together: a bounded table as an immutable value.
+"""Assemble multi-part AIS messages: a bounded table as an immutable value.
 
 Parts belong together when talker, sequence number, channel, total and the tag block's group agree, and when
 they are heard near each other. They may come in any order, and twice.

@@ -1,4 +1,4 @@
-"""Read AIS recordings: files of NMEA lines, lazily and within bounds, with an account of the unusable."""
+"""Read AIS recordings: files of NMEA lines, lazily and within bounds, with a count of unusable lines."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator

@@ -1,4 +1,4 @@
-"""What AIS stations say: positions and static data as plain values, in the units of AIS.
+"""Reports of AIS stations: positions and static data as plain values, in the units of AIS.
 
 Degrees, knots and seconds since 1970; None is *not available*. `time` is when the message was received, as
 told by the recording or by the receiver: AIS messages themselves carry at most the second of the minute.

@@ -1,4 +1,4 @@
-"""Make a world of an AIS recording: the physical properties of the stations heard, as of a time."""
+"""Make a world from an AIS recording: the physical properties of the stations heard, as of a time."""
 
 from collections.abc import Collection, Iterable
 

@@ -1,4 +1,4 @@
-"""Containment among many places: who contains what, and whether places nest (paper §3.2.2).
+"""Containment among many places: which contain which, and whether they nest (paper §3.2.2).
 
 An STRtree over the places, each entered once per turn of longitude that it can be met in, finds candidates by
 their bounds; `contains` and `overlaps` decide.

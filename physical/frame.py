@@ -1,4 +1,4 @@
-"""Frames: where coordinates become metres, and metres coordinates (WGS 84, by pyproj)."""
+"""Frames: conversion between coordinates and metres (WGS 84, by pyproj)."""
 
 from __future__ import annotations
 

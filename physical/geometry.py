@@ -1,4 +1,4 @@
-"""Geometry in one import: what it is, how it is related, what it measures, where it is put."""
+"""Geometry in one import: shapes, relations, measures and placement."""
 
 from physical.errors import GeometryError
 from physical.measure import area, centroid, distance, interior_point, waypoint

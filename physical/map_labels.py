@@ -1,4 +1,4 @@
-"""Where the labels of a map go: a pure function of boxes, in points, the same in every process."""
+"""The positions of a map's labels: a pure function of boxes, in points, the same in every process."""
 
 from __future__ import annotations
 

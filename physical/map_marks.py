@@ -1,4 +1,4 @@
-"""Marks of a map, each one function on matplotlib axes whose units are points."""
+"""Marks of a map, one function each, on matplotlib axes whose units are points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The scene of a map: what is drawn, and where it lies on the sheet."""
+"""The scene of a map: the drawn objects, and their positions on the sheet."""
 
 from __future__ import annotations
 

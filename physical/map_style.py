@@ -1,4 +1,4 @@
-"""How a map looks: colours and markers of kinds, inks, and the size of written text."""
+"""The style of a map: colours and markers of kinds, inks, and text sizes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a map shows, apart from how it is drawn: the plane, the view, the ticks and the scale bar."""
+"""The view of a map, apart from drawing: the plane, the extent, the ticks and the scale bar."""
 
 from __future__ import annotations
 

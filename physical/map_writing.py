@@ -1,4 +1,4 @@
-"""What is written on a map: names, the scale bar and notes, so that nothing stands on anything else."""
+"""The text on a map: names, the scale bar and notes, without overlaps."""
 
 from __future__ import annotations
 

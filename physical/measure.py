@@ -1,4 +1,4 @@
-"""Metres of geometries: area, distance, centroid and the waypoints that follow from them."""
+"""Measures of geometries in metres: area, distance, centroid and waypoints."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Say what a station is, from its MMSI (ITU-R M.585) and from the message that only such a station sends.
+"""Tell the type of a station from its MMSI (ITU-R M.585) and from messages that only such a station sends.
 
 >>> kind_of(2442103, 4), kind_of(244660274, 1), kind_of(992446001, 21)
 ('BaseStation', 'Vessel', 'AidToNavigation')

@@ -1,4 +1,4 @@
-"""Mobility commands: what a vehicle is told (paper §3.2.3, Figure 6)."""
+"""Mobility commands to vehicles (paper §3.2.3, Figure 6)."""
 
 from __future__ import annotations
 

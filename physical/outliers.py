@@ -1,4 +1,4 @@
-"""What lies so far from everything else that it is hardly meant: maps say how far, checks warn of it."""
+"""Outliers: entities suspiciously far from all others; maps show their distance, checks warn of them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from physical.measure import distance
 from physical.shape import Geometry, point
 
 CELL: Final = 500_000.0
-"""Metres of the edge of the cubes into which the earth is parted: what is in neighbouring cubes is near."""
+"""The edge in metres of the cubes that divide the earth: entities in neighbouring cubes are near each other."""
 
 RADIUS: Final = 6_371_000.0
 
@@ -20,7 +20,7 @@ REMOTE: Final = 1_000_000.0
 """Metres from everything else at which a position is probably a mistake."""
 
 MOST: Final = 20
-"""How many outliers are told of; each is measured against all that is none."""
+"""How many outliers are reported; each is measured against all other entities."""
 
 Key = TypeVar("Key", bound=Hashable)
 Cube = tuple[int, ...]
@@ -29,20 +29,20 @@ AROUND: Final[tuple[Cube, ...]] = tuple(product((-1, 0, 1), repeat=3))
 
 
 def apart(geometry: Geometry, rest: Iterable[Geometry]) -> float:
-    """Return the metres to the nearest of the rest, infinity where there is none."""
+    """Return the metres to the nearest of the rest, infinity if there is none."""
     return min((distance(geometry, each) for each in rest), default=math.inf)
 
 
 def outliers(geometries: Mapping[Key, Geometry]) -> dict[Key, float]:
-    """Return what lies a thousand kilometres and more from where most is, with the metres to the nearest of that.
+    """Return the entities a thousand kilometres and more from the majority, with their distance to it in metres.
 
-    Of two halves the one that comes first counts as most. Twenty are told of at the most.
+    Of two halves the first counts as the majority. At most twenty are returned.
     """
     parts = _parts(geometries)
     most = max(parts, key=len, default=[])
     rest = [geometries[key] for key in most]
     others = [key for part in parts if part is not most for key in part]
-    # An ocean has its corners far from everything, and everything in it.
+    # An ocean's corners are far from everything, but it contains everything.
     rest += [
         geometries[key]
         for key in others
@@ -53,13 +53,13 @@ def outliers(geometries: Mapping[Key, Geometry]) -> dict[Key, float]:
 
 
 def is_swapped(geometry: Geometry, rest: Iterable[Geometry], metres: float) -> bool:
-    """Tell whether something so far away would be near, were its latitude the longitude and the other way about."""
+    """Tell whether a distant entity would be near with its latitude and longitude exchanged."""
     latitude, longitude = geometry.vertices[0]
     return abs(longitude) <= 90 and apart(point(longitude, latitude), rest) < metres / 10
 
 
 def _parts(geometries: Mapping[Key, Geometry]) -> list[list[Key]]:
-    """Return what is near each other, in the order given; by cubes, so that thousands take no time."""
+    """Return groups of near entities, in the given order; by cubes, so that thousands are quick."""
     cubes = {key: {_cube(vertex) for vertex in geometry.vertices} for key, geometry in geometries.items()}
     holding: dict[Cube, list[Key]] = {}
     for key, of in cubes.items():

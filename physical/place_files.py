@@ -1,4 +1,4 @@
-"""Files of places, told apart by their endings: GeoJSON, waypoint files, plans of QGroundControl."""
+"""Files of places, by their suffix: GeoJSON, waypoint files, plans of QGroundControl."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a mover is put: translated as a rigid shape, in the local metric frame of the place that it moves in.
+"""Place a mover: translate it as a rigid shape, in the local metric frame of the place that it moves in.
 
 A mover is a point or a polygon. A polygon keeps its metric shape (to the frame's 4e-5 at 100 km) and its
 heading in the frame; every placement is computed from the polygon as first given, so nothing accumulates.

@@ -1,4 +1,4 @@
-"""Plans of QGroundControl (`.plan`): JSON with a mission, a fence and rally points; the mission is read and written.
+"""QGroundControl plans (`.plan`): JSON with a mission, a fence and rally points; the mission is read and written.
 
 Its items become those of waypoint files, so that both are read as places in one way. Surveys and other complex items
 hold the simple items that they stand for; those are taken.

@@ -1,4 +1,4 @@
-"""Physical properties: what is known of one entity (paper §3.2.1)."""
+"""Physical properties: the known facts about one entity (paper §3.2.1)."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Text from outside: words that name something, JSON, and what is quoted of either. It is checked where it enters.
+"""Check text from outside: names, JSON, and quotations of either.
 
-What passes here can be printed, encoded and recorded, so that nobody behind has to look again.
+Checked text can be printed, encoded and recorded without further checks.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a mission says shall be done live when things go otherwise: an assumption breaks, a request takes too long."""
+"""The live section's responses: to a broken assumption, and to a request that takes too long."""
 
 from dataclasses import dataclass
 from enum import Enum

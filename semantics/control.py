@@ -1,4 +1,4 @@
-"""What a control request meets in a configuration: its realisations, or why it has none."""
+"""Control requests in a configuration: their realisations, or the reason why there is none."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""`drive(P, m(R'))`: make a reactum physically true, or say that it can't be done."""
+"""`drive(P, m(R'))`: make a reactum physically true, or tell that it is impossible."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

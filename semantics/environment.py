@@ -1,4 +1,4 @@
-"""The environment section: what `env : P'` and `say` are allowed to do, clause by clause."""
+"""The environment section: what `env : P'` and `say` may do, clause by clause."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Steps that the world decides: what was observed makes `env` and `commit` happen, and is kept to make them again.
+"""Steps decided by the world: an observation causes `env` and `commit`, and is kept to replay them.
 
 Live, nobody computes where a vehicle or a spill is. An observation names cells of P with what was seen there; the
 rules are those that were checked, and say whether it is a step.

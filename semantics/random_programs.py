@@ -1,4 +1,4 @@
-"""Programs written by a stream of choices: what `semantics.strategies` draws, and any other source of numbers can."""
+"""Random programs from a stream of choices, such as the draws of `semantics.strategies`."""
 
 from collections.abc import Callable, Sequence
 from typing import TypeVar

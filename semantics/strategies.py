@@ -1,4 +1,4 @@
-"""Hypothesis strategies for the values of `semantics/`: for tests of missions, rules, and what is built on them.
+"""Hypothesis strategies for the values of `semantics/`, for tests of missions and rules.
 
 Worlds stand near Portimão. Places are boxes in slots of a 3 × 3 grid of the place (or the water) around them, so they
 nest or lie apart by construction; what moves is a point or a small polygon in a slot of its own. Everything shrinks

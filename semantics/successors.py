@@ -1,4 +1,4 @@
-"""All transitions of a configuration: the rules agent by agent, the scheduler's turn, the environment's clauses."""
+"""All transitions of a configuration: the rules for each agent, the scheduler's choice, the environment's clauses."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass

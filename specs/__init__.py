@@ -1,4 +1,4 @@
-"""The mission language: from a text to what it says, or to the mistakes in it.
+"""The mission language: from a text to a mission, or to the mistakes in it.
 
 It knows nothing of exploring configurations, of vehicles or of the command line. The way of a mission through the
 modules: `text` (bounds, comments), `grammar` and the two builders (`build_world`, `build_behaviour`), `syntax` (the

@@ -1,4 +1,4 @@
-"""The builder's half for behaviours: one method per rule of the grammar, by its name."""
+"""Build the syntax tree of behaviours: one method for each rule of the grammar, with its name."""
 
 # ruff: noqa: D102 - each method is the grammar's rule of its name, and that is shown in mission.lark
 

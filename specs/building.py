@@ -1,4 +1,4 @@
-"""What the two builders of the syntax tree share: children of a grammar rule, taken apart.
+"""Functions that both builders of the syntax tree share: they take the children of a grammar rule apart.
 
 lark gives each rule its children with all tokens kept, and None for each that an optional part lacks; so a
 child's place is its place in the grammar.

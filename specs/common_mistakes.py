@@ -1,4 +1,4 @@
-"""The mistakes that people make, each recognised by what was found and by what could have stood there.
+"""Common syntax mistakes, recognised by the word found and the words expected.
 
 lark's `match_examples` compares the state of the parser with those of a table of bad snippets, and misses the
 same mistake one state further on (`if x = y`, `if f(x) = y`); asking what could have stood there doesn't. The

@@ -1,4 +1,4 @@
-"""The user's mistakes as data, and the one way they are printed."""
+"""The user's mistakes as data, and how they are printed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`bigactors fmt`: the canonical layout of a mission, its comments kept."""
+"""`bigactors fmt`: the canonical layout of a mission, with its comments."""
 
 from __future__ import annotations
 

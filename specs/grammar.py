@@ -1,4 +1,4 @@
-"""The grammar of missions as lark has it, built once and kept in memory; and the words it knows."""
+"""The grammar of missions for lark, built once and cached; and its reserved words."""
 
 from __future__ import annotations
 

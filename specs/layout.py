@@ -1,4 +1,4 @@
-"""The lines of a mission in canonical layout: what stands on each, how deep, and where in the source it began."""
+"""The lines of a mission in canonical layout: their content, depth, and place in the source."""
 
 from __future__ import annotations
 

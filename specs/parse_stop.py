@@ -1,4 +1,4 @@
-"""Where a parse stopped: the word found there, the word before it, and what could have stood there."""
+"""Where a parse stopped: the word found there, the word before it, and the words expected."""
 
 from __future__ import annotations
 

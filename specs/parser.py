@@ -1,4 +1,4 @@
-"""From a mission's text to its syntax tree, or to the mistakes in it."""
+"""Parse a mission's text to its syntax tree, or to its mistakes."""
 
 from __future__ import annotations
 

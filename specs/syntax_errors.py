@@ -1,4 +1,4 @@
-"""From a parse that stopped to the diagnostic that says why."""
+"""Explain a stopped parse by a diagnostic."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""What is done with a mission's text before the grammar sees it.
+"""Prepare a mission's text for parsing.
 
-That is: bounds, comments, brackets, printed line numbers. Everything here is linear in the text, and replaces
-characters by spaces only, so that offsets stay what they were.
+Check bounds and brackets, and blank comments and printed line numbers. Everything here is linear in the text, and
+replaces characters by spaces only, so offsets stay the same.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The text of what fits on one line: expressions, queries, patterns, control actions, formulas, placements."""
+"""Write constructs of one line: expressions, queries, patterns, control actions, formulas, placements."""
 
 from __future__ import annotations
 

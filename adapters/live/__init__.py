@@ -1,7 +1,7 @@
-"""The live loop: one configuration, moved by the rules that were checked, as telemetry and feeds let it.
+"""The live loop: one configuration, moved by the checked rules as telemetry and feeds allow.
 
-`advance` is the pure core: a state, what came in, and a time give the next state, the steps taken, and what vehicles
-are to be told. `LiveRun` is the loop around it. Neither knows MAVLink, AIS or a file format.
+`advance` is the pure core: from a state, the input and a time it computes the next state, the steps, and the commands
+to vehicles. `LiveRun` is the loop around it. Neither knows MAVLink, AIS or a file format.
 """
 
 from adapters.live.core import advance, is_over, resumed, started, watch

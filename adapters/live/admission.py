@@ -1,4 +1,4 @@
-"""What plugins say is looked at once more where it enters a run: all of it can be printed, encoded and recorded."""
+"""Check what plugins publish where it enters a run: all of it can be printed, encoded and recorded."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from physical import is_word, legible
 
 
 def flaw_of(published: Published) -> str:
-    """Return what is wrong with something published, nothing if it can be used."""
+    """Return what is wrong with a publication, or an empty text."""
     said = published.property if isinstance(published, Aged) else published
     words, numbers = [said.entity], [said.time or 0.0]
     if isinstance(published, Aged):
@@ -26,7 +26,7 @@ def flaw_of(published: Published) -> str:
 
 
 def legible_report(report: Report) -> Report:
-    """Return a report whose texts can be quoted: file names and answers of servers may hold anything."""
+    """Return a report whose texts can be printed: file names and server answers may hold anything."""
     texts: list[tuple[str, Any]] = [(each.name, getattr(report, each.name)) for each in fields(report)]
     spoilt = {name: legible(text) for name, text in texts if isinstance(text, str) and legible(text) != text}
     return replace(report, **spoilt) if spoilt else report  # type: ignore[arg-type]  # texts for texts

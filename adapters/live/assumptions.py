@@ -1,7 +1,7 @@
-"""The monitor: whether what the world does is what the mission's environment section says it may do.
+"""The assumption monitor: compares the world with the mission's environment section.
 
-A verdict rests on that section. What was seen is compared by its relations: an entity may stand where it contains, and
-is contained by, the same as in one of the placements that the mission lists, in the world as it is now.
+A verdict depends on that section. Placements are compared by their relations: an entity may be anywhere where its
+containers and contents, in the current world, are those of one of the mission's listed placements.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Relations = tuple[frozenset[Name], frozenset[Name]]
 
 
 def broken_by_place(plan: Plan, c: Configuration, entity: Name, seen: Placement | None) -> str:
-    """Return the assumption that breaks when an entity is seen somewhere, nothing if the mission allows it."""
+    """Return the assumption that breaks when an entity is seen somewhere, or an empty text."""
     before = c.structure.physical.placement(entity)
     if seen is None:
         allowed = _clause(plan, Vanishes, entity) is not None
@@ -37,16 +37,16 @@ def broken_by_place(plan: Plan, c: Configuration, entity: Name, seen: Placement 
     if isinstance(drift, Drifts):
         return f"{where}; the mission lets it drift among {', '.join(drift.names)}"
     if entity in plan.vehicles:
-        return (
-            f"{where}; it was not sent there, and has not stayed where it was: wind, or somebody else's doing"
-        )
-    return f"{where}; the mission does not say that it drifts, and nobody sent it"
+        return f"{where}; it was not sent there, and has not stayed where it was: wind, or another operator"
+    return f"{where}; the mission does not say that it drifts, and it was not sent"
 
 
 def _broken_by_appearing(plan: Plan, c: Configuration, entity: Name, now: Relations) -> str:
     where = ", ".join(sorted(now[0])) or "none of the places"
     clause = _clause(plan, Appears, entity)
-    first = plan.first.structure.physical.placement(entity)  # what is heard again may be where it was
+    first = plan.first.structure.physical.placement(
+        entity
+    )  # an entity that is heard again may be where it was
     places = (
         *([first] if first is not None else ()),
         *(clause.placements if isinstance(clause, Appears) else ()),
@@ -60,7 +60,7 @@ def _broken_by_appearing(plan: Plan, c: Configuration, entity: Name, now: Relati
 
 
 def relations(c: Configuration, entity: Name, placement: Placement) -> Relations:
-    """Return what contains an entity that stands so, and what it contains, in the world as it is."""
+    """Return what contains an entity at a placement, and what it contains, in the current world."""
     physical = c.structure.physical
     around = Fences(c).holders(entity, c.setting.kind(entity), placement)
     return around, contents(physical, entity, placement)
@@ -72,7 +72,7 @@ def _clause(plan: Plan, sort: type[Clause], entity: Name) -> Clause | None:
 
 
 def clause_of_leaving(plan: Plan, entity: Name, channel: Name) -> Leaves | Drops | None:
-    """Return the clause by which an entity may be off a channel, or come back to it."""
+    """Return the clause that lets an entity leave a channel and come back."""
     for clause in plan.first.setting.environment:
         if isinstance(clause, Leaves) and (clause.entity, clause.channel) == (entity, channel):
             return clause

@@ -1,4 +1,4 @@
-"""One turn of a live run: what came in, and every step that follows, by the rules that were checked.
+"""One turn of a live run: take in what arrived, then make every step that follows, by the checked rules.
 
 `advance` is a function of a state, a batch and a time. It knows no clock, no device and no file: tests, replays and
 the loop call the same.
@@ -24,11 +24,11 @@ MOST_STEPS = 400
 """How many steps one turn takes at the most."""
 
 LONG = 5.0
-"""Seconds without listening that are said."""
+"""Seconds without listening that are reported."""
 
 
 def advance(plan: Plan, state: LiveState, batch: Batch, now: float, most: int = MOST_STEPS) -> Turn:
-    """Return what one turn comes to: the world is taken in, then agents go on until nothing more can be done now."""
+    """Make one turn: take the world in, then let agents continue until nothing more can be done now."""
     turning = _taken_in(plan, state, batch, now)
     for said in batch.sayings:
         answer(turning, said)
@@ -38,25 +38,23 @@ def advance(plan: Plan, state: LiveState, batch: Batch, now: float, most: int = 
 
 
 def watch(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turn:
-    """Return what a turn comes to in which the world is taken in, and nobody goes on: before a run begins."""
+    """Make a turn that only takes the world in, before a run begins."""
     return _taken_in(plan, state, batch, now).turn()
 
 
 def _taken_in(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turning:
     turning = Turning(plan, state.later(batch.missed) if batch.missed else state, now)
     if batch.missed >= LONG:
-        missed = (
-            f"nothing was listened to for {batch.missed:.0f} s: nobody is taken to have been silent meanwhile"
-        )
+        missed = f"this process did not listen for {batch.missed:.0f} s; that time does not count as silence"
         turning.find("trouble", "", missed)
     take_in(turning, batch)
     return turning
 
 
 def is_over(state: LiveState) -> bool:
-    """Tell whether nothing will happen any more: all agents have ended, and nothing they asked for is pending.
+    """Tell whether the run is over: all agents have ended, and none of their requests is pending.
 
-    Of one station among several nobody can tell: what comes from the others is not known.
+    With several stations this is never known: the others may still send something.
     """
     c = state.configuration
     if is_parted(c):
@@ -66,9 +64,9 @@ def is_over(state: LiveState) -> bool:
 
 
 def is_refused(state: LiveState) -> bool:
-    """Tell whether all that is left to be done was refused: nothing that happens by itself changes that.
+    """Tell whether all remaining requests were refused, and no operator and no other station can change that.
 
-    Where an operator may give a vehicle back, or say something, more may happen, and so may at other stations.
+    An operator may give a vehicle back, or say something that the mission allows.
     """
     c = state.configuration
     if is_parted(c) or state.taken or state.suspended or state.grounded or _may_be_said(c):
@@ -89,7 +87,7 @@ def _may_be_said(c: Configuration) -> bool:
 def resumed(
     plan: Plan, c: Configuration, steps: int, orders: int, now: float, taken: Mapping[Name, str] | None = None
 ) -> LiveState:
-    """Return the state of a run that goes on where another was killed: what it had asked of vehicles is outstanding."""
+    """Return the state that resumes a killed run: its commands to vehicles are outstanding."""
     state = LiveState(c, number=steps, told=orders, taken=taken or {})
     turning = Turning(plan, state, now)
     for pending in in_turn(c):

@@ -1,4 +1,4 @@
-"""Flights: when they end, when their place has moved on, and what is known of them in a run that is resumed."""
+"""Flights: their ends, changes of their destinations, and their state in a resumed run."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from semantics.state.signature import Name
 
 
 def arrive(turning: Turning, entity: Name) -> bool:
-    """Commit the flight of a vehicle if it was seen where it was to go, and whoever flies with it too.
+    """Commit the flight of a vehicle if it and all that fly with it were seen at their destinations.
 
-    A vehicle comes through places for many reasons, back to its home by itself among them: it has to show that it does
-    what it was told. Who was told a path has to have said that the path is behind it.
+    A vehicle may cross its destination for other reasons, such as a return to its home. So it must show that it follows
+    its command. A vehicle on a path must have reported the end of the path.
     """
     transit, order = turning.c.structure.physical.transit(entity), turning.orders.get(entity)
     at = turning.where_seen(entity)
@@ -43,7 +43,7 @@ def arrive(turning: Turning, entity: Name) -> bool:
 
 
 def obey(turning: Turning, entity: Name, request: str, *, through: bool) -> None:
-    """Note that a vehicle shows that it does what it was told by a request; `through`: that it has done all of it."""
+    """Note that a vehicle shows that it follows the command of a request; `through`: that it has completed it."""
     order = turning.orders.get(entity)
     if order is not None and order.command.request == request:
         turning.orders[entity] = replace(order, obeyed=True, through=order.through or through)
@@ -51,14 +51,14 @@ def obey(turning: Turning, entity: Name, request: str, *, through: bool) -> None
 
 
 def doubt(turning: Turning, entity: Name) -> None:
-    """Note that it is not known whether a vehicle still does what it was told."""
+    """Note that it is unknown whether a vehicle still follows its command."""
     order = turning.orders.get(entity)
     if order is not None:
         turning.orders[entity] = replace(order, obeyed=False)
 
 
 def refuse(turning: Turning, entity: Name, request: str) -> None:
-    """Note that what a vehicle was told by a request is not possible."""
+    """Note that the command of a request was refused."""
     for orders in (turning.orders, turning.handing):
         order = orders.get(entity)
         if order is not None and order.command.request == request:
@@ -66,7 +66,7 @@ def refuse(turning: Turning, entity: Name, request: str) -> None:
 
 
 def ask_anew(turning: Turning, entity: Name) -> None:
-    """Tell a vehicle that was given back what it was told before, if that is still wanted."""
+    """Command a vehicle that was given back again, if its request is still pending."""
     turning.handing.pop(entity, None)  # it is told again in its turn
     order = turning.orders.get(entity)
     fly = None if order is None else _flight(turning, order)
@@ -79,7 +79,7 @@ def ask_anew(turning: Turning, entity: Name) -> None:
 
 
 def renew(turning: Turning, place: Name) -> None:
-    """Send vehicles on where a place that they go to or pass has moved, and let those arrive that it has reached."""
+    """Redirect vehicles when a place on their path has moved, and commit the flights of those that it has reached."""
     physical = turning.c.structure.physical
     for entity, order in sorted(turning.orders.items()):
         transit = physical.transit(entity)
@@ -107,7 +107,7 @@ def _flight(turning: Turning, order: Order) -> FLY | None:
 
 
 def remember(turning: Turning, request: Request) -> None:
-    """Take up what vehicles were told for a request in another run; who confirms it is not told again."""
+    """Adopt the command that another run gave for a request; a vehicle that confirms it is not commanded again."""
     if isinstance(request, FLY):
         _remember_flight(turning, request)
     elif isinstance(request, CTR):

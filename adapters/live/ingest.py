@@ -1,4 +1,4 @@
-"""Taking the world in: sightings become `env` and `commit`, reports become findings, sayings become `say`."""
+"""Take in the world: sightings become `env` and `commit`, reports findings, operator messages `say`."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ MOST_PORT = 65_535
 
 
 def take_in(turning: Turning, batch: Batch) -> None:
-    """Take in what was seen and reported: first who is taken over, so that nothing that they do is an arrival."""
+    """Take in observations and reports: take-overs first, so that nothing that those vehicles do is an arrival."""
     for report in batch.reports:
         if isinstance(report, TakenOver | Doubted):
             note(turning, report)
@@ -63,7 +63,7 @@ def take_in(turning: Turning, batch: Batch) -> None:
 
 
 def hear(turning: Turning, heard: Iterable[Heard]) -> None:
-    """Take in what plugins published: of each entity the newest. What the mission names has a step of its own."""
+    """Take in the newest publication on each entity. Each entity that the mission names has a step of its own."""
     named = turning.plan.first.setting.kinds
     changed: dict[Name, None] = {}
     for each in heard:
@@ -89,7 +89,7 @@ def _merge(turning: Turning, heard: Heard) -> Name | None:
     if entity not in turning.c.setting.kinds and not comes_in(turning, heard.plugin, found):
         return None
     if entity not in turning.seen:
-        turning.quiet = None  # commands may wait for it to be heard
+        turning.quiet = None  # commands may wait until the vehicle is heard
     turning.seen[entity] = found
     turning.expires = min(turning.expires, found.until)
     return entity
@@ -116,7 +116,7 @@ def _place(turning: Turning, entity: Name) -> None:
 
 
 def _same_place(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> bool:
-    """Tell whether two points are one to A(P): where exactly a point is, nothing rests on."""
+    """Tell whether A(P) is the same for two points: no rule depends on a point's exact position within its place."""
     if not isinstance(here, Placed) or not isinstance(seen, Placed) or not seen.geometry.is_point:
         return False
     kind = turning.c.setting.kind(entity)
@@ -141,7 +141,7 @@ def _move(turning: Turning, entity: Name, here: Placement | None, seen: Placemen
 
 
 def _is_back(turning: Turning, entity: Name, seen: Placement) -> bool:
-    """Tell whether an entity stands as it did before its vanishing broke an assumption: once is enough."""
+    """Tell whether an entity is back where it vanished, which broke an assumption already."""
     before = turning.missing.pop(placement_cell(entity), None)
     c = turning.c
     return isinstance(before, Placed | Carried) and relations(c, entity, before) == relations(c, entity, seen)
@@ -157,7 +157,7 @@ def _channels_of_newcomer(turning: Turning, entity: Name) -> tuple[Name, ...]:
 
 
 def _expire(turning: Turning) -> None:
-    """Take out of P what was not heard for longer than its time to live."""
+    """Remove from P each entity that was not heard for longer than its time to live."""
     old = sorted(name for name, sighting in turning.seen.items() if sighting.until <= turning.now)
     named = turning.plan.first.setting.kinds
     for entity in old:
@@ -187,7 +187,7 @@ def _vanish(turning: Turning, entity: Name) -> None:
 
 
 def _rechannel(turning: Turning, entity: Name) -> None:
-    """Compare whose authority a vehicle was seen under with P; what a hand-over is about is left to the rules."""
+    """Compare a vehicle's observed authority with P; the rules decide about changes by a hand-over."""
     said = frozenset(filter(is_authority, turning.seen[entity].property.channels))
     physical = turning.c.structure.physical
     known = frozenset(filter(is_authority, physical.links(entity)))
@@ -203,7 +203,7 @@ def _rechannel(turning: Turning, entity: Name) -> None:
 
 
 def off_channel(turning: Turning, entity: Name, channel: Name, what: str) -> None:
-    """Take an entity off a channel, by the clause that says so if there is one."""
+    """Remove an entity from a channel, by the environment's clause if there is one."""
     clause = clause_of_leaving(turning.plan, entity, channel)
     physical = turning.c.structure.physical
     if clause is not None:
@@ -237,7 +237,7 @@ def _on_channel(turning: Turning, entity: Name, channel: Name) -> None:
     back = channel in turning.missing.get(channels_cell(entity), ())  # type: ignore[operator]
     if turning.observe(sight, happening(turning.c, sight)) and not back:
         turning.breaks(
-            f"{entity} is on {channel}; nobody handed it there, and nothing says that it returns", entity
+            f"{entity} is on {channel}; it was not handed there, and no clause lets it return", entity
         )
 
 
@@ -245,7 +245,7 @@ def _on_channel(turning: Turning, entity: Name, channel: Name) -> None:
 
 
 def note(turning: Turning, report: Report) -> None:
-    """Take in what a plugin reports; nothing is committed by it."""
+    """Take in a plugin's report; a report alone commits nothing."""
     match report:
         case Accepted(request, entity) | Arrived(request, entity):
             obey(turning, entity, request, through=isinstance(report, Arrived))
@@ -260,7 +260,7 @@ def note(turning: Turning, report: Report) -> None:
             doubt(turning, entity)
         case TakenOver(entity, _, reason):
             turning.taken[entity] = reason
-            back = f"nobody here commands it until `bigactors give-back {entity}`"
+            back = f"it gets no commands until `bigactors give-back {entity}`"
             turning.find("taken over", entity, f"{entity} was taken over: {reason}; {back}")
         case LinkLost(entity, _, since):
             _lose(turning, entity, since)
@@ -279,7 +279,7 @@ def _lose(turning: Turning, entity: Name, since: float) -> None:
     turning.lost.add(entity)
     turning.find("lost link", entity, f"nothing was heard of {entity} for {turning.now - since:.0f} s")
     if not turning.answers_for(entity):
-        return  # over which link another station commands it is for that to say
+        return  # the other station reports on its own link
     for channel in filter(is_authority, turning.c.structure.physical.links(entity)):
         off_channel(turning, entity, channel, f"the link to {entity} over {channel} is lost")
 
@@ -313,7 +313,7 @@ def _hear_operator(turning: Turning, said: GivingBack) -> str:
 
 
 def _give_back(turning: Turning, entity: Name) -> str:
-    """Command a vehicle again that was taken over or has refused; return why not, nothing if it is done."""
+    """Command a vehicle again that was taken over or has refused; return why not, or an empty text."""
     told = (turning.orders.get(entity), turning.handing.get(entity))
     refused = any(order.refused for order in told if order is not None)
     if entity not in turning.taken and not refused:
@@ -327,7 +327,7 @@ def _give_back(turning: Turning, entity: Name) -> str:
 
 
 def say_to(turning: Turning, saying: Saying) -> None:
-    """Put a message into a mailbox, if the mission says that somebody may say it, and not too often."""
+    """Put a message into a mailbox, if the environment section allows it, and not too often."""
     agents = turning.c.alpha
     if saying.agent in agents and not is_here(turning.c, saying.agent):
         there = station_of(turning.c, saying.agent)

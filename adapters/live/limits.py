@@ -1,4 +1,4 @@
-"""Time limits: requests that wait longer than the mission says, and what is done then."""
+"""Time limits of requests, and the fallback after each."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def check_limits(turning: Turning) -> None:
 
 
 def _note_heads(turning: Turning) -> None:
-    """Remember since when each request is at the head of its agent's line, and each message on its way."""
+    """Remember since when each request is at the head of its agent's line, and each message in transit."""
     found = {}
     for pending in in_turn(turning.c):
         request = pending.request
@@ -55,7 +55,7 @@ def _check(turning: Turning, key: str, waiting: Waiting, limit: TimeLimit) -> No
 
 
 def _vehicles(turning: Turning, agent: Name) -> tuple[Name, ...]:
-    """Return the vehicles that an agent's request is about: what it has sent, else its host."""
+    """Return the vehicles of an agent's request: those that it has sent, else its host."""
     sent = {entity for entity, order in turning.orders.items() if order.agent == agent}
     sent |= {entity for entity, order in turning.handing.items() if order.agent == agent}
     host = {turning.c.alpha.host(agent)} if agent in turning.c.alpha else set()

@@ -1,10 +1,9 @@
-"""The loop: plugins publish into it, `advance` moves the configuration, commands go out, and nothing blocks it.
+"""The live loop: plugins publish into it, `advance` moves the configuration, commands go out; it never blocks.
 
-What comes in is looked at where it enters (`admission`). Nothing behind that ends a run: if the recording or a plugin
-fails, the mission does what its `live` section says of broken assumptions.
+Input is checked where it enters (`admission`); after that no input ends a run. If the recording or a plugin fails, the
+mission's response to a broken assumption follows.
 
-
-Of positions that come in between two turns the newest of each entity counts; reports and sayings are all kept.
+Between two turns only the newest position of each entity is kept; all reports and messages are.
 """
 
 from __future__ import annotations
@@ -41,22 +40,22 @@ GATHER = 0.002
 """Seconds for which arrivals are gathered before the next turn."""
 
 SLICE = 2
-"""How many steps are taken before the loop looks at what has come in meanwhile."""
+"""How many steps are taken before the loop reads new input."""
 
 IDLE = 0.5
-"""Seconds after which there is a turn though nothing has come in: what is too old leaves P."""
+"""Seconds after which there is a turn without input: outdated positions leave P."""
 
 AHEAD = 1.0
-"""Seconds by which the system's clock may be ahead of the loop's: less is how they are set right."""
+"""Seconds by which the system's clock may be ahead of the loop's: less is an ordinary clock adjustment."""
 
 AT_ONCE = 200
-"""How many positions of strangers, which the mission does not name, one turn takes in."""
+"""How many positions of entities that the mission does not name (strangers) one turn takes in."""
 
 MOST_WAITING = 20_000
-"""How many of them may wait; more are left out, the oldest first, and that is reported."""
+"""How many of them may wait; beyond that the oldest are dropped, and that is reported."""
 
 MOST_SAYINGS = 1_000
-"""How many sayings may wait; more are refused, and whoever says them is told."""
+"""How many messages may wait; more are refused, and their senders are told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,10 +67,10 @@ class Ending:
 
 
 class NotAsAssumed(Exception):
-    """The world does not satisfy the mission's environment section when the run is to begin.
+    """The world does not satisfy the mission's environment section at the start of the run.
 
     Attributes:
-        findings: What is otherwise.
+        findings: The differences.
     """
 
     def __init__(self, findings: Sequence[Finding]) -> None:
@@ -80,7 +79,7 @@ class NotAsAssumed(Exception):
 
 
 class NotHeard(Exception):
-    """Vehicles of the mission were not heard before the run was to begin.
+    """Vehicles of the mission were not heard before the start of the run.
 
     Attributes:
         vehicles: Which.
@@ -97,10 +96,10 @@ class PluginFailed(Exception):
 
 @dataclass(slots=True)
 class Inbox:
-    """What has come in and was not taken yet, newest positions only.
+    """Input that waits for the next turn, newest positions only.
 
     Attributes:
-        named: The entities of the mission: of them all is taken at once, of strangers a slice.
+        named: The entities of the mission; a turn takes all of their positions, and a slice of the strangers'.
     """
 
     watchers: Watchers
@@ -114,7 +113,7 @@ class Inbox:
     sayings: list[tuple[Said, asyncio.Future[Answer]]] = field(default_factory=list)
 
     def publish(self, plugin: str, published: Published) -> None:
-        """Take what a plugin publishes; what it said before of the same entity is not needed any more."""
+        """Take a plugin's publication; it replaces earlier ones on the same entity."""
         flaw = flaw_of(published)
         if flaw:
             self.troubles.note("unusable property", f"'{plugin}': {flaw}")
@@ -123,7 +122,7 @@ class Inbox:
         self.watchers.arrived(heard, self.now())
         entity = entity_of(published)
         waiting = self.heard if entity in self.named else self.strangers
-        waiting.pop((plugin, entity), None)  # in the order said: of two of one time the later counts
+        waiting.pop((plugin, entity), None)  # in order: of two with the same time the later counts
         waiting[plugin, entity] = heard
         self.awake.set()
         if len(self.strangers) > MOST_WAITING:
@@ -131,14 +130,14 @@ class Inbox:
             self.troubles.note("too much at once", "positions of entities that the mission does not name")
 
     def report(self, report: Report) -> None:
-        """Take what a plugin reports, in words that can be printed and recorded."""
+        """Take a plugin's report, with texts that can be printed and recorded."""
         report = legible_report(report)
         self.watchers.reported(report, self.now())
         self.reports.append(report)
         self.awake.set()
 
     def say(self, said: Said) -> asyncio.Future[Answer]:
-        """Take what someone says; the answer comes with the next turn."""
+        """Take an operator's message; the answer comes with the next turn."""
         said = replace(said, number=len(self.sayings))
         answer: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
         if not all(map(is_text, said.texts)):
@@ -151,9 +150,9 @@ class Inbox:
         return answer
 
     def take(self, missed: float = 0.0) -> tuple[Batch, list[asyncio.Future[Answer]]]:
-        """Return what has come in, and forget it; of strangers a slice, the oldest.
+        """Return the waiting input, and forget it; of the strangers only the oldest slice.
 
-        `missed` are the seconds for which nobody listened.
+        `missed` are the seconds in which this process did not listen.
         """
         self.troubles.report(Ear("", self))
         said = tuple(saying for saying, _ in self.sayings)
@@ -174,7 +173,7 @@ class Ear:
     inbox: Inbox
 
     def publish(self, published: Published) -> None:
-        """Take what is known of an entity now."""
+        """Take a publication on an entity."""
         self.inbox.publish(self.plugin, published)
 
     def now(self) -> float:
@@ -187,15 +186,15 @@ class Ear:
 
 
 class Clock:
-    """The time in seconds since 1970 UTC that never goes back: the event loop's, begun at the system's.
+    """A monotonic time in seconds since 1970 UTC: the event loop's clock, started at the system's.
 
-    A loop's clock may stand still while the machine is suspended: where the system's is ahead, it is followed.
+    The loop's clock may stop while the machine is suspended; if the system's is ahead, this clock follows it.
     """
 
     def __init__(self) -> None:
         loop = asyncio.get_running_loop().time()
         self._offset = time.time() - loop
-        self._follows = abs(time.monotonic() - loop) < AHEAD  # not in loops whose time is their own
+        self._follows = abs(time.monotonic() - loop) < AHEAD  # not in loops with a simulated clock
 
     def __call__(self) -> float:
         """Return the time."""
@@ -208,10 +207,10 @@ class Clock:
 
 
 def settle() -> None:
-    """Collect garbage once, and look no more at what is there now: to look at all of it stops a run for a while.
+    """Collect garbage once, and exempt all present objects from later collections, whose pauses would stop the run.
 
-    For the process of one run, once it is about to begin: what is garbage later of what is there now is kept. What
-    comes is looked at less often: nearly all of it is gone by then without.
+    Call it once in the process of one run, just before the start: present objects are never freed later. New objects
+    are scanned less often, since reference counting frees nearly all of them.
     """
     gc.collect()
     gc.freeze()
@@ -251,11 +250,11 @@ class LiveRun:
     # --- beginning
 
     async def begin(self, patience: float, *, forced: bool = False) -> None:
-        """Wait until every vehicle is heard and the world is as the mission's environment section has it.
+        """Wait until every vehicle is heard and the world satisfies the mission's environment section.
 
         Raises:
             NotHeard: A vehicle was not heard in time.
-            NotAsAssumed: The world is otherwise, and the run is not forced.
+            NotAsAssumed: The world differs, and the run is not forced.
         """
         until = self._listening.look(self.clock()) + patience
         while missing := sorted(set(self.plan.vehicles) - set(self.state.seen)):
@@ -273,11 +272,9 @@ class LiveRun:
                 raise PluginFailed(f"{failed.source}: {failed.reason}")
         self._begun = True
         if forced:
-            self.state = self.state.with_(
-                suspended=False
-            )  # who flies unverified has been told what is otherwise
+            self.state = self.state.with_(suspended=False)  # an unverified run has reported the differences
         for order in (*self.state.orders.values(), *self.state.handing.values()):
-            if order.command.entity not in self.state.taken:  # of a run that is resumed: it was compared
+            if order.command.entity not in self.state.taken:  # a resumed run has compared it
                 self._orders.put_nowait(order.command)
 
     def _refuse(self, answers: list[asyncio.Future[Answer]]) -> None:
@@ -288,7 +285,7 @@ class LiveRun:
     # --- going
 
     async def go(self, until: Callable[[LiveState], bool] = is_over, seconds: float | None = None) -> Ending:
-        """Turn until nothing will happen any more, or for some seconds."""
+        """Turn until the run is over, or for some seconds."""
         end = None if seconds is None else self.clock() + seconds
         again: float | None = self.clock()
         while True:
@@ -313,7 +310,7 @@ class LiveRun:
         turn = advance(self.plan, self.state, batch, self.clock(), SLICE)
         self._take(turn)
         for answer, said in zip(turn.answers, answers, strict=True):
-            if not said.done():  # who asked may have gone
+            if not said.done():  # the sender may have disconnected
                 said.set_result(answer)
         for command in (*turn.commands, *self._unrecorded()):
             if not (self.state.suspended and isinstance(command, GoTo | Follow | HandOver)):
@@ -321,7 +318,7 @@ class LiveRun:
         return turn
 
     def _unrecorded(self) -> tuple[Command, ...]:
-        """Take in at once that a turn could not be recorded: what it commands is sent only if the mission goes on."""
+        """Take in at once that a turn could not be recorded: its commands are sent only if the mission continues."""
         failures = self._watchers.failures()
         if not failures:
             return ()
@@ -334,21 +331,21 @@ class LiveRun:
         self._watchers.turned(turn, self.clock())
 
     async def _next(self, patience: float) -> None:
-        """Wait until something comes in, and a moment longer for what comes with it."""
+        """Wait for input, and a moment longer to gather more."""
         self._check_plugins()
         await asyncio.sleep(0)
         missed = self._listening.missed
         try:
-            async with asyncio.timeout(patience):  # wait_for may lose that the run is to end
+            async with asyncio.timeout(patience):  # wait_for may lose a cancellation
                 await self.inbox.awake.wait()
         except TimeoutError:
             self._listening.look(self.clock())
             if self._listening.missed == missed:
                 return
-        await asyncio.sleep(GATHER)  # what waited in sockets while nobody listened comes first, too
+        await asyncio.sleep(GATHER)  # first take what waited in sockets during a stall
 
     def _missed(self) -> float:
-        """Return the seconds for which nobody listened since this was asked last."""
+        """Return the seconds without listening since the last call."""
         self._listening.look(self.clock())
         before, self._told = self._told, self._listening.missed
         return self._told - before
@@ -380,7 +377,7 @@ class LiveRun:
     # --- commands
 
     async def _telling(self) -> None:
-        """Tell vehicles what they shall do, one after the other; what is refused is reported."""
+        """Send commands to vehicles, one after the other, and report refusals."""
         while True:
             command = await self._orders.get()
             owner = next((plugin for plugin in self._plugins if plugin.owns(command.entity)), None)
@@ -391,5 +388,5 @@ class LiveRun:
             except Refused as refused:
                 reason = f"{refused.reason}{f' ({refused.hint})' if refused.hint else ''}"
                 self.inbox.report(Rejected(command.request, command.entity, self.clock(), reason))
-            except Exception as error:  # others still have to be told what they do then
+            except Exception as error:  # the other vehicles still need their commands
                 self._fail("" if owner is None else owner.name, error)

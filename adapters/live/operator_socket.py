@@ -1,4 +1,4 @@
-"""Saying something to a running mission, to an agent or of a vehicle: a Unix socket, a line of JSON each way."""
+"""The operator's Unix socket: messages to a running mission, one line of JSON each way."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MOST_BYTES: Final = 16_384
 PATIENCE: Final = 5.0
 
 Listener = Callable[[Said], Awaitable[str]]
-"""Takes what is said, and returns why it was not taken, nothing if it was."""
+"""Takes a message, and returns why it was refused, or an empty text."""
 
 
 class NobodyListens(Exception):
@@ -28,9 +28,9 @@ class NobodyListens(Exception):
 
 @asynccontextmanager
 async def listening(path: Path, listener: Listener) -> AsyncIterator[None]:
-    """Listen at a path that only its user may use; raises OSError where that cannot be.
+    """Listen at a path that only its user may open; raises OSError if that is impossible.
 
-    What a killed run has left there is replaced; a run that listens there is not.
+    The socket of a killed run is replaced; that of a live run is not.
     """
     if await _is_taken(path):
         raise FileExistsError(errno.EEXIST, "another run listens there", str(path))
@@ -77,7 +77,7 @@ async def _answer(line: bytes, listener: Listener) -> str:
 
 
 async def say(path: Path, agent: str, message: str) -> str:
-    """Say something to an agent of the run that listens at a path; return why it was not taken, nothing if it was.
+    """Send a message to an agent of the run that listens at a path; return why it was refused, or an empty text.
 
     Raises:
         NobodyListens: No run does, or it does not answer.

@@ -1,4 +1,4 @@
-"""From requests to what vehicles are told, and when what they were told is done."""
+"""Turn requests into commands to vehicles, and decide when a command is done."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from semantics.state.signature import Name
 def journey(
     c: Configuration, found: Realisation, node: Name, place: Name, request: str
 ) -> GoTo | Follow | None:
-    """Return the command to go into a place, by way of what is to be passed, all as it is now."""
+    """Return the command to go into a place by way of others, at their current positions."""
     going = destination(c, found, node, place, request)
     if going is None or not found.via:
         return going
@@ -24,10 +24,10 @@ def journey(
 
 
 def destination(c: Configuration, found: Realisation, node: Name, place: Name, request: str) -> GoTo | None:
-    """Return the command to go into a place as it is now, or to what is to carry the node.
+    """Return the command to go into a place at its current position, or to the node's future carrier.
 
-    The waypoint of a place is its centroid; where that is inside something that would swallow the vehicle, the point
-    that `drive` found is told instead.
+    The waypoint of a place is its centroid. If an inner place there would contain the vehicle, the waypoint is the
+    point that `drive` found.
     """
     spot = found.physical.get(placement_cell(node))
     target = c.structure.physical.position(place)
@@ -41,7 +41,7 @@ def destination(c: Configuration, found: Realisation, node: Name, place: Name, r
 
 
 def renewed(c: Configuration, fly: FLY, told: GoTo | Follow) -> GoTo | Follow | None:
-    """Return the command again with its places where they are now, None where it is the same or can't be known."""
+    """Return the command with its places' current positions, None if it is the same or they are unknown."""
     found = commits(c, fly)
     transit = c.structure.physical.placement(told.entity)
     if found is None or not isinstance(transit, InTransit):
@@ -53,7 +53,7 @@ def renewed(c: Configuration, fly: FLY, told: GoTo | Follow) -> GoTo | Follow | 
 def hand_overs(
     c: Configuration, request: CTR, found: Realisation, vehicles: frozenset[Name]
 ) -> tuple[HandOver, ...]:
-    """Return what vehicles have to confirm before a link change is true: changes of control authority."""
+    """Return the link changes that vehicles must confirm: changes of control authority."""
     told = []
     for node, lost, gained in relinked(request.reaction, found.match, c.structure.logical):
         leave, join = _authority(lost), _authority(gained)
@@ -63,10 +63,10 @@ def hand_overs(
 
 
 def unshown(c: Configuration, request: CTR, found: Realisation, vehicles: frozenset[Name]) -> str:
-    """Return what of a control nothing would ever show to be done; nothing if all of it is seen or confirmed.
+    """Return the part of a control whose completion no report would ever show, or an empty text.
 
-    What travels is seen to arrive, and a vehicle shows whom it obeys. That a load was put down, or a channel joined,
-    nobody tells.
+    A traveller is seen to arrive, and a vehicle shows whom it obeys. No report shows that a load was put down, or that
+    a channel was joined.
     """
     travelling = {node for node, _ in found.flying}
     for node, place in moved(request.reaction, found.match):
@@ -89,7 +89,7 @@ def _authority(channels: frozenset[Name]) -> Name:
 
 
 def is_authority(channel: Name) -> bool:
-    """Tell whether a channel says who commands a vehicle: what autopilots confirm."""
+    """Tell whether a channel is a control authority, which autopilots confirm."""
     return channel.partition(":")[0] == CONTROL_AUTHORITY
 
 

@@ -1,4 +1,4 @@
-"""What other stations do: parcels enter, vehicles are under way, agents move, assumptions break."""
+"""Take in other stations: parcels enter, vehicles are under way, agents move, assumptions break."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from semantics.state.signature import REGION, Name
 
 
 def hear_of(turning: Turning, report: Elsewhere) -> None:
-    """Take in what another station has a part in."""
+    """Take in a report about another station."""
     match report:
         case Delivered():
             _take_in(turning, report)
@@ -43,7 +43,7 @@ def hear_of(turning: Turning, report: Elsewhere) -> None:
 
 
 def _take_in(turning: Turning, delivered: Delivered) -> None:
-    """Let a parcel enter if it is the next of its station; what has entered already is passed over."""
+    """Let a parcel enter if it is the next of its station; skip those that have entered already."""
     station, number = delivered.station, delivered.number
     if turning.c.read(took_cell(station)) != number - 1:
         return
@@ -66,9 +66,9 @@ def _refuse(turning: Turning, station: str, number: int, why: str) -> None:
 
 
 def _fly(turning: Turning, entity: Name, to: Name) -> None:
-    """Take in that another station has sent a vehicle, or that it has come where it was sent.
+    """Take in that another station has sent a vehicle, or that this vehicle has arrived.
 
-    In between it is in transit here too: what it passes over is nobody's observation.
+    In between it is in transit here too, so no agent observes it on its way.
     """
     here = turning.c.structure.physical.placement(entity)
     if entity in turning.orders or entity not in turning.plan.vehicles:

@@ -1,4 +1,4 @@
-"""Which step is next: agents go on in turn and at their pace, requests are served first come, first served."""
+"""Choose the next step: agents take turns at a limited pace, requests are served first come, first served."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from semantics.state.requests import CTR, FLY, MGR, OBS, READY, SND
 from semantics.state.signature import Name
 
 OWN: tuple[Rule, ...] = (fun, req_obs, rcv_obs, req_ctr, req_snd, rcv_msg, req_mgr, spawn)
-"""The rules by which an agent goes on by itself; they take no turn."""
+"""The rules of an agent's own steps; they do not wait in the queue of requests."""
 
 SERVING: dict[type, tuple[Rule, ...]] = {
     OBS: (sense,),
@@ -21,26 +21,26 @@ SERVING: dict[type, tuple[Rule, ...]] = {
     SND: (snd,),
     MGR: (migrate,),
 }
-"""What serves a request. A flight ends when it is seen to end, without a turn."""
+"""The rules that serve each kind of request. A flight ends when it is observed to end."""
 
 STEPS_PER_SECOND = 8.0
-"""How fast an agent may go on: one that looks again and again looks about twice a second, and keeps nobody from it."""
+"""How many steps an agent may take a second: one that observes in a loop observes about twice a second."""
 
 PATIENCE = 0.02
-"""Seconds for which an agent that is too fast waits at least."""
+"""The least number of seconds for which an agent that is too fast waits."""
 
 BURST = 100.0
 """How many steps an agent may take at once."""
 
 
 def own_steps(c: Configuration, a: Name) -> tuple[Transition, ...]:
-    """Return what an agent can do by itself; raises Fault where its computation fails."""
+    """Return an agent's own possible steps; raises Fault if its computation fails."""
     found = (transition for rule in OWN for transition in rule(c, a))
     return tuple(dict.fromkeys(found))
 
 
 def in_turn(c: Configuration) -> Iterator[Pending]:
-    """Yield what may be served in the order asked: the head of each agent's line, and all messages."""
+    """Yield the requests that may be served, oldest first: the head of each agent's line, and all messages."""
     headed: set[Name] = set()
     for pending in c.eta.all():
         request = pending.request
@@ -52,7 +52,7 @@ def in_turn(c: Configuration) -> Iterator[Pending]:
 
 
 def served(c: Configuration, pending: Pending) -> tuple[Transition, ...]:
-    """Return the transitions that serve a request where it stands."""
+    """Return the transitions that serve a request."""
     rules = SERVING.get(type(pending.request), ())
     found = (transition for rule in rules for transition in rule(c, pending.request.agent))
     return tuple(dict.fromkeys(t for t in found if t.served == pending))

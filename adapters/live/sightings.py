@@ -1,4 +1,4 @@
-"""From what plugins publish to where entities are: newest first, within time limits, and as P has it."""
+"""Turn what plugins publish into placements: the newest within its time limit, compared with P."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Refusal:
 
 
 def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) -> Sighting | Refusal | None:
-    """Return what a message makes known of its entity, None where something newer is known."""
+    """Return the sighting that a message makes, None if a newer one is known."""
     published = heard.published
     said = published.property if isinstance(published, Aged) else published
     owner = plan.vehicles.get(said.entity)
@@ -66,7 +66,7 @@ def _no_entities(setting: Setting) -> frozenset[Name]:
 
 
 def _declared(plan: Plan, entity: Name) -> PhysicalProperty | None:
-    """Return what a mission says of an entity that nobody has spoken of yet."""
+    """Return a mission's own placement of an entity that no plugin has reported yet."""
     position = plan.first.structure.physical.position(entity)
     return (
         None
@@ -76,10 +76,10 @@ def _declared(plan: Plan, entity: Name) -> PhysicalProperty | None:
 
 
 def placement_seen(c: Configuration, shape: Placed | None, sighting: Sighting) -> Placement | None:
-    """Return where P has an entity that was seen so, None where its shape has no place there.
+    """Return the placement of a sighting in P, None if the entity's shape does not fit there.
 
-    A point seen of what the mission gives an extent is where its centre is; a band of altitudes counts only for what
-    the mission gives one.
+    If the mission gives the entity an extent, an observed point is its centre. An altitude band counts only if the
+    mission gives one.
     """
     said = sighting.property
     geometry = said.geometry
@@ -95,7 +95,7 @@ def placement_seen(c: Configuration, shape: Placed | None, sighting: Sighting) -
 
 
 def _may_carry(c: Configuration, by: Name, entity: Name) -> bool:
-    """Tell whether something is there that may carry an entity: nothing is carried by itself, over others neither."""
+    """Tell whether a carrier exists for an entity: no entity carries itself, directly or through others."""
     return by in c.setting.kinds and entity not in (by, *c.structure.physical.carriers(by))
 
 
@@ -121,14 +121,14 @@ Fence = tuple[Name, Placed, Bounds | None]
 
 
 class Fences:
-    """The places of one configuration: what contains an entity that stands somewhere."""
+    """The places of one configuration, by which containers of entities are found."""
 
     def __init__(self, c: Configuration) -> None:
         self.c = c
         self._of: dict[str, list[Fence]] = {}
 
     def holders(self, entity: Name, kind: str, placement: Placement | None) -> frozenset[Name]:
-        """Return all that contains or carries an entity that stands so: what A(P) knows of where it is."""
+        """Return all that contains or carries an entity at a placement: what A(P) knows of its position."""
         if placement is None:
             return frozenset()
         if isinstance(placement, Carried):
@@ -157,13 +157,13 @@ class Fences:
 
 @lru_cache(maxsize=1 << 10)
 def places_for(setting: Setting, kind: str) -> tuple[Name, ...]:
-    """Return the names of all that may contain an entity of a kind, of one that the mission has no entity of too."""
+    """Return the names of all that may contain an entity of a kind, even of a kind without entities."""
     signature = setting.signature
     return tuple(sorted(name for name, of in setting.kinds.items() if kind in signature[of].contains))
 
 
 def contents(physical: PhysicalModel, place: Name, placement: Placement | None) -> frozenset[Name]:
-    """Return what a place contains if it stands so; what is in transit is nowhere."""
+    """Return what a place contains at a placement; entities in transit are in no place."""
     if not isinstance(placement, Placed) or placement.geometry.is_point:
         return frozenset()
     setting = physical.sorting

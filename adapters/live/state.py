@@ -1,4 +1,4 @@
-"""The state of a live run, and what moves it: frozen values, no clock, no input or output."""
+"""The state of a live run and the changes to it: frozen values, no clock, no input or output."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from semantics.state.signature import Name
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """What stays the same in a live run.
+    """The constants of a live run.
 
     Attributes:
         first: The mission's first configuration, under `control timed` and `fcfs`.
         vehicles: For each entity that takes commands, the plugin that owns it.
-        precautions: What the mission says of broken assumptions and time limits.
-        strict: Whether turns are kept while a vehicle confirms a hand-over: the verdict is one under `fcfs` only.
-        peers: The plugin by which other stations speak, of vehicles too; empty where there are none.
+        precautions: The mission's responses to broken assumptions and exceeded time limits.
+        strict: Whether other requests wait while a vehicle confirms a hand-over, since the verdict is for `fcfs` only.
+        peers: The plugin of the other stations, which also speaks for vehicles; empty if there are none.
     """
 
     first: Configuration
@@ -38,7 +38,7 @@ class Plan:
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """The newest that is known of an entity, and until when it may stand in P."""
+    """The newest observation of an entity, and until when it may stay in P."""
 
     property: PhysicalProperty
     time: float
@@ -47,15 +47,15 @@ class Sighting:
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """What a vehicle was told, and not confirmed as yet.
+    """A command to a vehicle that is not confirmed yet.
 
     Attributes:
-        command: What it was told last.
-        agent: Whose request it serves.
-        since: When it was first told.
-        obeyed: Whether the vehicle has shown that it does it, and nothing since that it does not.
-        through: Whether the vehicle has said that the path that it was told is behind it.
-        refused: Whether it turned out not to be possible.
+        command: The last command.
+        agent: The agent whose request it serves.
+        since: When it was first sent.
+        obeyed: Whether the vehicle has shown that it follows the command, and has shown nothing else since.
+        through: Whether the vehicle has reported the end of its path.
+        refused: Whether it was refused.
     """
 
     command: GoTo | Follow | HandOver
@@ -68,7 +68,7 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Waiting:
-    """The request at the head of an agent's line: since when it is there, and which limits it has passed."""
+    """The request at the head of an agent's line: since when, and which limits it has exceeded."""
 
     request: Request
     since: float
@@ -85,29 +85,29 @@ class Pace:
 
 @dataclass(frozen=True, slots=True)
 class LiveState:
-    """Where a live run is.
+    """The state of a live run.
 
     Attributes:
         configuration: ⟨α | S | η⟩.
-        seen: The newest of each entity that the mission names or has admitted.
-        expires: No sighting is too old before.
-        orders: Where each vehicle in flight was told to go.
-        handing: Which hand-over each vehicle was told, and has not confirmed.
+        seen: The newest sighting of each entity that the mission names or has admitted.
+        expires: When the first sighting becomes too old.
+        orders: The order of each vehicle in flight.
+        handing: The unconfirmed hand-over of each vehicle.
         lost: Vehicles whose link is lost.
-        taken: Vehicles that were taken over, and how: nobody here commands them until an operator gives them back.
-        idle: Agents that cannot go on by themselves: they wait for an observation, a message, or for ever.
+        taken: Vehicles that were taken over, and how: they get no commands until an operator gives them back.
+        idle: Agents without own steps: they wait for an observation, a message, or for ever.
         quiet: The configuration in which nothing more could be served, None if that is not known.
-        heads: What stands at the head of each agent's line.
-        paces: How fast each agent may go on.
-        suspended: Whether controls are served no more: an assumption broke.
-        grounded: Agents of which no control is served any more: a request of theirs took too long.
-        missing: What P had in cells where its going broke an assumption: that it comes back breaks no other.
+        heads: The head of each agent's line.
+        paces: The pace of each agent.
+        suspended: Whether no more controls are served, since an assumption broke.
+        grounded: Agents whose controls are no longer served, since a request of theirs took too long.
+        missing: Cells of P whose removal broke an assumption, with their values: their return breaks no other.
         failed: Agents whose computation failed.
-        reported: What was reported already, and is not again.
-        last: The agent that went on last: the next turn begins with the one after it.
+        reported: What was reported already, and is not reported again.
+        last: The agent that took the last step: the next turn begins with the one after it.
         number: How many steps were taken.
         told: How many orders were given.
-        shares: How many entities that nobody announced were taken in of each plugin, and how many of them are places.
+        shares: How many strangers were admitted from each plugin, and how many of them are places.
     """
 
     configuration: Configuration
@@ -136,7 +136,7 @@ class LiveState:
         return replace(self, **changes)  # type: ignore[arg-type]  # names are checked by replace itself
 
     def later(self, seconds: float) -> LiveState:
-        """Return the state in which all that grows old, or waits, has as much longer: nobody has listened meanwhile."""
+        """Return the state with all ages and waiting times shifted by a time without listening."""
         seen = {name: replace(each, until=each.until + seconds) for name, each in self.seen.items()}
         heads = {name: replace(each, since=each.since + seconds) for name, each in self.heads.items()}
         return self.with_(seen=seen, expires=self.expires + seconds, heads=heads)
@@ -155,7 +155,7 @@ class Heard:
 
 @dataclass(frozen=True, slots=True)
 class Saying:
-    """A message from someone outside to an agent; `number` names it in the answer."""
+    """A message from outside to an agent; `number` identifies it in the answer."""
 
     agent: Name
     message: str
@@ -193,7 +193,7 @@ Said = Saying | GivingBack
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """All that came in since the last turn, in its order; `missed` are the seconds for which nobody listened."""
+    """All input since the last turn, in order; `missed` are the seconds without listening."""
 
     heard: tuple[Heard, ...] = ()
     reports: tuple[Report, ...] = ()
@@ -212,8 +212,8 @@ class LiveStep:
         number: From 1.
         source: The configuration before it.
         transition: The transition.
-        choice: Which of the transitions of that label it is, from 0.
-        sight: What was observed, where the world decided; what passes between stations.
+        choice: The index of the transition among those with its label.
+        sight: What the world decided: an observation, or what passes between stations.
         time: When.
     """
 
@@ -227,7 +227,7 @@ class LiveStep:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Something that the operator has to know.
+    """A message to the operator.
 
     Attributes:
         kind: `broken assumption`, `refused`, `taken over`, `given back`, `lost link`, `link restored`, `late`,
@@ -235,8 +235,8 @@ class Finding:
         about: The entity or agent.
         message: One line.
         time: When.
-        fallback: What is done about it: `hold`, `return`, or nothing.
-        elsewhere: Whether it was another station that found it.
+        fallback: The response: `hold`, `return`, or nothing.
+        elsewhere: Whether another station found it.
     """
 
     kind: str
@@ -254,7 +254,7 @@ def is_breach(finding: Finding) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What came of what was said: an empty text if it was taken, else why it was not."""
+    """The answer to a message: an empty text if it was accepted, else the reason for refusing it."""
 
     saying: Said
     refusal: str = ""
@@ -271,16 +271,16 @@ class Outgoing:
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """What one turn of the loop came to.
+    """The result of one turn of the loop.
 
     Attributes:
         state: The state after it.
         steps: The transitions, in their order.
-        commands: What vehicles are to be told now.
-        findings: What the operator has to know.
-        answers: What came of what was said.
-        parcels: What leaves for other stations.
-        again: When to turn again though nothing comes in; None if nothing waits for time to pass.
+        commands: Commands to be sent now.
+        findings: Messages to the operator.
+        answers: Answers to messages from outside.
+        parcels: Parcels to other stations.
+        again: When to turn again without input; None if nothing waits for time to pass.
     """
 
     state: LiveState

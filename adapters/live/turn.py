@@ -1,4 +1,4 @@
-"""The working copy of a turn: takes steps, lets agents go on, serves their requests, gives orders."""
+"""The working copy of a turn: make steps, let agents compute, serve their requests, give orders."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from semantics.state.requests import CTR, FLY, SND
 from semantics.state.signature import Name
 
 MOST_REPORTED = 1_000
-"""How many things may have been reported once before troubles are not any more: strangers make any number of them."""
+"""How many reports are remembered; beyond it no more troubles are reported, since any sender can cause any number."""
 
 
 class Turning:
@@ -75,7 +75,7 @@ class Turning:
     # --- what comes of it
 
     def turn(self) -> Turn:
-        """Return what the turn came to."""
+        """Return the result of the turn."""
         state = LiveState(
             self.c,
             self.seen,
@@ -103,7 +103,7 @@ class Turning:
         return Turn(state, *gathered, tuple(self.parcels), again)
 
     def find(self, kind: str, about: Name, message: str, fallback: str = "", *, once: bool = False) -> bool:
-        """Report something; what is to be reported once is not again, and not at all where there is too much of it."""
+        """Report something; with `once` not a second time, and not at all after too many such reports."""
         if once:
             full = kind == "trouble" and len(self.reported) >= MOST_REPORTED
             if full or message in self.reported:
@@ -113,7 +113,7 @@ class Turning:
         return True
 
     def wake(self, at: float) -> None:
-        """Turn again at a time, though nothing may come in."""
+        """Turn again at a time, even without input."""
         self.again = min(self.again, at)
 
     # --- steps
@@ -124,9 +124,9 @@ class Turning:
         alike: tuple[Transition, ...],
         sight: Sight | Elsewhere | None = None,
     ) -> None:
-        """Take a step; `alike` are all that could be taken by that rule here.
+        """Take a step; `alike` are all possible steps by that rule here.
 
-        What it puts into an agent that runs at another station leaves at once.
+        What it adds to an agent at another station leaves at once.
         """
         word = str(transition.label)
         choice = [each for each in alike if str(each.label) == word].index(transition)
@@ -148,7 +148,7 @@ class Turning:
                 self._forward(str(request))
 
     def _forward(self, a: Name | None) -> None:
-        """Let leave what is here of an agent that runs at another station."""
+        """Send what is here of an agent that runs at another station."""
         if a is None or a not in self.c.alpha:
             return
         if station_of(self.c, a) is None:
@@ -165,7 +165,7 @@ class Turning:
             self.take(left, (left,), Passage(a, station, number))
 
     def observe(self, sight: Sight, found: Iterator[Transition]) -> bool:
-        """Take the step that an observation makes, if it makes one."""
+        """Take the step that an observation causes, if any."""
         alike = tuple(found)
         if alike:
             self.take(alike[0], alike, sight)
@@ -185,7 +185,7 @@ class Turning:
         self.wake(self.now)
 
     def _own_steps(self, most: int) -> int:
-        """Let agents take one step each, those first who come after the last that took one."""
+        """Let agents take one step each, beginning after the last one that took a step."""
         able = (a for a in self.c.alpha.names() if a not in self.idle and a not in self.failed)
         going = [a for a in able if is_here(self.c, a)]
         first = bisect_right(going, self.last)
@@ -217,7 +217,7 @@ class Turning:
         return True
 
     def serve(self) -> bool:
-        """Serve the first request that can be, in the order asked."""
+        """Serve the first request that can be served, oldest first."""
         if self.quiet is self.c:
             return False
         for pending in tuple(in_turn(self.c)):
@@ -231,7 +231,7 @@ class Turning:
         return False
 
     def allowed(self, pending: Pending) -> tuple[tuple[Transition, ...], bool]:
-        """Return what serves a request now, and whether it only waits for a vehicle to confirm."""
+        """Return the transitions that serve a request now, and whether it only waits for a vehicle's confirmation."""
         request = pending.request
         if isinstance(request, FLY):
             return (), False
@@ -254,7 +254,7 @@ class Turning:
     def _controlled(
         self, request: CTR, way: Realisation, found: tuple[Transition, ...]
     ) -> tuple[tuple[Transition, ...], bool]:
-        """Give the orders that a control takes, and return it once it may be taken."""
+        """Give the orders of a control, and return its transition once it may be taken."""
         vehicles = frozenset(self.plan.vehicles)
         unseen = unshown(self.c, request, way, vehicles)
         if unseen:
@@ -301,18 +301,18 @@ class Turning:
             self.commands.append(command)
 
     def request_of(self, agent: Name) -> str:
-        """Name one more order of an agent."""
+        """Return an identifier for a new order of an agent."""
         self.told += 1
         return f"{agent}-{self.told}"
 
     # --- flights
 
     def stops(self, agent: Name) -> bool:
-        """Tell whether no control of an agent is served any more."""
+        """Tell whether an agent's controls are no longer served."""
         return self.suspended or agent in self.grounded
 
     def flies(self, entity: Name) -> bool:
-        """Tell whether a vehicle in flight is still to do what it was told for it."""
+        """Tell whether the order of a vehicle in flight is still valid."""
         order = self.orders.get(entity)
         if order is None or self.stops(order.agent):
             return False
@@ -326,20 +326,20 @@ class Turning:
         return placement if isinstance(placement, Placed) else None
 
     def around(self, entity: Name, kind: str, placement: Placement | None) -> frozenset[Name]:
-        """Return what contains an entity that stands somewhere, in the world as it is now."""
+        """Return what contains an entity at a placement, in the current world."""
         if self.fences.c is not self.c:
             self.fences = Fences(self.c)
         return self.fences.holders(entity, kind, placement)
 
     def where_seen(self, entity: Name) -> Placement | None:
-        """Return where an entity was seen last, as P would have it."""
+        """Return the last seen placement of an entity."""
         sighting = self.seen.get(entity)
         return None if sighting is None else placement_seen(self.c, self.shape(entity), sighting)
 
     # --- falling back
 
     def fall_back(self, fallback: Fallback, entities: tuple[Name, ...]) -> None:
-        """Tell vehicles what the mission says that they do when something went otherwise."""
+        """Command the mission's fallback to vehicles."""
         if fallback is Fallback.CONTINUE:
             return
         for entity in filter(self.answers_for, entities):
@@ -352,7 +352,7 @@ class Turning:
             self.commands.append(told)
 
     def answers_for(self, entity: Name) -> bool:
-        """Tell whether it is ours to command a vehicle, and to say what it does unasked: no other station's."""
+        """Tell whether this station commands a vehicle and reports on it, and no other does."""
         if not is_parted(self.c) or entity not in self.plan.vehicles:
             return True
         if self.plan.vehicles[entity] == self.plan.peers:
@@ -362,7 +362,7 @@ class Turning:
         return not authority or not authority.isdisjoint(physical.channels(self.c.read(HERE)))
 
     def breaks(self, assumption: str, about: Name, kind: str = "broken assumption") -> None:
-        """Say that an assumption broke, or what else ends a flight, and do what the mission says is done then."""
+        """Report a broken assumption, or another end of a flight, and respond as the mission says."""
         if not self.answers_for(about):
             return
         fallback = self.plan.precautions.on_broken

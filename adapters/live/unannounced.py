@@ -1,7 +1,7 @@
-"""What nobody announced: entities that the mission does not name, seen in its places.
+"""Entities that the mission does not name, seen in its places.
 
-Anybody who can send a position can make any number of them. So they are taken in by shares, and all of a turn in one
-step: a step costs as much as there are entities, and what one more costs must not grow with those that are there.
+Any sender of positions can invent any number of such entities (strangers). So each plugin has a quota, and one step
+admits all strangers of a turn: a step's cost grows with the number of entities.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from semantics.state.physical_model import Placed, Placement, channels_cell, pla
 from semantics.state.signature import REGION, Name
 
 MOST_STRANGERS = 1_000
-"""How many of them are taken in."""
+"""How many strangers are admitted."""
 
 SHARE = MOST_STRANGERS // 2
-"""How many of one plugin: whoever floods one feed leaves room for what the others see."""
+"""How many of one plugin, so that a flood on one feed leaves room for the others."""
 
 MOST_PLACES = 60
-"""How many of one plugin that may contain others: each observation compares what it sees with all of them."""
+"""How many places of one plugin: each observation compares entities with all places."""
 
 
 def comes_in(turning: Turning, plugin: str, found: Sighting) -> bool:
@@ -41,7 +41,7 @@ def comes_in(turning: Turning, plugin: str, found: Sighting) -> bool:
     full = taken >= SHARE or sum(share for share, _ in turning.shares.values()) >= MOST_STRANGERS
     if full or (is_place and places >= MOST_PLACES):
         what = f"{taken:,} entities" if full else f"{places} places"
-        message = f"'{plugin}': {what} that nobody announced are taken in; others are left out"
+        message = f"'{plugin}': {what} that the mission does not name are taken in; more are ignored"
         turning.find("trouble", plugin, message, once=True)
         return False
     turning.shares[plugin] = taken + 1, places + is_place
@@ -50,7 +50,7 @@ def comes_in(turning: Turning, plugin: str, found: Sighting) -> bool:
 
 
 def place_strangers(turning: Turning, entities: Iterable[Name]) -> None:
-    """Place all that were seen, in one step. What they contain is not compared: that they are there breaks enough."""
+    """Place all seen strangers, in one step. Their contents are not compared: their presence breaks enough."""
     kinds, physical = turning.c.setting.kinds, turning.c.structure.physical
     writes: dict[Cell, object] = {}
     admits: dict[Name, str] = {}
@@ -79,7 +79,7 @@ def place_strangers(turning: Turning, entities: Iterable[Name]) -> None:
             writes[channels_cell(entity)] = ()
         if entity not in kinds:
             admits[entity] = kind
-        if entity not in kinds or (here is not None and around != before):  # one that is back is nothing new
+        if entity not in kinds or (here is not None and around != before):  # a returning one is not new
             broken.append(f"{entity} ({kind}) is in {where or 'none of the places'}")
     _happen(turning, Sight(_together([words for _, words in placed]), writes, admits))
     if broken:
@@ -90,7 +90,7 @@ def place_strangers(turning: Turning, entities: Iterable[Name]) -> None:
 
 
 def remove_strangers(turning: Turning, entities: Iterable[Name]) -> None:
-    """Take out of P what is not seen any more, and what it carries, in one step."""
+    """Remove from P the strangers that are no longer seen, and what they carry, in one step."""
     physical = turning.c.structure.physical
     gone = {entity for entity in entities if entity in physical}
     if not gone:
@@ -102,7 +102,7 @@ def remove_strangers(turning: Turning, entities: Iterable[Name]) -> None:
 
 
 def _placed(turning: Turning, sighting: Sighting) -> Placed:
-    """Return where a stranger is; who says that it is carried says nothing that could be seen."""
+    """Return where a stranger is; a report that it is carried is ignored, since it cannot be checked."""
     alone = replace(sighting, property=replace(sighting.property, carried_by=None))
     at = placement_seen(turning.c, None, alone)
     assert isinstance(at, Placed)
@@ -110,7 +110,7 @@ def _placed(turning: Turning, sighting: Sighting) -> Placed:
 
 
 def _grows(here: Placement | None, seen: Placed) -> bool:
-    """Tell whether what came as a point is a place now, which is counted otherwise."""
+    """Tell whether a point has become a place, which has another quota."""
     return isinstance(here, Placed) and here.geometry.is_point and not seen.geometry.is_point
 
 
@@ -120,7 +120,7 @@ def _happen(turning: Turning, sight: Sight) -> None:
 
 
 def _together(words: Sequence[str]) -> str:
-    """Say what happens to several by the first.
+    """Describe what happens to several entities by the first.
 
     >>> _together(["a vanishes", "b vanishes", "c vanishes"])
     'a vanishes, and so on for 2 more'

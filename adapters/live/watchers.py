@@ -1,4 +1,4 @@
-"""Who looks on at a run: a terminal, a recording, other stations. One that fails looks on no more; the run goes on."""
+"""Watchers of a run: the terminal, the recording, other stations. A watcher that fails is dropped; the run goes on."""
 
 from __future__ import annotations
 
@@ -10,39 +10,39 @@ from adapters.plugin import Failed, Report
 
 
 class Watcher(Protocol):
-    """Who looks on: a terminal, a recording, a test. Called in the loop's thread, in this order for each turn."""
+    """A watcher: a terminal, a recording, a test. Called in the loop's thread, in this order for each turn."""
 
     def arrived(self, heard: Heard, now: float) -> None:
-        """See something come in."""
+        """See an arrival."""
 
     def reported(self, report: Report, now: float) -> None:
-        """See what a plugin reports."""
+        """See a plugin's report."""
 
     def turned(self, turn: Turn, now: float) -> None:
-        """See what a turn came to, before its commands are sent."""
+        """See the result of a turn, before its commands are sent."""
 
 
 class Watchers:
-    """All who look on, as one. Each is told in the order given; what one can't write is kept as a failure."""
+    """All watchers as one, called in the given order. A watcher's error is kept as a failure."""
 
     def __init__(self, watchers: Sequence[Watcher] = ()) -> None:
         self._watchers = list(watchers)
         self._failures: list[Failed] = []
 
     def arrived(self, heard: Heard, now: float) -> None:
-        """Show all that something comes in."""
+        """Show an arrival to all."""
         self._tell(now, lambda watcher: watcher.arrived(heard, now))
 
     def reported(self, report: Report, now: float) -> None:
-        """Show all what a plugin reports."""
+        """Show a plugin's report to all."""
         self._tell(now, lambda watcher: watcher.reported(report, now))
 
     def turned(self, turn: Turn, now: float) -> None:
-        """Show all what a turn came to."""
+        """Show the result of a turn to all."""
         self._tell(now, lambda watcher: watcher.turned(turn, now))
 
     def failures(self) -> tuple[Failed, ...]:
-        """Return who has failed since the last time."""
+        """Return the failures since the last call."""
         found, self._failures = tuple(self._failures), []
         return found
 

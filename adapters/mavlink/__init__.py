@@ -1,10 +1,10 @@
-"""Autopilots over MAVLink: state, links and control authority out; places, paths, hand-overs in.
+"""Autopilots over MAVLink: publishes state, links and control authority; takes places, paths and hand-overs.
 
 `pilot` is the whole behaviour towards one vehicle, as a pure state machine made of smaller ones (`telemetry`, `plan`,
 `task`, `sync`, `upload`, `download`, `command`, `streams`, `link`, `signing`); `autopilot` is the plugin that
-gives it a socket and a clock, `roster` says which vehicle is which, `keys` keeps the signing key.
+gives it a socket and a clock, `roster` identifies vehicles, `keys` keeps the signing key.
 
-What a vehicle does is confirmed by its state, never by an answer alone.
+A vehicle's state confirms what it does, never an answer alone.
 """
 
 from adapters.mavlink.autopilot import Autopilot

@@ -30,7 +30,7 @@ from physical import Geometry, PhysicalError
 TICK: Final = 0.2
 HEARTBEAT: Final = 1.0
 MAX_REMOTES: Final = 64
-"""Remote addresses with a parser each; of those that no vehicle is at the one unheard the longest gives way."""
+"""How many remote addresses have a parser; of those without a vehicle the one unheard for longest is dropped."""
 
 MOST_LOGGED: Final = 1_000
 """Packets heard that are logged in a second."""
@@ -43,14 +43,14 @@ class Autopilot:
     """A plugin for the vehicles on one address.
 
     Arguments:
-        name: What reports call it.
-        address: Where they are heard, such as `udp:127.0.0.1:14550`.
+        name: Its name in reports.
+        address: The address of the link, such as `udp:127.0.0.1:14550`.
         crafts: The vehicles that are expected there.
-        stations: Who may command them.
-        keeper: The signing key, if packets are signed; unsigned ones are not believed then.
-        tap: Is told every frame.
+        stations: The stations that may command them.
+        keeper: The signing key, if packets are signed; then unsigned ones are ignored.
+        tap: Receives every frame.
 
-    Raises PhysicalError where two vehicles cannot be told apart.
+    Raises PhysicalError if two vehicles cannot be distinguished.
     """
 
     def __init__(
@@ -103,21 +103,21 @@ class Autopilot:
         return self._port.local if self._port else None
 
     def objection(self, entity: str, place: Geometry, name: str) -> str | None:
-        """Return why a place is none for a vehicle, as far as its kind is known; None if nothing is against it."""
+        """Return why a vehicle can't stay at a place, as far as its kind is known; None if it can."""
         pilot = self._pilots[entity]
         return unfit(GoTo("", entity, place, name=name), pilot.craft, pilot.known)
 
     def bar(self, entity: str, place: Geometry, name: str) -> str | None:
-        """Return why a vehicle can't pass a place on its way; None if nothing is against it."""
+        """Return why a vehicle can't pass a place; None if it can."""
         pilot = self._pilots[entity]
         return impassable(place, pilot.craft, pilot.known, name)
 
     def is_known(self) -> bool:
-        """Tell whether all vehicles have told what they may do, as far as they do."""
+        """Tell whether all vehicles have reported their parameters, or were asked for long enough."""
         return all(map(piloting.is_known, self._pilots.values()))
 
     def remarks(self) -> Iterator[str]:
-        """Yield what an operator has to know of the vehicles before they take off."""
+        """Yield messages to the operator about the vehicles before take-off."""
         for pilot in self._pilots.values():
             yield from remarks(pilot.craft, pilot.known)
 
@@ -196,7 +196,7 @@ class Autopilot:
         self._take(pilot.craft.entity, piloting.hear(pilot, message, now))
 
     def _is_its_source(self, pilot: Pilot, remote: Remote) -> bool:
-        """Tell whether a vehicle is believed from an address: without signatures, from where it was heard first."""
+        """Tell whether a vehicle is believed from an address: without signatures only from its first one."""
         bound = self._routes.get(pilot.system, remote)
         if self._keeper is not None or bound == remote:
             return True
@@ -212,7 +212,7 @@ class Autopilot:
         return False
 
     def _rebind(self, pilot: Pilot, source: str) -> None:
-        """Believe a vehicle from another address, if the one before is silent."""
+        """Believe a vehicle from another address, if the old one is silent."""
         host, _, port = source.rpartition(":")
         bound = self._routes.get(pilot.system)
         entity = pilot.craft.entity
@@ -226,7 +226,7 @@ class Autopilot:
             self._elsewhere.pop(pilot.system, None)
 
     def _overheard(self, message: Message) -> None:
-        """Note that another ground station speaks to a vehicle of ours; what it says is not obeyed here."""
+        """Report that another ground station sends to a vehicle of ours; its messages are ignored here."""
         ours = {self._stations.ids[name] for name in self._stations.own}
         if message.system not in ours and message.target in {pilot.system for pilot in self._pilots.values()}:
             self._troubles.note("second ground station", f"system {message.system} says {message.name}")
@@ -251,12 +251,12 @@ class Autopilot:
     # --- what is said -----------------------------------------------------------------------------
 
     def _listened(self) -> float:
-        """Return the time by which pilots go: silence and patience don't run while nobody listens."""
+        """Return the pilots' time, which stops while this process does not listen."""
         assert self._world is not None
         return self._listening.look(self._world.now())
 
     def _take(self, entity: str, outcome: Outcome) -> None:
-        """Do what an input led to; the world's own time is said to it."""
+        """Carry out the results of an input; publications get the world's time."""
         assert self._world is not None
         self._pilots[entity], missed = outcome.pilot, self._listening.missed
         for published in outcome.published:
@@ -300,7 +300,7 @@ class Autopilot:
             self._troubles.report(world)
 
     async def _beating(self) -> None:
-        """Say that we are there: who connects does so at once, others once they were heard."""
+        """Send heartbeats: at once to an address that we connect to, else once a vehicle was heard there."""
         while True:
             for name in self._stations.own:
                 beat = replace(_heartbeat(), system=self._stations.ids[name])
@@ -327,7 +327,7 @@ def _heartbeat() -> Message:
 
 
 def _later(published: Aged, seconds: float) -> Aged:
-    """Return what is published with its time as much later."""
+    """Return a publication with its time shifted."""
     said = published.property
     assert said.time is not None, "a position is stamped when it is heard"
     return replace(published, property=replace(said, time=said.time + seconds)) if seconds else published
@@ -340,7 +340,7 @@ def _reported_later(report: Report, seconds: float) -> Report:
 
 
 def _bound(craft: Craft) -> int:
-    """Return the system id by which a vehicle is known from the start, 0 where it has yet to show who it is."""
+    """Return a vehicle's system id, 0 if it is not known yet."""
     return craft.system or 0 if craft.serial is None else 0
 
 

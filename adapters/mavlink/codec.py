@@ -1,8 +1,7 @@
-"""MAVLink frames to messages and back: the only file that imports pymavlink, and only when called.
+"""Convert MAVLink frames to messages and back: the only file that imports pymavlink, and only when called.
 
-Of pymavlink its dialect class alone is used, as a pure codec. Signatures of what arrives are not left to it: it
-remembers the time stamp of a packet before it has checked the signature, so that one forged packet silences a vehicle
-(`adapters.mavlink.signing` checks them).
+It uses only pymavlink's dialect class, as a pure codec. `adapters.mavlink.signing` checks signatures: pymavlink
+remembers a packet's time stamp before it has checked the signature, so one forged packet would silence a vehicle.
 """
 
 from __future__ import annotations
@@ -15,30 +14,30 @@ from adapters.mavlink.message import Message
 from physical import PhysicalError
 
 MAX_CHUNK: Final = 65_536
-"""Bytes parsed at once; what a socket gives is never more."""
+"""Bytes parsed at once; a socket never gives more."""
 
 
 class CodecError(PhysicalError):
-    """The codec is not there, or was given what MAVLink has no message for."""
+    """The codec is not installed, or MAVLink has no such message."""
 
 
 @dataclass(frozen=True, slots=True)
 class Garbage:
-    """Bytes that are no message, and why."""
+    """Bytes that are not a message, and the reason."""
 
     reason: str
     size: int
 
 
 class Decoder:
-    """One stream of frames: of one remote address, because half a frame belongs to who sent its other half."""
+    """One stream of frames from one remote address, since a frame may come in two chunks."""
 
     def __init__(self) -> None:
         self._mav = _dialect().MAVLink(None)
         self._mav.robust_parsing = True
 
     def feed(self, data: bytes) -> list[Message | Garbage]:
-        """Return what is complete by now; never raises on what a stranger sends."""
+        """Return the complete messages; never raises, whatever the bytes."""
         found = [_heard(each) for each in self._mav.parse_buffer(data[:MAX_CHUNK]) or ()]
         self._forget()
         return [each for each in found if each is not None]
@@ -49,7 +48,7 @@ class Decoder:
         return len(self._mav.buf)
 
     def _forget(self) -> None:
-        """Drop what was parsed: pymavlink keeps it as long as chunks end amid a frame."""
+        """Drop the parsed bytes: pymavlink keeps them as long as chunks end inside a frame."""
         if self._mav.buf_index:
             del self._mav.buf[: self._mav.buf_index]
             self._mav.buf_index = 0
@@ -67,7 +66,7 @@ class Encoder:
     def pack(self, message: Message, timestamp: int = 0) -> bytes:
         """Return the frame of a message; `timestamp` is the signature's (see `signing.stamp`).
 
-        Raises CodecError where there is no such message, or a field is missing or does not fit.
+        Raises CodecError if there is no such message, or a field is missing or does not fit.
         """
         kind = getattr(_dialect(), f"MAVLink_{message.name.lower()}_message", None)
         if kind is None:
@@ -86,14 +85,14 @@ def _heard(parsed: Any) -> Message | Garbage | None:
     raw = bytes(parsed.get_msgbuf())
     if name == "BAD_DATA":
         return Garbage(_short(str(parsed.reason)), len(parsed.data))
-    if name.startswith("UNKNOWN"):  # of another dialect: nothing wrong with it
+    if name.startswith("UNKNOWN"):  # of another dialect: not an error
         return None
     fields = {field: getattr(parsed, field) for field in parsed.get_fieldnames()}
     return Message(name, fields, parsed.get_srcSystem(), parsed.get_srcComponent(), raw)
 
 
 def _short(reason: str) -> str:
-    """Return the part of a reason that is alike in all packets of the kind."""
+    """Return the part of a reason that is the same for all such packets."""
     for known in ("CRC", "prefix", "length", "incompat_flags"):
         if known in reason:
             return f"bad {known}"
@@ -103,7 +102,7 @@ def _short(reason: str) -> str:
 @cache
 def _dialect() -> Any:
     try:
-        from pymavlink.dialects.v20 import ardupilotmega  # noqa: PLC0415 - an extra: nobody pays who flies nothing
+        from pymavlink.dialects.v20 import ardupilotmega  # noqa: PLC0415 - an extra, imported only when used
     except ImportError as missing:
         hint = "install the extra: pip install 'bigactors[live]'"
         raise CodecError("live-extra", "MAVLink needs pymavlink, which is not installed", hint) from missing

@@ -1,7 +1,7 @@
-"""Tell a vehicle something until its state shows that it does it: the command protocol, a pure state machine.
+"""The command protocol: repeat a command until the vehicle's state shows it; a pure state machine.
 
-An ACK can be lost, come twice, or belong to an earlier attempt; accepted is not done. So a command is sent again until
-whoever sends it sees what it was for, or a final no.
+An ACK can be lost, duplicated, or belong to an earlier attempt; accepted is not done. So a command is sent again until
+the caller sees its effect, or a final refusal.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ AGAIN: Final = 1.5
 """Seconds before a command is sent again."""
 
 IN_PROGRESS: Final = 5.0
-"""Seconds before a command is sent again that the vehicle says it is busy with."""
+"""Seconds before a command is sent again if the vehicle reports it as in progress."""
 
 _FINAL: Final = {Result.DENIED, Result.UNSUPPORTED}
 
 
 @dataclass(frozen=True, slots=True)
 class Telling:
-    """A message told again and again; `answer` is the vehicle's last."""
+    """A message that is sent repeatedly; `answer` is the vehicle's last."""
 
     message: Message
     sent: float | None = None
@@ -32,14 +32,14 @@ class Telling:
 
     @property
     def refusal(self) -> str | None:
-        """The vehicle's final no, if it said no."""
+        """The vehicle's final refusal, if any."""
         if self.answer not in _FINAL:
             return None
         return f"the vehicle refuses {self.what}: {Result(self.answer).name.lower()}"
 
     @property
     def objection(self) -> str:
-        """What the vehicle has answered last, if that was no yes."""
+        """The vehicle's last answer, if it was not an acceptance."""
         if self.answer in (None, Result.ACCEPTED, Result.IN_PROGRESS):
             return ""
         known = self.answer in tuple(Result)
@@ -47,13 +47,13 @@ class Telling:
 
     @property
     def what(self) -> str:
-        """What is told, for people."""
+        """The command's name for people."""
         number = self.message.fields.get("command")
         return self.message.name if number is None else Cmd(number).name
 
 
 def tick(telling: Telling, now: float) -> tuple[Telling, tuple[Message, ...]]:
-    """Tell it if it was not told for a while."""
+    """Send it if it was not sent for a while."""
     patience = IN_PROGRESS if telling.answer == Result.IN_PROGRESS else AGAIN
     if telling.sent is not None and now - telling.sent < patience:
         return telling, ()
@@ -64,7 +64,7 @@ def tick(telling: Telling, now: float) -> tuple[Telling, tuple[Message, ...]]:
 
 
 def hear(telling: Telling, message: Message) -> Telling:
-    """Take an answer of the vehicle that is meant for us."""
+    """Take the vehicle's answer to us."""
     asked = telling.message.fields.get("command")
     if message.name != "COMMAND_ACK" or asked is None or message["command"] != asked or not telling.attempts:
         return telling
@@ -92,7 +92,7 @@ NAN: Final = float("nan")
 def reposition(system: int, x: int, y: int, height: float, circle: float, *, enters: bool) -> Message:
     """Return the command to go to a point (1e-7 degree, metres above home), and circle there.
 
-    It is for guided mode; from another one it is refused, but for who `enters` guided mode by it.
+    In another mode than guided it is refused, unless it `enters` guided mode.
     """
     return say(
         "COMMAND_INT",

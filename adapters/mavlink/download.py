@@ -1,6 +1,6 @@
-"""Read back the mission or fence that is on board: a pure state machine.
+"""Read back the mission or fence on board: a pure state machine.
 
-Every message is asked for again by timer until it comes; nothing is believed that was not asked for.
+Every message is requested by timer until it comes; messages that were not requested are ignored.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ MAX_ITEMS: Final = 2_000
 
 @dataclass(frozen=True, slots=True)
 class Download:
-    """A download under way: `count` is None until the vehicle has told it."""
+    """A download in progress: `count` is None until the vehicle has sent it."""
 
     kind: MissionType
     system: int
@@ -37,7 +37,7 @@ Step = tuple[Download, tuple[Message, ...]]
 
 
 def tick(download: Download, now: float) -> Step:
-    """Ask for what is missing, again where the answer seems lost."""
+    """Request what is missing, again if the answer seems lost."""
     waiting = download.asked is not None and now - download.asked < ASK_AGAIN
     return (download, ()) if download.over or waiting else _ask(download, now)
 

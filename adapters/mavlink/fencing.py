@@ -1,4 +1,4 @@
-"""The fences that a vehicle has of its own, beside the polygon that it is given: a circle around home, a ceiling."""
+"""A vehicle's own fences beside the polygon that it is given: a circle around home, and a ceiling."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ EACH_BY_ITSELF: Final = (4, 6)
 
 @dataclass(frozen=True, slots=True)
 class OwnFences:
-    """What a vehicle keeps within by itself: metres around home and above it, None where that fence is off."""
+    """A vehicle's own fences: metres around home and above it, None for a fence that is off."""
 
     circle: float | None = None
     ceiling: float | None = None
@@ -28,7 +28,7 @@ class OwnFences:
 
 
 def own_fences(known: Telemetry, *, given: bool) -> OwnFences:
-    """Return the fences that are on, or come on when it is `given` a polygon to keep within."""
+    """Return the fences that are on, or come on with a `given` polygon."""
     told = known.parameters
     by_itself = told.get("FENCE_ENABLE") or told.get("FENCE_AUTOENABLE")
     with_ours = given and (known.version is None or known.version < EACH_BY_ITSELF)
@@ -46,7 +46,7 @@ def _configured(known: Telemetry) -> Fence:
 
 
 def keeps_no_polygon(known: Telemetry) -> str | None:
-    """Return why a vehicle would not keep within a polygon that it is given."""
+    """Return why a vehicle would not obey a given polygon."""
     if "FENCE_TYPE" not in known.parameters or Fence.POLYGON in _configured(known):
         return None
     return (
@@ -58,7 +58,7 @@ def keeps_no_polygon(known: Telemetry) -> str | None:
 def beyond(
     own: OwnFences, known: Telemetry, at: Geometry, room: float, height: float | None, name: str
 ) -> Iterator[str]:
-    """Yield why a vehicle's own fences keep it from going to a point and circling there."""
+    """Yield why a vehicle's own fences prevent it from circling at a point."""
     if own.circle is not None and known.home is not None:
         away = distance(point(*known.home), at) + room
         if away > own.circle:

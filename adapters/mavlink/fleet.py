@@ -1,4 +1,4 @@
-"""What a mission's author says of vehicles and stations: names, MAVLink ids, fence."""
+"""The vehicles and stations of a mission: names, MAVLink ids, fences."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ class Craft:
 
     Attributes:
         entity: Its name in the mission.
-        kind: What it is there.
-        system: Its MAVLink system id; None where the first vehicle heard is meant.
-        channels: The channels it is on as long as it is heard, beside its control authority.
+        kind: Its kind there.
+        system: Its MAVLink system id; None for the first vehicle heard.
+        channels: Its channels while it is heard, beside its control authority.
         fence: The polygon that it must stay in; uploaded before it is armed.
         circle: The radius in metres at which it circles where it stays; its own if None.
-        height: Metres above home at which it travels if nothing else is said; its kind's if None.
+        height: Its default height in metres above home; its kind's if None.
         time_to_live: Seconds for which a position of it counts.
-        serial: Its autopilot's serial number in hexadecimal digits: nothing else is taken for it then.
+        serial: Its autopilot's serial number in hexadecimal digits: then no other vehicle is taken for it.
     """
 
     entity: str
@@ -46,7 +46,7 @@ class Craft:
 
 @dataclass(frozen=True, slots=True)
 class Stations:
-    """The ground stations: their names in the mission and their MAVLink system ids; `own` are those we speak for."""
+    """The ground stations: their names in the mission and their MAVLink system ids; `own` are those of this run."""
 
     ids: Mapping[str, int] = field(default_factory=lambda: {"gcs0": 255})
     own: tuple[str, ...] = ("gcs0",)
@@ -66,7 +66,7 @@ class Stations:
         return next((name for name, number in self.ids.items() if number == system), None)
 
     def speaker(self, authority: int | None) -> int:
-        """Return the system id to speak with to a vehicle: its authority's, if that is ours."""
+        """Return the system id for messages to a vehicle: its authority's, if that is ours."""
         name = self.name_of(authority)
         return self.ids[name if name in self.own else self.own[0]]
 

@@ -1,8 +1,8 @@
-"""Who has the helm of a vehicle: whether it is as it was ordered here, or somebody else or itself has taken it over.
+"""Detect that a vehicle was taken over: by a pilot, another ground station, a fail-safe or itself.
 
-A pilot, another ground station, a fail-safe and a reboot look alike from here: the vehicle is in a mode that nobody
-here ordered, disarmed, or goes elsewhere. Whoever sends it anything then overrules them, so nobody does until an
-operator has given it back.
+A pilot, another ground station, a fail-safe and a reboot look the same from here: the vehicle is in a mode that was not
+ordered here, disarmed, or flies elsewhere. Any command would overrule them, so none is sent until an operator gives the
+vehicle back.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ from adapters.mavlink.telemetry import Telemetry
 from adapters.plugin import Command, Follow, GoTo, Hold, Return
 
 STRANGE: Final = 3.0
-"""Seconds of heartbeats that must show that it is otherwise before that counts: one can come late."""
+"""Seconds of heartbeats that must show a deviation before it counts: a single one can be late."""
 
 
 @dataclass(frozen=True, slots=True)
 class Helm:
-    """What was ordered of a vehicle, and whether it was seen to be otherwise.
+    """The orders of a vehicle, and its deviations from them.
 
     Attributes:
-        modes: The modes of the command that it was last seen to obey, none before the first; while it is otherwise, all
-            that would be as ordered.
+        modes: The modes of the command that it was last seen to obey, none before the first; during a deviation, all
+            modes that would end it.
         armed: Whether it was armed since.
-        boots: How often it had booted when it was last as ordered.
-        strange: Since when it is otherwise.
-        taken: Why it takes no commands any more; empty while it does.
+        boots: Its number of boots when it last followed its orders.
+        strange: Since when it deviates.
+        taken: Why it gets no more commands; empty while it does.
     """
 
     modes: frozenset[int] = frozenset()
@@ -39,12 +39,12 @@ class Helm:
 
     @property
     def held(self) -> bool:
-        """Whether the vehicle is as it was ordered: what is seen of it counts, and it may be told something."""
+        """Whether the vehicle follows its orders: then observations of it count, and it may be commanded."""
         return self.strange is None and not self.taken
 
 
 def watch(helm: Helm, known: Telemetry, profile: Profile, command: Command | None, undone: str = "") -> Helm:
-    """Compare what a vehicle shows with what it was told last; `undone` is what it should do and does not any more."""
+    """Compare a vehicle's state with its last command; `undone` is what it should do and no longer does."""
     if helm.taken or known.mode is None or known.beat is None:
         return helm
     if isinstance(command, Return) and known.armed is False:
@@ -79,7 +79,7 @@ def modes_of(command: Command | None, profile: Profile) -> frozenset[int]:
 
 
 def _otherwise(helm: Helm, known: Telemetry, profile: Profile, command: Command | None) -> str:
-    """Return what of its mode and arming nobody here ordered; who is not armed may be handled by anybody."""
+    """Return what of its mode and arming was not ordered here; a disarmed vehicle may be handled freely."""
     if helm.armed and known.armed is False:
         booted = "it has booted anew and is disarmed" if known.boots != helm.boots else "it was disarmed"
         return f"{booted}, and is not armed again"
@@ -91,10 +91,10 @@ def _otherwise(helm: Helm, known: Telemetry, profile: Profile, command: Command 
 
 
 def _allowed(helm: Helm, profile: Profile, command: Command | None) -> frozenset[int]:
-    """Return the modes that are as ordered; what is told while it is otherwise makes nothing of it ordered."""
+    """Return the ordered modes; a command during a deviation adds none."""
     if helm.strange is not None:
         return helm.modes
-    before = helm.modes or frozenset({profile.guided, profile.auto})  # as another run has left it
+    before = helm.modes or frozenset({profile.guided, profile.auto})  # left so by another run
     return before | modes_of(command, profile)
 
 

@@ -1,4 +1,4 @@
-"""Mission items: what is uploaded, and when two are the same on board and here."""
+"""Mission items: what is uploaded, and how uploaded and stored items are compared."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def fence(polygon: Geometry) -> Items:
 
 
 def same(ours: Items, theirs: Items, kind: MissionType) -> bool:
-    """Whether what is on board is what was to be: all of a fence, all but home of a mission."""
+    """Tell whether the items on board are those wanted: all of a fence, all but home of a mission."""
     first = 1 if kind is MissionType.MISSION else 0
     return len(ours) == len(theirs) and all(map(_alike, ours[first:], theirs[first:]))
 

@@ -1,6 +1,6 @@
-"""Keys on disk: a signing key with its newest time stamps, shared by all links that sign with it.
+"""Key files: a signing key with its newest time stamps, shared by all links that sign with it.
 
-The file is always ahead of what was sent and believed: it is written before that, and then not again for a while.
+The file is always ahead of the packets sent and accepted: it is written before them, with a reserve.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from adapters.mavlink.signing import Verdict
 
 
 class Keeper:
-    """Signs, judges signatures, and keeps what must not be forgotten between two runs.
+    """Signs, checks signatures, and stores the state that must survive a run.
 
-    Raises PhysicalError where the file is no such state.
+    Raises PhysicalError if the file is not such a state.
     """
 
     def __init__(self, path: Path) -> None:
@@ -30,7 +30,7 @@ class Keeper:
         return self._signing.key
 
     def judge(self, message: Message) -> Verdict:
-        """Judge one packet by its frame, and remember its time stamp."""
+        """Check the signature of one packet, and remember its time stamp."""
         self._signing, verdict = signing.check(self._signing, message)
         self._reserve()
         return verdict
@@ -42,7 +42,7 @@ class Keeper:
         return self._signing.timestamp
 
     def save(self) -> None:
-        """Write it to its file as it is, at the end of a run."""
+        """Write the state to its file, at the end of a run."""
         self._write(self._signing)
 
     def _reserve(self) -> None:
@@ -50,7 +50,7 @@ class Keeper:
             self._write(signing.ahead(self._signing))
 
     def _write(self, state: signing.Signing) -> None:
-        self._reserved = state  # where it can't be written now, it is tried again after as long
+        self._reserved = state  # a failed write is retried after the same time
         try:
             signing.save(state, self._path)
         except OSError as error:

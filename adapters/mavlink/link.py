@@ -1,4 +1,4 @@
-"""Whether a vehicle is heard: lost after a silence, restored when it speaks again, or booted anew meanwhile."""
+"""The state of a vehicle's link: lost after a silence, then restored, or restarted by a reboot."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SILENCE: Final = 5.0
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """What was last said of a vehicle's link: whether it is lost, and how often the vehicle had booted."""
+    """The last reported state of a vehicle's link: whether it is lost, and the vehicle's number of boots."""
 
     lost: bool = False
     boots: int = 0
@@ -23,7 +23,7 @@ class Link:
 def watch(
     link: Link, entity: str, known: Telemetry, now: float
 ) -> tuple[Link, LinkLost | LinkRestored | None]:
-    """Return the link as it is now, and what is to be reported of it."""
+    """Return the current link, and its reports."""
     if known.heard is None:
         return link, None
     silent = now - known.heard > SILENCE

@@ -1,4 +1,4 @@
-"""A MAVLink message as a plain value: what the state machines hear and say, whoever encodes it."""
+"""A MAVLink message as a plain value, independent of its encoding."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ class Message:
     """One message.
 
     Attributes:
-        name: As MAVLink calls it, such as `HEARTBEAT`.
+        name: Its name in MAVLink, such as `HEARTBEAT`.
         fields: All of its fields.
-        system: Who says it; 0 in what is to be sent: the sender is chosen then.
-        component: Which part of that system.
-        raw: The frame that it came in; empty in what is to be sent.
+        system: The sender's system id; 0 in an outgoing message, whose sender is chosen later.
+        component: The sender's component id.
+        raw: Its received frame; empty in an outgoing message.
     """
 
     name: str
@@ -36,20 +36,20 @@ class Message:
 
     @property
     def signed(self) -> bool:
-        """Whether it came with a signature, of whatever worth."""
+        """Whether it has a signature, valid or not."""
         return len(self.raw) > FLAGS and self.raw[0] == VERSION_2 and bool(self.raw[FLAGS] & SIGNED)
 
     @property
     def target(self) -> int:
-        """The system that it is meant for; 0 is everybody."""
+        """The target system; 0 is all."""
         return int(self.fields.get("target_system", 0))
 
 
 def say(name: str, **fields: Any) -> Message:
-    """Return a message to be sent."""
+    """Return an outgoing message."""
     return Message(name, fields)
 
 
 def is_for(message: Message, system: int) -> bool:
-    """Whether a message is meant for a system: its own, or everybody's."""
+    """Tell whether a message is addressed to a system, or to all."""
     return message.target in (0, system)

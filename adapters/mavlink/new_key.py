@@ -1,4 +1,4 @@
-"""Make a signing key of a passphrase, as ground stations do: `python -m adapters.mavlink.new_key FILE`."""
+"""Make a signing key from a passphrase, as ground stations do: `python -m adapters.mavlink.new_key FILE`."""
 
 from __future__ import annotations
 

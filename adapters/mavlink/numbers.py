@@ -1,4 +1,4 @@
-"""The numbers of MAVLink that we use, by their names there."""
+"""MAVLink's numeric constants, by their names there."""
 
 from enum import IntEnum, IntFlag
 from typing import Final

@@ -1,4 +1,4 @@
-"""Why a vehicle can't do what it is told: what is known before anything is sent."""
+"""Reasons why a vehicle cannot carry out a command, known before anything is sent."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MAX_PATH = 500
 
 
 def objection(command: Command, craft: Craft, stations: Stations, known: Telemetry) -> str | None:
-    """Return why not, in the operator's words; None if nothing is against it as far as is known."""
+    """Return the objection in the operator's words; None if none is known."""
     return next(_objections(command, craft, stations, known), None)
 
 
@@ -35,12 +35,12 @@ def _objections(command: Command, craft: Craft, stations: Stations, known: Telem
 
 
 def unfit(command: GoTo | Follow, craft: Craft, known: Telemetry) -> str | None:
-    """Return why a place is none for a vehicle, whoever commands it: it is too small, or outside a fence."""
+    """Return why no station can send a vehicle to a place: it is too small, or outside a fence."""
     return next(_of_place(command, craft, known), None)
 
 
 def impassable(place: Geometry, craft: Craft, known: Telemetry, name: str) -> str | None:
-    """Return why a place can't be passed: a circle needs no room there."""
+    """Return why a place can't be passed; the vehicle needs no room for a circle there."""
     if craft.fence is not None and not contains(craft.fence, waypoint(place)):
         return f"{name} lies outside the fence"
     own = own_fences(known, given=craft.fence is not None)
@@ -48,7 +48,7 @@ def impassable(place: Geometry, craft: Craft, known: Telemetry, name: str) -> st
 
 
 def remarks(craft: Craft, known: Telemetry) -> Iterator[str]:
-    """Yield what an operator has to know of a vehicle before it takes off."""
+    """Yield messages to the operator about a vehicle before take-off."""
     own = own_fences(known, given=craft.fence is not None)
     if str(own):
         yield f"{craft.entity} keeps {own}, too: fences of its own are on"
@@ -68,7 +68,7 @@ def _of_place(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]
 
 
 def not_ours(stations: Stations, known: Telemetry) -> str | None:
-    """Return whom a vehicle obeys, if that is certainly none of our stations."""
+    """Return the station that a vehicle obeys, if it is certainly not ours."""
     name = stations.name_of(known.authority)
     if known.authority is None or name in stations.own:
         return None
@@ -111,7 +111,7 @@ def _of_size(command: GoTo | Follow, craft: Craft, profile: Profile, known: Tele
 
 
 def _of_own_fences(command: GoTo | Follow, craft: Craft, profile: Profile, known: Telemetry) -> Iterator[str]:
-    """Object to what the fences that are on beside ours do not hold."""
+    """Object to points outside the vehicle's own active fences."""
     own = own_fences(known, given=craft.fence is not None)
     around = room(craft, profile, known) if profile.drift > 1.0 else 0.0
     height = None
@@ -125,7 +125,7 @@ def _of_own_fences(command: GoTo | Follow, craft: Craft, profile: Profile, known
 
 
 def holds_circle(place: Geometry, radius: float) -> bool:
-    """Whether a circle around the waypoint of a place fits in it; at a point it is the best that can be done."""
+    """Tell whether a circle around a place's waypoint fits in it; for a point it always does."""
     if place.is_point:
         return True
     return contains(place, _around(waypoint(place), radius))

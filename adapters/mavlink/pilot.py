@@ -1,4 +1,4 @@
-"""One vehicle, as its ground station sees it: messages and time in, messages, properties and reports out.
+"""The ground station's state of one vehicle: takes messages and time, yields messages, properties and reports.
 
 A pure state machine: no socket, no clock, no randomness.
 """
@@ -42,16 +42,16 @@ from adapters.plugin import (
 )
 
 AUTHORITY_UNKNOWN: Final = 10.0
-"""Seconds after which a vehicle is published although it does not tell whom it obeys."""
+"""Seconds after which a vehicle is published although its authority is unknown."""
 
 ASK_AUTHORITY: Final = 1.0
 CHECK_AUTHORITY: Final = 5.0
 
 UNANSWERED: Final = 8
-"""Questions after which it is said why a vehicle does not answer, if that shows: a bad link answers one of them."""
+"""Unanswered questions after which a likely reason is reported; even a bad link answers one of them."""
 
 MOST_QUESTIONS: Final = 10
-"""How often a vehicle is asked, once a second, what it may do: a parameter that it does not have it does not answer."""
+"""How often a vehicle is asked, once a second, for its parameters: it does not answer for one that it lacks."""
 
 _ANSWERS: Final = frozenset(
     {
@@ -67,30 +67,30 @@ _ANSWERS: Final = frozenset(
 _SLOTS: Final = ("handing", "moving")
 
 Shown = tuple[Position | None, int | None, bool]
-"""What the last publication rested on: position, authority, whether the link was lost."""
+"""What the last publication depended on: position, authority, whether the link was lost."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pilot:
-    """What a ground station knows of one vehicle and is doing with it.
+    """A ground station's state of one vehicle.
 
     Attributes:
-        craft: What the mission says of it.
-        stations: Who may command it.
+        craft: Its description in the mission.
+        stations: The stations that may command it.
         system: Its MAVLink system id.
-        signs: Whether what it is told is signed.
-        known: What its messages show.
+        signs: Whether messages to it are signed.
+        known: Its state as its messages show it.
         link: Whether it is heard.
-        streams: What it was asked to send.
+        streams: The messages requested of it.
         on_board: The missions and fences that were read back since it booted.
         moving: The command that it carries out.
-        handing: The hand-over under way.
-        helm: Whether it is as it was ordered.
-        asked: When its authority was asked for.
-        unanswered: How often it was asked for since it was told.
-        questions: How often it was asked what it may do since it booted.
+        handing: The hand-over in progress.
+        helm: Whether it follows its orders.
+        asked: When its authority was last requested.
+        unanswered: How often it was requested since the last answer.
+        questions: How often its parameters were requested since it booted.
         since: Since when it has a position.
-        shown: What was published last.
+        shown: What the last publication depended on.
     """
 
     craft: Craft
@@ -113,7 +113,7 @@ class Pilot:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What one input led to."""
+    """The results of one input."""
 
     pilot: Pilot
     sent: tuple[Message, ...] = ()
@@ -122,7 +122,7 @@ class Outcome:
 
 
 def command(pilot: Pilot, told: Command, now: float) -> Outcome:
-    """Take on a command; raises Refused where it is known not to be possible."""
+    """Take on a command; raises Refused if it is known to be impossible."""
     if isinstance(told, GiveBack):
         return Outcome(replace(pilot, helm=helms.given_back(pilot.known), moving=None))
     if pilot.helm.taken:
@@ -142,13 +142,13 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
 
 
 def _check_not_rejected(before: Task | None, told: Command) -> None:
-    """Refuse a request that was rejected: a place that moves on must not take a vehicle back from its pilot."""
+    """Refuse a rejected request again: a moving place must not take a vehicle back from its pilot."""
     if before is not None and before.rejection and before.command.request == told.request:
-        raise Refused(f"the request was rejected: {before.rejection}", "ask anew")
+        raise Refused(f"the request was rejected: {before.rejection}", "request it again")
 
 
 def _continued(before: Task | None, task: Task) -> Task:
-    """Keep of a task whose place has moved on that it had begun; a path goes on where it was."""
+    """Continue a task whose place has moved: it keeps its start, and a path continues with the current item."""
     follows = isinstance(task.command, Follow)
     if before is None or before.command.request != task.command.request or (before.over and not follows):
         return task
@@ -162,7 +162,7 @@ def _continued(before: Task | None, task: Task) -> Task:
 
 
 def hear(pilot: Pilot, message: Message, now: float) -> Outcome:
-    """Take a message of the vehicle that is meant for us, or for everybody."""
+    """Take a message of the vehicle to us, or to all."""
     known = absorb(pilot.known, message, now)
     if known.boots != pilot.known.boots:
         pilot = replace(pilot, on_board={}, questions=0)
@@ -171,9 +171,9 @@ def hear(pilot: Pilot, message: Message, now: float) -> Outcome:
     if message.name in _ANSWERS and pilot.moving is not None and not pilot.moving.over:
         heard = tasks.hear(pilot.moving, message, now)
         pilot, answered = replace(pilot, moving=heard.task), heard.sent
-    elif message.name != "HEARTBEAT":  # which shows at once who has the helm
+    elif message.name != "HEARTBEAT":  # a take-over shows at once
         pilot, published, trouble = _publication(pilot, now)
-        return Outcome(pilot, reports=trouble, published=published)  # tasks go on at the next tick
+        return Outcome(pilot, reports=trouble, published=published)  # tasks continue at the next tick
     outcome = _advance(pilot, now)
     return replace(outcome, sent=_spoken(pilot, (*answered, *outcome.sent)))
 
@@ -194,7 +194,7 @@ def tick(pilot: Pilot, now: float) -> Outcome:
 
 
 def _asked(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
-    """Ask for the messages that are missing, whom the vehicle obeys, and what it may do."""
+    """Request missing messages, the vehicle's authority, and its parameters."""
     flow, missing = streams.tick(pilot.streams, pilot.system, now)
     pilot = replace(pilot, streams=flow)
     unsure = pilot.known.authority is None or (pilot.handing is not None and not pilot.handing.over)
@@ -218,7 +218,7 @@ def _who_commands(pilot: Pilot) -> tuple[Message, ...]:
 
 
 def _untold(pilot: Pilot) -> Iterator[Message]:
-    """Yield the questions for what a vehicle has not told of what it may do, as long as it may answer."""
+    """Yield requests for a vehicle's missing parameters, as long as it may answer."""
     known = pilot.known
     if known.profile is None or pilot.questions >= MOST_QUESTIONS:
         return
@@ -230,7 +230,7 @@ def _untold(pilot: Pilot) -> Iterator[Message]:
 
 
 def is_known(pilot: Pilot) -> bool:
-    """Tell whether a vehicle has told all that is asked of what it may do, or was asked for long enough."""
+    """Tell whether a vehicle has reported all requested parameters, or was asked for long enough."""
     known = pilot.known.profile is not None and pilot.known.home is not None
     return known and not any(_untold(pilot))
 
@@ -241,7 +241,7 @@ def _spoken(pilot: Pilot, sent: tuple[Message, ...]) -> tuple[Message, ...]:
 
 
 def _advance(pilot: Pilot, now: float) -> Outcome:
-    """See who has the helm, take the tasks onwards, and publish what has changed."""
+    """Update the helm, advance the tasks, and publish changes."""
     pilot, lost = _watched(pilot, now)
     sent: list[Message] = []
     reports: list[Report] = [*lost]
@@ -259,7 +259,7 @@ def _advance(pilot: Pilot, now: float) -> Outcome:
 
 
 def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
-    """See whether the vehicle is as it was ordered; if it was taken over, what it was told ends."""
+    """Update whether the vehicle follows its orders; a take-over ends its commands."""
     profile, known = pilot.known.profile, pilot.known
     if profile is None:
         return pilot, ()
@@ -274,7 +274,7 @@ def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
 
 
 def _changes(pilot: Pilot, before: Helm, now: float) -> Iterator[Report]:
-    """Yield that it becomes doubtful whether the vehicle does what it was told, or certain again."""
+    """Yield that the vehicle's command becomes doubtful, or certain again."""
     entity, task = pilot.craft.entity, pilot.moving
     if before.held and not pilot.helm.held:
         yield Doubted(entity, now)
@@ -283,7 +283,7 @@ def _changes(pilot: Pilot, before: Helm, now: float) -> Iterator[Report]:
 
 
 def _undone(pilot: Pilot, profile: Profile) -> str:
-    """Return what the vehicle would have to be told again of what it was seen to do."""
+    """Return the part of its completed commands that the vehicle no longer does."""
     task = pilot.moving
     if task is None or not task.accepted:
         return ""
@@ -292,7 +292,7 @@ def _undone(pilot: Pilot, profile: Profile) -> str:
 
 
 def _taken_over(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
-    """End what the vehicle was told: nothing that it does from now on is of our doing."""
+    """End the vehicle's commands: what it does from now on is not our doing."""
     reason = pilot.helm.taken + pilot.known.last_words(now)
     pilot = replace(pilot, helm=replace(pilot.helm, taken=reason))
     reports: list[Report] = [TakenOver(pilot.craft.entity, now, reason)]
@@ -306,7 +306,7 @@ def _taken_over(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
 
 
 def _is_ours(pilot: Pilot) -> bool:
-    """Tell whether it is for us to say what a vehicle does; where it does not tell whom it obeys, if we have."""
+    """Tell whether we report on a vehicle; if its authority is unknown, only if we have commanded it."""
     stations, authority = pilot.stations, pilot.known.authority
     if authority is None:
         return set(stations.own) == set(stations.ids) or bool(pilot.helm.modes)
@@ -319,9 +319,7 @@ def _onwards(pilot: Pilot, slot: str, task: Task) -> Pilot:
 
 def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
     profile = pilot.known.profile
-    if (
-        profile is None or pilot.known.mode is None
-    ):  # not heard yet, or something that nobody here can command
+    if profile is None or pilot.known.mode is None:  # not heard yet, or of a kind that can't be commanded
         return _unknown(pilot, task, now)
     if not task.checked:
         reason = objection(task.command, pilot.craft, pilot.stations, pilot.known)
@@ -329,7 +327,7 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
             return tasks.rejected(task, reason, now)
         task = replace(task, checked=True)
     foreign = not_ours(pilot.stations, pilot.known)
-    if foreign and isinstance(task.doing, Sync):  # nobody here can end what was begun
+    if foreign and isinstance(task.doing, Sync):  # a task that was begun can't be ended here
         return tasks.rejected(task, foreign, now)
     task = _with_height(pilot, task)
     vehicle = _vehicle(pilot, task, profile)
@@ -379,9 +377,9 @@ def _with_height(pilot: Pilot, task: Task) -> Task:
 
 
 def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Aged, ...], tuple[Report, ...]]:
-    """Publish the vehicle where anything that is shown of it has changed."""
+    """Publish the vehicle if anything published has changed."""
     position, authority = pilot.known.position, pilot.known.authority
-    if position is None or pilot.known.profile is None:  # a run begins when it is known what flies
+    if position is None or pilot.known.profile is None:  # a run begins when the kinds are known
         return replace(pilot, since=None), (), ()
     if pilot.since is None:
         pilot = replace(pilot, since=now)

@@ -1,7 +1,7 @@
-"""What to do next towards a command: a pure function of what the vehicle's state shows.
+"""The next action towards a command: a pure function of the vehicle's state.
 
-Hardly anything is remembered but what is known to be on board, so that lost packets, answers that came twice and a
-vehicle that booted anew need no cases of their own: the first thing that is not yet so is done next.
+Little is remembered except what is known to be on board. So lost packets, duplicate answers and reboots need no special
+cases: the next action is the first whose effect the state does not show.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from adapters.plugin import Command, Follow, GiveBack, GoTo, HandOver, Hold, Reb
 from physical import Band, Geometry, contains, distance, point, waypoint
 
 TARGET_METRES = 5.0
-"""How near the target that the vehicle tells must be to the one it was told."""
+"""Metres by which the vehicle's reported target may differ from the commanded one."""
 
 TAKEOFF_HEIGHT = 10.0
-"""Metres to which a copter takes off before it is sent anywhere."""
+"""The take-off height of a copter in metres, before it is sent anywhere."""
 
 CLIMBING = 0.2
 """Metres a second."""
@@ -30,7 +30,7 @@ CLIMBING = 0.2
 
 @dataclass(frozen=True, slots=True)
 class Wait:
-    """Nothing to be done: the vehicle has to come to it by itself. `limited`: not for long."""
+    """Nothing to do: the vehicle must reach the next state by itself. `limited`: within a short time."""
 
     why: str
     limited: bool = True
@@ -38,7 +38,7 @@ class Wait:
 
 @dataclass(frozen=True, slots=True)
 class Tell:
-    """A message, until the state shows what it was for."""
+    """A message, until the state shows its effect."""
 
     why: str
     message: Message
@@ -46,7 +46,7 @@ class Tell:
 
 @dataclass(frozen=True, slots=True)
 class Load:
-    """A mission or fence that has to be on board."""
+    """A mission or fence that must be on board."""
 
     items: Items
     kind: MissionType
@@ -59,7 +59,7 @@ class Load:
 
 @dataclass(frozen=True, slots=True)
 class Underway:
-    """The state shows that the vehicle does what it was told; `done` that it has done it."""
+    """The state shows that the vehicle follows its command; `done` that it has completed it."""
 
     done: bool
 
@@ -69,21 +69,21 @@ Step = Wait | Tell | Load | Underway
 
 @dataclass(frozen=True, slots=True)
 class Vehicle:
-    """What plans rest on.
+    """The input of a plan.
 
     Attributes:
         system: Its MAVLink system id.
-        known: What its messages show.
-        profile: What kind it is.
+        known: Its state as its messages show it.
+        profile: The profile of its kind.
         on_board: The missions and fences that were read back since it booted.
-        fence: The polygon that it is to be kept within.
+        fence: The polygon that it must stay in.
         circle: The radius in metres at which it circles where it stays.
         height: Metres above home at which the command is carried out.
         begun: Whether its mission was seen to begin since the command.
-        resumes: Whether that goes on with the item that it is at.
+        resumes: Whether the mission continues with the current item.
         home_circle: The radius in metres at which it circles its home when it returns.
-        speaker: The system id by which it is spoken to: of who has the authority.
-        deaf: Why it seems not to hear us, if it does.
+        speaker: The system id of messages to it, that of its authority.
+        deaf: Why it seems not to hear us, if so.
     """
 
     system: int
@@ -101,7 +101,7 @@ class Vehicle:
 
 
 def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
-    """Return the first thing that is not yet so; `station` is the system id that a HandOver gives authority to."""
+    """Return the first missing step; `station` is the system id that a HandOver gives authority to."""
     match command:
         case GoTo():
             return _prepared(vehicle) or _go(command, vehicle)
@@ -118,7 +118,7 @@ def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
 
 
 def _prepared(vehicle: Vehicle) -> Step | None:
-    """See that the vehicle knows where it is, takes missions, and has its fence."""
+    """Yield what is missing until the vehicle has a position, accepts missions, and has its fence."""
     if vehicle.known.position is None:
         return Wait("it has no position yet")
     if not vehicle.known.armed and vehicle.known.healthy is not True:
@@ -147,7 +147,7 @@ def _go(command: GoTo, vehicle: Vehicle) -> Step:
 
 
 def _off_the_ground(vehicle: Vehicle, at: Geometry) -> Step | None:
-    """Get ready to go: a plane by a mission that begins with a take-off, the others in guided mode."""
+    """Get the vehicle moving: a plane by a mission that begins with a take-off, the others in guided mode."""
     if vehicle.profile.takeoff is TakeOff.MISSION:
         return _mission_takeoff(vehicle, at)
     ready = None if vehicle.known.flying else _in_mode(vehicle, vehicle.profile.guided) or _armed(vehicle)
@@ -185,9 +185,9 @@ def _has_takeoff(vehicle: Vehicle) -> bool:
 
 
 def _sent(vehicle: Vehicle, at: Geometry) -> Step | None:
-    """See that it is in guided mode and tells the target as its own.
+    """Bring it to guided mode with the commanded target.
 
-    What is in guided mode may leave it at that moment, for its own safety: it is not told to enter it then.
+    A vehicle in guided mode is not told to enter it: it may leave that mode at this moment for its safety.
     """
     known, (x, y) = vehicle.known, e7(at)
     enters = known.mode != vehicle.profile.guided
@@ -204,7 +204,7 @@ def _targets(known: Telemetry, at: Geometry) -> bool:
 def _follow(command: Follow, vehicle: Vehicle) -> Step:
     profile, path = vehicle.profile, tuple(map(waypoint, command.path))
     items = route(path, vehicle.height, takeoff=profile.takeoff is not TakeOff.NONE)
-    # What flies need not take off again: it begins with the point behind the take-off.
+    # A flying vehicle need not take off again: it begins with the point after the take-off.
     first = 2 if profile.takeoff is not TakeOff.NONE and vehicle.known.flying else 1
     if vehicle.resumes:
         first = vehicle.known.current or first
@@ -219,7 +219,7 @@ def _follow(command: Follow, vehicle: Vehicle) -> Step:
 
 
 def _begun(vehicle: Vehicle, first: int) -> Step | None:
-    """See that a mission does not begin where an earlier one had come to."""
+    """Make a mission begin at its start, not at the item of an earlier one."""
     if vehicle.begun:
         return None
     return Tell("to begin its mission", to.long(Cmd.SET_MISSION_CURRENT, vehicle.system, first))

@@ -1,4 +1,4 @@
-"""What differs between vehicles: modes, how they take off, and how well they can stay at a place.
+"""Profiles of vehicle types: modes, take-off, and how well they hold a position.
 
 The numbers are ArduPilot 4.6's; the kind comes from HEARTBEAT.
 """
@@ -32,9 +32,9 @@ class Profile:
         takeoff: How it leaves the ground.
         circle: The radius in metres that it needs to stay somewhere.
         reach: How near in metres counts as being at a point.
-        altitude: Metres above home at which it travels, if nothing else is said.
-        parameters: The parameters that say what it may do, and how it circles.
-        drift: By which factor wind and inertia carry it out of its circle.
+        altitude: Its default height in metres above home.
+        parameters: The parameters of its limits and its circles.
+        drift: The factor by which wind and inertia widen its circle.
     """
 
     kind: str
@@ -83,10 +83,10 @@ PLANE: Final = Profile(
     (*FLIES, *CIRCLE_PARAMETERS),
     1.3,
 )
-# BRAKE: LOITER would take the middle of a throttle stick that nobody holds.
+# BRAKE: LOITER would use the centre of a throttle stick that no pilot holds.
 COPTER: Final = Profile("copter", _COPTER_MODES, 4, 3, 17, 6, TakeOff.COMMAND, 5.0, 5.0, 30.0, FLIES)
 ROVER: Final = Profile("rover", _ROVER_MODES, 15, 10, 4, 11, TakeOff.NONE, 2.0, 4.0, 0.0)
-# A boat that holds its thrust drifts away: it must keep its station.
+# A boat in HOLD drifts away: it must keep its position.
 BOAT: Final = Profile("boat", _ROVER_MODES, 15, 10, 5, 11, TakeOff.NONE, 5.0, 8.0, 0.0)
 
 _BY_TYPE: Final = (
@@ -98,7 +98,7 @@ _BY_TYPE: Final = (
 
 
 def profile_of(vehicle_type: int, autopilot: int) -> Profile | None:
-    """Return the profile of who sends a HEARTBEAT; None for what we don't know how to command.
+    """Return the profile of a HEARTBEAT's sender; None for a kind that we can't command.
 
     >>> profile_of(2, 3).kind, profile_of(2, 12)
     ('copter', None)

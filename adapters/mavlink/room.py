@@ -1,4 +1,4 @@
-"""How much room a vehicle needs to stay somewhere: the circle that it says it flies, and what the wind makes of it."""
+"""The room that a vehicle needs to stay at a place: the circle that it flies, and the effect of wind."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from adapters.mavlink.telemetry import Telemetry
 
 
 def circle(craft: Craft, profile: Profile, known: Telemetry) -> float:
-    """Return the radius in metres at which it circles: as the mission's author says, else as it says itself."""
+    """Return the radius in metres at which it circles: the mission's, else its own."""
     if craft.circle is not None:
         return craft.circle
     return abs(known.parameters.get("WP_LOITER_RAD", 0.0)) or profile.circle
@@ -20,12 +20,12 @@ def home_circle(craft: Craft, profile: Profile, known: Telemetry) -> float:
 
 
 def room(craft: Craft, profile: Profile, known: Telemetry) -> float:
-    """Return the radius in metres in which it stays when it circles somewhere, in wind too."""
+    """Return the radius in metres within which its circles stay, in wind too."""
     return circle(craft, profile, known) * profile.drift
 
 
 def described(craft: Craft, profile: Profile, known: Telemetry) -> str:
-    """Return for what a vehicle needs room, with the figures."""
+    """Return a text about the room that a vehicle needs, with the figures."""
     radius, needed = circle(craft, profile, known), room(craft, profile, known)
     if needed == radius:
         return f"a circle of {radius:g} m"

@@ -1,7 +1,7 @@
-"""Who is who on a link: which vehicle of the mission a system is, by its id or serial number, or as the first heard.
+"""Map the systems on a link to the mission's vehicles, by system id, serial number, or order of arrival.
 
-A pure state machine. A vehicle that is known by its serial number is asked for it (AUTOPILOT_VERSION) until it tells,
-and until then nothing that it says counts: a system id is quickly set to another's.
+A pure state machine. A vehicle that is identified by its serial number is asked for it (AUTOPILOT_VERSION) until it
+answers. Until then its messages are ignored, since any vehicle can have its system id.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ VERSION: Final = "AUTOPILOT_VERSION"
 
 @dataclass(frozen=True, slots=True)
 class Roster:
-    """The serial numbers that systems have told, and when each was last asked."""
+    """The reported serial numbers of systems, and when each was last asked."""
 
     serials: Mapping[int, str] = field(default_factory=dict)
     asked: Mapping[int, float] = field(default_factory=dict)
@@ -31,7 +31,7 @@ class Roster:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """Whose message it is: `pilot` with its system id, None for nobody's; `question` is to be sent to its sender."""
+    """A message's vehicle: its `pilot` and system id, None if unknown; `question` is to be sent to the sender."""
 
     roster: Roster
     pilot: Pilot | None = None
@@ -40,7 +40,7 @@ class Found:
 
 
 def find(roster: Roster, pilots: Iterable[Pilot], message: Message, now: float) -> Found:
-    """Return the pilot whose vehicle says a message, and what has to be asked to know it."""
+    """Return the pilot of a message's sender, and the question that would identify it."""
     if message.system == 0 or message.component != AUTOPILOT_COMPONENT:
         return Found(roster)
     everyone = tuple(pilots)
@@ -62,7 +62,7 @@ def find(roster: Roster, pilots: Iterable[Pilot], message: Message, now: float) 
 
 
 def serial_of(version: Message) -> str:
-    """Return an autopilot's serial number in hexadecimal digits, empty where it tells none."""
+    """Return an autopilot's serial number in hexadecimal digits, empty if it has none."""
     long_one = bytes(version["uid2"]).rstrip(b"\0")
     if long_one:
         return long_one.hex().upper()

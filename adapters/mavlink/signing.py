@@ -1,8 +1,8 @@
-"""MAVLink 2 signing: which packets are believed, and what stands on disk between two runs.
+"""MAVLink 2 signing: which packets are accepted, and the state on disk between runs.
 
 A pure state machine. A signature's time stamp is in units of 10 µs since 2015; for each stream (link, system,
 component) it must grow, and a new stream may be at most a minute behind. A stream is remembered only after its
-signature has been checked, so a stranger can neither silence a vehicle nor fill the memory.
+signature has been checked, so an attacker can neither silence a vehicle nor fill the memory.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from adapters.private import open_private, others_may_read
 from physical import PhysicalError, open_file, read_json
 
 EPOCH: Final = 1_420_070_400
-"""2015-01-01 in seconds since 1970: where time stamps count from."""
+"""2015-01-01 in seconds since 1970: the origin of time stamps."""
 
 UNITS: Final = 100_000
 """Units of a time stamp in a second."""
 
 NEW_STREAM: Final = 60 * UNITS
 RESERVE: Final = 10 * UNITS
-"""How far time stamps on disk run ahead in a run: after a crash none is sent, and no packet believed, a second time.
+"""How far time stamps on disk run ahead in a run: after a crash none is sent, and no packet accepted, a second time.
 
-For as long a vehicle is not believed after a crash: until its own time stamps have come so far.
+After a crash a vehicle's packets are ignored for at most this time, until its own time stamps have caught up.
 """
 
 KEY_BYTES: Final = 32
@@ -41,7 +41,7 @@ _BLOCK: Final = 13  # link id, time stamp, signature
 
 
 class Verdict(StrEnum):
-    """What a packet's signature says."""
+    """The verdict on a packet's signature."""
 
     GOOD = "signed"
     UNSIGNED = "unsigned packet"
@@ -67,7 +67,7 @@ def new_key(passphrase: str) -> bytes:
 
 
 def check(signing: Signing, message: Message) -> tuple[Signing, Verdict]:
-    """Judge one packet by its frame."""
+    """Check the signature of one packet."""
     raw = message.raw
     if len(raw) < _BLOCK + 12 or not message.signed:
         return signing, Verdict.UNSIGNED
@@ -88,7 +88,7 @@ def stamp(signing: Signing, now: float) -> Signing:
 
 
 def ahead(signing: Signing) -> Signing:
-    """Return a state with every time stamp in reserve: what stands on disk while it is used."""
+    """Return the state to store during a run: every time stamp is advanced by the reserve."""
     streams = {stream: time + RESERVE for stream, time in signing.streams.items()}
     return replace(signing, timestamp=signing.timestamp + RESERVE, streams=streams)
 
@@ -102,7 +102,7 @@ def covers(reserved: Signing, signing: Signing) -> bool:
 
 
 def setup_signing(key: bytes, now: float, system: int, component: int = 1) -> Message:
-    """Return the message that gives a vehicle its key, in clear: send it by cable only."""
+    """Return the message that gives a vehicle its key, in clear text: send it by cable only."""
     return say(
         "SETUP_SIGNING",
         target_system=system,
@@ -115,7 +115,7 @@ def setup_signing(key: bytes, now: float, system: int, component: int = 1) -> Me
 def load(path: Path) -> Signing:
     """Read the state of an earlier run.
 
-    Raises PhysicalError where the file is no such state, or others may read it.
+    Raises PhysicalError if the file is not such a state, or others may read it.
     """
     hint = "make one: python -m adapters.mavlink.new_key FILE"
     try:
@@ -151,7 +151,7 @@ def _bad(message: str) -> PhysicalError:
 
 
 def save(signing: Signing, path: Path) -> None:
-    """Write the state for a later run, readable by its owner only, whole or not at all."""
+    """Write the state for a later run atomically, readable by its owner only."""
     data = {
         "key": signing.key.hex(),
         "timestamp": signing.timestamp,

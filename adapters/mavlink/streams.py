@@ -1,4 +1,4 @@
-"""Ask a vehicle for the messages that we need, as long as they do not come."""
+"""Request message streams from a vehicle until they arrive."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from adapters.mavlink.message import Message
 from adapters.mavlink.numbers import STREAMS, Cmd
 
 MISSED: Final = 5.0
-"""Seconds, or periods, without a message after which it is asked for."""
+"""Seconds, or periods, without a message after which it is requested."""
 
 ASK_EVERY: Final = 2.0
 
 
 @dataclass(frozen=True, slots=True)
 class Streams:
-    """When each message came last, and when they were last asked for."""
+    """When each message came last, and when they were last requested."""
 
     came: dict[str, float] = field(default_factory=dict)
     asked: float | None = None
@@ -29,7 +29,7 @@ def hear(streams: Streams, message: Message, now: float) -> Streams:
 
 
 def tick(streams: Streams, system: int, now: float) -> tuple[Streams, tuple[Message, ...]]:
-    """Ask for all that was not heard for a while."""
+    """Request all messages that did not come for a while."""
     if streams.asked is not None and now - streams.asked < ASK_EVERY:
         return streams, ()
     missing = [name for name, (_, period) in STREAMS.items() if _missed(streams.came.get(name), period, now)]

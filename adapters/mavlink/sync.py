@@ -1,4 +1,4 @@
-"""Make sure that a mission or fence is on board: upload, read back, compare, again until they are the same."""
+"""Synchronise a mission or fence: upload, read back, compare, repeated until they are equal."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from adapters.mavlink.message import Message
 from adapters.mavlink.numbers import MissionType
 
 ROUNDS: Final = 5
-"""How often a difference is tolerated before the vehicle is said to refuse."""
+"""How many differences are tolerated before the vehicle counts as refusing."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sync:
-    """A mission on its way on board, by one `speaker`; `rounds` counts how often what was read back differed."""
+    """A mission or fence being uploaded by one `speaker`; `rounds` counts the read-backs that differed."""
 
     items: Items
     kind: MissionType
@@ -29,7 +29,7 @@ class Sync:
 
     @property
     def refusal(self) -> str | None:
-        """Why it will never be on board, if so."""
+        """The final refusal, if any."""
         if isinstance(self.doing, writing.Upload) and self.doing.refusal is not None:
             return (
                 f"the vehicle refuses the {self.kind.name.lower()} (MAV_MISSION_RESULT {self.doing.refusal})"
@@ -40,7 +40,7 @@ class Sync:
 
     @property
     def reached(self) -> tuple[int, int, int]:
-        """How far it is: rounds, whether it reads back, items."""
+        """Its progress: rounds, whether it reads back, items."""
         reads = isinstance(self.doing, reading.Download)
         items = self.doing.items if isinstance(self.doing, reading.Download) else self.doing.wanted
         return self.rounds, int(reads), len(items)
@@ -50,7 +50,7 @@ Step = tuple[Sync, tuple[Message, ...]]
 
 
 def begin(items: Items, kind: MissionType, system: int, speaker: int) -> Sync:
-    """Begin with an upload; all of it is said by the same station, by its system id, and answered to that."""
+    """Begin with an upload; all messages come from one station's system id, and answers go to it."""
     return Sync(items, kind, system, speaker, writing.Upload(items, kind, system))
 
 
@@ -75,7 +75,7 @@ def hear(sync: Sync, message: Message, now: float) -> Step:
 
 
 def _onwards(sync: Sync, sent: tuple[Message, ...], now: float) -> Step:
-    """Go from the upload to the download, and from a difference to the next upload."""
+    """Continue from the upload to the download, and from a difference to the next upload."""
     sent = tuple(replace(message, system=sync.speaker) for message in sent)
     if sync.confirmed or not sync.doing.over or sync.refusal:
         return sync, sent

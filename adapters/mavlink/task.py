@@ -1,4 +1,4 @@
-"""One command on its way: the step it is at, how it is going, and how it ends."""
+"""One command in progress: its current step, its status, and how it ends."""
 
 from __future__ import annotations
 
@@ -15,32 +15,32 @@ from adapters.mavlink.plan import Load, Step, Tell, Underway, Vehicle, Wait
 from adapters.plugin import Accepted, Arrived, Command, Rejected, Report, Trouble
 
 PATIENCE: Final = 45.0
-"""Seconds, while the vehicle is heard, that one step may take; that an upload may take without getting further."""
+"""Seconds, while the vehicle is heard, for one step, and for an upload without progress."""
 
 BOOT_PATIENCE: Final = 120.0
-"""Seconds that a vehicle may take to be ready: its filters settle, its receiver finds satellites."""
+"""Seconds for a vehicle to get ready: its filters settle, its receiver finds satellites."""
 
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """A command and how far it is.
+    """A command in progress.
 
     Attributes:
-        command: What was asked.
-        station: Of a HandOver, the system id of the station that gets the authority.
+        command: The command.
+        station: For a HandOver, the system id of the station that gets the authority.
         height: Metres above home at which it is carried out, once known.
-        step: What is being done.
-        since: Since when it was, or since when the vehicle could be heard, or since when an upload has got no further.
-        reached: How far an upload has got.
-        doing: The exchange that this takes.
-        accepted: Whether the state has shown that the vehicle does it.
+        step: The current step.
+        since: Since when: the start of the step, the vehicle's return to the link, or an upload's last progress.
+        reached: The progress of an upload.
+        doing: The step's exchange of messages.
+        accepted: Whether the state has shown that the vehicle follows it.
         over: Whether it has arrived or was rejected.
         rejection: Why it was rejected, if it was.
-        begun: Whether the mission was seen at its first item, or the vehicle has said that it resumes it.
-        resumes: Whether the path has moved under way: the vehicle is told again to go to the item that it is at.
-        boots: The vehicle's boots that all this is about.
-        checked: Whether it was seen to be possible for this kind of vehicle.
-        complained: Whether it was reported that the vehicle does not do this step for now.
+        begun: Whether the mission was seen at its first item, or the vehicle has reported that it resumes it.
+        resumes: Whether the path has moved: the vehicle is told to continue with the current item.
+        boots: The vehicle's number of boots for which this holds.
+        checked: Whether it is possible for this kind of vehicle.
+        complained: Whether a delay of this step was reported.
     """
 
     command: Command
@@ -62,7 +62,7 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """What became of a task: what to send, what to report, and what is now known to be on board."""
+    """The progress of a task: messages to send, reports, and what is now known to be on board."""
 
     task: Task
     sent: tuple[Message, ...] = ()
@@ -71,7 +71,7 @@ class Progress:
 
 
 def hear(task: Task, message: Message, now: float) -> Progress:
-    """Let the exchange under way take a message of the vehicle that is meant for us."""
+    """Let the current exchange take a message of the vehicle to us."""
     if isinstance(task.doing, telling.Telling):
         return Progress(replace(task, doing=telling.hear(task.doing, message)))
     if isinstance(task.doing, syncing.Sync):
@@ -81,7 +81,7 @@ def hear(task: Task, message: Message, now: float) -> Progress:
 
 
 def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float) -> Progress:
-    """Do what is next: `step` is the first thing that is not yet so."""
+    """Do the next step: `step` is the first missing one."""
     task = _followed(task, vehicle, now)
     if isinstance(step, Underway):
         return _underway(task, step, now)
@@ -95,7 +95,7 @@ def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float)
             complained=False,
         )
     if isinstance(task.doing, syncing.Sync) and task.doing.speaker != vehicle.speaker:
-        # Handed over: of what one station has begun the vehicle takes nothing from another.
+        # Handed over: the vehicle does not let another station continue an exchange.
         task = replace(task, since=now, reached=(0, 0, 0), doing=_exchange(step, vehicle))
     if isinstance(task.doing, syncing.Sync) and task.doing.reached > task.reached:
         task = replace(task, since=now, reached=task.doing.reached)
@@ -107,14 +107,14 @@ def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float)
 
 
 def undone(task: Task, step: Step, boots: int) -> str:
-    """Return what a vehicle that has done what it was told would have to be told again, nothing if it still does it."""
+    """Return the step that a vehicle with a completed command no longer shows, or an empty text."""
     if not task.accepted or boots != task.boots or isinstance(step, Underway | Wait):
         return ""
     return f"it does not do any more what it was told: it would have to be told {step.why}"
 
 
 def _complained(progress: Progress, vehicle: Vehicle, now: float) -> Progress:
-    """Report the first no of a vehicle that is not its last: it is told again, and that may take a while."""
+    """Report a vehicle's first temporary refusal: the command is repeated, and that may take a while."""
     task = progress.task
     no = task.doing.objection if isinstance(task.doing, telling.Telling) else ""
     if not no or task.complained or progress.report or not isinstance(task.step, Tell):
@@ -133,7 +133,7 @@ def rejected(task: Task, reason: str, now: float) -> Progress:
 
 
 def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
-    """Bring what is remembered up to date with what the vehicle shows."""
+    """Update the task from the vehicle's state."""
     known = vehicle.known
     if known.boots != task.boots:  # all of it is void
         task = replace(
@@ -149,7 +149,7 @@ def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
 
 
 def _begins(task: Task, vehicle: Vehicle) -> bool:
-    """Tell whether the vehicle is at the item that it was told: where it was before, only its answer shows that."""
+    """Tell whether the vehicle is at the commanded item; if it was there before, only its answer shows this."""
     asked = task.step.message.fields if isinstance(task.step, Tell) else {}
     if asked.get("command") != Cmd.SET_MISSION_CURRENT:
         return False

@@ -1,7 +1,7 @@
-"""What a vehicle's messages show of it: a fold, without a clock of its own.
+"""A vehicle's state as its messages show it: a fold, without a clock of its own.
 
-Everything is stamped by our clock when it arrives; of the vehicle's own clock, which may run at any speed and be wrong,
-only the order of its messages and a reboot are told.
+Our clock stamps every message at arrival. The vehicle's own clock may be wrong and run at any speed; it only shows the
+order of messages and a reboot.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ BACKWARDS: Final = 5_000
 """Milliseconds by which the vehicle's clock must go back to mean a reboot: less is a late packet."""
 
 LARGEST: Final = 1e6
-"""What is larger is no radius, height or set of fences."""
+"""The largest valid radius, height or set of fences."""
 MEMORY: Final = 60.0
-"""Seconds for which what it said may be the reason of what it does."""
+"""Seconds for which a warning may explain what the vehicle does."""
 
 MOST_WORDS: Final = 3
 WARNING: Final = 4
 """MAV_SEVERITY_WARNING: what is less urgent has a larger number."""
 
 NOWHERE: Final = 0.01
-"""Degrees around (0, 0) in which nobody is: what an autopilot says before its filter has settled."""
+"""Degrees around (0, 0) that are ignored: an autopilot reports them before its filter has settled."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,32 +63,32 @@ class Position:
 
 @dataclass(frozen=True, slots=True)
 class Telemetry:
-    """What is known of a vehicle by its own messages; None is *not told yet*.
+    """The state of a vehicle as its own messages show it; None is *not reported yet*.
 
     Attributes:
-        heard: When anything was heard from it.
-        profile: What kind of vehicle it is.
+        heard: When its last message came.
+        profile: The profile of its kind.
         mode: Its mode's number.
         armed: Whether its motors may turn.
-        active: Whether it says that it flies (or drives).
-        position: Where it is, if it has a fix.
-        fix_time: When it last said that it has one.
-        healthy: Whether it could be armed, and takes missions.
-        current: The number of the mission item that it pursues.
-        target: Where it is going: degrees.
-        home: Where it returns to: degrees.
-        fenced: Whether it keeps within a fence, of its own or ours.
-        polygon: Whether it has said that it keeps within the polygon.
+        active: Whether it reports that it flies (or drives).
+        position: Its position, if it has a fix.
+        fix_time: When it last reported a fix.
+        healthy: Whether it could be armed, and accepts missions.
+        current: The number of its current mission item.
+        target: Its target in degrees.
+        home: Its home in degrees.
+        fenced: Whether a fence is active, its own or ours.
+        polygon: Whether it has reported that the polygon is active.
         authority: The system id of the station that it obeys.
-        authority_parameter: The parameter in which it has told that.
-        parameters: What else it has told of what it may do, and how it circles.
-        version: Of its firmware: major and minor.
+        authority_parameter: The parameter that holds it.
+        parameters: Other reported parameters, of its limits and its circles.
+        version: The firmware's major and minor version.
         signs: Whether it signs its packets.
         clock: Its own milliseconds since boot.
-        suspect: What its clock said when it first seemed to have gone back.
-        placed: What its clock said of its position: of when it was measured, which is before other messages.
-        boots: How often it was seen to boot anew.
-        words: What it said last that was a warning or worse, with the times.
+        suspect: Its clock when it first seemed to have gone back.
+        placed: Its clock when its position was measured.
+        boots: How many reboots were seen.
+        words: Its last warnings or worse, with their times.
         beat: When its last heartbeat came.
     """
 
@@ -119,17 +119,17 @@ class Telemetry:
 
     @property
     def flying(self) -> bool:
-        """Whether it is off the ground, as it says."""
+        """Whether it reports that it is off the ground."""
         return bool(self.armed and self.active)
 
     def last_words(self, now: float) -> str:
-        """Return what it has warned of of late, to be put behind a reason; nothing if it has not."""
+        """Return its recent warnings as a suffix of a reason, or an empty text."""
         lately = [text for time, text in self.words if now - time <= MEMORY]
         return f"; its last words: {', '.join(map(repr, dict.fromkeys(lately)))}" if lately else ""
 
 
 def absorb(known: Telemetry, message: Message, now: float) -> Telemetry:
-    """Return what is known after one more message from the vehicle's autopilot."""
+    """Return the state after one more message from the vehicle's autopilot."""
     if message.component != AUTOPILOT_COMPONENT:
         return known
     known = _clocked(known, message.fields.get("time_boot_ms"), now)
@@ -154,7 +154,7 @@ def property_of(craft: Craft, at: Position, channels: tuple[str, ...]) -> Physic
 
 
 def _clocked(known: Telemetry, clock: int | None, now: float) -> Telemetry:
-    """Note that it is heard, and follow its clock; two messages in a row that are far behind mean a new boot."""
+    """Note that it is heard, and follow its clock; two successive messages far behind mean a reboot."""
     if not clock:  # messages without, and those from before its clock began
         return replace(known, heard=now)
     if known.clock is None or clock > known.clock - BACKWARDS:

@@ -1,4 +1,4 @@
-"""Telemetry logs: 8 bytes of microseconds since 1970, most significant first, then one raw frame, again and again."""
+"""Telemetry logs: for each frame 8 bytes of microseconds since 1970, most significant first, then the raw frame."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ _SIGNED: Final = 1
 
 
 def entry(time: float, frame: bytes) -> bytes:
-    """Return one entry of a log: what a plugin's tap writes."""
+    """Return one entry of a log, as a plugin's tap writes it."""
     return round(time * 1e6).to_bytes(8, "big") + frame
 
 
 def read_tlog(path: str | PathLike[str]) -> Iterator[tuple[float, Message]]:
-    """Yield the messages of a log with their times; what is no message is passed over.
+    """Yield the messages of a log with their times; skip anything else.
 
-    Raises PhysicalError where the file can't be read or is no such log.
+    Raises PhysicalError if the file can't be read or is not such a log.
     """
     try:
         with open_file(path) as file:

@@ -1,11 +1,11 @@
-"""Give a vehicle its mission or fence: the ground's side of the upload, a pure state machine.
+"""Upload a mission or fence: the ground's side of the protocol, a pure state machine.
 
-The vehicle asks for item after item, again after a second, and gives up after eight; so only the count is ever sent by
-timer. ArduPlane asks with MISSION_REQUEST, others with MISSION_REQUEST_INT: both get MISSION_ITEM_INT. What an ACK
-says is not believed: `adapters.mavlink.sync` reads back what is on board.
+The vehicle requests item after item, again after a second, and gives up after eight. So only the count is sent by
+timer. ArduPlane sends MISSION_REQUEST, others MISSION_REQUEST_INT: both get MISSION_ITEM_INT. An ACK is not believed:
+`adapters.mavlink.sync` reads back what is on board.
 
-A vehicle takes one upload at a time, from one system id. To whoever else counts it says DENIED, until that one is over;
-so this is a last no only once it has lasted longer than a vehicle waits.
+A vehicle takes one upload at a time, from one system id. It answers other uploads with DENIED until that one is over.
+So DENIED is final only once it has lasted longer than a vehicle waits.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ COUNT_AGAIN: Final = 2.0
 """Seconds without a request before the count is sent again."""
 
 GIVEN_UP: Final = 9.0
-"""Seconds of silence amid an upload after which the vehicle has given it up, too."""
+"""Seconds of silence during an upload after which the vehicle, too, has given it up."""
 
 BUSY: Final = 25.0
-"""Seconds for which DENIED may be said because of another's upload: thrice what a vehicle waits, by its own clock."""
+"""Seconds for which another's upload may cause DENIED: three times a vehicle's timeout, by its own clock."""
 
 ACK_LOST: Final = 3.0
 """Seconds of silence after the last item, after which its ACK must have been lost."""
@@ -34,18 +34,18 @@ _NOT_FINAL: Final = {MissionResult.INVALID_SEQUENCE, MissionResult.NO_SPACE, Mis
 
 @dataclass(frozen=True, slots=True)
 class Upload:
-    """An upload under way.
+    """An upload in progress.
 
     Attributes:
         items: What is uploaded.
         kind: Mission or fence.
-        system: To whom.
+        system: The vehicle's system id.
         counted: When the count was sent last.
-        asked: When an item was asked for last; None before the first.
-        wanted: The items asked for so far.
-        denied: Since when the vehicle has said DENIED, and asked for nothing.
-        over: Whether it has ended, one way or the other.
-        refusal: The vehicle's final no, if it said no.
+        asked: When an item was requested last; None before the first.
+        wanted: The items requested so far.
+        denied: Since when the vehicle has answered DENIED, and requested nothing.
+        over: Whether it has ended, with or without success.
+        refusal: The vehicle's final refusal, if any.
     """
 
     items: Items
@@ -63,7 +63,7 @@ Step = tuple[Upload, tuple[Message, ...]]
 
 
 def tick(upload: Upload, now: float) -> Step:
-    """Let time pass: send the count, again where it seems lost, or see that the ACK is."""
+    """Let time pass: send the count, again if it seems lost, or detect a lost ACK."""
     if upload.over:
         return upload, ()
     if upload.counted is None:
@@ -76,7 +76,7 @@ def tick(upload: Upload, now: float) -> Step:
 
 
 def hear(upload: Upload, message: Message, now: float) -> Step:
-    """Take a message of the vehicle that is meant for us."""
+    """Take a message of the vehicle to us."""
     if upload.over or message.fields.get("mission_type") != upload.kind:
         return upload, ()
     if message.name in ("MISSION_REQUEST", "MISSION_REQUEST_INT"):

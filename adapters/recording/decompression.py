@@ -1,4 +1,4 @@
-"""Compressed data of recordings: opened up to what it declares, and no further."""
+"""Decompression of recordings: up to the declared size, and no further."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is recorded as plain data: arrivals, steps, commands, reports."""
+"""Arrivals, steps, commands and reports as plain data for recordings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""MCAP files of JSON messages: what was flushed is there whatever happens next, and is read up to a torn end."""
+"""MCAP files of JSON messages: flushed messages survive, and a file is readable up to a torn end."""
 
 from __future__ import annotations
 

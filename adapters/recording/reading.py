@@ -1,4 +1,4 @@
-"""Reading a recording: its run, its steps as a trace, what it was told, in the order written."""
+"""Read a recording: its run, its steps as a trace, and its other messages, in written order."""
 
 from __future__ import annotations
 

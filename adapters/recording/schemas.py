@@ -1,4 +1,4 @@
-"""What the messages of a recording hold: JSON schemas, one a topic; docs/recording.md prints them."""
+"""JSON schemas of a recording's messages, one for each topic; docs/recording.md prints them."""
 
 from __future__ import annotations
 
@@ -48,23 +48,26 @@ def _object(description: str, required: tuple[str, ...], **properties: Any) -> d
 
 
 RUN: Final = _object(
-    "The run: what is flown, and with which right.",
+    "The run: its mission, its verdict and its vehicles.",
     ("schema", "mission", "text", "digest", "version", "verified", "vehicles"),
     schema={"const": f"bigactors.run/{VERSION}"},
     mission={**_TEXT, "description": "The mission's file or name, as it was given."},
     text={**_TEXT, "description": "The mission."},
-    folder={**_TEXT, "description": "Where the files that the mission names were looked for."},
-    sources={"type": "object", "description": "What was read in the place of files that the mission names."},
+    folder={**_TEXT, "description": "The folder of the files that the mission names."},
+    sources={"type": "object", "description": "Files read in place of those that the mission names."},
     digest={**_TEXT, "description": "Of the mission as it runs, under fcfs and timed control."},
     version=_TEXT,
     verified={"type": "boolean", "description": "False for a run that was forced with --unverified."},
-    verdict={"type": ["object", "null"], "description": "The verdict file on which it rests."},
-    strict={"type": "boolean", "description": "Whether turns were kept while vehicles confirmed hand-overs."},
-    vehicles={"type": "object", "description": "For each vehicle the plugin that it was."},
-    resumes={"type": ["string", "null"], "description": "The recording that it goes on from."},
+    verdict={"type": ["object", "null"], "description": "The verdict file of the run."},
+    strict={
+        "type": "boolean",
+        "description": "Whether other requests waited while vehicles confirmed hand-overs.",
+    },
+    vehicles={"type": "object", "description": "For each vehicle its plugin."},
+    resumes={"type": ["string", "null"], "description": "The recording that the run continues."},
     station={
         "type": ["object", "null"],
-        "description": "Which part of the mission it is, of several stations.",
+        "description": "The station's part of the mission, if there are several stations.",
     },
 )
 
@@ -82,7 +85,7 @@ ARRIVAL: Final = _object(
     },
     channels=_TEXTS,
     carried_by=_TEXT,
-    time={**_NUMBER, "description": "When it was so, in seconds since 1970 UTC."},
+    time={**_NUMBER, "description": "When it was observed, in seconds since 1970 UTC."},
     velocity={"type": "array", "items": _NUMBER, "description": "Metres a second, degrees from true north."},
     time_to_live=_NUMBER,
     gone={"const": True},
@@ -109,7 +112,7 @@ STEP: Final = _object(
 )
 
 COMMAND: Final = _object(
-    "What a vehicle is told: written before it is sent.",
+    "A command to a vehicle: written before it is sent.",
     ("command", "request", "entity"),
     command={"enum": ["GoTo", "Follow", "HandOver", "Hold", "Return", "GiveBack", "Rebind"]},
     request=_TEXT,
@@ -119,7 +122,7 @@ COMMAND: Final = _object(
     name=_TEXT,
     leave=_TEXT,
     join=_TEXT,
-    source={**_TEXT, "description": "Where the vehicle is heard from now on."},
+    source={**_TEXT, "description": "The address from which the vehicle is heard from now on."},
 )
 
 REPORTS: Final = (
@@ -139,7 +142,7 @@ REPORTS: Final = (
 """Those of a vehicle or a feed, then those of other stations."""
 
 REPORT: Final = _object(
-    "What a plugin reported of a request, a link or its input.",
+    "A plugin's report on a request, a link or its input.",
     ("report",),
     report={"enum": [*REPORTS]},
     request=_TEXT,
@@ -150,18 +153,18 @@ REPORT: Final = _object(
     source=_TEXT,
     station=_TEXT,
     number={"type": "integer", "minimum": 1},
-    to={**_TEXT, "description": "Where another station has sent a vehicle; empty when it has come there."},
+    to={**_TEXT, "description": "Where another station has sent a vehicle; empty when it has arrived."},
     agent=_TEXT,
     host=_TEXT,
     assumption=_TEXT,
     node=_TEXT,
     slot=_TEXT,
     names=_TEXTS,
-    parcel={"type": "object", "description": "What has come from another station (docs/stations.md)."},
+    parcel={"type": "object", "description": "A parcel from another station (docs/stations.md)."},
 )
 
 SAYING: Final = _object(
-    "What someone outside said to an agent, and why it was not taken, if it was not.",
+    "A message from outside to an agent; if it was refused, the reason.",
     ("agent", "message", "refusal"),
     agent=_TEXT,
     message=_TEXT,
@@ -178,13 +181,13 @@ GIVEN_BACK: Final = _object(
 )
 
 FINDING: Final = _object(
-    "What the operator was told: a broken assumption, a refusal, a lost link, a request that takes too long.",
+    "A message to the operator: a broken assumption, a refusal, a lost link, a request that takes too long.",
     ("kind", "about", "message"),
     kind=_TEXT,
     about=_TEXT,
     message=_TEXT,
     fallback=_TEXT,
-    verdicts={**_TEXTS, "description": "The properties whose verdicts rest on what broke."},
+    verdicts={**_TEXTS, "description": "The properties whose verdicts depend on the broken assumption."},
 )
 
 END: Final = _object("How the run ended.", ("reason",), reason=_TEXT)
@@ -201,4 +204,4 @@ SCHEMAS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
     "findings": (f"bigactors.finding/{VERSION}", FINDING),
     "end": (f"bigactors.end/{VERSION}", END),
 }
-"""For each topic the name of its schema, and the schema."""
+"""The name and the schema of each topic's messages."""

@@ -1,4 +1,4 @@
-"""Writing a recording while a run goes on."""
+"""Write the recording of a run in progress."""
 
 from __future__ import annotations
 

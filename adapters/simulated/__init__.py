@@ -1,4 +1,4 @@
-"""Simulated vehicles that speak the true protocol over real sockets: what tests and demonstrations fly.
+"""Simulated vehicles that speak MAVLink over real sockets, for tests and demonstrations.
 
 `vehicle` moves, `protocol` and `store` answer, `reporting` tells, `serving` puts it on a link that is as bad as
 `disturbance` says; `clock` runs the whole faster than the clock on the wall.

@@ -1,4 +1,4 @@
-"""How a simulated vehicle moves: a point with course, speed and climb, on the earth, near where it is.
+"""The motion of a simulated vehicle: a point with course, speed and climb near its place on the earth.
 
 A plane turns no faster than its bank allows and circles where the others stop. The figures of a plane are those of the
 recording that `tests/adapters/test_recording.py` holds it against.

@@ -1,7 +1,7 @@
-"""Event loops with another clock: tests of minutes take seconds, and demonstrations fly faster.
+"""Event loops with a faster clock, so that tests of minutes take seconds.
 
-Nobody who waits by asyncio notices. Real sockets on this machine work in both: what is sent there has arrived when the
-sender goes on.
+Code that waits by asyncio does not notice. Local sockets work with both clocks: data has arrived when the sender
+continues.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ Result = TypeVar("Result")
 
 
 class _Jumping(selectors.DefaultSelector):
-    """Lets time jump to the next timer as soon as nobody has anything to do."""
+    """Lets time jump to the next timer as soon as the loop is idle."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""A bad link: loss, duplication, delay (and hence reordering), blackouts; reproducible by its seed."""
+"""A simulated bad link: loss, duplication, delay (and so reordering), blackouts; reproducible by its seed."""
 
 from __future__ import annotations
 

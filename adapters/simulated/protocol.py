@@ -1,4 +1,4 @@
-"""What a simulated vehicle answers: commands, parameters, missions, signing; and whom it obeys."""
+"""The answers of a simulated vehicle: commands, parameters, missions, signing; and whom it obeys."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ LONGEST: Final = 3.6e9
 
 
 def hear(vehicle: Vehicle, reporter: Reporter, message: Message, now: float) -> Answer:
-    """Answer a message, if it is believed, meant for this vehicle and said by whom it obeys."""
+    """Answer a message, if it is accepted, addressed to this vehicle, and from the station that it obeys."""
     if not _believed(vehicle, message) or not is_for(message, vehicle.system):
         return []
     stranger = vehicle.enforce and message.system != round(vehicle.parameters[vehicle.authority_parameter])

@@ -1,4 +1,4 @@
-"""What a simulated vehicle says by itself: heartbeats, positions, states, each at its own interval."""
+"""The periodic messages of a simulated vehicle: heartbeats, positions, states, each at its interval."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DEFAULT: Final = {
     "SYSTEM_TIME": 1.0,
     "MISSION_CURRENT": 1.0,
 }
-"""Seconds between two of a kind, before anybody asks for others."""
+"""The default seconds between two messages of a kind."""
 
 SHORTEST: Final = 0.05
 CAPABILITIES: Final = 2 | 4 | 8 | 8192 | 16384

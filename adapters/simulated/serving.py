@@ -1,4 +1,4 @@
-"""Put simulated vehicles on a link: real sockets, real packets, as bad as it is asked for."""
+"""Serve simulated vehicles on a link: real sockets and packets, with the requested disturbance."""
 
 from __future__ import annotations
 
@@ -59,19 +59,19 @@ class Simulator:
         return self._epoch + asyncio.get_running_loop().time()
 
     def reboot(self, system: int, *, armed: bool = False) -> None:
-        """Let a vehicle boot anew, wherever it is."""
+        """Reboot a vehicle at its current position."""
         vehicle, reporter = self._vehicles[system]
         vehicle.reboot(armed=armed)
         reporter.reset()
 
     def restart(self, system: int) -> None:
-        """Let a vehicle boot anew on the ground at home, as if its simulator had been killed and started again."""
+        """Reboot a vehicle on the ground at home, as if its simulator had been restarted."""
         vehicle, reporter = self._vehicles[system]
         vehicle.restart()
         reporter.reset()
 
     def every(self, system: int, name: str, seconds: float) -> None:
-        """Let a vehicle say a message at an interval, before anybody asks for it."""
+        """Let a vehicle send a message at an interval without a request."""
         self._vehicles[system][1].every(name, seconds)
 
     async def run(self) -> None:

@@ -1,8 +1,8 @@
-"""The vehicle's side of mission upload and download, with the habits of ArduPilot.
+"""The vehicle's side of mission upload and download, as ArduPilot does it.
 
-It asks for item after item, again after a second, and gives up after eight; answers an item that it did not ask for by
-INVALID_SEQUENCE; overwrites item 0 by home; and serves one ground station at a time: it answers DENIED to whoever else
-counts or gives items meanwhile, and to all who read, and goes on waiting.
+It requests item after item, again after a second, and gives up after eight. It answers an item that it did not request
+with INVALID_SEQUENCE, and overwrites item 0 by home. It serves one ground station at a time: others that upload
+meanwhile, and all that download, get DENIED.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ HIGHEST: Final = 1e5
 
 @dataclass(frozen=True, slots=True)
 class Receiving:
-    """An upload under way: from whom, what, how much of it."""
+    """An upload in progress: its sender, its kind, its items so far."""
 
     station: int
     component: int

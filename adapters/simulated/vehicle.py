@@ -1,4 +1,4 @@
-"""A simulated vehicle: what it is, where it goes in each mode, and how it boots.
+"""A simulated vehicle: its state, its behaviour in each mode, and its start-up.
 
 Commands and messages are `protocol`'s and `reporting`'s business, packets `serving`'s.
 """
@@ -145,7 +145,7 @@ class Vehicle:
 
     @property
     def authority_parameter(self) -> str:
-        """What it calls the parameter that says whom it obeys."""
+        """The name of its authority parameter."""
         return AUTHORITY_PARAMETERS[self.version >= (4, 7, 0)]
 
     @property
@@ -202,7 +202,7 @@ class Vehicle:
         return self.uptime >= READY_AFTER
 
     def reboot(self, *, armed: bool = False) -> None:
-        """Boot anew, in the air too; what is in its permanent memory stays. A watchdog's reboot keeps it armed."""
+        """Reboot, also in the air; its permanent memory stays. A watchdog's reboot keeps it armed."""
         self.booted = self.time
         self.armed = armed and self.armed
         self.current, self.target = 0, None
@@ -214,7 +214,7 @@ class Vehicle:
             self.switch_fences(~Fence.ALT_MIN, on=True)
 
     def restart(self) -> None:
-        """Boot anew on the ground at home, as a simulator does that was killed in flight and started again."""
+        """Reboot on the ground at home, like a simulator that was killed in flight and restarted."""
         self.reboot()
         self.body = Body(*self.home[:2])
 

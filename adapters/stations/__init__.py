@@ -1,8 +1,8 @@
-"""Stations: several runs of one mission that share what they see, and carry messages and bigActors between them.
+"""Stations: several runs of one mission that share observations, and exchange messages and bigActors.
 
-The paper's communication service. `entries` are what a station says, `merge` makes one world of what all say (pure),
-`authority` tells whom vehicles obey by several links, `journal` keeps a station's own entries on disk, `outgoing`
-says what a turn of the run is to others, `messages` carry entries, `peers` reads who the others are, `remote_station`
-and `skew` are what is known of them, `bus` is Zenoh (the only file that imports it), and `sharing` joins them: a
-plugin of the live loop, whose own plugins are `shared`.
+The paper's communication service. `entries` are the contents of a station's log, `merge` makes one world of all logs
+(pure), `authority` merges what several links show of a vehicle's authority, `journal` keeps the log on disk,
+`outgoing` turns a turn of the run into entries, `messages` carry entries, `peers` reads the peers file,
+`remote_station` and `skew` hold what is known of the others, `bus` is Zenoh, and `sharing` joins them: a plugin of the
+live loop, whose own plugins are `shared`.
 """

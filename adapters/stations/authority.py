@@ -1,9 +1,9 @@
-"""Whom a vehicle obeys, as several links know it: each reads it now and then, and another has handed it on meanwhile.
+"""The authority over a vehicle, merged from several links that read it at different times.
 
-No message of a vehicle says when it began to obey whom, a vehicle may answer nobody else, and the network between
-stations may be faster than a link. So a change counts at once where it was commanded, and where our own link is lost.
-What else a link tells *anew* counts once it has lasted so long that it was read again, if nothing was commanded since.
-A link that never told has lost nothing: of a vehicle that was handed to us it has as long to come to know it.
+No message of a vehicle says since when it obeys a station. A vehicle may answer only that station, and the network
+between stations may be faster than a link. So a change counts at once where it was commanded, and where our own link is
+lost. Any other *change* that a link shows counts once it has lasted for another reading, if no command came in between.
+A link that never showed an authority has not lost it: after a hand-over to us it has as long to read it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from adapters.stations.merge import channels_of
 from semantics.behaviours.reactions import CONTROL_AUTHORITY
 
 LASTING: Final = 12.0
-"""Seconds after which a link has read anew whom its vehicle obeys, though one answer may be lost."""
+"""Seconds within which a link reads its vehicle's authority again, even if one answer is lost."""
 
 A_MOMENT: Final = 1e-6
 
@@ -28,13 +28,13 @@ Channels = tuple[tuple[str, ...], float]
 
 @dataclass(slots=True)
 class Authority:
-    """What one station's links are believed of the channels of their vehicles.
+    """The channels of the vehicles on one station's links, as far as the links are believed.
 
     Attributes:
         station: The station.
-        handing: The hand-over that each vehicle was told, and has not shown yet.
-        shown: What each link has shown last.
-        doubts: What each link has shown anew and otherwise than was known, when, and since when that had been so.
+        handing: The hand-over that each vehicle was commanded, and has not shown yet.
+        shown: The last channels that each link has shown.
+        doubts: For each vehicle with contradicting channels: when its link showed them, and since when the others hold.
     """
 
     station: str
@@ -45,9 +45,9 @@ class Authority:
     def channels(
         self, entity: str, published: Published, known: Said | None, now: float, missed: float = 0.0
     ) -> Channels:
-        """Return what counts of a vehicle's channels where its link shows some, and others are known.
+        """Return a vehicle's channels, from those that its link shows and those that are known.
 
-        A doubt lasts only while it is listened: `missed` are the seconds so far for which nobody did.
+        The age of a doubt excludes the time without listening, `missed` seconds so far.
         """
         shown, before = channels_of(published), self.shown.get(entity)
         self.shown[entity] = shown
@@ -65,7 +65,7 @@ class Authority:
         return believed
 
     def lags(self, entity: str, known: Said | None) -> bool:
-        """Tell whether a vehicle obeys us, and our link does not know it yet: it would refuse what it is told."""
+        """Tell whether a vehicle obeys us and our link has not read it yet: the link would refuse commands."""
         ours = f"{CONTROL_AUTHORITY}:{self.station}"
         shown = [channel for channel in self.shown.get(entity, ()) if is_authority(channel)]
         return (
@@ -85,10 +85,10 @@ class Authority:
         return lost or listened - since >= LASTING
 
     def _doubts(self, entity: str, since: float) -> bool:
-        """Tell whether what has been known of a vehicle since then is in doubt."""
+        """Tell whether a vehicle's channels, known since a time, are in doubt."""
         return entity in self.doubts and self.doubts[entity][1] == since
 
 
 def is_silent(shown: tuple[str, ...]) -> bool:
-    """Tell whether a link shows no authority: it has lost the vehicle, or was never answered as to whom it obeys."""
+    """Tell whether a link shows no authority: it has lost the vehicle, or the vehicle has never answered it."""
     return not any(map(is_authority, shown))

@@ -1,7 +1,7 @@
-"""Between stations: what is put to all, and what is asked of one. By Zenoh; the only file that imports it.
+"""The transport between stations: broadcast, and requests to one. By Zenoh; the only file that imports it.
 
-Endpoints are explicit: nothing is scouted, no multicast, no gossip. Each station writes under keys of its own, and with
-mutual TLS it is held to them by the common name of its certificate.
+Endpoints are explicit: no discovery, no multicast, no gossip. Each station writes under keys of its own. With mutual
+TLS the common name of its certificate enforces this.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from adapters.stations.peers import Peers
 from physical import PhysicalError
 
 MOST_WAITING: Final = 1_000
-"""How many messages may wait to be looked at; what is beyond is lost, and asked for again."""
+"""How many messages may wait; more are dropped, and requested again."""
 
 Hear = Callable[[str, bytes], None]
-"""Takes the station that says something, and what it says."""
+"""Takes a station and its message."""
 
 Answer = Callable[[str, bytes], bytes]
-"""Takes who asks, as it says, and what, and returns the answer."""
+"""Takes the asking station's claimed name and its question, and returns the answer."""
 
 
 class Bus:
-    """The session of one station; everything is told in the event loop's thread."""
+    """The session of one station; its callbacks run in the event loop's thread."""
 
     def __init__(self, peers: Peers, topic: str, hear: Hear, answer: Answer) -> None:
-        """Open it; raises PhysicalError where it can't listen, or Zenoh is not installed."""
+        """Open the session; raises PhysicalError if it can't listen, or Zenoh is not installed."""
         self._peers = peers
         self._topic = topic
         self._loop = asyncio.get_running_loop()
@@ -53,14 +53,14 @@ class Bus:
         self._serve()
 
     def put(self, said: bytes) -> None:
-        """Say something to all who are there."""
+        """Send something to all reachable stations."""
         self._publisher.put(said)
 
     async def ask(self, station: str, question: bytes, patience: float) -> bytes:
-        """Ask one station something.
+        """Send one station a question, and return its answer.
 
         Raises:
-            OSError: It is not there, or does not answer in time.
+            OSError: It is not reachable, or does not answer in time.
         """
         answered: asyncio.Future[bytes] = self._loop.create_future()
 
@@ -81,7 +81,7 @@ class Bus:
         return answer
 
     def close(self) -> None:
-        """Leave."""
+        """Close the session."""
         for each in self._kept:
             each.undeclare()
         self._session.close()
@@ -131,7 +131,7 @@ def _set(future: asyncio.Future[Any], value: bytes | None) -> None:
 
 
 def key_of(topic: str, station: str, what: str) -> str:
-    """Return the key under which a station says or answers something."""
+    """Return the key under which a station publishes or answers something."""
     return f"bigactors/{topic}/{station}/{what}"
 
 
@@ -139,7 +139,7 @@ def key_of(topic: str, station: str, what: str) -> str:
 
 
 def settings(peers: Peers, topic: str) -> dict[str, Any]:
-    """Return how Zenoh is set up for a station."""
+    """Return Zenoh's configuration for a station."""
     connect = sorted(endpoint for peer in peers.others.values() for endpoint in peer.connect)
     found: dict[str, Any] = {
         "mode": "peer",
@@ -175,7 +175,7 @@ def settings(peers: Peers, topic: str) -> dict[str, Any]:
 
 
 def access(peers: Peers, topic: str) -> dict[str, Any]:
-    """Return what each station may do: write under its own keys, and ask the others; anybody else may do nothing."""
+    """Return the access rules: a station may write under its own keys and ask the others; others may do nothing."""
     own = peers.own.name
     rules, policies, subjects = [], [], []
     ours = [key_of(topic, own, "*")]

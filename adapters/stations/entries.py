@@ -1,4 +1,4 @@
-"""What a station says, entry by entry: numbered, and as plain data within bounds."""
+"""The entries of a station's log: numbered, and encoded as plain data within bounds."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ LARGEST: Final = 10**15
 
 @dataclass(frozen=True, slots=True)
 class Said:
-    """What is known of an entity: a property or that it is gone; its time is set.
+    """An observation of an entity: a property, or that it is gone; its time is set.
 
     Attributes:
         published: The property, perhaps with a time to live, or that the entity is gone.
         since: Since when the entity is seen on these channels.
-        owned: Whether it was told by the entity's own link: nobody else speaks of a vehicle.
+        owned: Whether it came over the entity's own link: for a vehicle, nothing else counts.
     """
 
     published: Published
@@ -41,35 +41,35 @@ class Said:
 
     @property
     def key(self) -> tuple[str, ...]:
-        """What it replaces: the older word on the same entity."""
+        """The entries that it replaces: older ones on the same entity."""
         return ("said", self.entity)
 
     @property
     def entity(self) -> str:
-        """Whom it is about."""
+        """The entity."""
         return entity_of(self.published)
 
     @property
     def time(self) -> float:
-        """When it was so."""
+        """When it was observed."""
         said = self.published.property if isinstance(self.published, Aged) else self.published
         assert said.time is not None
         return said.time
 
     @property
     def clock(self) -> int | None:
-        """When that was by the entity's own clock, where its link tells."""
+        """The same time by the entity's own clock, if its link tells."""
         return self.published.clock if self.owned and isinstance(self.published, Aged) else None
 
     @property
     def until(self) -> float:
-        """Until when it may stand in P."""
+        """Until when it may stay in P."""
         return self.time + self.published.time_to_live if isinstance(self.published, Aged) else math.inf
 
 
 @dataclass(frozen=True, slots=True)
 class Sent:
-    """A vehicle was sent to a node, or (an empty name) is not under way any more."""
+    """A vehicle was sent to a node, or (an empty name) is no longer under way."""
 
     entity: str
     to: str
@@ -77,7 +77,7 @@ class Sent:
 
     @property
     def key(self) -> tuple[str, ...]:
-        """What it replaces: where the vehicle was sent before."""
+        """The entries that it replaces: the vehicle's earlier destinations."""
         return ("sent", self.entity)
 
 
@@ -91,13 +91,13 @@ class Hosted:
 
     @property
     def key(self) -> tuple[str, ...]:
-        """What it replaces: where the agent was hosted before."""
+        """The entries that it replaces: the agent's earlier hosts."""
         return ("hosted", self.agent)
 
 
 @dataclass(frozen=True, slots=True)
 class Believed:
-    """What the station has written into a slot of L: `parent` (of what L has not, no name) or `links` of a node."""
+    """The station has written a slot of L: a node's `parent` (no name if L lacks the node) or its `links`."""
 
     node: str
     slot: str
@@ -106,20 +106,20 @@ class Believed:
 
     @property
     def key(self) -> tuple[str, ...]:
-        """What it replaces: what it had written there before."""
+        """The entries that it replaces: the station's earlier writes to that slot."""
         return ("believed", self.slot, self.node)
 
 
 @dataclass(frozen=True, slots=True)
 class Broke:
-    """The station has seen an assumption of the mission break; an empty text is said when a run begins anew."""
+    """The station has seen an assumption of the mission break; an empty text marks the start of a new run."""
 
     assumption: str
     time: float
 
     @property
     def key(self) -> tuple[str, ...]:
-        """What it replaces: what broke before."""
+        """The entries that it replaces: earlier broken assumptions."""
         return ("broke",)
 
 
@@ -128,10 +128,10 @@ class Posted:
     """A parcel for another station.
 
     Attributes:
-        to: Where it goes.
-        index: The how-many-th it is.
-        parcel: What is in it, as plain data.
-        knows: The last numbers of other stations that the sender had heard of: what it did may rest on them.
+        to: The receiver.
+        index: Its index among the parcels to that station.
+        parcel: Its content, as plain data.
+        knows: The last numbers of other stations that the sender had received: its content may depend on them.
     """
 
     to: str
@@ -141,7 +141,7 @@ class Posted:
 
     @property
     def key(self) -> tuple[str, ...]:
-        """Nothing replaces it: it stays until it is taken."""
+        """A parcel replaces nothing: it stays until it is taken."""
         return ("posted", self.to, str(self.index))
 
 
@@ -154,7 +154,7 @@ class Took:
 
     @property
     def key(self) -> tuple[str, ...]:
-        """What it replaces: earlier acknowledgements to the same station."""
+        """The entries that it replaces: earlier acknowledgements to the same station."""
         return ("took", self.of)
 
 
@@ -178,7 +178,7 @@ def stamped_at(published: Published, time: float) -> Published:
 
 
 def stamped(published: Published, now: float) -> Published:
-    """Return a publication with its time set: what has none is so now."""
+    """Return a publication with its time set, by default to now."""
     match published:
         case PhysicalProperty(time=None):
             return replace(published, time=now)
@@ -221,7 +221,7 @@ def entry_of(station: str, data: Any) -> Entry:
     """Read an entry of a station.
 
     Raises:
-        ValueError: The data are none; the message says why.
+        ValueError: The data are not an entry; the message says why.
     """
     if not isinstance(data, dict):
         raise ValueError(f"{data!r:.60} is no entry")

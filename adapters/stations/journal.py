@@ -1,4 +1,4 @@
-"""A station's own entries on disk: appended before anybody is told of them, so that no number is given twice."""
+"""A station's log on disk: entries are appended before they are sent, so no number is used twice."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from physical import PhysicalError, read_json
 
 SCHEMA: Final = "bigactors.station/2"
 UNSUMMED: Final = "bigactors.station/1"
-"""Logs of earlier versions: their lines have no checksums; they are read, and written anew with them."""
+"""Logs of earlier versions, whose lines have no checksums; they are read, and rewritten with them."""
 
 BEGINNING: Final = 2
-"""Lines without which there is no log: whose it is, and up to which numbers it has counted."""
+"""The required lines of a log: its owner, and the numbers used so far."""
 
 SPARE: Final = 10_000
-"""How many entries that are superseded may stand in the file before it is written anew."""
+"""How many replaced entries the file may hold before it is rewritten."""
 
 
 PASSED: Final = 1_000
-"""Numbers that are passed over where the last entry was dropped: it may have been told."""
+"""How many numbers are skipped after a dropped last entry, since it may have been sent."""
 
 
 class JournalError(ValueError):
@@ -42,19 +42,19 @@ class ForeignLog(JournalError):
 
 
 class Journal:
-    """What one station has said and is still true, with its numbers; kept in a file that only grows, and is tidied.
+    """One station's valid entries with their numbers, in a file that is appended to, and compacted now and then.
 
-    A log that was lost begins anew above every number that it may have had: at the time in milliseconds. So it goes on
-    after a last entry that was torn or damaged, and is dropped.
+    A new log numbers from the time in milliseconds, above every number that a lost one may have used. Likewise after a
+    torn or damaged last entry, which is dropped.
 
     Each line begins with a checksum of itself and of all before it.
 
     Attributes:
-        dropped: What was wrong with the last line, where that was dropped.
+        dropped: What was wrong with the last line, if it was dropped.
     """
 
     def __init__(self, path: Path, station: str, digest: str) -> None:
-        """Open or begin a log; raises JournalError, OSError."""
+        """Open or create a log; raises JournalError, OSError."""
         self.path = path
         self.station = station
         self.last = 0
@@ -78,19 +78,19 @@ class Journal:
     # --- what it knows
 
     def after(self, number: int, most: int) -> tuple[list[Entry], int]:
-        """Return entries after a number, the oldest first, and up to which number they tell everything."""
+        """Return entries after a number, the oldest first, and the number up to which they are complete."""
         found = list(takewhile(lambda entry: entry.number > number, reversed(self._entries.values())))[::-1]
         if len(found) <= most:
             return found, self.last
         return found[:most], found[most - 1].number
 
     def word(self, key: tuple[str, ...]) -> Content | None:
-        """Return what it says of something."""
+        """Return the valid entry on something."""
         entry = self._entries.get(key)
         return None if entry is None else entry.content
 
     def entries(self) -> Iterator[Entry]:
-        """Yield all that is still true, the oldest first."""
+        """Yield all valid entries, the oldest first."""
         yield from self._entries.values()
 
     def sent(self, to: str) -> int:
@@ -98,7 +98,7 @@ class Journal:
         return self._sent.get(to, 0)
 
     def took(self, of: str) -> int:
-        """Return up to which parcel of a station all were taken."""
+        """Return the index up to which all parcels of a station were taken."""
         word = self.word(("took", of))
         return word.index if isinstance(word, Took) else 0
 
@@ -109,7 +109,7 @@ class Journal:
     # --- what it is told
 
     def add(self, contents: list[Content]) -> list[Entry]:
-        """Number what is said, and write it; what it replaces is true no more."""
+        """Number an entry, and write it; the entries that it replaces are no longer valid."""
         entries = []
         for content in contents:
             self.last += 1
@@ -129,8 +129,8 @@ class Journal:
                 self._spare += 1
 
     def close(self) -> None:
-        """Give the file free."""
-        with suppress(OSError):  # what could not be written has been reported
+        """Close the file."""
+        with suppress(OSError):  # a failed write has been reported
             self._file.close()
 
     # --- the file
@@ -145,7 +145,7 @@ class Journal:
             self._sent[entry.content.to] = max(self.sent(entry.content.to), entry.content.index)
 
     def _read(self) -> bool:
-        """Read the file up to its end, or to a last line that is torn or damaged; tell whether it has checksums."""
+        """Read the file up to its end, or to a torn or damaged last line; tell whether it has checksums."""
         self._file.seek(0)
         size = os.fstat(self._file.fileno()).st_size
         is_summed = not self._file.read(1).startswith(b"{")
@@ -171,7 +171,7 @@ class Journal:
         return is_summed and number > 0
 
     def _parsed(self, line: bytes, *, is_summed: bool) -> Any:
-        """Return what a line says; raises ValueError where it is torn or damaged."""
+        """Return the content of a line; raises ValueError if it is torn or damaged."""
         if not line.endswith(b"\n"):
             raise ValueError("it is torn, or longer than any entry")
         said, text = (line[:8], line[9:-1]) if is_summed else (b"", line)
@@ -211,7 +211,7 @@ class Journal:
             self._file.flush()
 
     def _rewrite(self) -> None:
-        """Write the file anew with what is still true; the old one stands until the new one does."""
+        """Rewrite the file with the valid entries; the new file replaces the old one atomically."""
         part = self.path.with_name(self.path.name + ".part")
         part.unlink(missing_ok=True)
         old, self._file, self._sum = self._file, _locked(part), 0
@@ -224,7 +224,7 @@ class Journal:
 
 
 def _locked(path: Path) -> BinaryIO:
-    """Open a file that no other process uses so."""
+    """Open a file, and lock it against other processes."""
     file = open_private(path, "a+b")
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

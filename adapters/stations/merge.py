@@ -1,9 +1,9 @@
-"""The merge: one world of what all stations say, whatever was lost, doubled or reordered on the way.
+"""The merge: one world from the entries of all stations, in spite of loss, duplication and reordering.
 
-Each station's word on an entity is a register: its newest by number. Registers are joined by `newer`, which is
-commutative, associative and idempotent, so the same words come to the same registers in whatever order they are heard.
-What holds of an entity is a function of its registers and of the time alone: the newest by its time stamp, ties by
-station and number. Clocks decide nothing but which of two stations is believed.
+Each station's newest entry on an entity (its word) is a register. Registers are joined by `newer`, which is
+commutative, associative and idempotent, so the same entries lead to the same registers in any order. The state of an
+entity depends only on its registers and the time: the newest time stamp wins, ties are decided by station and number.
+Clocks decide only which of two stations is believed.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from adapters.stations.entries import Believed, Entry, Hosted, Said, Sent, stamp
 from physical import PhysicalProperty
 
 ABREAST: Final = 5.0
-"""Seconds within which words of several links go by their vehicle's own clock; later it may have booted anew."""
+"""Seconds within which words of several links are compared by the vehicle's clock; later it may have rebooted."""
 
 MOST_ENTITIES: Final = 20_000
-"""Of how many entities one station may speak."""
+"""How many entities one station may report."""
 
 Words = Mapping[str, Entry]
 """The newest word of each station on one entity."""
 
 
 def newer(one: Entry, other: Entry) -> Entry:
-    """Return the newer of two words of one station on one thing."""
+    """Return the newer of two entries of one station on the same subject."""
     return max(one, other, key=_numbered)
 
 
@@ -36,7 +36,7 @@ def _numbered(entry: Entry) -> tuple[int, str]:
     return (
         entry.number,
         repr(entry.content),
-    )  # a number is given once; a liar's two are ordered all the same
+    )  # numbers are unique; two of a faulty station are ordered all the same
 
 
 class Merge:
@@ -44,9 +44,9 @@ class Merge:
 
     Attributes:
         words: For each entity the newest word of each station.
-        legs: For each vehicle where each station has sent it last.
-        homes: For each bigActor where each station has hosted it last.
-        beliefs: For each slot of L what each station has written there last.
+        legs: For each vehicle the last destination by each station.
+        homes: For each bigActor the last host by each station.
+        beliefs: For each slot of L the last write of each station.
     """
 
     def __init__(self) -> None:
@@ -87,19 +87,19 @@ class Merge:
         return True
 
     def leg(self, entity: str) -> Entry | None:
-        """Return where a vehicle was sent last, by the time stamps of those who sent it."""
+        """Return a vehicle's last destination by time stamp."""
         return max(self.legs.get(entity, {}).values(), key=_stamp, default=None)
 
     def home(self, agent: str) -> Entry | None:
-        """Return where a bigActor was hosted last."""
+        """Return a bigActor's last host by time stamp."""
         return max(self.homes.get(agent, {}).values(), key=_stamp, default=None)
 
     def belief(self, slot: str, node: str) -> Entry | None:
-        """Return what was written into a slot of L last."""
+        """Return the last write to a slot of L by time stamp."""
         return max(self.beliefs.get(f"{slot} {node}", {}).values(), key=_stamp, default=None)
 
     def holds(self, entity: str, now: float) -> Said | None:
-        """Return what holds of an entity at a time, None if nobody has said anything that counts yet."""
+        """Return the state of an entity at a time, None if no word counts yet."""
         return holding(self.words.get(entity, {}), now)
 
     def ahead(self, now: float) -> list[Entry]:
@@ -113,11 +113,11 @@ class Merge:
 
 
 def holding(words: Words, now: float) -> Said | None:
-    """Return what holds of an entity at a time: the newest word on it, with the channels that are known the latest.
+    """Return the state of an entity at a time: the newest word on it, with the newest change of its channels.
 
-    A vehicle may be heard by two stations of which one has not read its new authority yet: so the newest *change* of
-    channels counts, among the words that had not grown too old when the newest was said. Of its positions the newest by
-    its own clock counts: what came over a slow link is stamped late, and would put it where it no longer is.
+    Two stations may hear a vehicle before one of them has read its new authority. So the newest *change* of channels
+    counts, among the words that were not outdated at the time of the newest. Among positions the newest by the
+    vehicle's own clock counts: a slow link stamps positions late, and would put the vehicle where it no longer is.
     """
     found = [entry for entry in words.values() if _counts(entry.content, now)]
     if not found:
@@ -125,7 +125,7 @@ def holding(words: Words, now: float) -> Said | None:
     newest = _newest(found, now)
     if isinstance(newest.published, Gone):
         return newest
-    if newest.until <= now:  # whoever hears of it only now comes to the same world as who saw it grow old
+    if newest.until <= now:  # a station that receives it late gets the same world as one that saw it expire
         return Said(Gone(newest.entity, newest.time, ""), newest.since, newest.owned)
     told = [
         entry
@@ -145,7 +145,7 @@ def _newest(found: Sequence[Entry], now: float) -> Said:
         entry for entry in found if _said(entry).time >= time - ABREAST and _said(entry).until > now
     ] or [newest]
     ahead = _said(max(abreast, key=lambda entry: (_said(entry).clock or 0, _stamp(entry))))
-    # It is so at the later time still: stamps go on, or a run would keep what it was told with a later one.
+    # Its time becomes the later one: time stamps must grow, or a run would keep an older report.
     return replace(ahead, published=stamped_at(ahead.published, time))
 
 
@@ -168,7 +168,7 @@ def _since(entry: Entry) -> tuple[float, str, int]:
 
 
 def channels_of(published: Published) -> tuple[str, ...]:
-    """Return the channels that an entity was seen on; none of what is gone."""
+    """Return the channels on which an entity was seen; none if it is gone."""
     match published:
         case Aged(said, _):
             return said.channels

@@ -1,4 +1,4 @@
-"""The messages between stations: which mission, what time it is, and entries of a log, up to where they tell all."""
+"""The messages between stations: the mission, the time, and entries of a log up to a number."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ MOST_BYTES: Final = 2 * MOST_TEXT
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """What a station says.
+    """A message of a station.
 
     Attributes:
-        mission: The digest of what it flies.
-        time: What its clock says.
-        after: The entries are all that is still true after this number,
+        mission: The digest of its mission.
+        time: The time of its clock.
+        after: The entries are all valid ones after this number,
         upto: up to this one.
-        last: The last number that it has given.
+        last: The last number that it has used.
         entries: As plain data.
     """
 
@@ -38,7 +38,7 @@ class Message:
 
 
 def fitting(entries: Sequence[Entry], upto: int) -> tuple[list[str], int]:
-    """Return as many of the first entries as go into one message, as texts, and up to where they tell everything."""
+    """Return the first entries that fit into one message, as texts, and the number up to which they are complete."""
     size = 0
     texts: list[str] = []
     for entry, before in zip(entries, (None, *entries), strict=False):
@@ -51,7 +51,7 @@ def fitting(entries: Sequence[Entry], upto: int) -> tuple[list[str], int]:
 
 
 def written(head: Message, entries: Sequence[str]) -> bytes:
-    """Write a message with entries that are texts already."""
+    """Write a message from entries as texts."""
     said = {
         "mission": head.mission,
         "time": head.time,
@@ -66,7 +66,7 @@ def read(said: bytes) -> Message:
     """Read a message.
 
     Raises:
-        ValueError: It is none.
+        ValueError: It is not a message.
     """
     match read_json(said, MOST_BYTES):
         case {

@@ -1,4 +1,4 @@
-"""What a station tells the others of a turn of its run: what leaves, what has entered, who flies, who is where."""
+"""What a station tells the others of a turn: parcels left and entered, flights, and the hosts of agents."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from semantics.state.parcel_serialization import parcel_json
 from semantics.state.partition import Passage, is_here
 
 A_MOMENT = 1e-6
-"""Seconds by which what is said of an agent is later than what was said of it before, whatever clocks say."""
+"""The least number of seconds between the time stamps of two entries on an agent, whatever clocks say."""
 
 
 def told(turn: Turn, vehicles: Collection[str], known: Mapping[str, int]) -> Iterator[Content]:
-    """Yield what a turn tells: what others have to know before a parcel enters comes before it.
+    """Yield the entries of a turn: those that others need before a parcel enters come before it.
 
     Args:
         turn: The turn.
-        vehicles: Who may be sent somewhere.
-        known: The last numbers of the other stations that had been heard of.
+        vehicles: The vehicles that may be sent somewhere.
+        known: The last numbers received from the other stations.
     """
     for step in turn.steps:
         before, after = step.source.structure.physical, step.transition.target.structure.physical
@@ -41,7 +41,7 @@ def told(turn: Turn, vehicles: Collection[str], known: Mapping[str, int]) -> Ite
 
 
 def believed(turn: Turn, merge: Merge) -> Iterator[Believed]:
-    """Yield what a turn has written into L, each later than what was known to be there before."""
+    """Yield a turn's writes to L, each with a later time stamp than the previous write."""
     steps: dict[Cell, LiveStep] = {}
     for step in turn.steps:
         if step.transition.label.rule in ("sense", "actuate", "commit"):
@@ -56,16 +56,16 @@ def believed(turn: Turn, merge: Merge) -> Iterator[Believed]:
 
 
 def entered(turn: Turn) -> dict[str, int]:
-    """Return up to which parcel of each station all have entered with a turn."""
+    """Return the index up to which all parcels of each station have entered with a turn."""
     seen = (step.sight for step in turn.steps)
     passed = [each for each in seen if isinstance(each, Passage) and each.parcel is not None]
     return {each.station: each.number for each in passed}
 
 
 def moved(c: Configuration, merge: Merge, now: float) -> Iterator[Hosted]:
-    """Yield where agents that run here are hosted, where the stations know otherwise.
+    """Yield the hosts of agents that run here, where the stations know other ones.
 
-    Whoever has an agent has heard from whom it came all that was said of it before: so what is said last is the latest.
+    A station with an agent has received all earlier entries on it from the agent's sender, so its entry is the latest.
     """
     for agent in c.alpha.names():
         home = merge.home(agent)

@@ -1,9 +1,9 @@
-"""The peers file: which stations there are, where each is reached, what runs where, and whom to believe.
+"""The peers file: the stations, their addresses, the hosts that each runs, and their certificates.
 
 [gcs0]
-listen = ["tcp/0.0.0.0:7447"]            # where it listens; without it, this machine only: `connect`
+listen = ["tcp/0.0.0.0:7447"]            # where it listens; by default at `connect`, on loopback only
 connect = ["tcp/gcs0.example.net:7447"]  # where others reach it
-hosts = ["uav0"]                         # whose bigActors it runs beside its own
+hosts = ["uav0"]                         # it also runs the bigActors of these hosts
 
 [gcs1]
 connect = ["tcp/gcs1.example.net:7447"]
@@ -37,10 +37,10 @@ class Peer:
     """One station.
 
     Attributes:
-        name: As the mission calls it.
+        name: Its name in the mission.
         listen: Where it listens, such as `tcp/0.0.0.0:7447`.
         connect: Where the others reach it.
-        hosts: Beside itself, the nodes whose bigActors it runs.
+        hosts: The nodes whose bigActors it runs, beside its own.
     """
 
     name: str
@@ -63,9 +63,9 @@ class Peers:
     """All stations as one of them sees them.
 
     Attributes:
-        own: The station that we are.
+        own: This station.
         others: The others, by their names.
-        tls: With what it proves who it is, None for a network that is trusted.
+        tls: Its certificate, None for a trusted network.
     """
 
     own: Peer
@@ -79,15 +79,15 @@ class Peers:
 
     @property
     def hosts(self) -> dict[str, str]:
-        """For each node whose bigActors a station runs, that station."""
+        """The station that runs each node's bigActors."""
         return {host: peer.name for peer in self.all for host in (peer.name, *peer.hosts)}
 
 
 def read_peers(path: Path, station: str) -> Peers:
-    """Return what a peers file says to one of its stations.
+    """Read a peers file for one of its stations.
 
     Raises:
-        PhysicalError: It says something else; with the place and the remedy.
+        PhysicalError: It is not valid; with the place and the remedy.
         OSError: It cannot be read.
     """
     with open_file(path) as file:
@@ -114,7 +114,7 @@ def _reason(error: Exception) -> str:
 
 
 def peers_of(data: Mapping[str, Any], station: str, folder: Path) -> Peers:
-    """Return what a peers file says; files that it names are looked for in its folder."""
+    """Return the content of a peers file; files that it names are looked for in its folder."""
     named = {name: table for name, table in data.items() if name != "tls"}
     if len(named) > MOST_STATIONS:
         raise _mistake(f"it has more than {MOST_STATIONS} stations", "leave out those that share nothing")

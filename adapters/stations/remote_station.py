@@ -1,4 +1,4 @@
-"""What is known of another station: how much of its log, its parcels that wait, its clock, whether it is reached."""
+"""What is known of another station: its log so far, its waiting parcels, its clock, its reachability."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ class Other:
     """Another station.
 
     Attributes:
-        heard: Up to which number everything that it said has been heard.
-        last: The last number that it is known to have given.
+        heard: The number up to which all its entries were received.
+        last: The last number that it is known to have used.
         parcels: Its parcels for us that have not entered yet, by index.
-        delivered: Up to which of them the run was told.
+        delivered: The index up to which the run has received them.
         skew: How far its clock is ahead.
         answered: When it answered last.
-        reached: Whether it answers; None before anybody knows.
-        skewed: Whether its clock is off by more than it may be.
-        awake: Set where it has to be asked at once.
+        reached: Whether it answers; None if that is not known yet.
+        skewed: Whether its clock is off by more than the bound.
+        awake: Set if it must be asked at once.
     """
 
     heard: int = 0
@@ -38,7 +38,7 @@ class Other:
     awake: asyncio.Event = field(default_factory=asyncio.Event)
 
     def follow(self, message: Message, *, whole: bool) -> bool:
-        """Count what a message told, all of it or not; return whether nothing before it is missing."""
+        """Count the entries of a message; return whether no earlier ones are missing."""
         self.last = max(self.last, message.last)
         whole = whole and message.after <= self.heard
         if whole:
@@ -48,8 +48,8 @@ class Other:
     def due(self, others: Mapping[str, Other], took: int) -> Iterator[tuple[int, Posted]]:
         """Yield the parcels that may enter now, in order.
 
-        A parcel rests on what its sender had seen and heard: that comes first, as far as it can be had. So who is told
-        that a vehicle was handed on sees it handed on.
+        A parcel depends on what its sender had observed, which comes first as far as it can be reached. So an agent
+        that is told of a hand-over also sees it.
         """
         self.delivered = max(self.delivered, took)
         while (parcel := self.parcels.get(self.delivered + 1)) is not None:

@@ -1,4 +1,4 @@
-"""A plugin of a station: whatever it publishes, and is told to do, is told to the station, which tells all."""
+"""A station's own plugin, wrapped: the station shares its publications and commands with all others."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from adapters.plugin import Command, Plugin, Published, Refused, Rejected, Repor
 from adapters.stations.authority import LASTING
 
 LOOK: Final = 0.1
-"""Seconds between two looks whether a link knows what is known."""
+"""Seconds between two checks whether a link has read its vehicle's authority."""
 
 
 class Station(Protocol):
-    """Who shares."""
+    """What a shared plugin needs of its station."""
 
     def publish(self, plugin: Plugin, world: World, published: Published) -> None:
-        """Take what a plugin publishes."""
+        """Take a plugin's publication."""
 
     def commanded(self, command: Command) -> None:
-        """Take note of what a plugin was told."""
+        """Take note of a command to a plugin."""
 
     def lags(self, entity: str) -> bool:
-        """Tell whether a vehicle obeys us, and our link does not know it yet."""
+        """Tell whether a vehicle obeys us, and our link has not read it yet."""
 
 
 class Shared:
@@ -84,7 +84,7 @@ class SharedWorld:
     shared: Shared
 
     def publish(self, published: Published) -> None:
-        """Take what is known of an entity now."""
+        """Take a publication on an entity."""
         self.shared.station.publish(self.shared.plugin, self.world, published)
 
     def now(self) -> float:

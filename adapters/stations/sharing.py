@@ -1,8 +1,8 @@
-"""A station among others, as a plugin: what its own plugins see goes to the others, and what those see comes here.
+"""The station as a plugin: it shares what its own plugins publish, and publishes what the others share.
 
-Everything that it says is an entry of its log, appended before anybody hears of it. Entries are put to all at once, and
-asked for by whoever has missed some: what is lost on the way is only late. A parcel stands in the log until the other
-station's log says that it was taken, so that it arrives once, whoever is killed or cut off meanwhile.
+Everything that it shares is an entry of its log, appended before it is sent. Entries are sent to all stations at once.
+A station that missed some asks for them, so a lost message only delays them. A parcel stays in the log until the other
+station's log says that it was taken, so it arrives exactly once in spite of crashes and partitions.
 """
 
 from __future__ import annotations
@@ -60,10 +60,10 @@ from adapters.troubles import Troubles
 from physical import PhysicalError, read_json
 
 NAME: Final = "stations"
-"""What the plugin is called."""
+"""The plugin's name."""
 
 TICK: Final = 0.02
-"""Seconds for which entries are gathered before they are put; of an entity the newest goes."""
+"""Seconds for which entries are gathered before they are sent; of each entity only the newest is."""
 
 MOVING: Final = frozenset({"migrate", "spawn", "enter"})
 """The rules by which an agent comes to be hosted somewhere."""
@@ -73,28 +73,28 @@ POLL: Final = 1.0
 
 PATIENCE: Final = 2.0
 SILENCE: Final = 4.0
-"""Seconds without an answer after which a station is said not to be reached."""
+"""Seconds without an answer after which a station is reported as not reached."""
 
 MOST_SKEW: Final = 1.0
-"""Seconds by which clocks may differ before it is said."""
+"""Seconds by which clocks may differ before it is reported."""
 
 MOST_STRANGERS: Final = MOST_ENTITIES // 4
-"""Of how many entities that the mission does not name the others are told, of each plugin."""
+"""How many entities of each plugin that the mission does not name are shared."""
 
 MOST_PARCELS: Final = 10_000
-"""How many parcels of one station may wait here; for more it is asked later."""
+"""How many parcels of one station may wait here; more are requested later."""
 
 
 class Sharing:
-    """The plugin of one station; it looks on at the run, too.
+    """The plugin of one station; it also watches the run.
 
     Arguments:
-        peers: Who the stations are.
-        journal: The log of this one.
-        topic: What the mission is called between them.
-        digest: Of the mission: who flies another is not listened to.
-        vehicles: The entities of which only their own links may speak, and whether each obeys a station.
-        named: What the mission names; of other entities so many are told of each plugin.
+        peers: The stations.
+        journal: The log of this station.
+        topic: The mission's name between them.
+        digest: The mission's digest: stations with another one are ignored.
+        vehicles: The entities that only their own links may report, and whether each obeys a station.
+        named: The entities of the mission; of others a limited number of each plugin is shared.
     """
 
     name = NAME
@@ -157,23 +157,23 @@ class Sharing:
             self.close()
 
     def close(self) -> None:
-        """Give the log free; for a run that has not begun, too."""
+        """Close the log, also for a run that has not begun."""
         self._journal.close()
 
     def sharing(self, plugin: Plugin) -> Plugin:
-        """Return a plugin that tells what it learns to all stations."""
+        """Return a plugin that shares its publications with all stations."""
         return Shared(plugin, self)
 
     # --- looking on
 
     def arrived(self, heard: Heard, now: float) -> None:
-        """See something come in: nothing is to be done."""
+        """See an arrival: nothing to do."""
 
     def reported(self, report: Report, now: float) -> None:
-        """See what a plugin reports: nothing is to be done."""
+        """See a plugin's report: nothing to do."""
 
     def turned(self, turn: Turn, now: float) -> None:
-        """Tell the others what concerns them; the recording has it all already."""
+        """Share what concerns the others; the recording has it already."""
         for station, number in entered(turn).items():
             self.others[station].drop(number)
         contents: list[Content] = [*believed(turn, self.merge)]
@@ -188,7 +188,7 @@ class Sharing:
     # --- saying
 
     def publish(self, plugin: Plugin, world: World, published: Published) -> None:
-        """Take what a plugin of ours publishes: it is said to all, and what holds then is told to our own world."""
+        """Take a publication of an own plugin: share it, and publish the merged state to our own world."""
         published = stamped(published, world.now())
         entity, owned = entity_of(published), plugin.owns(entity_of(published))
         if entity in self._vehicles and not owned:
@@ -204,7 +204,7 @@ class Sharing:
         if owned:
             known = self.merge.holds(entity, world.now())
             if known is None and self._vehicles.get(entity) and is_silent(channels_of(published)):
-                return  # nobody knows whom it obeys: another's link may be the one that it answers
+                return  # its authority is unknown: it may answer only another station's link
             now = world.now()
             missed = now - self._listening.look(now)
             channels, since = self._authority.channels(entity, published, known, now, missed)
@@ -215,10 +215,10 @@ class Sharing:
         if entries:
             self._show(world, entity)
         else:
-            world.publish(published)  # it can't be said to the others any more; our own run sees it
+            world.publish(published)  # it can no longer be shared; our own run sees it
 
     def _has_room(self, plugin: str, entity: str) -> bool:
-        """Tell whether the others are told of an entity: a flood of one feed leaves room for what other feeds see."""
+        """Tell whether an entity is shared: a flood on one feed leaves room for the others."""
         told = self._strangers.setdefault(plugin, set())
         if entity in self._named or entity in told:
             return True
@@ -236,12 +236,12 @@ class Sharing:
         return self._authority.lags(entity, self.merge.holds(entity, now))
 
     def commanded(self, command: Command) -> None:
-        """Take note of a hand-over that one of our vehicles is told."""
+        """Take note of a hand-over command to one of our vehicles."""
         if isinstance(command, HandOver):
             self._authority.handing[command.entity] = command
 
     def _add(self, contents: Sequence[Content]) -> list[Entry]:
-        """Say something; a log that can't be written ends that: nobody is told what would be forgotten."""
+        """Share something; if the log can't be written, sharing ends, since unlogged entries must not be sent."""
         if not contents or self._mute:
             return []
         try:
@@ -262,7 +262,7 @@ class Sharing:
             self._put(bus)
 
     def _put(self, bus: Bus) -> None:
-        """Put what was said since; whoever has not heard what came before asks for it."""
+        """Send the gathered entries; stations that missed earlier ones ask for them."""
         if self._unsaid:
             entries = list(self._unsaid.values())
             texts, upto = fitting(entries, self._journal.last)
@@ -276,7 +276,7 @@ class Sharing:
         return written(Message(self._digest, self._world.now(), after, upto, self._journal.last), texts)
 
     def _answer(self, _key: str, question: bytes) -> bytes:
-        """Answer what was said after a number."""
+        """Answer with the entries after a number."""
         after = 0
         with suppress(PhysicalError):
             match read_json(question, MOST_BYTES):
@@ -288,7 +288,7 @@ class Sharing:
     # --- hearing
 
     def _hear(self, station: str, said: bytes) -> None:
-        """Take what was put; ask at once for what was missed."""
+        """Take sent entries; ask at once for missed ones."""
         other, message = self.others[station], self._read(station, said)
         if message is None:
             return
@@ -297,7 +297,7 @@ class Sharing:
         self._deliver()
 
     async def _follow(self, bus: Bus, station: str, other: Other) -> None:
-        """Ask a station again and again for what we have not heard, and what its clock says."""
+        """Ask a station repeatedly for missed entries and for its time."""
         assert self._world is not None
         world = self._world
         while True:
@@ -309,7 +309,7 @@ class Sharing:
                 await asyncio.sleep(POLL)
                 continue
             more = self._told(world, station, self._read(station, answer), asked)
-            other.delivered = 0  # what has not entered is told again
+            other.delivered = 0  # parcels that have not entered are delivered again
             self._deliver()
             if not more:
                 other.awake.clear()
@@ -328,7 +328,7 @@ class Sharing:
         )
 
     def _read(self, station: str, said: bytes) -> Message | None:
-        """Read a message; what is none is reported, and who flies another mission."""
+        """Read a message; report invalid ones, and stations with another mission."""
         try:
             message = read(said)
         except ValueError as error:
@@ -377,7 +377,7 @@ class Sharing:
                     self._journal.taken(entry.station, index)
 
     def _pass_on(self, entry: Entry | None) -> None:
-        """Tell the run what another station has said the latest, of a vehicle that it sent or an agent that it has."""
+        """Tell the run another station's latest entry on a vehicle that it sent or an agent that it has."""
         assert self._world is not None
         now = self._world.now()
         match entry:
@@ -391,7 +391,7 @@ class Sharing:
                 self._world.report(Hosts(agent, now, host))
 
     def _join(self, entry: Entry) -> bool:
-        """Join a word to what is known; return whether it made a difference."""
+        """Join an entry to the merge; return whether it made a difference."""
         assert self._world is not None
         if self.merge.hear(entry) is None:
             return False
@@ -420,7 +420,7 @@ class Sharing:
     # --- links and clocks
 
     async def _watching(self) -> None:
-        """Let words count whose time has come, and report what went wrong."""
+        """Let entries count whose time has come, and report errors."""
         assert self._world is not None
         world = self._world
         while True:

@@ -1,4 +1,4 @@
-"""How far another station's clock is ahead of ours, measured by round trips."""
+"""The offset of another station's clock, measured by round trips."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from typing import Final
 
 KEPT: Final = 8
-"""Round trips that are remembered; the shortest of them tells the most."""
+"""How many round trips are remembered; the shortest is the most exact."""
 
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """Seconds by which a clock is ahead of ours, and by how much that may be wrong."""
+    """Seconds by which a clock is ahead of ours, and the error bound."""
 
     ahead: float
     error: float
@@ -23,7 +23,7 @@ class Measure:
 
 
 def measured(sent: float, theirs: float, received: float) -> Measure:
-    """Return what one round trip tells: the answer was written at some time in between.
+    """Measure by one round trip: the answer was written at some time in between.
 
     >>> measured(10.0, 13.5, 11.0)
     Measure(ahead=3.0, error=0.5)

@@ -1,4 +1,4 @@
-"""What may be written on the command line: commands, arguments, options, and their help.
+"""The command line's grammar: commands, arguments, options, and their help.
 
 It imports nothing that takes time to load, so that help is there at once. A command is a module here with its
 arguments, one of the same name in `bigactors.commands` that runs it, and its place in `COMMANDS`.

@@ -1,4 +1,4 @@
-"""What several commands share: what a mission is, how it may vary, and what the exit codes say."""
+"""Arguments that several commands share: the mission, its variations, and the exit codes."""
 
 from typing import Final
 

@@ -1,4 +1,4 @@
-"""The options of `bigactors run` that say how vehicles and feeds are to be heard: filters, fence, keys, times."""
+"""The options of `bigactors run` for vehicles and feeds: filters, fence, keys, times."""
 
 import argparse
 import re

@@ -1,4 +1,4 @@
-"""The parser: argparse, speaking as the rest of bigactors does."""
+"""The argument parser: argparse with the error messages of bigactors."""
 
 import argparse
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""The values of arguments and options: each function reads one word, and says what is wrong with it."""
+"""Values of arguments and options: each function reads one word, or says what is wrong with it."""
 
 import argparse
 import math

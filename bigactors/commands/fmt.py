@@ -1,4 +1,4 @@
-"""`bigactors fmt`: mission files in the canonical layout, never at the cost of what they say."""
+"""`bigactors fmt`: mission files in the canonical layout, with the same meaning."""
 
 from argparse import Namespace
 

@@ -1,4 +1,4 @@
-"""`bigactors keygen`: a key pair to sign verdicts with."""
+"""`bigactors keygen`: a key pair for signing verdicts."""
 
 from argparse import Namespace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""`bigactors world`: the bigraph of what files say is where."""
+"""`bigactors world`: the bigraph of a world from files."""
 
 from argparse import Namespace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Pages: HTML that needs nothing but itself, for whoever has to look at a run without bigactors.
+"""Pages: self-contained HTML for readers without bigactors.
 
 Everything that is not markup of ours is escaped, nothing is loaded from anywhere, and a Content-Security-Policy says so
 to the browser. Without scripts a page shows everything at once.

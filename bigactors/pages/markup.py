@@ -1,4 +1,4 @@
-"""Markup: elements written so that no text of a mission can be taken for any."""
+"""HTML markup: elements are written so that no text of a mission is taken for markup."""
 
 from html import escape
 

@@ -1,4 +1,4 @@
-"""What a page tells of a trace: its configurations, each with its pictures."""
+"""The content of a trace's page: its configurations, each with its pictures."""
 
 from dataclasses import dataclass, replace
 from typing import Final

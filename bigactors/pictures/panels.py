@@ -1,4 +1,4 @@
-"""The two models of a configuration as pictures of their own, for a page that steps through a run."""
+"""The two models of a configuration as separate pictures, for a page that steps through a run."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field

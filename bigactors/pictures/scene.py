@@ -1,4 +1,4 @@
-"""What a picture of a configuration shows: pure functions of it."""
+"""The content of a configuration's picture, as pure functions of the configuration."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

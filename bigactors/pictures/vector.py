@@ -1,7 +1,7 @@
-"""SVG made fit to stand in a page: what matplotlib writes, cut down to shapes and text that nothing is loaded for.
+"""SVG that can stand in a page: matplotlib's output reduced to self-contained shapes and text.
 
-Only known elements and attributes are passed on, references only to what is in the picture itself; ids are its own, so
-that several pictures may stand in one page. Text stays text, as wide as it was measured, whatever font the reader has.
+Only known elements and attributes are kept, and references only within the picture. Its ids are unique, so that one
+page can hold several pictures. Text stays text with its measured width, in any font of the reader.
 """
 
 import re

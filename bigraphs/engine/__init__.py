@@ -1,4 +1,4 @@
-"""The engine: states as integers and bit masks, matching by plans, rewriting by differences, canonical keys.
+"""The engine: states as integers and bit masks, planned matching, incremental rewriting, canonical keys.
 
 Nothing in here knows how a system is written or drawn. `bigraphs.exploration` and `bigraphs.simulation` run it.
 """

@@ -1,4 +1,4 @@
-"""The symmetries of a rule: occurrences that one maps to another are one occurrence.
+"""The automorphisms of a rule: occurrences that one maps to another count once.
 
 A symmetry of a redex permutes nodes, links, regions and sites. It is one of the rule if it makes the same of the
 reactum: `A{x} | A{y} --> B{x} | B{y}` has one, `A{x} | A{y} --> B{x} | A{y}` has none.

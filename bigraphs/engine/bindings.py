@@ -1,4 +1,4 @@
-"""Links of a pattern bound to links of a state, port by port or, where ports have no order, in each way that fits."""
+"""Bind a pattern's links to a state's links, port by port or, for unordered ports, in every possible way."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What lies around an occurrence: whether rules may act there, and what conditions look at."""
+"""The context of an occurrence: whether rules may act there, and what conditions see."""
 
 from __future__ import annotations
 

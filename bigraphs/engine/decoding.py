@@ -1,4 +1,4 @@
-"""From a state, or from its key, back to the bigraph that it stands for."""
+"""Decode a state, or its key, to the bigraph that it represents."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A state while it is rewritten: every change is made through here and noted."""
+"""A state during rewriting: every change goes through here and is recorded."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class Draft:
         return slot
 
     def remove(self, slot: int) -> None:
-        """Take a node away; what is still in it must be moved or removed by whoever does so."""
+        """Remove a node; the caller must move or remove its content."""
         state = self.state
         self.move(slot, ())
         self.relink(slot, ())

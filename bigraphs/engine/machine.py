@@ -1,4 +1,4 @@
-"""A system made ready to run: from a state to all that can happen in it, priorities and conditions obeyed."""
+"""A system prepared to run: the possible steps of each state, by priorities and conditions."""
 
 from __future__ import annotations
 

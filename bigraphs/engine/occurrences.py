@@ -1,4 +1,4 @@
-"""The occurrences of all rules in one state, most of them known from the state before."""
+"""The occurrences of all rules in one state, mostly carried over from the previous state."""
 
 from __future__ import annotations
 

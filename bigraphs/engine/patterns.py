@@ -1,4 +1,4 @@
-"""What is looked for: a redex, or the pattern of a condition or predicate, as arrays of integers."""
+"""Patterns as arrays of integers: a redex, or the pattern of a condition or predicate."""
 
 from __future__ import annotations
 

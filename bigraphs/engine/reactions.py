@@ -1,4 +1,4 @@
-"""Rules made ready: what to look for, and what to change where it is found, node by node."""
+"""Prepared rules: the pattern to find, and the changes at an occurrence, node by node."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One search under way, and what it finds."""
+"""One search in progress, and its results."""
 
 from __future__ import annotations
 

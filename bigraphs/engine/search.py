@@ -1,4 +1,4 @@
-"""The search for occurrences: one plan per pattern and node to begin with, made once, run on every state.
+"""The search for occurrences: one plan for each pattern and start node, made once, run on every state.
 
 A plan places the nodes of a pattern one after the other, next to those that are placed already, so that its
 candidates are an intersection of a few masks. An occurrence maps nodes injectively and keeps controls, nesting

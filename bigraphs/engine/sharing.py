@@ -1,4 +1,4 @@
-"""Where regions lie and what sites hold, for an occurrence in a state whose nodes may have several parents.
+"""Regions and sites of an occurrence in a state whose nodes may have several parents.
 
 A place outside of an occurrence holds each region whose top nodes are all in it, unless it holds a larger one;
 what is in an occurrence is in each site whose places it is all in, unless there is a larger one. So there is one

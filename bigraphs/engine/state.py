@@ -1,4 +1,4 @@
-"""One state as arrays of integers: places, links, and what is where, as bit masks.
+"""One state as arrays of integers: places, links, and containment as bit masks.
 
 A node has a *slot*, which it keeps for as long as it lives; slot `n` is bit `n` of a mask. Place `~r` is region
 `r`, and as lists end with their regions it is also an index. Names are links from 0, edges follow them.

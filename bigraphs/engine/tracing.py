@@ -1,4 +1,4 @@
-"""Node identity: which node of a state is which of the next."""
+"""Node identity: which node of a state is which node of the next."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which nodes of a reactum are nodes of the redex: how a node keeps its identity through a reaction."""
+"""Node identity in a rule: which nodes of the reactum are nodes of the redex."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def track(redex: Bigraph, reactum: Bigraph) -> tuple[int, ...]:
 
     A named node is its namesake. An anonymous one is a node of the same control that is not taken: one with the
     same links in the same place if there is any, else with the same links, else in the same place, else any.
-    Places are compared by the nodes that they are, so whoever keeps its neighbours keeps its identity.
+    Places are compared as nodes, so a node that keeps its neighbours keeps its identity.
     """
     found = [-1] * len(reactum.nodes)
     for fits in _passes(redex, reactum, found):

@@ -1,4 +1,4 @@
-"""What all states of one system share: numbered controls and names, and subtrees that are interned once.
+"""What all states of one system share: numbers of controls and names, and interned subtrees.
 
 Controls, outer names and regions are small integers in here. A *label* is a control, or a control with a
 node's name. A *row* says of a node its label, its links, the codes of what is in it and, if it has several

@@ -1,4 +1,4 @@
-"""Transition systems for others to read: model checkers, drawing programs, and people with a browser."""
+"""Exports of transition systems: for model checkers, drawing programs, and browsers."""
 
 from bigraphs.exports.dot import to_dot
 from bigraphs.exports.html import to_html

@@ -1,4 +1,4 @@
-"""One self-contained page: the state space, with the bigraph of each state a click away."""
+"""A self-contained page of the state space; a click on a state shows its bigraph."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Transition systems as plain data."""
+"""Transition systems as plain data for JSON."""
 
 from __future__ import annotations
 

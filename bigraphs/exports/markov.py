@@ -1,4 +1,4 @@
-"""A transition system as a Markov model: what the files for PRISM and for Storm have in common.
+"""A transition system as a Markov model: the common part of PRISM's and Storm's files.
 
 A BRS becomes a decision process in which every transition is a choice of its own. A state in which nothing can
 happen gets a loop and the label `deadlock`, as these checkers demand of every state that something follows it. Of

@@ -1,4 +1,4 @@
-"""Storm's explicit files: transitions with the kind of model above them, labels, and rewards."""
+"""Storm's explicit files: transitions under the kind of model, labels, and rewards."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bigraphs and transition systems as SVG texts, small enough that a page can hold hundreds of them."""
+"""Bigraphs and transition systems as compact SVG, so that one page can hold hundreds of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Texts of bigraphs, read and written: BigraphER's, BigMC's and the paper's notation. This room alone knows lark."""
+"""Notations of bigraphs, read and written: BigraphER's, BigMC's and the paper's. Only this package uses lark."""
 
 from bigraphs.notation.bgm.systems import read_bgm
 from bigraphs.notation.big.expression_of import write_big

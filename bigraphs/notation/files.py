@@ -1,4 +1,4 @@
-"""Systems from files: the suffix says which language a file is in."""
+"""Read systems from files: the suffix decides the language."""
 
 from __future__ import annotations
 

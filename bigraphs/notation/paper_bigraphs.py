@@ -1,4 +1,4 @@
-"""From the paper's notation to bigraphs and rules, and back."""
+"""Convert the paper's notation to bigraphs and rules, and back."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bounded reading: what every notation checks before, and says after, lark reads a text."""
+"""Bounded parsing: the checks before, and the error messages after, lark reads a text."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Engines: ways to visit all that can be reached. `contract` says what they share, `choose` which one runs."""
+"""Engines: ways to visit all reachable configurations. `contract` is their interface, `choose` selects one."""

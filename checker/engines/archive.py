@@ -1,4 +1,4 @@
-"""Archives: plain data and arrays in one file, with a digest of all that it holds.
+"""Archives: plain data and arrays in one file, with a digest of the whole content.
 
 The digest detects accidents and alterations by hand. It is no seal: who can write there can work out another. So
 whoever reads an archive still holds each number to what it may be.

@@ -1,4 +1,4 @@
-"""Which engine explores."""
+"""Choose the engine of an exploration."""
 
 from collections.abc import Iterable
 

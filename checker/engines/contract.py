@@ -1,4 +1,4 @@
-"""What engines share: what is asked of an exploration, what lets it visit less, and what it has found."""
+"""The interface of engines: an exploration's task, the reductions it may use, and its result."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""The edges of a transition system, kept as they are found; light, since every exploration may be asked for them."""
+"""The edges of a transition system, stored compactly as they are found."""
 
 from __future__ import annotations  # array[int] is no type at run time before Python 3.12
 

@@ -1,4 +1,4 @@
-"""How much there may be in all, from the sizes of the layers so far: a range, and none while layers still grow.
+"""Estimate the total number of configurations from the sizes of layers: a range, none while layers grow.
 
 Nobody knows the size of what was not visited. Layers of interleavings mostly rise and then fall; once they have fallen
 for a while, what is left is taken to be no more than if they went on at their slowest recent fall, or fell as slowly as

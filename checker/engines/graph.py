@@ -1,4 +1,4 @@
-"""The explored transition system as arrays: what temporal properties are decided on, however it was explored."""
+"""The explored transition system as arrays, for temporal properties; the same for every engine."""
 
 from dataclasses import dataclass
 from functools import cached_property

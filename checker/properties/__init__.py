@@ -1,1 +1,1 @@
-"""Properties: what is asked of configurations and runs, whichever engine visits them."""
+"""Properties: the questions about configurations and runs, the same for every engine."""

@@ -1,4 +1,4 @@
-"""Coverage: which statements, branches and clauses of a mission were ever reached; one answer to *why did it pass*.
+"""Coverage: the statements, branches and clauses of a mission that no run reaches.
 
 A pure function of the mission and of what was visited, whatever explored it.
 """

@@ -1,4 +1,4 @@
-"""Findings: what an inspection of a configuration turns up, collected by kind and subject."""
+"""Findings: the results of inspecting configurations, collected by kind and subject."""
 
 from dataclasses import dataclass, field
 

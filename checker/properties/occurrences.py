@@ -1,4 +1,4 @@
-"""Where parts stand in formulas, of configurations and of runs; and which of them are never needed.
+"""Occurrences of subformulas, in formulas of configurations and of runs; and those that are never needed.
 
 A part is *never needed* if the formula holds whatever stands in its place: if it still holds with false there where it
 stands positively, with true where negatively (Kupferman and Vardi, Vacuity detection in temporal model checking, 1999).

@@ -1,4 +1,4 @@
-"""Race-freedom by ownership, without a search: the paper's sufficient condition, over-approximated from the text.
+"""Race-freedom by ownership, without a search: the paper's sufficient condition, over-approximated statically.
 
 No agent may write a slot that another's redex, missing site or tested observation may read or write. `children` is no
 slot of its own: it stands for the parents that a missing site reads, so that two who write it don't interfere.

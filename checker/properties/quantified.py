@@ -1,4 +1,4 @@
-"""Formulas as they were written: a quantifier is elaborated into one operand for each entity of a kind.
+"""Formulas as they were written: quantifiers are elaborated into one operand for each entity of a kind.
 
 What is said of a formula's parts is said of the body of a quantifier once, and not of each of its instances.
 """

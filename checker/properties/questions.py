@@ -1,4 +1,4 @@
-"""Questions that inspections come to: pure functions of a configuration, put to all at once.
+"""The questions of inspections: pure functions of a configuration.
 
 Each is about one agent, or two, so that answers do not multiply.
 """

@@ -1,4 +1,4 @@
-"""Vacuity: whether an invariant holds for want of anything that could break it.
+"""Vacuity of invariants: whether one holds only because nothing could break it.
 
 Which parts of it are never needed (`checker.properties.occurrences`) is decided exactly: on the
 valuations of its atoms that were met.

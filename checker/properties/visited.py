@@ -1,4 +1,4 @@
-"""What was visited of a mission's text: where agents stood, what they passed over, what the environment did.
+"""Visited parts of a mission's text: statements, branches not taken, and clauses of the environment.
 
 All of it are projections of configurations: an agent's `code` cell, the cells that its computation depends on, and the
 words of labels. What one `fun` passes over leaves no trace in a configuration, so that each different moment is

@@ -1,9 +1,9 @@
-"""What an actor may do next, and what it may ever do: footprints as functions of a few cells' values.
+"""The footprints of actors, now and for ever: functions of a few cells' values.
 
-An agent is several actors, since it doesn't wait for what it has asked: its *program* (what is left of it to run), its
-*line* (of which the first request may be served), and each *request* that stands in no line. A clause of the
-environment is one. What an actor may do before it has moved itself depends on its agent's code, requests and host
-alone, whatever others do; and so does a bound of all that may come of it.
+An agent is several actors, since it doesn't wait for its requests: its *program* (the rest of its code), its *line*
+(whose first request may be served), and each *request* outside a line. A clause of the environment is one actor. What
+an actor may do before its own next step depends only on its agent's code, requests and host, whatever others do. So
+does a bound of all its later steps.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -36,22 +36,22 @@ from semantics.state.signature import Name
 Requests = tuple[Request, ...]
 
 MOST_INSTANCES = 5_000
-"""A control whose arguments may come to more combinations than these is taken for one that may change anything."""
+"""A control with more possible combinations of arguments is assumed to change anything."""
 
 InLine = Observe | ControlBy | Migrate
-"""Statements whose requests stand in line, where there is one."""
+"""Statements whose requests wait in the line, if there is one."""
 
 EVERYTHING = Footprint(-1, -1, -1)
-"""All slots, those not yet numbered too."""
+"""All slots, including those not numbered yet."""
 
 
 class Actor(NamedTuple):
-    """Who moves by itself.
+    """A part of an agent, or a clause of the environment, that moves by itself.
 
     Attributes:
         kind: `program`, `line`, `request` or `clause`.
-        owner: The agent; of a clause its number.
-        request: Which request it is.
+        owner: The agent; for a clause its number.
+        request: The request of an actor of that kind.
     """
 
     kind: str
@@ -60,7 +60,7 @@ class Actor(NamedTuple):
 
 
 class Acting(NamedTuple):
-    """What an actor may do: before it has moved, all that may come of it, and of that, what passes by its own line."""
+    """The footprints of an actor: of its next step, of all its steps, and of those among them that bypass its line."""
 
     now: Footprint
     ever: Footprint
@@ -71,7 +71,7 @@ class Actors:
     """The footprints of a mission's actors; c must be the configuration that the exploration starts in.
 
     Attributes:
-        everything: All that anybody may ever do.
+        everything: The union of all actors' footprints.
     """
 
     def __init__(self, c: Configuration) -> None:
@@ -85,7 +85,7 @@ class Actors:
         everything = joined([*map(self.clause, self.setting.environment), *self._lives(c)])
         self.footprints.settle(everything)
         self.everything = replace(everything, merges=everything.merges & ~self.footprints.settled)
-        self._forget()  # what was bounded before it was known what is settled
+        self._forget()  # bounds from before the settled slots were known
 
     def _forget(self) -> None:
         self.marks = Marks(self.footprints)
@@ -108,14 +108,14 @@ class Actors:
     # --- of a configuration -----------------------------------------------------------------------------------
 
     def local(self, agent: Name) -> tuple[Cell, ...]:
-        """Return the cells that decide who an agent's actors are, and what they may do."""
+        """Return the cells that decide an agent's actors and their footprints."""
         return (code_cell(agent), line_cell(agent), sends_cell(agent), host_cell(agent))
 
     def of(self, c: Configuration) -> dict[Actor, Acting]:
-        """Return the actors of a configuration, with what they may do.
+        """Return the actors of a configuration, with their footprints.
 
-        It depends on the configuration by the cells of `local` of each agent, by whether it rests on anything, by the
-        agents that there are and by the counters of what may be said; by nothing else.
+        They depend only on the `local` cells of each agent, on whether it rests on any observation, on the existing
+        agents, and on the counters of messages from outside.
         """
         found: dict[Actor, Acting] = {}
         for agent in c.alpha.names():
@@ -125,14 +125,14 @@ class Actors:
         return found
 
     def of_agent(self, c: Configuration, agent: Name) -> dict[Actor, Acting]:
-        """Return the actors of one agent that is there; what it has observed, but not received, doesn't matter."""
+        """Return the actors of one existing agent; observations that it has not received don't matter."""
         code, line, sends, host = (c.read(cell) for cell in self.local(agent))
         asked = tuple(each for each in (*line, *(sends or ())) if not isinstance(each, READY))
         told = self.ordered and any(isinstance(each, READY) for each in line)
         return self._known_agent(agent, code, asked, told, host, self.marks.is_blank(c, agent))
 
     def of_clause(self, c: Configuration, number: int) -> dict[Actor, Acting]:
-        """Return the actor that a clause of the environment is, unless it is over."""
+        """Return the actor of a clause of the environment, unless the clause is used up."""
         clause = c.setting.environment[number]
         if isinstance(clause, Says) and not c.read(clause.counter):
             return {}
@@ -181,7 +181,7 @@ class Actors:
         return found
 
     def _next(self, agent: Name, number: int, told: bool) -> Footprint:
-        """Bound the rules that take an agent's next step; where it is told what it asked first, no more can matter."""
+        """Bound the rules that take an agent's next step; if its first observation is ready, nothing else matters."""
         statement = self.program.statements[number]
         here = self.footprints.slots.footprint([("host", agent)])
         if isinstance(statement, React):
@@ -189,7 +189,7 @@ class Actors:
         return here | self.footprints.spawn() if isinstance(statement, Spawn) else here
 
     def _telling(self, agent: Name, number: int) -> Footprint:
-        """Bound the marks in what a statement tells others."""
+        """Bound the marks in a statement's message."""
         match self.program.statements[number]:
             case Send(_, to):
                 return self.marks.told(agent, self.roles.receivers(agent, to))
@@ -199,7 +199,7 @@ class Actors:
                 return NOTHING
 
     def _code(self, agent: Name, code: Code) -> tuple[Footprint, Footprint]:
-        """Return what may come of code, and what of it may come before the agent's line has moved."""
+        """Return the footprint of code, and of its part before the agent's line moves."""
         reach = reachable(self.program, code)
         born = self.roles.descendants(reach)
         theirs = joined(map(self._life, born))
@@ -209,7 +209,7 @@ class Actors:
         return aside | joined(self._of_statement(agent, each) for each in reach), aside
 
     def _life(self, agent: Name) -> Footprint:
-        """Return all that may come of an agent, but for what is pending."""
+        """Return the footprint of all of an agent's later steps, without its pending requests."""
         statements = self.roles[agent].statements
         rested_on = self.marks.rested_on(agent, tuple(sorted(statements)))
         return rested_on | joined(self._of_statement(agent, each) for each in statements)
@@ -232,7 +232,7 @@ class Actors:
                 return NOTHING
 
     def _statement(self, agent: Name, number: int) -> Footprint:
-        """Return what comes of a statement itself, not of those that stand in it."""
+        """Return the footprint of a statement itself, without the statements in it."""
         return self._asked_by(agent, number) | self._telling(agent, number)
 
     def _asked_by(self, agent: Name, number: int) -> Footprint:
@@ -273,5 +273,5 @@ class Actors:
 
 def _instances(make: Callable[..., Reaction], several: list[Sequence[Name]]) -> Iterator[Reaction]:
     for chosen in product(*several):
-        with suppress(Fault):  # not every name is one that the command takes
+        with suppress(Fault):  # the command does not take every name
             yield make(*chosen)

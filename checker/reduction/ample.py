@@ -1,7 +1,7 @@
-"""Partial-order reduction: of the steps that a configuration allows, as many as must be followed.
+"""Partial-order reduction: the ample subset of the steps that a configuration allows.
 
-Steps of different actors that have nothing to do with each other are followed in one order only. docs/reduction.md
-says why nothing is lost by it, and which properties it is refused for.
+Independent steps of different actors are followed in one order only. docs/reduction.md explains why this is sound, and
+for which properties it is refused.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -19,13 +19,13 @@ Later = Callable[[Transition], bool]
 
 
 class Proviso(Enum):
-    """What keeps a step from being put off for ever."""
+    """The proviso against postponing a step for ever."""
 
     SOME = "some"
-    """One of the steps followed leads to what is expanded later: enough for what is decided in configurations."""
+    """One of the followed steps leads to a configuration that is expanded later: enough for safety properties."""
 
     ALL = "all"
-    """All of them do, so every cycle has a configuration that is expanded in full: what LTL without next needs."""
+    """All of them do, so every cycle has a fully expanded configuration, as LTL without next needs."""
 
 
 class Ample:
@@ -39,7 +39,7 @@ class Ample:
         self.enough = any if proviso is Proviso.SOME else all
 
     def choose(self, c: Configuration, expansion: Expansion, later: Later) -> tuple[Transition, ...]:
-        """Return the transitions to be followed: an ample set, or all where none is known."""
+        """Return the transitions to follow: an ample set, or all if none is known."""
         everything = expansion.transitions
         for chosen in self.candidates(c, expansion):
             if self.is_ample(c, chosen) and self.enough(map(later, chosen)):
@@ -47,13 +47,13 @@ class Ample:
         return everything
 
     def is_ample(self, c: Configuration, chosen: tuple[Transition, ...]) -> bool:
-        """Tell whether no property sees any of the steps, and one of them must be taken some time."""
+        """Tell whether the steps are invisible to all properties, and one of them must be taken eventually."""
         if any(self.eyes.differ(c, each.target) for each in chosen):
             return False
         return any(each.label.agent is not None and not is_unfair(c, each) for each in chosen)
 
     def candidates(self, c: Configuration, expansion: Expansion) -> list[tuple[Transition, ...]]:
-        """Return the steps of persistent sets of actors that leave some step out, the smallest first."""
+        """Return the steps of persistent sets of actors that omit some step, the smallest first."""
         if len(expansion.transitions) < 2:
             return []
         movable = dict.fromkeys(self.actors.actor_of(each.label) for each in expansion.by_agents)
@@ -72,7 +72,7 @@ class Ample:
 
 
 def persistent(acting: Mapping[Actor, Acting], seeds: Iterable[Actor]) -> Iterator[frozenset[Actor]]:
-    """Yield for each seed the least set around it such that nothing outside ever disturbs what is inside may do now."""
+    """Yield for each seed the least set around it whose current steps no actor outside ever disturbs."""
     for seed in seeds:
         inside = {seed}
         waiting = [seed]
@@ -85,9 +85,9 @@ def persistent(acting: Mapping[Actor, Acting], seeds: Iterable[Actor]) -> Iterat
 
 
 def disturbed(acting: Mapping[Actor, Acting], actor: Actor, other: Actor) -> bool:
-    """Tell whether another actor may ever disturb what an actor may do now.
+    """Tell whether another actor may ever disturb an actor's current steps.
 
-    What an agent asks next is served after what stands in its line already.
+    An agent's next request is served after those that already wait in its line.
     """
     behind = actor.kind == "line" and other == Actor("program", actor.owner)
     return acting[actor].now.disturbs(acting[other].aside if behind else acting[other].ever)

@@ -1,4 +1,4 @@
-"""What is alike in a mission: transpositions of names that map all of it onto itself, and why others don't."""
+"""The automorphisms of a mission: transpositions of names that preserve it, and why others don't."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, fields, is_dataclass
@@ -29,7 +29,7 @@ VARIABLES = {
 """The members of statements, expressions and patterns that are names of variables."""
 
 MOST_ARGUMENTS = 20_000
-"""A rule of the mission with more combinations of arguments than these is not tried with all of them."""
+"""The most combinations of arguments with which a rule of the mission is tried."""
 
 
 UNLIKE_TEXTS = "their texts differ"
@@ -44,7 +44,7 @@ class Unlike(Exception):
 
 @dataclass
 class Pairing:
-    """What of one side stands where something else stands on the other: names, statements, variables."""
+    """A correspondence between two sides: names, statements, variables."""
 
     c: Configuration
     names: dict[str, str] = field(default_factory=dict)
@@ -52,13 +52,13 @@ class Pairing:
     variables: dict[str, str] = field(default_factory=dict)
 
     def agents(self, one: Name, other: Name) -> None:
-        """Pair two agents with their hosts, what they run, and what their texts name."""
+        """Pair two agents with their hosts, their programs, and the names in these."""
         self.pair(self.names, one, other)
         self.pair(self.names, self.c.alpha.host(one), self.c.alpha.host(other))
         self.unify(self.c.alpha.code(one), self.c.alpha.code(other))
 
     def pair(self, known: dict[Any, Any], one: Any, other: Any) -> bool:
-        """Note that one thing stands where another does; tells whether that is new."""
+        """Note that one thing corresponds to another; tell whether that is new."""
         if one == other or known.get(one) == other:
             return False
         if one in known or one in known.values() or other in known or other in known.values():
@@ -79,7 +79,7 @@ class Pairing:
             self.unify(statements[one], statements[other])
 
     def unify_all(self, one: Any, other: Any) -> None:
-        """Pair what stands in two tuples, one after the other."""
+        """Pair the members of two tuples, in order."""
         if len(one) != len(other):
             raise Unlike(UNLIKE_TEXTS)
         ordered = zip(one, other, strict=True) if isinstance(one, tuple) else ()
@@ -121,7 +121,7 @@ class Pairing:
 
 
 def transposition(c: Configuration, pairing: Pairing) -> Renaming:
-    """Return the renaming that exchanges both sides of a pairing; raises Unlike if the mission is another after it."""
+    """Return the renaming that exchanges both sides of a pairing; raises Unlike if it changes the mission."""
 
     def both(pairs: dict[Any, Any]) -> dict[Any, Any]:
         return {**pairs, **{other: one for one, other in pairs.items()}}
@@ -158,10 +158,10 @@ def _channels(c: Configuration) -> Iterator[str]:
 
 
 def _sayings(c: Configuration, renaming: Renaming, first: Iterable[Name]) -> dict[Cell, Cell]:
-    """Return which counter of what is said becomes which, those of the first side first.
+    """Return the permutation of the counters of messages from outside, those of the first side first.
 
     Raises:
-        Unlike: The environment becomes another.
+        Unlike: It changes the environment.
     """
     counters: dict[Cell, Cell] = {}
     left = list(c.setting.environment)
@@ -178,7 +178,7 @@ def _sayings(c: Configuration, renaming: Renaming, first: Iterable[Name]) -> dic
 
 
 def _said_to(c: Configuration, agents: Iterable[Name]) -> Iterator[Says]:
-    """Yield what may be said to some agents."""
+    """Yield the messages that may be said to some agents."""
     to = set(agents)
     return (each for each in c.setting.environment if isinstance(each, Says) and each.agent in to)
 
@@ -259,7 +259,7 @@ def _check_world(c: Configuration, renaming: Renaming) -> None:
 
 
 def is_invariant(renaming: Renaming, formula: Proposition) -> bool:
-    """Tell whether a proposition says the same of everyone that is exchanged."""
+    """Tell whether a proposition is invariant under the exchange."""
     return bool(_normal(formula) == _normal(renaming.value(formula)))
 
 

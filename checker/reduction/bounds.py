@@ -1,4 +1,4 @@
-"""Bounds: what may ever hold, carry or contain what in a mission, from its kinds and the world that it starts in."""
+"""Bounds: what a mission's entities may ever hold, carry or contain, from its kinds and its first world."""
 
 from collections.abc import Callable, Iterable
 from functools import cache
@@ -12,14 +12,14 @@ Names = frozenset[Name]
 
 
 class Bounds:
-    """What may ever be: larger than what will be, and never smaller.
+    """Over-approximations of all reachable configurations.
 
     Attributes:
         names: Every entity.
-        known: The nodes of L at first; a node never leaves L.
+        known: The nodes of the first L; a node never leaves L.
         channels: The channels that may drop.
-        cyclic: Nodes that may ever lie on a cycle of L, were it not broken.
-        passive: Whether nothing reacts in some kind of place.
+        cyclic: Nodes that may lie on a cycle of L, if it were not broken.
+        passive: Whether some kind of place is passive.
     """
 
     def __init__(self, initial: Configuration) -> None:
@@ -41,7 +41,7 @@ class Bounds:
         self.cyclic: Names = frozenset(name for name in self.names if name in self.above(name))
 
     def _carriers(self, name: Name) -> Names:
-        """Return what may carry an entity: what its kind says, where it is at first, and where it may appear."""
+        """Return what may carry an entity: by its kind, at the start, and where it may appear."""
         setting = self.setting
         found = {other for other in self.names if setting.carries(other, name)}
         first = self.initial.structure.physical.placement(name)
@@ -55,7 +55,7 @@ class Bounds:
         return frozenset(found)
 
     def _holders(self, name: Name) -> Names:
-        """Return what may be the parent of an entity in A(P), or where it may fly to; the region left out."""
+        """Return the possible parents of an entity in A(P), and its possible destinations; without the region."""
         first = self.initial.structure.physical.placement(name)
         flying = {first.to} & self.names if isinstance(first, InTransit) else set[Name]()
         return self.carriers(name).union(self.setting.containers(self.setting.kind(name)), flying)
@@ -67,23 +67,23 @@ class Bounds:
         )
 
     def _believable(self, name: Name) -> Names:
-        """Return what L may ever have as an entity's parent; the region left out."""
+        """Return the possible parents of an entity in L; without the region."""
         believed = self.initial.structure.logical.parent(name)
         return self.holders(name) | (
             {believed} & self.names if believed not in (None, REGION) else frozenset()
         )
 
     def inside(self, place: Name) -> Names:
-        """Return what may be a child of a place, or of the region, in A(P)."""
+        """Return the possible children of a place, or of the region, in A(P)."""
         return frozenset(name for name in self.names if place == REGION or place in self.holders(name))
 
     def believed_inside(self, place: Name) -> Names:
-        """Return what may be a child of a place in L."""
+        """Return the possible children of a place in L."""
         return frozenset(name for name in self.names if place in self.believable(name))
 
 
 def reached(start: Iterable[Name], lead: Callable[[Name], Names]) -> Names:
-    """Return what a relation leads to from some names, these included."""
+    """Return the reflexive transitive closure of some names under a relation."""
     seen: set[Name] = set()
     waiting = list(start)
     while waiting:

@@ -1,4 +1,4 @@
-"""Crosscheck: what rules do in a configuration, held to what partial-order reduction says of it by hand.
+"""Crosscheck: compare what rules do in a configuration with the hand-written footprints of the reduction.
 
 Footprints and what properties see are worked out from the text, apart from the rules. Here rules and properties run
 over cells that note what is asked of them: whatever lies outside is a bug of ours.

@@ -1,4 +1,4 @@
-"""Footprints of what actors may do: queries, reactions, messages, migrations, and the environment's clauses.
+"""Footprints of queries, reactions, messages, migrations, and the environment's clauses.
 
 Static and larger than any run: they are derived from the text, the kinds and the first configuration, never from what
 a run was seen to read. Each function names the rule whose reads and writes it bounds.

@@ -1,4 +1,4 @@
-"""Tellers: the agents that may let others know of what they have observed.
+"""Informants: the agents that may pass on what they have observed.
 
 A message or a spawned agent carries what its sender rests on, if that had observed anything by then. In many missions
 nobody's does: first they agree, then they look and move.

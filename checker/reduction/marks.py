@@ -1,4 +1,4 @@
-"""What the race monitor's memory adds to footprints: who marks what others rest on, and who passes it on.
+"""The race monitor's part of footprints: which steps mark or pass on stale observations.
 
 A control marks what it changes in all that others rest on (`semantics.races.monitor.marked`), and in what its own
 agent may tell of. Whatever an agent does with that (test it, pass it on, forget it, ask for more) ends otherwise

@@ -1,4 +1,4 @@
-"""Messages as far as the text tells them, and which `react` may take which."""
+"""Messages, statically: what may be sent, and which `react` may take it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,28 +13,28 @@ from semantics.behaviours.values import Value
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """A message that is this value."""
+    """A message with this value."""
 
     value: Value
 
 
 @dataclass(frozen=True, slots=True)
 class Tuple:
-    """A message that is a tuple of as many parts."""
+    """A message that is a tuple of this length."""
 
     parts: tuple["Message", ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """A message of which the text says nothing."""
+    """A message about which nothing is known statically."""
 
 
 Message = Known | Tuple | Unknown
 
 
 def message_of(expression: Expression) -> Message:
-    """Return what the text tells of a message."""
+    """Return what is known statically of a message."""
     match expression:
         case Literal(value):
             return Known(value)
@@ -66,7 +66,7 @@ def _may_take_tuple(pattern: Pattern, parts: tuple[Message, ...]) -> bool:
 
 
 def wakes(program: Program) -> Callable[[Message], tuple[int, ...]]:
-    """Return the function from a message to the `react` statements, by number, some case of which may take it."""
+    """Return the function from a message to the numbers of the `react` statements that may take it."""
     reacts = [(number, each) for number, each in enumerate(program.statements) if isinstance(each, React)]
 
     def woken(message: Message) -> tuple[int, ...]:

@@ -1,4 +1,4 @@
-"""Where the order of names may matter to a program: then no two of them are interchangeable."""
+"""Dependence on the order of names: such a mission has no interchangeable names."""
 
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass

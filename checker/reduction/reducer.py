@@ -1,4 +1,4 @@
-"""What an exploration is given to visit less: partial-order reduction, symmetry, or both."""
+"""The reductions of an exploration: partial-order reduction, symmetry, or both."""
 
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
@@ -18,7 +18,7 @@ class Reduced:
     """Applies reductions to one mission.
 
     Attributes:
-        names: What they are called, in one order.
+        names: Their names, in a fixed order.
     """
 
     def __init__(
@@ -40,30 +40,30 @@ class Reduced:
 
     @property
     def putting_off(self) -> bool:
-        """Whether steps are put off: then a trace need not be a shortest one."""
+        """Whether steps are postponed: then a trace need not be a shortest one."""
         return self.ample is not None
 
     def refuses(self, asked: Property) -> str | None:
-        """Return why a property is not decided under these reductions, None where it is."""
+        """Return why a property is not decided under these reductions, None if it is."""
         return refusal(asked)
 
     def representative(self, c: Configuration) -> Configuration:
-        """Return the configuration that stands for one."""
+        """Return the representative of a configuration."""
         return c if self.symmetry is None else self.symmetry.representative(c)
 
     def choose(
         self, c: Configuration, expansion: Expansion, later: Callable[[Transition], bool]
     ) -> tuple[Transition, ...]:
-        """Return the transitions to be followed."""
+        """Return the transitions to follow."""
         return expansion.transitions if self.ample is None else self.ample.choose(c, expansion, later)
 
     def hold(self, c: Configuration) -> None:
-        """Hold a configuration to what is taken for granted of all: footprints, what is seen, and what is alike.
+        """Check the reductions' assumptions on a configuration: footprints, visibility, and symmetry.
 
         Raises:
-            Drift: It is not so; a bug of ours.
+            Drift: One does not hold; a bug of ours.
         """
-        from checker.reduction.crosscheck import crosscheck, exchange  # noqa: PLC0415  # where somebody doubts
+        from checker.reduction.crosscheck import crosscheck, exchange  # noqa: PLC0415  # for --paranoid only
 
         if self.ample is not None:
             crosscheck(self.ample, c)
@@ -71,14 +71,14 @@ class Reduced:
             exchange(self.symmetry, c)
 
     def run_to(self, found: Exploration, number: int, by: Transition | None = None) -> tuple[Transition, ...]:
-        """Return a run of the rules to what a visited configuration stands for, and then `by`."""
+        """Return a run of the rules to a configuration that a visited one represents, and then `by`."""
         steps, real, renaming = self._unfold(found, number)
         if by is not None:
             steps.append(self._really(by, real, renaming))
         return tuple(steps)
 
     def told(self, found: Exploration, number: int, text: str) -> str:
-        """Return what is said of a visited configuration as it is said of the one that the run leads to."""
+        """Translate a text about a visited configuration to the names at the end of the run."""
         return text if self.symmetry is None else self._unfold(found, number)[2].inverse.text(text)
 
     def _unfold(self, found: Exploration, number: int) -> tuple[list[Transition], Configuration, Renaming]:
@@ -99,7 +99,7 @@ class Reduced:
         return Renaming() if self.symmetry is None else self.symmetry.sorting(c)[0]
 
     def _really(self, taken: Transition, real: Configuration, renaming: Renaming) -> Transition:
-        """Return the step of a real run that a step of what stands for its end is."""
+        """Return the step of a real run that corresponds to a step of its end's representative."""
         if self.symmetry is None:
             return taken
         target = renaming.inverse.configuration(taken.target)
@@ -116,6 +116,6 @@ def candidates(expansion: Expansion) -> tuple[Transition, ...]:
 def reducing(
     initial: Configuration, reductions: Iterable[Reduction], formulas: Sequence[Proposition]
 ) -> Reduced | None:
-    """Return what reduces an exploration, None where nothing is asked for; raises RefusedError."""
+    """Return the reducer of an exploration, None if no reduction is requested; raises RefusedError."""
     asked = tuple(reductions)
     return Reduced(initial, asked, formulas) if asked else None

@@ -1,4 +1,4 @@
-"""What reductions are called, and what they are refused for, with the reason."""
+"""The names of reductions, and the reasons for refusing them."""
 
 from enum import Enum
 
@@ -8,7 +8,7 @@ from semantics.state.setting import Scheduler
 
 
 class Reduction(Enum):
-    """A way of exploring less."""
+    """A reduction of the exploration."""
 
     POR = "por"
     SYMMETRY = "symmetry"
@@ -18,7 +18,7 @@ class Reduction(Enum):
 
 
 class RefusedError(ValueError):
-    """A reduction that would be unsound for a mission, or that nothing in it allows; says why.
+    """A reduction that would be unsound for a mission, or useless; with the reason.
 
     Attributes:
         reduction: Which one.
@@ -42,18 +42,18 @@ PRESERVED = frozenset(
         "reachable",
     }
 )
-"""The kinds of properties that are decided in single configurations, and of which no reduction loses any."""
+"""The kinds of properties that are decided in single configurations, and that every reduction preserves."""
 
 
 def refusal(asked: Property) -> str | None:
-    """Return why a property is not decided under reductions, None where it is."""
+    """Return why a property is not decided under reductions, None if it is."""
     if asked.kind in PRESERVED:
         return None
     return f"it is not known to be kept for properties of the kind '{asked.kind}'"
 
 
 def refuse_symmetry(c: Configuration) -> None:
-    """Refuse symmetry where what observations rest on is remembered: that is explored in full.
+    """Refuse symmetry for missions in which the race monitor must remember observations.
 
     Raises:
         RefusedError: It would be unsound.

@@ -1,7 +1,7 @@
-"""Renamings: what another naming of agents and entities makes of a configuration, value by value.
+"""Renamings: a configuration under other names of agents and entities, value by value.
 
-A renaming is a permutation of names, and of the statements and variables of agents whose texts are alike. What is kept
-sorted by name is sorted anew.
+A renaming is a permutation of names, and of the statements and variables of agents with similar programs. Collections
+sorted by name are sorted again.
 """
 
 import re
@@ -24,18 +24,18 @@ from semantics.state.setting import Scheduler
 WORD = re.compile(r"[^\W\d]\w*")
 
 FIXED = (int, Truth, Geometry, Placed, All, NodeVariable, PlaceVariable, LinkVariable, type(None))
-"""What holds no names."""
+"""Types without names."""
 
 
 @dataclass(frozen=True)
 class Renaming:
-    """A permutation of what is interchangeable; what it doesn't list stays.
+    """A permutation of interchangeable parts; parts that it doesn't list are fixed.
 
     Attributes:
-        names: Of agents and entities.
-        numbers: Of statements.
-        variables: Of variables.
-        cells: Of cells that are named by a number (`says`).
+        names: The permutation of agents and entities.
+        numbers: That of statements.
+        variables: That of variables.
+        cells: That of cells named by a number (`says`).
     """
 
     names: Mapping[str, str] = field(default_factory=dict)
@@ -54,7 +54,7 @@ class Renaming:
         return (self.names, self.numbers, self.variables, self.cells)
 
     def after(self, first: "Renaming") -> "Renaming":
-        """Return the renaming that does another first, then this one."""
+        """Return the composition with another renaming, which is applied first."""
         together = (
             {each: mine.get(its.get(each, each), its.get(each, each)) for each in {**its, **mine}}
             for mine, its in zip(self.parts, first.parts, strict=True)
@@ -64,11 +64,11 @@ class Renaming:
     # --- cells and configurations -----------------------------------------------------------------------------
 
     def cell(self, cell: Cell) -> Cell:
-        """Return the cell that another becomes."""
+        """Return the image of a cell."""
         return self.cells[cell] if cell in self.cells else (cell[0], *(self.name(part) for part in cell[1:]))
 
     def configuration(self, c: Configuration) -> Configuration:
-        """Return what it makes of a configuration; its setting must be invariant."""
+        """Return the image of a configuration; its setting must be invariant."""
         assert isinstance(c.state, Row)
         unordered = c.setting.scheduler is Scheduler.UNORDERED
         changes: Changes = {}
@@ -77,7 +77,7 @@ class Renaming:
         return c.with_(changes)
 
     def content(self, cell: Cell, value: Any, *, unordered: bool) -> Any:
-        """Return what it makes of the value of a cell."""
+        """Return the image of a cell's value."""
         what = cell[0]
         if what == "code":
             return tuple(self.numbers.get(number, number) for number in value)
@@ -95,7 +95,7 @@ class Renaming:
     # --- values -----------------------------------------------------------------------------------------------
 
     def name(self, name: str) -> str:
-        """Return what a name becomes."""
+        """Return the image of a name."""
         return self.names.get(name, name)
 
     def text(self, text: str) -> str:
@@ -103,7 +103,7 @@ class Renaming:
         return WORD.sub(lambda word: self.name(word[0]), text)
 
     def value(self, value: Any) -> Any:
-        """Return what it makes of a value, a request, a query, a placement."""
+        """Return the image of a value, a request, a query, a placement."""
         if isinstance(value, str):
             return self.name(value)
         if isinstance(value, FIXED):
@@ -154,11 +154,11 @@ SPECIAL: Mapping[type, Callable[[Renaming, Any], Any]] = {
         renaming.name(each.agent), tuple(sorted(renaming.variables.get(one, one) for one in each.variables))
     ),
 }
-"""What is not renamed field by field."""
+"""Types that are not renamed field by field."""
 
 
 def spelled(value: Any) -> str:
-    """Return a text that tells values apart and is the same in every process."""
+    """Return a text that distinguishes values and is the same in every process."""
     if isinstance(value, frozenset):
         return "{" + ",".join(sorted(map(spelled, value))) + "}"
     if isinstance(value, tuple) and not hasattr(value, "_fields"):

@@ -1,7 +1,7 @@
-"""Roles: where each agent may come to in the program, what its variables may name, and where it may be hosted.
+"""Roles: the statements that each agent may reach, the values of its variables, and its possible hosts.
 
-A least fixpoint over the text, not over runs: an agent's variables hold the names that any statement it may come to
-may give them. What is not a constant, a host or a place in which something was seen may be any name.
+A least fixpoint over the text, not over runs: an agent's variables hold the names that any reachable statement may
+assign. A value that is not a constant, a host or a place in which something was seen may be any name.
 """
 
 from collections.abc import Iterable, Iterator
@@ -44,11 +44,11 @@ from semantics.state.signature import REGION, Name
 
 @dataclass(slots=True)
 class Role:
-    """What is known of one agent.
+    """The role of one agent.
 
     Attributes:
-        statements: The numbers of those that it may come to.
-        hosts: Where it may be hosted.
+        statements: The numbers of the statements that it may reach.
+        hosts: Its possible hosts.
         named: For each variable the names that it may hold; None for any.
     """
 
@@ -58,10 +58,10 @@ class Role:
 
 
 class Roles:
-    """The roles of all agents that there are or may be spawned.
+    """The roles of all first agents and of those that may be spawned.
 
     Attributes:
-        first: The agents that are there at first: no agent ever leaves.
+        first: The first agents: no agent ever leaves.
     """
 
     def __init__(self, bounds: Bounds) -> None:
@@ -84,15 +84,15 @@ class Roles:
 
     @property
     def agents(self) -> tuple[Name, ...]:
-        """Every agent that may ever be, sorted."""
+        """Every agent that may ever exist, sorted."""
         return tuple(sorted(self.roles))
 
     def may_come(self, agent: Name) -> bool:
-        """Tell whether an agent that is not there may be there later: no agent ever leaves."""
+        """Tell whether an agent that does not exist may exist later: no agent ever leaves."""
         return agent in self.roles and agent not in self.first
 
     def descendants(self, reach: Iterable[int]) -> Names:
-        """Return whom these statements may spawn, and whom those may spawn, and so on."""
+        """Return the agents that these statements may spawn, directly or through others."""
         return reached(self._spawned(reach), lambda agent: self._spawned(self.roles[agent].statements))
 
     def _spawned(self, numbers: Iterable[int]) -> Names:
@@ -135,7 +135,7 @@ class Roles:
         return tuple(each for each in self.agents if found is None or each in found)
 
     def query(self, agent: Name, template: QueryOf) -> Query:
-        """Return a query over all that the leaves of another may name: it looks at no less."""
+        """Return a query over all that the leaves of another may name: it observes at least as much."""
         argument = template.argument
         if argument is None:
             return All()
@@ -210,7 +210,7 @@ class Roles:
                     self._bind(agent, variable, None)
 
     def _messages(self) -> Iterator[tuple[Name, Expression]]:
-        """Yield all that may be sent or said, each with an agent that its expression is evaluated by."""
+        """Yield all messages that may be sent or said, each with an agent that may evaluate it."""
         initial = self.bounds.initial
         for agent in self.agents:
             for number in sorted(self.roles[agent].statements):
@@ -245,7 +245,7 @@ def _either(several: Iterable[Names | None]) -> Names | None:
 
 
 def _spelled(value: object) -> Names | None:
-    """Return the names that a constant spells; None for what may hold any."""
+    """Return the names in a constant; None for a value that may hold any."""
     if isinstance(value, str):
         return frozenset({value})
     if isinstance(value, frozenset):

@@ -1,7 +1,7 @@
-"""Slots: what reductions keep apart in a configuration, and footprints over them as bits of whole numbers.
+"""Slots: the parts of a configuration that reductions distinguish, and footprints as bits over them.
 
-A slot is mostly a cell. Where one question of a cell has an answer of its own that changes far less often (is an entity
-there at all? may a message wake this `react`?) the question is a slot beside the cell.
+A slot is usually a cell. A question about a cell whose answer changes far less often than the cell (does an entity
+exist? may a message wake this `react`?) is a slot of its own.
 """
 
 from collections.abc import Iterable
@@ -12,13 +12,12 @@ Slot = tuple[str | int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Footprint:
-    """What somebody may read, write and merge, a bit for each slot.
+    """The slots that an actor may read, write and merge, a bit for each.
 
     Attributes:
-        reads: What decides whether something is enabled and what it does.
-        writes: What may be given another value.
-        merges: What may be added to so that the order of two who add doesn't matter: messages posted to one mailbox,
-            and what two who look at the same P put into L.
+        reads: The slots that decide whether it is enabled and what it does.
+        writes: The slots whose value it may change.
+        merges: The slots to which it may add commutatively: messages in a mailbox, and observations of the same P in L.
     """
 
     reads: int = 0
@@ -27,14 +26,14 @@ class Footprint:
 
     @property
     def changes(self) -> int:
-        """What may be different afterwards."""
+        """The slots that may change."""
         return self.writes | self.merges
 
     def __or__(self, other: "Footprint") -> "Footprint":
         return Footprint(self.reads | other.reads, self.writes | other.writes, self.merges | other.merges)
 
     def disturbs(self, other: "Footprint") -> bool:
-        """Tell whether one may disable the other, change what it does, or end differently after it than before it."""
+        """Tell whether one may disable the other, change its effect, or not commute with it."""
         return bool(
             self.writes & (other.reads | other.changes)
             or other.writes & (self.reads | self.merges)
@@ -43,7 +42,7 @@ class Footprint:
         )
 
     def beyond(self, bound: "Footprint") -> int:
-        """Return the slots that another leaves out; who writes or merges something may read it, too."""
+        """Return this footprint without another's slots; an actor may also read what it writes or merges."""
         reads = self.reads & ~(bound.reads | bound.changes)
         return reads | self.merges & ~bound.changes | self.writes & ~bound.writes
 
@@ -52,7 +51,7 @@ NOTHING = Footprint()
 
 
 def joined(footprints: Iterable[Footprint]) -> Footprint:
-    """Return what any of them may do."""
+    """Return the union of footprints."""
     reads = writes = merges = 0
     for each in footprints:
         reads, writes, merges = reads | each.reads, writes | each.writes, merges | each.merges
@@ -79,7 +78,7 @@ class Slots:
         return Footprint(self.bits(reads), self.bits(writes), self.bits(merges))
 
     def has(self, bits: int, slot: Slot) -> bool:
-        """Tell whether a slot is among some bits; one that has no number is where all are."""
+        """Tell whether a slot is among some bits; a slot without number is only among all."""
         return bool(bits >> self.numbers.get(slot, len(self.numbers)) & 1)
 
     def named(self, bits: int) -> tuple[Slot, ...]:

@@ -1,9 +1,8 @@
-"""Symmetry: agents and entities that are interchangeable, and one configuration in the place of all its likes.
+"""Symmetry: interchangeable agents and entities, and one representative of symmetric configurations.
 
-A class has members that any permutation may exchange. The representative of a configuration is the one in which the
-members stand in the order of what is said of each, names left out. Where that leaves several orders, all are tried,
-as long as they are few: then likes have one representative. Beyond that they may have several, which costs
-configurations and loses nothing.
+Any permutation may exchange the members of a class. In the representative of a configuration they are sorted by what it
+says of each, without names. If this leaves a few orders, all are tried, so symmetric configurations have one
+representative. If it leaves many, they may have several, which costs configurations but is sound.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -24,18 +23,18 @@ from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
 
 MOST_ORDERS = 120
-"""Orders of members of which the same is said that are tried for one configuration."""
+"""How many orders of equal members are tried for one configuration."""
 
 MOST_PAIRS = 2_000
-"""Pairs of entities without agents that are looked at."""
+"""How many pairs of entities without agents are tried."""
 
 SAME, OTHER = "⟨same⟩", "⟨other⟩"
-"""In the place of a member's own names, and of those of other members."""
+"""Placeholders of a member's own names, and of those of other members."""
 
 
 @dataclass(frozen=True)
 class Class:
-    """Members that may be exchanged: for each the names, statements, variables and counters that are its own.
+    """Interchangeable members: for each its own names, statements, variables and counters.
 
     Attributes:
         members: For each member the parts of a renaming, position by position.
@@ -49,7 +48,7 @@ class Class:
         return tuple(member[0] for member in self.members)
 
     def moving(self, order: Sequence[int]) -> tuple[dict[Any, Any], ...]:
-        """Return the parts of the renaming that puts the member `order[i]` in the place of member i."""
+        """Return the parts of the renaming that replaces member i by the member `order[i]`."""
         parts: tuple[dict[Any, Any], ...] = ({}, {}, {}, {})
         for place, member in enumerate(order):
             for part, old, new in zip(parts, self.members[member], self.members[place], strict=True):
@@ -130,7 +129,7 @@ class Symmetry:
         return renaming
 
     def _fits(self, swap: Renaming, likes: list[Renaming], taken: set[Any]) -> bool:
-        """Tell whether a member is apart from those found before."""
+        """Tell whether a member shares nothing with those found before."""
         used = {name for like in likes for name in like.names} | taken
         first = [side[0] for side in self._sides(swap)]
         if not likes:
@@ -152,11 +151,11 @@ class Symmetry:
     # --- representatives --------------------------------------------------------------------------------------
 
     def representative(self, c: Configuration) -> Configuration:
-        """Return the configuration that stands for one and all its likes."""
+        """Return the representative of a configuration and its symmetric ones."""
         return self.sorting(c)[1]
 
     def _sorting(self, c: Configuration) -> tuple[Renaming, Configuration]:
-        """Return the renaming that leads to the representative, and that."""
+        """Return the renaming to the representative, and the representative."""
         found = [(renaming, renaming.configuration(c)) for renaming in self._renamings(c)]
         return found[0] if len(found) == 1 else min(found, key=lambda each: _spelling(each[1]))
 
@@ -169,7 +168,7 @@ class Symmetry:
             yield Renaming(*parts)
 
     def _choices(self, c: Configuration) -> list[list[tuple[int, ...]]]:
-        """Return for each class the orders of its members that are left once they are sorted."""
+        """Return for each class the orders of its members that remain after sorting."""
         ranked = [self._ranked(c, number) for number in range(len(self.classes))]
         several = prod(factorial(len(group)) for groups in ranked for group in groups)
         if several > MOST_ORDERS:
@@ -177,14 +176,14 @@ class Symmetry:
         return [_orders(groups) for groups in ranked]
 
     def _ranked(self, c: Configuration, number: int) -> list[list[int]]:
-        """Return the members of a class in order, together those of which the same is said."""
+        """Return the members of a class in order, equal ones together."""
         names = self.classes[number].names
         said = {member: self._say(c, number, member) for member in range(len(names))}
         groups = groupby(sorted(said, key=lambda member: (said[member], member)), key=said.__getitem__)
         return [group for _, found in groups for group in self._apart(c, names, list(found))]
 
     def _apart(self, c: Configuration, names: Sequence[Sequence[Name]], group: list[int]) -> list[list[int]]:
-        """Keep members together only where one names another: else no order of them is another."""
+        """Keep equal members together only if one names another: otherwise their order does not matter."""
         own = {self.owner[name] for member in group for name in names[member]}
         for cell, value in _rows(c):
             if cell not in (AGENTS, NAMES):
@@ -195,7 +194,7 @@ class Symmetry:
         return [[member] for member in group]
 
     def _say(self, c: Configuration, number: int, member: int) -> str:
-        """Return all that is said of a member, names left out."""
+        """Return all that a configuration says of a member, without names."""
         mine = (number, member)
         found = []
         for cell, value in _rows(c):

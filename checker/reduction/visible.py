@@ -1,4 +1,4 @@
-"""What properties see: the questions about cells that decide the truth of a proposition."""
+"""Visible slots: the questions about cells that decide the truth of a proposition."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -34,9 +34,9 @@ from semantics.state.signature import REGION, Name
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """One cell as far as a proposition asks for it: its value, or the answer to a question with some constants.
+    """The visible part of one cell: its value, or the answer to a question with some constants.
 
-    No question is about what an observation says.
+    No question is about the content of an observation.
     """
 
     cell: Cell
@@ -44,16 +44,16 @@ class Seen:
     constants: tuple[Any, ...] = ()
 
     def of(self, c: Configuration) -> Any:
-        """Return what is seen in a configuration."""
+        """Return the visible part of a configuration."""
         return self.says(c.read(self.cell))
 
     def says(self, value: Any) -> Any:
-        """Return what is seen of a value."""
+        """Return the visible part of a value."""
         return value if self.question is None else self.question(value, *self.constants)
 
 
 class Eyes:
-    """All that some propositions look at."""
+    """The visible parts of some propositions."""
 
     def __init__(self, c: Configuration, formulas: Iterable[Proposition]) -> None:
         self.bounds = Bounds(c)
@@ -62,7 +62,7 @@ class Eyes:
         self.seen = tuple(dict.fromkeys(each for formula in self.formulas for each in self._sees(formula)))
 
     def differ(self, before: Configuration, after: Configuration) -> bool:
-        """Tell whether two configurations look different."""
+        """Tell whether two configurations differ visibly."""
         return any(each.of(before) != each.of(after) for each in self.seen)
 
     def _sees(self, formula: Proposition) -> Iterator[Seen]:

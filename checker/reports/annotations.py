@@ -1,4 +1,4 @@
-"""Reports as the workflow commands by which GitHub Actions annotates lines.
+"""Reports as workflow commands with which GitHub Actions annotates lines.
 
 Source: https://docs.github.com/actions/reference/workflow-commands-for-github-actions.
 """

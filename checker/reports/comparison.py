@@ -1,4 +1,4 @@
-"""Two traces side by side: where they part, which steps they share after that, and how their ends differ."""
+"""Compare two traces: where they diverge, which steps they still share, and how their ends differ."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from checker.traces import Step, Trace
 from semantics.state.differences import Difference, differences
 
 MOST_ALIGNED: Final = 1_000
-"""How many steps of each trace are aligned after they part: what it costs grows with the square."""
+"""How many steps of each trace are aligned after they diverge; the cost is quadratic."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,10 +26,9 @@ class Comparison:
 
     Attributes:
         shared: How many steps they have in common from the start.
-        pairs: The steps after that, aligned by their labels; of each trace `MOST_ALIGNED` at the most.
-        beyond: How many steps more each trace has.
-        ends: What differs between the last configurations, from the one to the other; None where they are of missions
-            with different entities.
+        pairs: The steps after that, aligned by their labels; at most `MOST_ALIGNED` of each trace.
+        beyond: How many more steps each trace has.
+        ends: The differences between the last configurations; None if the missions have different entities.
     """
 
     shared: int

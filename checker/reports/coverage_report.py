@@ -1,4 +1,4 @@
-"""Coverage as text, as compilers write warnings, and as plain data."""
+"""Coverage as text, in the form of compiler warnings, and as plain data."""
 
 from collections.abc import Iterator
 from typing import Any, Final
@@ -10,7 +10,7 @@ WIDEST: Final = 100
 
 
 def coverage_text(name: str, covered: Coverage, text: str) -> Iterator[str]:
-    """Yield coverage line by line, each gap with its line of the mission's text, as compilers write warnings."""
+    """Yield coverage line by line, each gap with its line of the mission's text, like compiler warnings."""
     tallies = (
         (covered.statements, "statement", "statements"),
         (covered.branches, "branch", "branches"),
@@ -29,7 +29,7 @@ def coverage_text(name: str, covered: Coverage, text: str) -> Iterator[str]:
 
 
 def line_text(text: str, line: int) -> str:
-    """Return a line of a text, from 1; nothing where it has no such line."""
+    """Return a line of a text, from 1, or an empty text."""
     lines = text.split("\n")
     return lines[line - 1] if 0 < line <= len(lines) else ""
 

@@ -1,7 +1,7 @@
 """Reports as JUnit XML: a suite for each mission, a case for each property.
 
-There is no standard; this is what Jenkins, GitLab and GitHub's actions read alike. All properties of a mission are
-decided in one exploration, so that only suites have times.
+There is no standard; this is the common subset of Jenkins, GitLab and GitHub's actions. One exploration decides all
+properties of a mission, so only suites have times.
 """
 
 import xml.etree.ElementTree as ET
@@ -12,7 +12,7 @@ from checker.verdicts import Verdict
 
 
 def junit_text(results: Iterable[Result]) -> str:
-    """Return results as an XML document; only a property that holds is a case that passes."""
+    """Return results as an XML document; only cases of properties that hold pass."""
     suites = [_suite(result) for result in results]
     root = ET.Element("testsuites", {"name": "bigactors"})
     root.extend(suites)

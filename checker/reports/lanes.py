@@ -1,4 +1,4 @@
-"""Lanes: a trace with each step in its actor's lane, and beside it only what it changed."""
+"""Lanes: a trace with a column for each actor, and the changes of each step."""
 
 import textwrap
 from collections.abc import Iterator, Sequence
@@ -14,7 +14,7 @@ from semantics.state.signature import Name
 ENVIRONMENT: Final = "environment"
 
 SERVING: Final = frozenset({"sense", "actuate", "command", "commit", "snd", "migrate"})
-"""Rules that serve a request: what they do happens between the agent that asked and the world."""
+"""Rules that serve a request: they act between the requesting agent and the world."""
 
 NARROWEST: Final = 24
 NUMBERS: Final = 6
@@ -25,10 +25,10 @@ class LaneStep:
     """One step.
 
     Attributes:
-        number: That of the configuration after it.
-        lane: Where it stands in `Lanes.names`: an agent's lane or the environment's.
-        label: What it is called.
-        changes: What it changed.
+        number: The number of the configuration after it.
+        lane: Its index in `Lanes.names`: an agent's lane or the environment's.
+        label: Its label.
+        changes: Its changes.
     """
 
     number: int
@@ -43,7 +43,7 @@ class LaneStep:
 
     @property
     def about(self) -> str:
-        """What the label says beside the rule and the lane."""
+        """The label without the rule and the lane."""
         return str(self.label.about)
 
 
@@ -52,9 +52,9 @@ class Lanes:
     """A trace in lanes.
 
     Attributes:
-        names: What each lane is called: the agents, then the environment where it does anything.
+        names: The names of the lanes: the agents, then the environment if it takes a step.
         steps: The steps, from the first.
-        loop: The number of the configuration from which the run repeats for ever, where it does: the last is the same.
+        loop: The number of the configuration from which the run repeats for ever, if it does: the last is the same.
     """
 
     names: tuple[Name, ...]
@@ -63,7 +63,7 @@ class Lanes:
 
     @property
     def end(self) -> str:
-        """How the run goes on for ever, empty where it doesn't."""
+        """A text about how the run repeats, empty if it doesn't."""
         if self.loop is None:
             return ""
         if self.loop == len(self.steps):
@@ -90,7 +90,7 @@ def lanes_of_trace(trace: Trace) -> Lanes:
 
 
 def lanes_text(lanes: Lanes, width: int = 100) -> Iterator[str]:
-    """Yield lanes line by line, as columns of a page that is so wide, or wider where there are many."""
+    """Yield lanes line by line, as columns of a page of a given width, or wider if there are many."""
     columns = max(1, len(lanes.names))
     each = max(NARROWEST, (width - NUMBERS) // columns)
     yield _row("", [name[: each - 2] for name in lanes.names], each)

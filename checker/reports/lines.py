@@ -1,4 +1,4 @@
-"""The lines of a mission's text that a run went through, and the one that a violation is about."""
+"""The lines of a mission's text on a run, and the line of a violation."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -12,19 +12,19 @@ from semantics.state.signature import Name
 from semantics.successors import expand
 
 Asked = dict[Request, int]
-"""The line of the statement that each request of a run goes back to."""
+"""The line of the statement that made each request of a run."""
 
 
 def step_lines(trace: Trace) -> tuple[int, ...]:
-    """Return for each step the line of its statement, from 1; 0 where it has none, as the environment's."""
+    """Return for each step the line of its statement, from 1; 0 for a step without one, such as the environment's."""
     return _walk(trace)[0]
 
 
 def violation_line(violation: Violation) -> int:
-    """Return the line of the statement that a violation is about, from 1; 0 where it is about no single one.
+    """Return the line of the statement that a violation is about, from 1; 0 if there is no single one.
 
-    That is, of what is named first in its message: the statement that asked for a request, at which an agent waits,
-    or whose computation fails.
+    It is the first that its message names: the statement that made a request, at which an agent waits, or whose
+    computation fails.
     """
     asked = _walk(violation.trace)[1]
     named = [(at, asked[each]) for each in asked if (at := violation.message.find(str(each))) >= 0]

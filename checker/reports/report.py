@@ -26,16 +26,16 @@ UNITS = {
     "ctl": (" configuration", " configurations"),
     "progress": (" request", " requests"),
 }
-"""What is examined for each kind of property, one and several; of what is to be reachable, configurations with it."""
+"""What is examined for each kind of property, in singular and plural; for `reachable`, configurations with it."""
 
 OF_RUNS = ("ltl", "ctl")
-"""Kinds of properties of which one violation is looked for, and not how many there are."""
+"""Kinds of properties of which only one violation is searched for."""
 
 NOTHING_EXAMINED = {
     "deadlock_freedom": "some bigActor can always move",
     "computation": "no bigActor computes anything that could fail",
 }
-"""What it means that nothing was examined, where that is no shortcoming."""
+"""The texts for properties for which examining nothing is fine."""
 
 
 def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Results of several missions in the shape that other programs' formats share: what there is to say, and where."""
+"""The results of several missions in the common shape of other programs' formats."""
 
 import re
 from collections.abc import Iterator
@@ -15,7 +15,7 @@ from checker.verdicts import Outcome, Report, Verdict, Violation
 
 
 class Level(Enum):
-    """How grave an issue is: something is wrong, looks wrong, was not decided, or bigactors itself failed."""
+    """The severity of an issue: something is wrong, looks wrong, was not decided, or bigactors itself failed."""
 
     WRONG = "wrong"
     WARNING = "warning"
@@ -25,16 +25,16 @@ class Level(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Issue:
-    """One thing to say of a mission, at its place.
+    """One issue of a mission, at its place.
 
     Attributes:
-        level: How grave it is.
-        rule: What it was found by: the kind of a property, the code of a mistake.
-        title: It in a few words.
-        message: In a sentence.
-        line: Where it belongs in the mission, from 1; 0 where that is not known. The others alike.
-        asked: The line of the property, where there is one.
-        identity: What makes it the same issue in another run, though lines have moved.
+        level: Its severity.
+        rule: The kind of a property, or the code of a mistake.
+        title: A few words.
+        message: A sentence.
+        line: Its line in the mission, from 1; 0 if that is not known. The others alike.
+        asked: The line of the property, if there is one.
+        identity: A text that identifies it in another run, even if lines have moved.
         details: More lines.
         trace: A run that ends in it.
     """
@@ -55,15 +55,15 @@ class Issue:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What came of one mission.
+    """The result of one mission.
 
     Attributes:
         name: The mission as the user gave it.
         file: Its file, from the working directory where it lies inside.
-        report: What was found; None where it was not explored.
+        report: Its report; None if it was not explored.
         failures: Why it was not.
-        check_line: The line of its `check` section, 1 without one: where properties belong that nobody wrote.
-        text: What the mission says, to quote its lines.
+        check_line: The line of its `check` section, 1 without one: the place of implicit properties.
+        text: The mission's text, to quote its lines.
         cautions: Warnings on its text.
     """
 
@@ -76,14 +76,14 @@ class Result:
     cautions: tuple[Issue, ...] = ()
 
     def issues(self) -> tuple[Issue, ...]:
-        """Return all that there is to say, in the mission's order."""
+        """Return all issues, in the mission's order."""
         if self.report is None:
             return self.failures
         decided = (issue for verdict in self.report.verdicts for issue in self.issues_of(verdict))
         return (*decided, *self.undecided(), *self.warnings())
 
     def issues_of(self, verdict: Verdict) -> Iterator[Issue]:
-        """Yield what speaks against a property: nothing exactly where it holds."""
+        """Yield the issues of a property: none exactly if it holds."""
         if verdict.outcome is Outcome.VIOLATED:
             yield from (self._violation(verdict, each) for each in verdict.violations)
             if not verdict.violations:
@@ -92,7 +92,7 @@ class Result:
             yield self._without_trace(verdict, Level.INCOMPLETE, self._cut_off())
 
     def undecided(self) -> Iterator[Issue]:
-        """Yield that a bound was met, where no verdict says so: what was cut off never reads as a success."""
+        """Yield that a limit was met, if no verdict says so: an incomplete check never reads as a success."""
         if self.report is None or self.report.complete:
             return
         if all(verdict.outcome is Outcome.HOLDS for verdict in self.report.verdicts):
@@ -102,7 +102,7 @@ class Result:
             )
 
     def warnings(self) -> Iterator[Issue]:
-        """Yield warnings: on the text, on verdicts that mean less than they seem to, and on what no run reaches."""
+        """Yield warnings about the text, about weak verdicts, and about parts that no run reaches."""
         if self.report is None:
             return
         yield from self.cautions

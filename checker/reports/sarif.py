@@ -1,4 +1,4 @@
-"""Reports as SARIF 2.1.0, which code scanners exchange; docs/sarif.schema.json has the parts that are used.
+"""Reports as SARIF 2.1.0, the format of code scanners; docs/sarif.schema.json has the parts used.
 
 Source: https://docs.oasis-open.org/sarif/sarif/v2.1.0/sarif-v2.1.0.html; §s are its sections.
 """
@@ -32,19 +32,19 @@ RULES = {
     "coverage": "Some run reaches each statement, takes each branch, and meets each clause of the environment.",
     "vacuity": "What holds does not hold for want of anything that could break it.",
 }
-"""What each kind of property says."""
+"""The descriptions of the kinds of properties."""
 
 LEVELS = {Level.WRONG: "error", Level.WARNING: "warning"}
-"""The levels of results; what else there is to say are notifications."""
+"""The levels of results; other issues are notifications."""
 
 MISTAKE = "A mistake in the mission, or in how it is called."
 
 
 def sarif_json(results: Iterable[Result], version: str) -> dict[str, Any]:
-    """Return results as plain data; what is or looks wrong is a result, what was not decided a notification.
+    """Return results as plain data; errors and warnings are results, undecided properties notifications.
 
-    The execution counts as successful (§3.20.14) exactly where everything was decided: no results of one that was cut
-    off read as a success.
+    The execution counts as successful (§3.20.14) exactly if everything was decided, so an incomplete one never reads
+    as a success.
     """
     found = [(result, issue) for result in results for issue in result.issues()]
     wrong = [(result, issue) for result, issue in found if issue.level in LEVELS]
@@ -116,7 +116,7 @@ def _flow(file: str, trace: Trace) -> list[dict[str, Any]]:
 
 
 def fingerprint(result: Result, issue: Issue, seen: Counter[str]) -> str:
-    """Return a digest of an issue and its file, but not of its line (§3.27.17); `seen` tells equal ones apart."""
+    """Return a digest of an issue and its file, but not of its line (§3.27.17); `seen` distinguishes equal ones."""
     said = repr((PurePath(result.file).as_posix(), issue.rule, issue.identity))
     seen[said] += 1
     return hashlib.sha256(f"{said}{seen[said]}".encode()).hexdigest()[:32]

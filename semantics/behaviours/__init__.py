@@ -1,1 +1,1 @@
-"""What agents do: values, expressions, queries, reactions and statements, and the internal computation of `fun`."""
+"""Behaviours: values, expressions, queries, reactions and statements, and the internal computation of `fun`."""

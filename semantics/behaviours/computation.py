@@ -1,4 +1,4 @@
-"""Internal computation: what `fun` takes in one step, from one command, `react` or `choose` up to the next.
+"""Internal computation: one step of `fun` runs from one command, `react` or `choose` to the next.
 
 What is left of an agent to run is a tuple of statement numbers, the next one first. Loops unroll when they come first
 (their jump belongs to the step they stand before), so the first statement is always a command, a `react`, a `choose`

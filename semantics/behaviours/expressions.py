@@ -1,4 +1,4 @@
-"""Expressions of the host language, and their evaluation with what the value rests on."""
+"""Expressions of the host language, and their evaluation with the observations that a value depends on."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""Queries as values, and the observations L_q that they yield: what is shown, and every answer got on the way."""
+"""Queries as values, and the observations L_q that they yield, with every tested answer."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace

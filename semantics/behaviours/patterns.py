@@ -1,4 +1,4 @@
-"""Patterns of `react` and `match`: what they take, and what they bind."""
+"""Patterns of `react` and `match`: what they match, and what they bind."""
 
 from dataclasses import dataclass
 from typing import Literal as Choice

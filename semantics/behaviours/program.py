@@ -1,4 +1,4 @@
-"""A program: the numbered statements of a mission, and the variables that are kept: still read, or watched."""
+"""A program: the numbered statements of a mission, and the variables that it keeps."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace

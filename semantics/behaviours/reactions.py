@@ -1,4 +1,4 @@
-"""Reactions R ⇒ R' as missions write them: patterns of relations over names and variables, and their matches in L.
+"""Reactions R ⇒ R' of missions: patterns of relations over names and variables, and their matches in L.
 
 Matching is by relations: injective on nodes, and the image of one redex region may lie inside another's site. (Milner's
 own disjointness is kept by `bigraphs.matching`, for `.big` systems.)

@@ -1,4 +1,4 @@
-"""Statements of a behaviour: commands, each one rule's, and internal computation, which is `fun`'s."""
+"""Statements of a behaviour: commands, one rule each, and internal computation, for `fun`."""
 
 from dataclasses import dataclass
 

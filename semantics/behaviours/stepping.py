@@ -1,4 +1,4 @@
-"""Between a configuration and a process: how an agent starts to compute, and how it is written back."""
+"""Move agents between configurations and processes: start a computation, and write its result back."""
 
 from semantics.behaviours.computation import Process
 from semantics.behaviours.expressions import Scope

@@ -1,4 +1,4 @@
-"""The values that behaviours compute with: names, texts, numbers, truths, tuples, sets and observations."""
+"""The values of behaviours: names, texts, numbers, booleans, tuples, sets and observations."""
 
 from enum import Enum
 from typing import TYPE_CHECKING, Union

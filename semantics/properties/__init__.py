@@ -1,1 +1,1 @@
-"""What can be said of configurations and of runs, as formulas."""
+"""Formulas about configurations and about runs."""

@@ -1,4 +1,4 @@
-"""The properties that a mission asks to be checked, and the variables that are kept for them."""
+"""The properties that a mission asks to check, and the variables that they need."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

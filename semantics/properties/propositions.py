@@ -1,4 +1,4 @@
-"""What can be said of one configuration, and the properties that a mission asks to be checked."""
+"""Propositions about one configuration, and the properties made of them."""
 
 import operator
 from collections.abc import Callable, Iterator, Mapping

@@ -1,4 +1,4 @@
-"""What can be said of runs: linear and branching temporal formulas, and which steps a fair run owes."""
+"""Linear and branching temporal formulas about runs, and the fairness of runs."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields

@@ -1,1 +1,1 @@
-"""Stale observations: what a control rests on, and what others have changed in it since."""
+"""Stale observations: what a control rests on, and what other agents have changed in it since."""

@@ -1,4 +1,4 @@
-"""The memory of the race monitor: what is changed, and by whom, of the observations that an agent still rests on.
+"""The race monitor's memory: which parts of an agent's observations others have changed, and who.
 
 Rules only carry along what values rest on; here it is marked what has changed in that since.
 """

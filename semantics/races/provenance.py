@@ -1,4 +1,4 @@
-"""What a value or a step rests on: the observations that were tested, and what others have changed in them since.
+"""Provenance: the observations that a value or a step rests on, and what others have changed in them.
 
 The race monitor's memory. A stored observation is a dependency with no question yet; testing it asks one.
 """

@@ -1,4 +1,4 @@
-"""What an agent may ever ask of an observation, and which slots its controls may use: static, larger than any run.
+"""Relevance: what an agent may ever ask of an observation, and which slots its controls may use; static.
 
 The race monitor remembers of what others change only what may matter to who holds it. So it multiplies configurations
 no more than it must.

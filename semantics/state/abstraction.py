@@ -1,4 +1,4 @@
-"""A(P) from physical properties: the paper's Bigraph Driver (3.2.2), and the merging of what several stations saw."""
+"""The abstraction A(P): the paper's Bigraph Driver (3.2.2), and the merging of several stations' observations."""
 
 from collections.abc import Iterable
 
@@ -52,7 +52,7 @@ def abstraction(properties: Iterable[PhysicalProperty], signature: Signature) ->
 
 
 def as_it_is(c: Configuration) -> Configuration:
-    """Return a configuration in which L is A(P): what somebody would believe who sees everything."""
+    """Return a configuration in which L is A(P), the belief of an observer of everything."""
     physical = c.structure.physical
     slots: Changes = {}
     for name in c.setting.kinds:

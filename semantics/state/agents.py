@@ -1,4 +1,4 @@
-"""The agents α as a view over cells, and the watch that the race monitor keeps beside each."""
+"""The agents α as a view over cells, and the race monitor's watch beside each."""
 
 from dataclasses import dataclass, replace
 

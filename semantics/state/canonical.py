@@ -1,4 +1,4 @@
-"""One way of writing values, the same in every process: what digests are taken of."""
+"""The canonical encoding of values, the same in every process; digests are computed from it."""
 
 from dataclasses import fields, is_dataclass
 from hashlib import sha256

@@ -1,7 +1,7 @@
-"""Cells: a configuration is a finite map from cells to values; agents, structure and requests are views over it.
+"""Cells: a configuration maps cells to values; agents, structure and requests are views over it.
 
-Rules see a configuration only through `read` and `test`, and answer with `Changes`. Whoever wants to know what a rule
-looked at puts another `Cells` in the place of a configuration: nothing in `semantics/` can tell the difference.
+Rules see a configuration only through `read` and `test`, and answer with `Changes`. To record what a rule reads, pass
+another `Cells` instead of a configuration: no code in `semantics/` can tell the difference.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set

@@ -1,4 +1,4 @@
-"""What differs between two configurations, and nothing else: of a request that it is there now, of a link that it went.
+"""The differences between two configurations, such as an added request or a removed link.
 
 `printing.print_changes` prints whole cells, as they are after a step; here only what is new in them is told, so that a
 run can be read by what each step did.

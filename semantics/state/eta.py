@@ -1,4 +1,4 @@
-"""The pending requests η as a view over cells, and the lines in which the three schedulers serve them."""
+"""The pending requests η as a view over cells, and the queues in which the three schedulers serve them."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
@@ -35,9 +35,9 @@ class Pending(NamedTuple):
 class Eta:
     """η over the cells of a configuration.
 
-    Under `program_order` each agent has a line, under `unordered` a multiset. Under `fcfs` all share one queue for what
-    waits for its turn; what takes none (READY and FLY) stands in its agent's own line, since its place among others'
-    requests is nothing that anybody could tell.
+    Under `program_order` each agent has a line, under `unordered` a multiset. Under `fcfs` all share one queue of
+    requests. READY and FLY are not served from it and stay in their agent's own line, since their position among
+    others' requests is not observable.
     """
 
     __slots__ = ("cells", "setting")

@@ -1,4 +1,4 @@
-"""The first configuration of a mission: L₀ = A(P₀), unless the mission says what is believed."""
+"""The first configuration of a mission: L₀ = A(P₀), unless the mission declares beliefs."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""Parcels as plain data: written, and read back by the types of their parts, within bounds.
+"""Parcels as plain data: written, and read back within bounds by the types of their parts.
 
 A value of the mission language is written by its form; of everything else the type says what is read, so that nothing
 enters that the rules could not have made.

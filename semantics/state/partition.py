@@ -1,4 +1,4 @@
-"""A configuration parted among stations: each runs the bigActors of its hosts, and knows of the others where they are.
+"""A configuration partitioned among stations: each runs its hosts' bigActors, and knows where the others are.
 
 The whole is what the stations have together, and what is on its way between them. It moves by the rules of this
 package alone: `snd`, `migrate` and `spawn` are taken where the agent runs whose rules they are. What they put into an

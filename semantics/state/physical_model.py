@@ -1,4 +1,4 @@
-"""The physical model P as a view over cells: where everything is, and σ_P = {contains, carries, connected}."""
+"""The physical model P as a view over cells: placements, and σ_P = {contains, carries, connected}."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -174,7 +174,7 @@ class PhysicalModel:
         """Tell σ_P's `contains`.
 
         An entity in transit is contained only by what contains both ends of its flight, the destination itself
-        excepted: nobody sees it arrived before it has. What is carried contains nothing: it has no room of its own.
+        excepted, so no agent sees it arrive early. A carried entity contains nothing: it has no area of its own.
         """
         if place == entity or self.carrier(place) is not None:
             return False

@@ -1,4 +1,4 @@
-"""The pairs of σ_L: where a node is, and which links it is on."""
+"""The pairs of σ_L: parents of nodes, and the links that they are on."""
 
 from dataclasses import dataclass
 

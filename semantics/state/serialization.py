@@ -1,4 +1,4 @@
-"""What was observed as plain data, for files: written, and read back within bounds."""
+"""Observations as plain data for files: written, and read back within bounds."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The setting of a mission: all that stays the same while its configurations change."""
+"""The setting of a mission: everything that stays constant while configurations change."""
 
 from dataclasses import dataclass, field, replace
 from enum import Enum

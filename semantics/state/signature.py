@@ -1,4 +1,4 @@
-"""Kinds: what a mission's signature says of the controls of its nodes."""
+"""Kinds: a mission's signature, with the controls of its nodes."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field

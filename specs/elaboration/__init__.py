@@ -1,4 +1,4 @@
-"""Elaboration: what a mission's syntax tree means, phase by phase, with all its mistakes at once.
+"""Elaboration: from a mission's syntax tree to its meaning, phase by phase, with all mistakes at once.
 
 A phase a module, in this order: signature, world (with files and geometry), environment (with drifts), beliefs, rules,
 bodies (with statements, expressions and patterns), controls, checks. It knows nothing of exploration.

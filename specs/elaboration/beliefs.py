@@ -1,4 +1,4 @@
-"""The beliefs phase: L₀ where it differs from A(P₀)."""
+"""The beliefs phase: where L₀ differs from A(P₀)."""
 
 from __future__ import annotations
 

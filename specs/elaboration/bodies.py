@@ -1,4 +1,4 @@
-"""The behaviours phase: bodies of bigActors and behaviours, and how they call each other."""
+"""The behaviours phase: the bodies of bigActors and behaviours, and their calls."""
 
 from __future__ import annotations
 

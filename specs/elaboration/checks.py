@@ -1,4 +1,4 @@
-"""The check phase: scheduler, control, and the properties that are asked for."""
+"""The check phase: scheduler, control, and properties."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The commands of the language, given values that may be no nodes."""
+"""The commands of the language, for operands that may be no nodes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Values that are fixed in the text: what someone says, what a property compares with."""
+"""Constant values in the text: messages from outside, and operands of properties."""
 
 from __future__ import annotations
 

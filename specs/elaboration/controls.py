@@ -1,4 +1,4 @@
-"""The control phase: controls that can never be made true, as far as it can be known without a run."""
+"""The control phase: find controls that can never be carried out, as far as the text shows."""
 
 from __future__ import annotations
 

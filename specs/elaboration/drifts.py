@@ -1,4 +1,4 @@
-"""Drifts: among placements that are listed, and within a place by its finite quotient."""
+"""Drifts: among listed placements, and within a place by its finite quotient."""
 
 from __future__ import annotations
 

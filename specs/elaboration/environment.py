@@ -1,4 +1,4 @@
-"""The environment phase: what may happen without an agent."""
+"""The environment phase: events without an agent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Expressions and queries: names resolved to variables, nodes and bigActors."""
+"""Elaborate expressions and queries: resolve names to variables, nodes and bigActors."""
 
 from __future__ import annotations
 

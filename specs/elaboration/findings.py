@@ -1,4 +1,4 @@
-"""The mistakes found so far: every phase adds to them, and none stops at the first."""
+"""The mistakes found so far: every phase adds its own, and none stops at the first."""
 
 from __future__ import annotations
 

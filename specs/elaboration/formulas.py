@@ -1,4 +1,4 @@
-"""Formulas of properties: quantifiers written out, names resolved, within bounds."""
+"""Elaborate formulas of properties: expand quantifiers and resolve names, within bounds."""
 
 from __future__ import annotations
 

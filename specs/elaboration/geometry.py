@@ -1,4 +1,4 @@
-"""From geometry as written to geometry on the earth."""
+"""Elaborate written geometry to geometry on the earth."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The live phase: precautions for live runs."""
+"""The live phase: fallbacks and time limits of live runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Elaboration: from a syntax tree to what is explored, or to all mistakes in it."""
+"""Elaborate a mission: from a syntax tree to what is explored, or to all its mistakes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All names that a mission declares, by sort, and the look-ups that report what they don't find."""
+"""All declared names of a mission, by sort; failed look-ups are reported."""
 
 from __future__ import annotations
 

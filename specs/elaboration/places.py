@@ -1,4 +1,4 @@
-"""Which entities can move at all, and whether the places that cannot nest."""
+"""Which entities can move, and whether the immobile places nest."""
 
 from __future__ import annotations
 

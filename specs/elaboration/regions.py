@@ -1,4 +1,4 @@
-"""Regions of a rule: which stand for the same place on both sides, and where their roots need one.
+"""Regions of a rule: which are the same place on both sides, and which need a root.
 
 In the paper's rules a region is somewhere that the rule doesn't name. Its roots share their parent, which is the
 region's place variable. A region of the reactum is the one of the redex that has a root in common with it, so

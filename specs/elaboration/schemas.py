@@ -1,4 +1,4 @@
-"""Reaction rules as elaborated: a pattern on each side, open in the host and the parameters."""
+"""Elaborated reaction rules: a pattern on each side, with free host and parameters."""
 
 from __future__ import annotations
 

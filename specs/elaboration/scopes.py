@@ -1,4 +1,4 @@
-"""Variables: each binding gets a name of its own in the whole program, of which the part before '#' is printed."""
+"""Variables: each binding gets a unique name in the program; its part before '#' is printed."""
 
 from __future__ import annotations
 

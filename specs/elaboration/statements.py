@@ -1,4 +1,4 @@
-"""Statements, numbered in one program, and what the later checks need to know of each body."""
+"""Statements, numbered in one program, and the facts that later checks need of each body."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Temporal properties: formulas of runs, the steps that they speak of, and the fairness that they rest on."""
+"""Elaborate temporal properties: formulas of runs, the steps that they name, and their fairness."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The types of values that variables come to have, as far as the text tells: over-approximated."""
+"""The possible types of variables' values, over-approximated from the text."""
 
 from __future__ import annotations
 

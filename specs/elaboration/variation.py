@@ -1,4 +1,4 @@
-"""What may be put in the place of what a mission file says, when it is loaded."""
+"""Variations of a mission when it is loaded: its scheduler, kind of control, and files."""
 
 from __future__ import annotations
 

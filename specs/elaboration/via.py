@@ -1,4 +1,4 @@
-"""What stands behind VIA, as far as it can be judged whoever the host is."""
+"""The operands of VIA, checked as far as possible for any host."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The world phase: entities, where they are, what carries them, and their channels."""
+"""The world phase: entities, their placements, carriers and channels."""
 
 from __future__ import annotations
 

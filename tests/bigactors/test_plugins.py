@@ -113,7 +113,7 @@ def test_a_vehicle_is_known_by_what_the_table_says():
         (["--vehicle=uav0=udp:2"], UAV, "'uav0' is given twice"),
         (["--kinds=detections=OilSpil"], UAV, "no kind 'OilSpil' that could be detected"),
         (["--feed=ais=udp:1", "--kinds=ais=OilSpill"], UAV, "no station is of kind 'OilSpill'"),
-        (["--feed=detections=http:0.0.0.0:0"], UAV, "whoever reaches 0.0.0.0 could post detections"),
+        (["--feed=detections=http:0.0.0.0:0"], UAV, "anyone who reaches 0.0.0.0 could post detections"),
         (["--feed=detections=http:0", "--token=nowhere"], UAV, "No such file"),
         (["--key=nowhere.json"], UAV, "cannot read the signing key"),
         (["--fence=uav0"], UAV, "'uav0' is no fence"),

@@ -48,8 +48,8 @@ def run(*more, mission="distributed_handover"):
 @pytest.mark.parametrize(
     ("more", "says"),
     [
-        (["--station=gcs0"], "say so: --peers FILE"),
-        (["--peers=peers.toml"], "which of the stations is this?"),
+        (["--station=gcs0"], "give them: --peers FILE"),
+        (["--peers=peers.toml"], "the name of this station is not given"),
         (["--station=gcs0", "--station=gcs1", "--peers=peers.toml"], "not gcs0 and gcs1"),
         (["--station=gcs9", "--peers=peers.toml"], "no station 'gcs9': its stations are gcs0, gcs1, gcs2"),
         (["--station=gcs0", "--peers=nowhere.toml"], "No such file"),

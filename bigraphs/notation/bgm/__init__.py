@@ -1,1 +1,1 @@
-"""BigMC's language, that of the paper's first runtime: `.bgm` text → syntax → a system with properties."""
+"""BigMC's language, used by the paper's first runtime: `.bgm` text → syntax → a system with properties."""

@@ -1,4 +1,4 @@
-"""Reading `.bgm` files as syntax. `|` binds more tightly than `||`, as its manual has it; `%check` ends a file."""
+"""Parse `.bgm` files. `|` binds more tightly than `||`, as in BigMC's manual; `%check` ends a file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Properties of BigMC to formulas."""
+"""Elaborate BigMC's properties to formulas."""
 
 from __future__ import annotations
 

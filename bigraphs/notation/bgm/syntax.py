@@ -1,4 +1,4 @@
-"""`.bgm` files as syntax; `offset` is where something was written."""
+"""The syntax tree of `.bgm` files; `offset` is a position in the text."""
 
 from __future__ import annotations
 

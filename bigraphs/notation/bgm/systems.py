@@ -1,4 +1,4 @@
-"""A whole `.bgm` file elaborated to a system with properties."""
+"""Elaborate a `.bgm` file to a system with properties."""
 
 from __future__ import annotations
 

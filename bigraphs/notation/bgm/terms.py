@@ -1,4 +1,4 @@
-"""Terms of BigMC to bigraphs: names are outer names, `-` is an edge of its own, holes are sites."""
+"""Elaborate BigMC's terms to bigraphs: names are outer names, each `-` is an edge, holes are sites."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""BigraphER's language and what is beyond it: text → syntax → systems, and back.
+"""BigraphER's language with extensions: text → syntax → systems, and back.
 
 `parser` makes syntax of a text, `survey` looks at all names in it, the rest elaborates it: `values` numbers and
 strings, `expressions` bigraphs, `rules` rules and `systems` a whole `System`. `writer` goes the other way.

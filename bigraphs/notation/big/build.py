@@ -1,4 +1,4 @@
-"""From lark's trees to declarations and files, without recursion."""
+"""Build declarations and files from lark's trees, without recursion."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From lark's trees to expressions of bigraphs."""
+"""Build expressions of bigraphs from lark's trees."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From lark's trees to values; numbers out of bounds and reserved names are found here."""
+"""Build values from lark's trees; find numbers out of bounds and reserved names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Declarations and whole files of BigraphER's notation as syntax."""
+"""The syntax tree of declarations and whole `.big` files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From bigraphs to BigraphER's notation: an expression that elaborates to an equal bigraph."""
+"""Write a bigraph as an expression that elaborates to an equal bigraph."""
 
 from __future__ import annotations
 

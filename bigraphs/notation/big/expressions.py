@@ -1,4 +1,4 @@
-"""Expressions evaluated to bigraphs; what the algebra would refuse is told where it is written."""
+"""Evaluate expressions to bigraphs; errors of the algebra are reported where they are written."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mistakes gathered while a text is read, so that all of them can be told at once."""
+"""Mistakes collected while a text is read, so that all are reported at once."""
 
 from __future__ import annotations
 

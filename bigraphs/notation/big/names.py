@@ -1,4 +1,4 @@
-"""What a file declares, by name; a name that is declared twice is a mistake."""
+"""The declarations of a file by name; a name declared twice is a mistake."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading `.big` files and single expressions as syntax."""
+"""Parse `.big` files and single expressions."""
 
 from __future__ import annotations
 

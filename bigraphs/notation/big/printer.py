@@ -1,4 +1,4 @@
-"""Writing BigraphER's notation; `parse_model` and `parse_expression` read back what is written here."""
+"""Print BigraphER's notation; `parse_model` and `parse_expression` read it back."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rules elaborated: both sides evaluated, their faces compared, weights and conditions looked at."""
+"""Elaborate rules: evaluate both sides, compare their interfaces, check weights and conditions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What names stand for while a file is elaborated: constants, controls, and where evaluation is at."""
+"""The scope during elaboration: the meanings of names, and the current position of evaluation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What redexes and patterns must look like, so that an occurrence of one is one and is found."""
+"""The conditions on redexes and patterns that make occurrences unambiguous and findable."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sorts elaborated: their names resolved to controls, and every rule looked at for whether it keeps them."""
+"""Elaborate sorts: resolve their names to controls, and check that every rule preserves them."""
 
 from __future__ import annotations
 

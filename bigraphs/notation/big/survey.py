@@ -1,4 +1,4 @@
-"""A look at every name in a file before anything is evaluated: is it declared, is it used as what it is?"""
+"""Check every name in a file before evaluation: is it declared, and used as what it is?"""
 
 from __future__ import annotations
 

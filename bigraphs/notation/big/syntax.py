@@ -1,4 +1,4 @@
-"""Expressions of BigraphER's notation as syntax: one class for each thing that can be written; `span` is where."""
+"""The syntax tree of BigraphER's expressions, one class for each construct; `span` is its position."""
 
 from __future__ import annotations
 

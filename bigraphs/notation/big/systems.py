@@ -1,4 +1,4 @@
-"""A whole `.big` file elaborated to a system."""
+"""Elaborate a `.big` file to a system."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Declarations without a system, and single expressions."""
+"""Elaborate declarations without a system, and single expressions."""
 
 from __future__ import annotations
 

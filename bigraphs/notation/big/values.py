@@ -1,4 +1,4 @@
-"""Numbers and strings evaluated: whole numbers stay whole and within bounds, nothing else is ever run."""
+"""Evaluate numbers and strings: integers stay integers and within bounds."""
 
 from __future__ import annotations
 

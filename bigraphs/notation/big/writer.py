@@ -1,4 +1,4 @@
-"""From systems to `.big` files: `read_system` reads an equal system back."""
+"""Write a system as a `.big` file; `read_system` reads an equal system back."""
 
 from __future__ import annotations
 

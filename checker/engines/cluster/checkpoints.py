@@ -1,4 +1,4 @@
-"""Checkpoints of a worker, and the way back to one.
+"""Checkpoints of a worker, and how it resumes from one.
 
 Rows are kept as they are, beside a digest of each value of each column; values themselves are not, so nothing in a
 checkpoint is ever evaluated. A worker that has been started anew learns them again from the rows at which it learned

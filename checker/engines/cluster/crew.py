@@ -1,4 +1,4 @@
-"""A crew: the workers of one exploration, as whoever leads it sees them."""
+"""A crew: the workers of one exploration, as its leader sees them."""
 
 from typing import Any, Protocol
 

@@ -1,4 +1,4 @@
-"""The compiled loops of a worker: whose each successor is, which of them are new, and rows put into other codes."""
+"""The compiled loops of a worker: the owner of each successor, the new rows, and translation of codes."""
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
 # (what numba compiles is typed by numba: mypy takes its integers for Python's)

@@ -1,4 +1,4 @@
-"""Keys of values: what a configuration says as a number that is the same for every worker.
+"""Keys of rows: numbers that depend only on the configuration, and so are the same for every worker.
 
 Codes are each worker's own; a key is a digest of the canonical writing of a column's place and its value. A
 configuration's key is the XOR of those of its columns (Zobrist). Every worker begins a column with the same value, so

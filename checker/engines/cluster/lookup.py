@@ -1,4 +1,4 @@
-"""What was found by a crew: configurations, where they came from, and the graph, asked of whoever has them."""
+"""Look up what a crew found: configurations, their parents, and the graph, each at its worker."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Sequence

@@ -1,4 +1,4 @@
-"""What the workers' inspections found, as one: what one process would have found, each found where it is nearest."""
+"""Merge the workers' findings: the same as one process finds, each with its nearest configuration."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

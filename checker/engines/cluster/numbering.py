@@ -1,4 +1,4 @@
-"""Places: which configuration has which number, layer by layer and in a layer worker by worker.
+"""The numbering of configurations: layer by layer, and within a layer worker by worker.
 
 So numbers grow with the distance from the initial configuration, as those of one process do: the smallest number of
 several is a nearest one.

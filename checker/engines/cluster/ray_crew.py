@@ -1,4 +1,4 @@
-"""A crew of Ray actors: the only file that knows Ray.
+"""A crew of Ray actors: the only file that imports Ray.
 
 Parcels go from actor to actor through Ray's object store; whoever leads sees only their references. An actor that dies
 is started anew by Ray, and knows nothing then: calls say which crew they are meant for, so that none is answered by one

@@ -1,4 +1,4 @@
-"""A shard of an exploration: the rows that belong to one worker by their keys, and what it learned by itself.
+"""A shard of an exploration: the rows that belong to one worker, and the rules that it has learned.
 
 Each round it expands some rows of its layer. Successors that belong to others leave in parcels; of those that come, the
 new ones become rows. It knows nothing of how parcels travel.

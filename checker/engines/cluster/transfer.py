@@ -1,4 +1,4 @@
-"""Parcels: rows on their way from worker to worker, with the values that the receiver has not been told yet.
+"""Parcels: rows in transit between workers, with the values that are new to the receiver.
 
 Rows travel in their sender's codes and packing. The receiver keeps a dictionary for each sender, so a value travels
 once, and a row is put into other codes by looking up numbers. Values are pickled: between workers of one run only.

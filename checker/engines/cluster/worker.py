@@ -1,4 +1,4 @@
-"""What one worker answers: rounds, surveys of its rows, edges, and checkpoints. It has numbers of its own for rows."""
+"""A worker: answers rounds, surveys, edges and checkpoints for its rows, which it numbers itself."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path

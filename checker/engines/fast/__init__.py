@@ -1,4 +1,4 @@
-"""The fast explorer: the rules are learned as decision trees, and compiled loops walk them over packed rows.
+"""The fast explorer: rules learned as decision trees, which compiled loops evaluate on packed rows.
 
 `explorer` loads numba: import it only where a mission is worth it.
 """

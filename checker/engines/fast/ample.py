@@ -1,4 +1,4 @@
-"""The compiled loop that follows ample sets only: `checker.reduction.ample`, over rows and footprints as words.
+"""The compiled loop over ample sets: `checker.reduction.ample` on rows and footprints as words.
 
 Rows are gathered as for the full search. Which successors of a row are followed is chosen when they are stored, row by
 row, since whether a step may be put off depends on what was visited before. Which actors there are is told by trees of

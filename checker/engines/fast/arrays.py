@@ -1,4 +1,4 @@
-"""Arrays that grow at their end, as the compiled loops see them."""
+"""Growing arrays, as the compiled loops see them."""
 
 from typing import Any
 

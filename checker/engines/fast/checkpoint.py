@@ -1,4 +1,4 @@
-"""Checkpoints: everything from which an exploration goes on after its process was killed.
+"""Checkpoints: the state from which an exploration continues after its process was killed.
 
 Rows, origins and counts are saved as they are. What was learned is not: it is learned again from the rows at which it
 was learned, in the same order, so that nothing in a checkpoint is ever evaluated. A digest of all columns tells whether

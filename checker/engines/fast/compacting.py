@@ -1,4 +1,4 @@
-"""Hash compaction: the visited set has a tag of each row's hash instead of the row's number, and compares no rows.
+"""Hash compaction: the visited set holds a tag of each row's hash, and compares only tags.
 
 So rows are never read at random, and may lie in files; but two rows with one tag are taken for the same, and what only
 the second leads to is missed. How likely that is follows from how many tags were compared (Stern and Dill 1996).

@@ -1,4 +1,4 @@
-"""Cross-check (`--paranoid`): the interpreter is asked once more what follows from a sample of configurations."""
+"""Cross-check (`--paranoid`): the interpreter recomputes the successors of a sample of configurations."""
 
 from collections import Counter
 

@@ -1,4 +1,4 @@
-"""What temporal properties ask of a fast exploration: its graph, where propositions are true, what is pending where."""
+"""The data of a fast exploration for temporal properties: graph, true propositions, pending requests."""
 
 from collections.abc import Hashable, Iterable
 from functools import partial

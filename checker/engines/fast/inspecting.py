@@ -1,4 +1,4 @@
-"""What the inspections find, by surveys of all rows instead of a look at each configuration.
+"""The findings of inspections, by surveys of all rows instead of single configurations.
 
 A survey says of each finding how often it occurs, and where first; there the inspection itself is asked what to say.
 """

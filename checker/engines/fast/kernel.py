@@ -1,4 +1,4 @@
-"""The compiled loops: walk the trees over the frontier, keep the exact visited set.
+"""The compiled loops: evaluate the trees on the frontier, and maintain the exact visited set.
 
 Rows are packed words (see `columns.Packing`), and found again by a table (see `table`). Successors are gathered, and
 their places there and the rows found are touched one after another before any is compared: what these loops wait for

@@ -1,4 +1,4 @@
-"""The learner: runs rules once for each way in which they look at cells, and lets the trees know.
+"""The learner: runs a rule once for each way in which it reads cells, and adds the result to the trees.
 
 An actor is what serves an agent's requests, or what the agent does itself, or a clause of the environment. Each has a
 tree whose leaves hold its transitions. What a transition writes name by name (a pointwise definition) is learned in a

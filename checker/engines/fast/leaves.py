@@ -1,4 +1,4 @@
-"""Leaves as arrays: the transitions that follow from what was asked, with what each writes."""
+"""Leaves of decision trees as arrays: the transitions for the answers on the path, with their writes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field

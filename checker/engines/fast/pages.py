@@ -1,4 +1,4 @@
-"""Large arrays in pages of their own: huge ones where the system has them, grown without being copied.
+"""Large arrays in memory pages of their own: huge pages where available, grown without copying.
 
 They can go over to a file. Then the system writes them out and reads them again as it needs memory; the file has no
 name, so that nothing is left of it however the process ends.

@@ -1,4 +1,4 @@
-"""Partial-order reduction for the compiled loops: footprints as words, actors as numbers, told by trees of their own.
+"""Partial-order reduction for the compiled loops: footprints as words, actors as numbers, learned as trees.
 
 What is chosen is what `checker.reduction.ample` chooses, configuration for configuration.
 """

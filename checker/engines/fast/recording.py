@@ -1,4 +1,4 @@
-"""Recording: what a rule asks of cells, in order, and what it writes; pointwise parts are recorded apart.
+"""Recording: the cells that a rule reads, in order, and those it writes; pointwise parts apart.
 
 A rule is pure and sees cells through `read`, `test` and `each` alone, so one recorded run holds for every
 configuration that answers the same questions alike. What is never written is not asked: it is the same everywhere.

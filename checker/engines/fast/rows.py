@@ -1,4 +1,4 @@
-"""The rows of a space with the row that each was first reached from, as one value: both have room for as many."""
+"""The rows of a space with their parents, as one value: both have the same capacity."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""Values taken apart: what an observation says of whoever moves stands in a column for each, apart from the rest.
+"""Values split in columns: an observation's part for each mover apart from its skeleton.
 
 A cell's value becomes a *skeleton*, in which each observation is a numbered hole that still holds what it says of
 those who never move, and a fact for each mobile name. Which names are mobile is settled once for a mission, so equal

@@ -1,4 +1,4 @@
-"""Surveys: what all rows answer to a question, each different answer with how many give it and who first."""
+"""Surveys: the answers of all rows to a question, each with its number of rows and its first row."""
 
 from collections.abc import Callable, Hashable, Iterator
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The visited set: an open hash table of row numbers, each beside as many bits of its hash as 32 bits leave room for.
+"""The visited set: an open hash table of row numbers, each with as many bits of its hash as fit 32 bits.
 
 Equality is decided on whole rows. A hash belongs into the slot that lies as far in the table as the hash among all
 hashes; where that is taken, into the next one that is free.

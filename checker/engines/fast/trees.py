@@ -1,4 +1,4 @@
-"""Decision trees as arrays: inner nodes ask a column, leaves hold what follows.
+"""Decision trees as arrays: inner nodes test a column, leaves hold the result.
 
 A reference is a number: 0 what is not known yet, k > 0 the inner node k - 1, k < 0 the leaf -k - 1. An inner node has
 a window of codes; what its column's code leads to stands in `next`. A node that asks a yes or no leads from every code

@@ -1,4 +1,4 @@
-"""What a transition writes, as columns and codes: at once, by copying, or name by name."""
+"""The writes of a transition, as columns and codes: at once, by copying, or name by name."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field

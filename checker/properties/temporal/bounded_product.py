@@ -1,4 +1,4 @@
-"""The product of a graph and a tight automaton, as far as so many steps lead."""
+"""The product of a graph and a tight automaton, up to a number of steps."""
 
 from dataclasses import dataclass
 from typing import Final

@@ -1,4 +1,4 @@
-"""Branching time by fixpoints: where a formula is true, and a run that shows why it is true or false at first.
+"""Branching time by fixpoints: where a formula is true, and a run that shows its value at the start.
 
 A partial graph gives bounds: where a formula is surely true, and where it may be.
 """

@@ -1,4 +1,4 @@
-"""Strongly connected components in which a run can stay for ever and be fair."""
+"""Strongly connected components in which a fair run can stay for ever."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Shortest fair cycles, counting the way to them: exact, where it doesn't take too long.
+"""Shortest fair cycles, with the way to them: exact within a bound of effort.
 
 With one thing to be met on the way that is a breadth-first search from each node. With several, what was met so far is
 part of what is searched: there are as many sets of them as there are bits, and no better way is known (it is NP-hard).

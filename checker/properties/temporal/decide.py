@@ -1,4 +1,4 @@
-"""Verdicts on the temporal properties of a mission, from the edges that an exploration kept."""
+"""Decide the temporal properties of a mission, on the edges that an exploration stored."""
 
 from collections.abc import Iterable, Iterator
 

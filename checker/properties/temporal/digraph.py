@@ -1,4 +1,4 @@
-"""Directed graphs as arrays, and breadth-first search over whole layers of them."""
+"""Directed graphs as arrays, and breadth-first search by whole layers."""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,4 +1,4 @@
-"""Effort: how much a search may look at, counted in edges and not in seconds, so that it ends alike everywhere."""
+"""Effort: a bound on a search in edges, not seconds, so that it ends the same way on every machine."""
 
 from dataclasses import dataclass
 from typing import Final

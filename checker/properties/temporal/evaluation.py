@@ -1,4 +1,4 @@
-"""Linear formulas on one run that repeats: what a counterexample is checked by, apart from how it was found."""
+"""Evaluate linear formulas on a lasso: an independent check of every counterexample."""
 
 from checker.properties.temporal.lassos import Lasso
 from checker.properties.temporal.truth import Truth

@@ -1,4 +1,4 @@
-"""From the fairness that a mission declares to what fair runs do infinitely often on a graph."""
+"""Translate a mission's fairness to sets that a fair run meets infinitely often."""
 
 from collections.abc import Collection, Iterable, Iterator
 

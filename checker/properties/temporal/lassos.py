@@ -1,4 +1,4 @@
-"""Lassos: a way to a fair component, and a cycle in it that is fair."""
+"""Lassos: a path to a fair component, and a fair cycle in it."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""Linear time: is there a fair run on which a formula is false? If so, a shortest one where that can be found."""
+"""Linear time: is a formula false on some fair run? If so, find a shortest such run where possible."""
 
 from collections.abc import Collection
 

@@ -1,4 +1,4 @@
-"""Linear formulas in negation normal form, each subformula once and known by its number."""
+"""Linear formulas in negation normal form, with numbered subformulas."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""The product of a graph and an automaton, as far as it is reached: the runs on which a formula is violated."""
+"""The reachable product of a graph and an automaton: the runs that violate a formula."""
 
 from dataclasses import dataclass, field
 from functools import cached_property

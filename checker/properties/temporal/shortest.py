@@ -1,4 +1,4 @@
-"""Shortest lassos: whether a run can be told in fewer steps than it was found with, if that is soon decided."""
+"""Shortest lassos: whether a shorter run exists, if a bounded search can decide it."""
 
 from collections.abc import Iterable
 from dataclasses import replace

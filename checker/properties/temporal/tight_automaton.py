@@ -1,4 +1,4 @@
-"""Tight automata: they repeat as soon as a run does, so that a shortest lasso is one of their product with a graph.
+"""Tight automata: they repeat as soon as a run does, so their product with a graph has a shortest lasso.
 
 A state says which of some formulas are true from there on. What is true at one moment follows from the step that is
 taken and from what is true at the next; so where the rest of a run is the same, the state is too. An automaton that

@@ -1,4 +1,4 @@
-"""Where formulas without temporal operators are true: arrays over the configurations and edges of a graph."""
+"""The truth of formulas without temporal operators: arrays over configurations and edges."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""Vacuity of what holds of runs: the parts that are never needed, and a run on which the others are.
+"""Vacuity of temporal properties: the parts that are never needed, and a run that needs the others.
 
 A part is replaced by the worst that may stand there, and the formula is decided once more on the same graph. Where it
 doesn't hold then, the run that shows it is one on which the part is needed (an interesting witness).

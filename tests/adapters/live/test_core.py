@@ -235,7 +235,7 @@ def test_a_link_that_comes_back_is_no_second_broken_assumption():
     assert sorted(run.kinds()) == ["broken assumption", "link restored", "lost link"]
     assert run.labels[-1] == "⟨env : uav0 is on control:gcs0⟩"
     run.turn(13.0, seen("uav0", WEST, 13.0, channels=("control:gcs1",)))
-    assert run.findings[-1].message.startswith("uav0 is on control:gcs1; nobody handed it there")
+    assert run.findings[-1].message.startswith("uav0 is on control:gcs1; it was not handed there")
 
 
 @pytest.mark.parametrize(("where", "broken"), [((37.012, -8.612), 1), ((37.012, -8.652), 2)])
@@ -313,7 +313,7 @@ def test_a_vehicle_that_was_taken_over_has_not_arrived_though_the_same_news_show
     run.turn(2.0, seen("uav0", EAST, 2.0), reports=[TakenOver("uav0", 2.0, "it is in RTL")])
     assert "commit" not in run.rules
     assert [finding.message for finding in run.findings] == [
-        "uav0 was taken over: it is in RTL; nobody here commands it until `bigactors give-back uav0`"
+        "uav0 was taken over: it is in RTL; it gets no commands until `bigactors give-back uav0`"
     ]
     run.turn(3.0, reports=[Rejected("a-1", "uav0", 3.0, "it is in RTL")])
     assert run.kinds() == ["taken over"]
@@ -514,7 +514,7 @@ def test_what_grows_old_and_what_waits_has_longer_while_nobody_listens():
     run.turn(0.0, seen("uav0", WEST, 0.0), Heard("ais", Aged(boat((37.03, -8.63), 0.0).published, 60.0)))
     run.turn(150.0, missed=100.0)
     assert run.kinds() == ["trouble"]
-    assert run.findings[0].message.startswith("nothing was listened to for 100 s")
+    assert run.findings[0].message.startswith("this process did not listen for 100 s")
     assert "⟨env : boat0 vanishes⟩" not in run.labels
     assert run.again == 160.0
     run.turn(161.0)

@@ -262,7 +262,7 @@ def test_a_posted_detection_cannot_take_the_name_of_a_vehicle_or_a_place(flying,
     flown = flying(SHUTTLE, copter(), *more, foe=poster, seconds=400)
     assert [status for _, status, _ in answers] == [400, 400, 400, 200]
     assert "name:uav0 would be called uav0, as vehicle:uav0 is" in answers[0][2]
-    assert "nobody expects UAV to be detected" in answers[1][2]
+    assert "UAV is not a kind that may be detected" in answers[1][2]
     assert "name:east0 would be called east0, as place:east0 is" in answers[2][2]
     assert "detection refused" in flown.witness.told()
     assert (

@@ -109,7 +109,7 @@ def test_a_machine_that_was_suspended_has_the_systems_time_and_finds_nobody_sile
     ending, looker = fly(TOUR + GO, Suspended(pace=0.1), seconds=4_000.0)
     assert ending.reason == "the mission has ended"
     (finding,) = looker.findings
-    assert finding.message.startswith("nothing was listened to for 359")
+    assert finding.message.startswith("this process did not listen for 359")
 
 
 def test_a_run_that_is_interrupted_ends_even_if_something_has_just_come_in():

@@ -53,7 +53,7 @@ def test_a_run_that_is_stopped_finds_nobody_silent_when_it_goes_on(tmp_path):
         run.send_signal(signal.SIGINT)
         run.wait(timeout=10)
     told = shown.read_text()
-    assert "nothing was listened to for" in told
+    assert "this process did not listen for" in told
     assert "nothing was heard of uav0" not in told
     assert "is not seen any more" not in told
     assert "broken assumption" not in told

@@ -113,7 +113,7 @@ def test_of_places_that_nobody_announced_there_are_few_and_a_point_does_not_beco
     )
     assert run.state.shares == {"camera": (MOST_PLACES, MOST_PLACES), "ais": (1, 0)}
     assert run.findings[0].message == (
-        "'camera': 60 places that nobody announced are taken in; others are left out"
+        "'camera': 60 places that the mission does not name are taken in; more are ignored"
     )
     run.turn(
         2.0,
