@@ -59,14 +59,14 @@ by `kill -9` leaves a readable recording without an index at its end. A command 
 before it is sent. `FILE.tlog` beside it has every MAVLink frame received and sent, in the format of other ground
 stations. Log times are in nanoseconds since 1970 UTC.
 
-A flood does not fill the disk. In a second 100 arrivals of each entity of the mission are written, and 100 of all
-others that one plugin tells of; `left_out` says how many more came. What was taken as a step is written always, with
-what was observed, so that a replay needs no arrival. The telemetry log takes 1,000 packets heard in a second of each
-link; a report says how many it did not take.
+A flood does not fill the disk. Each second, at most 100 arrivals of each entity of the mission are recorded, and at
+most 100 of all other entities of one plugin; `left_out` counts the rest. Every step is recorded with what was observed, so
+a replay needs no arrivals. The telemetry log records at most 1,000 received packets a second of each link, and reports
+how many it left out.
 
-`bigactors replay FILE.mcap` runs the steps again through the rules: where they don't allow one, or where it leads to
-another configuration than it did (`digest`), the step is named and the exit code is 1. `run --resume FILE.mcap` goes on
-where a killed run was; `show --trace FILE.mcap --step K` draws any of its configurations.
+`bigactors replay FILE.mcap` runs the steps again through the rules. If the rules don't allow a step, or if it leads to
+another configuration (`digest`), replay names the step and exits with code 1. `run --resume FILE.mcap` continues a
+killed run; `show --trace FILE.mcap --step K` draws any of its configurations.
 
 A step is the step of a trace ([trace.schema.json](trace.schema.json)). `observed` holds what the world decided: the
 cells of P that were written, each as `[cell, value]`. A cell is a list of words such as `["placement", "uav0"]`,

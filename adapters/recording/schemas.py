@@ -172,8 +172,8 @@ SAYING: Final = _object(
 )
 
 GIVEN_BACK: Final = _object(
-    "That an operator gave a vehicle back that had been taken over, or said where it is heard from now on; and why "
-    "that was not taken, if it was not.",
+    "An operator gave a vehicle back that had been taken over, or gave its new address; if this was refused, the "
+    "reason.",
     ("vehicle", "refusal"),
     vehicle=_TEXT,
     at={**_TEXT, "description": "Where it is heard from now on; it is not given back by that."},

@@ -1,3 +1,4 @@
+import os
 from collections import Counter
 from itertools import product
 from pathlib import Path
@@ -114,12 +115,12 @@ def test_every_command_reads_a_mission_and_its_files_once(missions, bigactors, m
         "BigActor a hosted_at boat0 with_behavior { skip }\n"
     )
     assert bigactors("simulate", "with_file.mission", "--json", "run.json")[0] == 0
-    opened, really_open = Counter(), Path.open
+    opened, really_open = Counter(), os.open
 
-    def counting(path, *more, **options):
-        opened[path.name] += 1
-        return really_open(path, *more, **options)
+    def counting(path, *more):
+        opened[Path(path).name] += 1
+        return really_open(path, *more)
 
-    monkeypatch.setattr(Path, "open", counting)
+    monkeypatch.setattr(os, "open", counting)
     assert bigactors(*line)[0] == 0
     assert (opened["with_file.mission"], opened["a.geojson"]) == (1, 1)
