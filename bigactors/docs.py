@@ -60,9 +60,9 @@ before it is sent. `FILE.tlog` beside it has every MAVLink frame received and se
 stations. Log times are in nanoseconds since 1970 UTC.
 
 A flood does not fill the disk. Each second, at most 100 arrivals of each entity of the mission are recorded, and at
-most 100 of all other entities of one plugin; `left_out` counts the rest. Every step is recorded with what was observed, so
-a replay needs no arrivals. The telemetry log records at most 1,000 received packets a second of each link, and reports
-how many it left out.
+most 100 of all other entities of one plugin; `left_out` counts the rest. Every step is recorded with what was observed,
+so a replay needs no arrivals. The telemetry log records at most 1,000 received packets a second of each link, and
+reports how many it left out.
 
 `bigactors replay FILE.mcap` runs the steps again through the rules. If the rules don't allow a step, or if it leads to
 another configuration (`digest`), replay names the step and exits with code 1. `run --resume FILE.mcap` continues a
