@@ -123,7 +123,7 @@ class StaleObservationRaces:
                 self.collected.looked(number, transition)
                 continue
             asked = " ".join(stale[0].asked or ())
-            changed = "that answer" if stale[0].is_stale(pending.request.agent) else "a relation that it uses"
+            changed = "that answer" if stale[0].stale else "a relation that it uses"
             message = (
                 f"{pending.request} rests on '{asked}' of observe({stale[0].query}), "
                 f"and another agent has changed {changed} since it was sensed"

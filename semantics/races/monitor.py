@@ -179,8 +179,11 @@ def stale_tests(request: Request, rests_on: Provenance, used: frozenset[Key]) ->
     """Return what a control rests on that others have changed since it was observed: a test, or a relation it uses."""
     if not isinstance(request, CTR | FLY):
         return ()
-    tested = ((each, each.changed_for(request.agent)) for each in rests_on if each.asked is not None)
-    stale = (each for each, changed in tested if each.asked in changed or used & changed)
+    stale = (
+        each
+        for each in rests_on
+        if each.asked is not None and (each.stale or used.intersection(key for key, _ in each.changed))
+    )
     return tuple(sorted(stale, key=repr))
 
 
@@ -210,7 +213,7 @@ class Marker(NamedTuple):
         return frozenset(each if self._is_idle(each) else self._mark(each) for each in provenance)
 
     def _is_idle(self, each: Dependency) -> bool:
-        return each.settled or (self.author == self.holder and not each.computed)
+        return each.stale or (self.author == self.holder and not each.computed)
 
     def _mark(self, each: Dependency) -> Dependency:
         """Mark one dependency; what its holder does leaves alone what was asked."""

@@ -48,17 +48,9 @@ class Dependency:
     computed: bool = False
 
     @property
-    def settled(self) -> bool:
-        """Whether the tested answer is stale for whoever may come to hold it: nothing else matters then."""
+    def stale(self) -> bool:
+        """Whether another has changed the tested answer, whoever may come to hold this: nothing else matters then."""
         return (self.asked, OTHERS) in self.changed
-
-    def changed_for(self, holder: Name) -> frozenset[Key]:
-        """Return what others than an agent have changed."""
-        return frozenset(key for key, author in self.changed if author != holder)
-
-    def is_stale(self, holder: Name) -> bool:
-        """Tell whether others than an agent have changed the tested answer."""
-        return self.asked in self.changed_for(holder)
 
     def testing(self, key: Key) -> "Dependency":
         """Return the dependency on one answer of this observation."""
