@@ -21,7 +21,8 @@ from semantics.behaviours.stepping import (
 )
 from semantics.behaviours.values import Value, show
 from semantics.environment import Clause, Says
-from semantics.races.provenance import NOTHING, deciding, handed, told_because
+from semantics.races.provenance import NOTHING, deciding, held, told_because
+from semantics.races.relevance import told_ever
 from semantics.rules import Rule
 from semantics.state.cells import Changes
 from semantics.state.configuration import Configuration, Label, Transition
@@ -55,8 +56,7 @@ def req_snd(c: Configuration, a: Name) -> Iterator[Transition]:
     message, carried = evaluated(statement.message, process.scope)
     to, chosen = evaluated(statement.to, process.scope)
     send = SND(a, name_in(to), message)
-    told = carried if send.to == a else handed(carried)
-    rests_on = resting_on(process, told, deciding(chosen))
+    rests_on = held(resting_on(process, carried, deciding(chosen)), send.to, told_ever(process.program))
     process.leave()
     label = Label("req_snd", a, f"send({show(message, frozenset())}, {send.to})")
     yield Transition(label, c.with_(continuing(c, process), c.eta.adding(send, rests_on)))
@@ -162,8 +162,8 @@ def spawn(c: Configuration, a: Name) -> Iterator[Transition]:
     bind_parameters(bound, behaviour, statement.arguments, parent.rests_on[0])
     child = new_process(c.setting, statement.name, node_named(c, host), behaviour.body)
     for name in behaviour.parameters:
-        child.scope.binding({name: bound.scope.store[name]}, handed(bound.scope.rests_on[name]))
-    child.scope.placed = handed(chosen)
+        child.scope.binding({name: bound.scope.store[name]}, bound.scope.rests_on[name])
+    child.scope.placed = chosen
     child.rests_on = (parent.rests_on[0],) * len(child.code)
     parent.leave()
     begun = starting(c.setting, statement.name, child.scope.host, child)

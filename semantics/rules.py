@@ -15,7 +15,7 @@ from semantics.behaviours.stepping import continuing, next_statement, process_of
 from semantics.control import Realisation, commits, realisations
 from semantics.drive import Reach
 from semantics.environment import Clause, Observed, Says
-from semantics.races.provenance import NOTHING, Dependency, deciding
+from semantics.races.provenance import NOTHING, Dependency, deciding, held
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.state.requests import CTR, FLY, OBS, READY, Received
 from semantics.state.setting import Control
@@ -69,7 +69,8 @@ def sense(c: Configuration, a: Name) -> Iterator[Transition]:
         query = pending.request.query
         steps = resolve(query, c.structure.physical, c.alpha)
         seen = answers(steps, c.structure.physical, c.alpha)  # premise: L_q = q(A(P))
-        rests_on = pending.rests_on | {Dependency(query, steps, own=())} if c.setting.monitored else NOTHING
+        looked = Dependency(query, steps, computed=True)
+        rests_on = pending.rests_on | {looked} if c.setting.monitored else NOTHING
         ready = c.eta.replacing(pending, READY(a, query, seen), rests_on)
         target = c.with_(ready).with_each(overlay(c.structure.logical, seen))
         yield Transition(Label("sense", a, pending.request), target, served=pending)
@@ -113,10 +114,8 @@ def req_ctr(c: Configuration, a: Name) -> Iterator[Transition]:
     assert isinstance(reaction, Reaction)
     rests_on = resting_on(process, process.scope.placed, *(kept for _, kept in arguments))
     process.leave()
-    label = Label("req_ctr", a, f"control({reaction})")
-    yield Transition(
-        label, c.with_(continuing(c, process), c.eta.adding(CTR(a, reaction), deciding(rests_on)))
-    )
+    request = c.eta.adding(CTR(a, reaction), held(deciding(rests_on), a, ()))  # nobody is told of it
+    yield Transition(Label("req_ctr", a, f"control({reaction})"), c.with_(continuing(c, process), request))
 
 
 def actuate(c: Configuration, a: Name) -> Iterator[Transition]:

@@ -25,8 +25,8 @@ from semantics.control import applicable, obstacle
 from semantics.extension import say, spawn
 from semantics.properties.propositions import Proposition, holds
 from semantics.races.monitor import marked, slots_used
-from semantics.races.provenance import Dependency, Key
-from semantics.races.relevance import questions_of, relevant, slots_of
+from semantics.races.provenance import ANY, Dependency, Key
+from semantics.races.relevance import questions_of, relevant, slots_of, told_ever
 from semantics.rules import env, rcv_obs
 from semantics.state.agents import Watch, mailbox_cell, watch_cell
 from semantics.state.cells import MONITOR, Cell, Changes, Row, has, is_something
@@ -296,11 +296,7 @@ class _Held:
 
     def marks(self, changes: Changes) -> set[Slot]:
         """Return the slots of all marks that there are after some changes."""
-        return {
-            slot_of_mark(holder, key)
-            for holder, one in self.memory(changes)
-            for key in (*one.changed, *(one.own or ()))
-        }
+        return {slot_of_mark(holder, key) for holder, one in self.memory(changes) for key, _ in one.changed}
 
     def memory(self, changes: Changes) -> Counter[tuple[Name, Dependency]]:
         """Return what is rested on after some changes, by whose memory it is: that of a message is its receiver's."""
@@ -383,6 +379,10 @@ def unheeded(c: Configuration) -> Iterator[str]:
                 asked = _asked(step.target, agent) - known | questions_of(step.target, agent)
                 for key in sorted(asked - relevant(asked, may_ask)):
                     yield f"after {step.label} '{agent}' may ask for {key}, which the race monitor forgets"
+        told = told_ever(c.setting.program)
+        sends = (each.request for each in c.eta.of(agent) if isinstance(each.request, SND))
+        for send in (send for send in sends if told.isdisjoint({send.to, ANY})):
+            yield f"{send} lets '{send.to}' know of what is seen, which the race monitor forgets"
         for request in (each.request for each in c.eta.of(agent) if isinstance(each.request, CTR | FLY)):
             redex = request.reaction.redex
             for match in applicable(c, agent, request.reaction):

@@ -16,8 +16,8 @@ from checker.reduction.slots import NOTHING, Footprint, Slot, joined
 from semantics.behaviours.observations import Nodes, Of, Query
 from semantics.behaviours.program import reachable
 from semantics.behaviours.statements import Observe
-from semantics.races.provenance import SLOT, Key, Provenance
-from semantics.races.relevance import ANY, Questions, anybodys, hosts_of, questions_in, slots_of, tells
+from semantics.races.provenance import ANY, SLOT, Key, Provenance
+from semantics.races.relevance import Questions, anybodys, hosts_of, questions_in, slots_of, tells
 from semantics.state.agents import Code, Watch, watch_cell
 from semantics.state.cells import MONITOR
 from semantics.state.configuration import Configuration

@@ -5,8 +5,8 @@ from semantics.behaviours.expressions import Scope
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import React, Statement
 from semantics.behaviours.values import Value
-from semantics.races.provenance import NOTHING, Provenance
-from semantics.races.relevance import HOSTED, told_by, uses_host
+from semantics.races.provenance import NOTHING, Provenance, held
+from semantics.races.relevance import HOSTED, heirs, told_by, uses_host
 from semantics.state.agents import (
     Code,
     Store,
@@ -67,7 +67,13 @@ def _variables(process: Process) -> tuple[Store, tuple[Provenance, ...]]:
 
 
 def _watch(process: Process, store: tuple[Provenance, ...], mailbox: tuple[Provenance, ...] = ()) -> Watch:
-    return Watch(process.rests_on, store, mailbox, placed(process, process.scope.placed))
+    code, variables = (tuple(_held(process, each) for each in part) for part in (process.rests_on, store))
+    return Watch(code, variables, mailbox, placed(process, process.scope.placed))
+
+
+def _held(process: Process, provenance: Provenance) -> Provenance:
+    """Return what something rests on as the agent that computes holds it."""
+    return held(provenance, process.scope.agent, heirs(process.program, process.code))
 
 
 def placed(process: Process, provenance: Provenance) -> Provenance:
@@ -75,7 +81,8 @@ def placed(process: Process, provenance: Provenance) -> Provenance:
     tested = frozenset(each for each in provenance if each.asked is not None)
     if not tested or not uses_host(process.program, process.code):
         return NOTHING
-    return tested if HOSTED in told_by(process.program, process.code) else _untold(tested)
+    told = HOSTED in told_by(process.program, process.code)
+    return _held(process, tested if told else _untold(tested))
 
 
 def _untold(provenance: Provenance) -> Provenance:
@@ -119,4 +126,4 @@ def joining(c: Configuration, a: Name) -> Changes:
 
 def resting_on(process: Process, *parts: Provenance) -> Provenance:
     """Return what a request rests on: the way to the statement that makes it, and its arguments."""
-    return process.rests_on[0].union(*parts)
+    return _held(process, process.rests_on[0].union(*parts))

@@ -10,18 +10,30 @@ from typing import NamedTuple
 
 from semantics.behaviours.observations import Step, Steps
 from semantics.behaviours.queries import answers, denoted
-from semantics.races.provenance import EVERYTHING, NOTHING, SLOT, Dependency, Key, Provenance, differences
-from semantics.races.relevance import (
+from semantics.races.provenance import (
     ANY,
+    EVERYTHING,
+    NOTHING,
+    SLOT,
+    Dependency,
+    Key,
+    Provenance,
+    differences,
+    is_slot,
+)
+from semantics.races.relevance import (
     HEARD,
     HOSTED,
+    Names,
     Questions,
     anybodys,
+    heirs,
     meet,
     questions_of,
     relevant,
     slots_of,
     told_by,
+    told_ever,
 )
 from semantics.state.agents import Watch, watch_cell
 from semantics.state.cells import MONITOR, QUEUE, Cell, Changes, merged
@@ -38,9 +50,9 @@ CONTROLS = frozenset({"actuate", "command", "commit"})
 def marked(c: Configuration, transition: Transition) -> Transition:
     """Return the transition with what it changed marked in what agents rest on, where that is monitored.
 
-    What an agent changes itself it knows: it makes nothing stale that the agent does. Of values that it may tell others
-    it is remembered apart, since who is told doesn't know it. A message on its way is its receiver's, so what the
-    sender changes after sending is another's doing.
+    What an agent changes itself it knows: it makes nothing stale that the agent does. It is remembered of values that
+    it may tell others, since who is told doesn't know it. A message on its way is its receiver's, so what the sender
+    changes after sending is another's doing.
     """
     if not c.setting.monitored or transition.label.rule not in CONTROLS:
         return transition
@@ -170,7 +182,7 @@ def stale_tests(request: Request, rests_on: Provenance, used: frozenset[Key]) ->
     stale = (
         each
         for each in rests_on
-        if each.asked is not None and (each.stale or used.intersection(each.changed))
+        if each.asked is not None and (each.stale or used.intersection(key for key, _ in each.changed))
     )
     return tuple(sorted(stale, key=repr))
 
@@ -179,47 +191,51 @@ Asking = Callable[[Steps, Questions], Again]
 """Asks again, after a transition, some questions about an observation."""
 
 
-def _mark(provenance: Provenance, asked: Questions, again: Asking) -> Provenance:
-    """Return what others rest on than the one who changed something, with that marked."""
-    return frozenset(each if each.stale else _mark_one(each, asked, again) for each in provenance)
+class Marker(NamedTuple):
+    """How a control marks what one agent rests on.
 
+    Attributes:
+        author: Whose control it is.
+        holder: Who rests on it.
+        heirs: Who may come to hold it too.
+        asked: What may matter of it.
+        again: How that is asked again.
+    """
 
-def _mark_one(each: Dependency, asked: Questions, again: Asking) -> Dependency:
-    if each.asked is not None:
-        asked = frozenset(key for key in asked if key[0].startswith(SLOT)) | {each.asked}
-    changed, steps = again(each.steps, asked)
-    if changed.issubset(each.changed) and steps == each.steps:
-        return each
-    return replace(each, steps=steps).having(changed.union(each.changed), each.own)
+    author: Name
+    holder: Name
+    heirs: Names
+    asked: Questions
+    again: Asking
 
+    def mark(self, provenance: Provenance) -> Provenance:
+        """Return what the holder rests on with what was changed in it marked."""
+        return frozenset(each if self._is_idle(each) else self._mark(each) for each in provenance)
 
-def _mark_own(provenance: Provenance, asked: Questions, again: Asking) -> Provenance:
-    """Return what the one who changed something rests on itself: what others are told of it will be stale."""
-    return frozenset(
-        each if each.own is None or each.stale else _mark_one_own(each, each.own, asked, again)
-        for each in provenance
-    )
+    def _is_idle(self, each: Dependency) -> bool:
+        return each.stale or (self.author == self.holder and not each.computed)
 
-
-def _mark_one_own(each: Dependency, own: tuple[Key, ...], asked: Questions, again: Asking) -> Dependency:
-    answers_asked = frozenset(key for key in asked if not key[0].startswith(SLOT))
-    changed = again(each.steps, answers_asked if each.asked is None else frozenset({each.asked})).changed
-    return each if changed.issubset(own) else each.having(each.changed, changed.union(own))
+    def _mark(self, each: Dependency) -> Dependency:
+        """Mark one dependency; what its holder does leaves alone what was asked."""
+        asked = self.asked if each.asked is None else frozenset(filter(is_slot, self.asked)) | {each.asked}
+        changed, anew = self.again(each.steps, asked)
+        steps = each.steps if self.author == self.holder else anew
+        if not changed and steps == each.steps:
+            return each
+        marks = {*each.changed, *((key, self.author) for key in changed)}
+        return replace(each, steps=steps).having(marks).held(self.holder, self.heirs)
 
 
 def _mark_memory(c: Configuration, holder: Name, author: Name, again: Asking) -> Changes:
-    watch, mark = c.alpha.watch(holder), _mark_own if holder == author else _mark
+    watch = c.alpha.watch(holder)
     if watch is None or not any((*watch.code, *watch.store, *watch.mailbox, watch.host)):
         return {}
-    asked = questions_of(c, holder)
+    to = heirs(c.setting.program, c.alpha.code(holder))
+    mark = Marker(author, holder, to, questions_of(c, holder), again).mark
     mailbox_too = holder != author or _passes_on(c, holder, HEARD)
-
-    def marks(part: tuple[Provenance, ...]) -> tuple[Provenance, ...]:
-        return tuple(mark(each, asked, again) for each in part)
-
-    mailbox = marks(watch.mailbox) if mailbox_too else watch.mailbox
-    host = mark(watch.host, asked, again)
-    return {watch_cell(holder): Watch(marks(watch.code), marks(watch.store), mailbox, host)}
+    mailbox = tuple(map(mark, watch.mailbox)) if mailbox_too else watch.mailbox
+    marked = Watch(tuple(map(mark, watch.code)), tuple(map(mark, watch.store)), mailbox, mark(watch.host))
+    return {watch_cell(holder): marked}
 
 
 def _passes_on(c: Configuration, agent: Name, what: Name) -> bool:
@@ -243,7 +259,7 @@ def _mark_request(
     holder, becomes = _holder(request), HOSTED if isinstance(request, MGR) else HEARD
     if not rests_on or (holder == author and not _passes_on(c, author, becomes)):
         return rests_on
-    return (_mark_own if holder == author else _mark)(rests_on, _asked_by(c, request), again)
+    return Marker(author, holder, _heirs_of(c, request), _asked_by(c, request), again).mark(rests_on)
 
 
 def _holder(request: Request) -> Name:
@@ -255,6 +271,14 @@ def _asked_by(c: Configuration, request: Request) -> Questions:
     if isinstance(request, CTR | FLY):
         return slots_of(request.reaction.redex)
     return anybodys(c) if isinstance(request, SND) else questions_of(c, request.agent)
+
+
+def _heirs_of(c: Configuration, request: Request) -> Names:
+    """Return who may come to hold what a request rests on: of a control nobody, of a message whoever is ever told."""
+    program = c.setting.program
+    if isinstance(request, CTR | FLY):
+        return frozenset()
+    return told_ever(program) if isinstance(request, SND) else heirs(program, c.alpha.code(request.agent))
 
 
 def monitored(c: Configuration) -> Configuration:

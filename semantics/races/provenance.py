@@ -1,9 +1,9 @@
-"""Provenance: the observations that a value or a step rests on, and what others have changed in them.
+"""Provenance: the observations that a value or a step rests on, and who has changed what in them since.
 
 The race monitor's memory. A stored observation is a dependency with no question yet; testing it asks one.
 """
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 
 from semantics.behaviours.observations import AGENT, Observation, Query, Steps
@@ -19,6 +19,16 @@ EVERYTHING: Key = ("all",)
 """The question whose answer is the whole observation."""
 
 
+ANY: Name = "*"
+"""Stands, in a key or among agents, for every name."""
+
+OTHERS: Name = ""
+"""Stands, as an author, for whoever will never hold what rests on what it has changed."""
+
+Mark = tuple[Key, Name]
+"""What was changed, and by whom."""
+
+
 @dataclass(frozen=True, slots=True)
 class Dependency:
     """One observation, by its query.
@@ -26,53 +36,61 @@ class Dependency:
     Attributes:
         query: What was asked of A(P).
         steps: The query as it was resolved at the `sense`: `PARENT(HOST)` is the place where the host was then.
-        changed: Which answers and slots of A(P) others than its holder have changed since the `sense`; sorted.
+        changed: Which answers and slots of A(P) have been changed since the `sense`, and by whom; sorted.
         asked: What was tested of it; None for the observation as it is stored.
-        own: Of what a value was computed from, which answers its holder has changed itself; sorted. None for what only
-            decided what was done: that its holder knows.
+        computed: Whether a value was computed from it, or is it; otherwise it only decided what was done.
     """
 
     query: Query
     steps: Steps
-    changed: tuple[Key, ...] = ()
+    changed: tuple[Mark, ...] = ()
     asked: Key | None = None
-    own: tuple[Key, ...] | None = None
+    computed: bool = False
 
     @property
     def stale(self) -> bool:
-        """Whether the tested answer has been changed."""
-        return self.asked in self.changed
+        """Whether another has changed the tested answer, whoever may come to hold this: nothing else matters then."""
+        return (self.asked, OTHERS) in self.changed
 
     def testing(self, key: Key) -> "Dependency":
         """Return the dependency on one answer of this observation."""
-        return replace(self, asked=key).having(self.changed, self.own)
+        return replace(self, asked=key).having(self.changed)
 
-    def having(self, changed: Iterable[Key], own: Iterable[Key] | None) -> "Dependency":
-        """Return the dependency with what others, and its holder, have changed, forgetting what nobody asks any more.
+    def having(self, marks: Iterable[Mark]) -> "Dependency":
+        """Return the dependency with these marks, forgetting what nobody asks any more.
 
-        Of what was tested that is all but the answer itself and the slots, which a redex may use; once the answer has
-        been changed nothing else matters either.
+        Of what was tested that is all but the answer itself and the slots, which a redex may use.
         """
-        kept, known, steps = frozenset(changed), frozenset(own or ()), self.steps
-        if self.asked in kept:
-            kept, known, steps = frozenset({self.asked}), frozenset(), ()
-        elif self.asked is not None:
-            kept = frozenset(key for key in kept if key[0].startswith(SLOT))
-            known &= {self.asked}
-        keys = None if own is None else tuple(sorted(known))
-        return replace(self, steps=steps, changed=tuple(sorted(kept)), own=keys)
+        changed = tuple(sorted({mark for mark in marks if self.asked in (None, mark[0]) or is_slot(mark[0])}))
+        if self.asked is not None and (self.asked, OTHERS) in changed:
+            return replace(self, steps=(), changed=((self.asked, OTHERS),))
+        return replace(self, changed=changed)
 
     def deciding(self) -> "Dependency":
         """Return the dependency of what was only done because of it."""
-        return replace(self, own=None)
+        return replace(self, computed=False)
 
-    def handed(self) -> "Dependency":
-        """Return the dependency as another agent gets it, to whom all that was changed is others' doing."""
-        return self if self.own is None else self.having({*self.changed, *self.own}, ())
+    def held(self, holder: Name, heirs: Collection[Name]) -> "Dependency":
+        """Return the dependency as an agent holds it, from whom its heirs may come to hold it.
+
+        What it has changed itself it knows: that is remembered only of answers that a value was computed from, for who
+        is told that value. Who else changed something matters only if that is one of the heirs.
+        """
+        named = {holder, *heirs}
+        return self.having(
+            (key, author if author in named or ANY in named else OTHERS)
+            for key, author in self.changed
+            if author != holder or (self.computed and not is_slot(key))
+        )
 
 
 Provenance = frozenset[Dependency]
 NOTHING: Provenance = frozenset()
+
+
+def is_slot(key: Key) -> bool:
+    """Tell whether a key names a slot of A(P), and no answer."""
+    return key[0].startswith(SLOT)
 
 
 def asking(provenance: Provenance, keys: tuple[Key, ...]) -> Provenance:
@@ -88,12 +106,12 @@ def deciding(provenance: Provenance) -> Provenance:
 
 def told_because(provenance: Provenance) -> Provenance:
     """Return what it rests on that a message was sent, whatever it says."""
-    return frozenset(each for each in provenance if each.own is None)
+    return frozenset(each for each in provenance if not each.computed)
 
 
-def handed(provenance: Provenance) -> Provenance:
-    """Return what a value rests on in the hands of another agent than the one that computed it."""
-    return frozenset(each.handed() for each in provenance)
+def held(provenance: Provenance, holder: Name, heirs: Collection[Name]) -> Provenance:
+    """Return what something rests on in the hands of an agent, from whom its heirs may come to hold it."""
+    return frozenset(each.held(holder, heirs) for each in provenance)
 
 
 def differences(

@@ -43,7 +43,7 @@ from semantics.behaviours.statements import (
     Spawn,
     Statement,
 )
-from semantics.races.provenance import EVERYTHING, SLOT, Key
+from semantics.races.provenance import ANY, EVERYTHING, SLOT, Key
 from semantics.state.agents import Code
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Setting
@@ -53,7 +53,6 @@ Names = frozenset[Name]
 Questions = frozenset[Key]
 """Keys; one about `ANY` stands for those about every name."""
 
-ANY = "*"
 SLOTS: Questions = frozenset((f"{SLOT}{kind}", ANY) for kind in ("parent", "links", "children"))
 
 MOST_INSTANCES = 5_000
@@ -162,6 +161,27 @@ def _binds(cases: Iterable[Case], told: Names) -> bool:
 def tells(program: Program, reach: Iterable[int]) -> bool:
     """Tell whether some statements may let others know what was observed."""
     return _may(program, reach, Send, Spawn)
+
+
+def heirs(program: Program, code: Code) -> Names:
+    """Return who may come to hold what somebody with so much left to run rests on: nobody if it tells nobody."""
+    return told_ever(program) if tells(program, reachable(program, code)) else frozenset()
+
+
+@lru_cache(maxsize=1 << 8)
+def told_ever(program: Program) -> Names:
+    """Return the agents that anybody may ever tell anything; `ANY` where a run decides whom."""
+    return frozenset[Name]().union(*map(_whom, program.statements))
+
+
+def _whom(statement: Statement) -> Names:
+    match statement:
+        case Send(_, Literal(str(name))) | Spawn(name):
+            return frozenset({name})
+        case Send():
+            return frozenset({ANY})
+        case _:
+            return frozenset()
 
 
 def hosts_of(c: Configuration, agent: Name) -> Names:

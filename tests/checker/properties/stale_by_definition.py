@@ -24,7 +24,7 @@ QUERIES = (
 )
 NAMES = ("uav0", "uav0", "uav1", "uav1", "vessel0", "gate0")
 TELLING = ("tested", "told", "reported", "reported")
-WAYS = (*TELLING, "bare", "woken", "heard", "trusted", "trusted")
+WAYS = (*TELLING, "bare", "woken", "heard", "trusted", "trusted", "relayed", "relayed")
 """How an agent comes to a control, or lets another know; the first tells most."""
 
 MOVING = frozenset({"command", "commit", "actuate"})
@@ -57,6 +57,9 @@ class Line:
                 return self.looking(f"case o: Observation => {self.control} {send}")
             case "woken":
                 return f"react {{ case m: Message => {self.control} }}"
+            case "relayed":
+                send = f'send(("seen", {number}, x), {self.to})'
+                return f"react {{ case (w, n, x) => {send} case m: Message => skip }}"
             case "heard":
                 return f"react {{ case (w, n) => {self.control} case m: Message => skip }}"
             case _:
@@ -74,13 +77,13 @@ def companies(draw) -> dict[str, list[Line]]:
     for agent in agents:
         lines = [
             Line(
-                draw(st.sampled_from(TELLING if agent == "a" else WAYS)),
+                draw(st.sampled_from(WAYS if rank or agent != "a" else TELLING)),
                 draw(st.sampled_from(MOVES[agent])),
                 draw(st.sampled_from(QUERIES)),
                 draw(st.sampled_from(NAMES)),
                 draw(st.sampled_from(agents.replace(agent, ""))),
             )
-            for _ in range(draw(st.integers(1, 3)))
+            for rank in range(draw(st.integers(1, 3)))
         ]
         company[agent] = lines
     return company
@@ -145,15 +148,24 @@ class Test:
         return replace(self, holders=(*self.holders, (time, to)), by_value=(*self.by_value, by_value))
 
     def concerns(self, change: "Change") -> bool:
-        """Tell whether a change is another's doing to who holds the test in the end.
+        """Tell whether a change is another's doing to who holds the test in the end, and nobody has answered for it.
 
-        What its holder changes itself is not, unless it hands a value on afterwards.
+        An agent answers for its own doing by what it does or has others do, but by no value that it hands on.
         """
-        rank = max(rank for rank, (since, _) in enumerate(self.holders) if since <= change.time)
-        return change.author != self.holders[rank][1] or (*self.by_value, False)[rank]
+        return change.author not in {who for who, by_value in self.hands_after(change) if not by_value}
 
     def is_own(self, change: "Change") -> bool:
-        return change.author == [who for since, who in self.holders if since <= change.time][-1]
+        """Tell whether a change was made by one who held the test then or later."""
+        return change.author in {who for who, _ in self.hands_after(change)}
+
+    def is_holders(self, change: "Change") -> bool:
+        """Tell whether a change was made by who held the test then."""
+        return change.author == self.hands_after(change)[0][0]
+
+    def hands_after(self, change: "Change") -> list[tuple[str, bool]]:
+        """Return who held the test from a change on, each with whether it handed on a value of it."""
+        rank = max(rank for rank, (since, _) in enumerate(self.holders) if since <= change.time)
+        return list(zip([who for _, who in self.holders], (*self.by_value, False), strict=True))[rank:]
 
     def answer(self, world: World, node: str) -> bool:
         match self.operator:
@@ -192,6 +204,7 @@ class Judge:
     """The line that an agent is on, with what the case that it is in depends on."""
     controls: dict[str, list[frozenset[Test]]] = field(default_factory=dict)
     messages: dict[str, frozenset[Test]] = field(default_factory=dict)
+    received: dict[str, frozenset[Test]] = field(default_factory=dict)
 
     def line(self, number: int) -> Line:
         rows: dict[int, Line] = {}
@@ -221,9 +234,9 @@ class Judge:
             flips = test.answer(change.before, node) != test.answer(change.after, led)
             if flips and test.concerns(change):
                 return True
-            if not test.is_own(change):
-                if any(differs(change, slot) for slot in used):
-                    return True
+            if not test.is_own(change) and any(differs(change, slot) for slot in used):
+                return True
+            if not test.is_holders(change):
                 node = led
         return False
 
@@ -273,10 +286,14 @@ class Judge:
             test = self.seen[agent]
             assert test is not None
             tests.add(test.handed(self.time, line.to, by_value=True))
+        if line.way == "relayed":
+            values = (each for each in self.received[agent] if each.by_value[-1])
+            tests |= {each.handed(self.time, line.to, by_value=True) for each in values}
         self.messages[str(number)] = frozenset(tests)
 
     def receive(self, agent: str, number: int, line: Line, label: str) -> None:
         tests = next(tests for key, tests in self.messages.items() if f", {key}" in label)
+        self.received[agent] = tests
         if line.way == "woken":
             tests = frozenset(each for each in tests if not each.by_value[-1])
         self.passed[agent] = self.passed.get(agent, frozenset()) | tests

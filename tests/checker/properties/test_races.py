@@ -14,11 +14,12 @@ from checker import Limits, explore
 from checker.properties.findings import Collected
 from checker.properties.races import ControlRaces, StaleObservationRaces, is_stale
 from checker.verdicts import Outcome
+from semantics import extension
 from semantics.behaviours import stepping
 from semantics.races import monitor
 from semantics.races.monitor import monitored
-from semantics.races.provenance import EVERYTHING
-from semantics.races.relevance import ANY, SLOTS
+from semantics.races.provenance import ANY, EVERYTHING
+from semantics.races.relevance import SLOTS
 from semantics.successors import expand
 from specs import MissionError
 from specs.elaboration import load_mission
@@ -41,7 +42,7 @@ def control_races(text):
     return first and first.message
 
 
-def stale(text):
+def stale(text, world=WORLD):
     """Return whose controls are found to rest on a stale observation; ownership is not asked."""
     found = set()
 
@@ -55,7 +56,7 @@ def stale(text):
                     found.add(transition.label.agent)
                     before = self.collected.count
 
-    explore(monitored(load(text).initial), (Each(),))
+    explore(monitored(load(text, world).initial), (Each(),))
     return found
 
 
@@ -426,6 +427,92 @@ def test_what_a_third_changes_between_the_test_and_the_message_does():
     assert stale(text + third) == {"op2"}
 
 
+# --- whose doing it was ---------------------------------------------------------------------------------------
+
+NEAR = WORLD.replace("control:gcs0, internet", "control:gcs0, internet, mesh")
+RECEIVER_MOVED = {
+    "while its station looked": """
+      BigActor a hosted_at gcs0 with_behavior {
+        control(HAND uav0 TO gcs1) observe(LINKED_TO(HOST)) react { case o if uav1 in o => send("go", b) }
+      }
+      BigActor b hosted_at uav0 with_behavior {
+        control(MOVE_HOST_TO gate0) react { case "go" => control(MOVE_HOST_TO north0) }
+      }""",
+    "in no order with its looking": """
+      BigActor a hosted_at uav0 with_behavior {
+        control(MOVE_HOST_TO gate0) react { case "go" => control(MOVE_HOST_TO gate0) }
+      }
+      BigActor b hosted_at uav1 with_behavior {
+        observe(CHILDREN(south0)) react { case o if vessel0 in o => send("go", a) }
+      }
+      scheduler unordered""",
+    "to where its sender is": """
+      BigActor a hosted_at uav1 with_behavior {
+        control(MOVE_HOST_TO gate0) observe(CHILDREN(gate0)) react { case o if not (uav0 in o) => send("go", b) }
+      }
+      BigActor b hosted_at uav0 with_behavior {
+        control(MOVE_HOST_TO gate0) react { case "go" => control(MOVE_HOST_TO north0) }
+      }""",
+}
+
+
+@pytest.mark.parametrize("text", RECEIVER_MOVED.values(), ids=RECEIVER_MOVED)
+def test_what_its_receiver_has_changed_itself_is_held_against_no_message(text):
+    assert stale(text, NEAR) == set()
+    third = "BigActor c hosted_at gcs2 with_behavior { control(MOVE uav0 TO south0) }\n"
+    owned = NEAR.replace("linked control:gcs0, mesh", "linked control:gcs0, control:gcs2, mesh")
+    assert len(stale(third + text, owned)) == 1  # what a third does to it is
+
+
+PASSED_ON = """
+BigActor a hosted_at gcs0 with_behavior {
+  observe(CHILDREN(gate0)) react { case o => send(("free", size(o of UAV)), b) }
+}
+BigActor b hosted_at uav1 with_behavior {
+  control(MOVE_HOST_TO gate0) observe(PARENT(HOST)) react { case there: Observation => skip }
+  react { case (word, n) if n == 0 => send(("free", n), c) case m: Message => skip }
+}
+BigActor c hosted_at uav0 with_behavior {
+  react { case (word, n) if n == 0 => control(MOVE_HOST_TO gate0) case m: Message => skip }
+}
+"""
+
+
+@pytest.mark.parametrize("control", ["atomic", "timed"])
+def test_what_its_receiver_has_changed_is_stale_for_whom_it_tells_the_value(control):
+    text = PASSED_ON + f"control {control}\n"
+    assert stale(text, NEAR) == {"c"}
+    assert stale(text.replace('("free", n), c', '("free", 0), c'), NEAR) == set()
+    assert stale(text.replace('send(("free", n), c)', "control(MOVE_HOST_TO north0)"), NEAR) == set()
+
+
+def test_a_value_that_comes_back_is_not_stale_by_what_its_receiver_did():
+    back = """
+    BigActor a hosted_at uav0 with_behavior {
+      observe(CHILDREN(gate0))
+      react { case o => control(MOVE_HOST_TO gate0) send(("free", size(o of UAV)), b) }
+      react { case (word, n) if n == 0 => control(MOVE_HOST_TO north0) case m: Message => skip }
+    }
+    BigActor b hosted_at uav1 with_behavior { react { case m: Message => send(m, a) } }
+    """
+    assert stale(back) == set()
+    assert stale(back.replace("send(m, a)", "control(MOVE_HOST_TO gate0) send(m, a)")) == {"a"}
+    assert stale(back + moves("gate0", "c", "uav1")) == {"a"}
+
+
+def test_the_moves_of_who_is_spawned_are_others_doing_to_its_spawner():
+    text = """
+    def enter(n) = { control(MOVE_HOST_TO gate0) send(("free", n), a) }
+    BigActor a hosted_at uav0 with_behavior {
+      observe(CHILDREN(gate0))
+      react { case o => spawn c hosted_at uav1 with_behavior enter(size(o of UAV)) }
+      react { case (word, n) if n == 0 => control(MOVE_HOST_TO gate0) case m: Message => skip }
+    }
+    """
+    assert stale(text) == {"a"}
+    assert stale(text.replace("control(MOVE_HOST_TO gate0) send", "send")) == set()
+
+
 # --- what was resolved at sense -------------------------------------------------------------------------------
 
 COMES_BACK = """
@@ -739,6 +826,13 @@ def remembering_everything(c):
     with pytest.MonkeyPatch.context() as patch:
         for name in ("questions_of", "anybodys", "slots_of"):
             patch.setattr(monitor, name, lambda *_: EVERY)
+        for module, name in (
+            (monitor, "heirs"),
+            (stepping, "heirs"),
+            (monitor, "told_ever"),
+            (extension, "told_ever"),
+        ):
+            patch.setattr(module, name, lambda *_: frozenset({ANY}))
         for module in (monitor, stepping):
             patch.setattr(module, "told_by", lambda *_: ALL)
         patch.setattr(stepping, "uses_host", lambda *_: True)

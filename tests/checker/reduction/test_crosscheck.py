@@ -141,6 +141,7 @@ def test_what_more_a_property_reads_is_noticed(monkeypatch):
 UNHEEDED = {
     "what is asked": ("_asked", lambda _: (), "'a' may ask for ('in', 'uav1')"),
     "which slots are used": ("_slots", lambda *_: frozenset(), "may ask for ('slot parent', 'uav0')"),
+    "who is told": ("_whom", lambda _: frozenset(), "lets 'c' know of what is seen"),
 }
 
 

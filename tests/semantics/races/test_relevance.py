@@ -6,13 +6,13 @@ from checker.properties.ownership import owned
 from semantics.behaviours.expressions import Apply, Literal, QueryOf, TupleOf, Variable
 from semantics.behaviours.program import Program
 from semantics.behaviours.reactions import COMMANDS
-from semantics.behaviours.statements import Assign, ControlBy, For, ForEach, If, Migrate, Observe, Send
-from semantics.races.provenance import EVERYTHING
+from semantics.behaviours.statements import Assign, ControlBy, For, ForEach, If, Migrate, Observe, Send, Spawn
+from semantics.races.provenance import ANY, EVERYTHING
 from semantics.races.relevance import (
-    ANY,
     HEARD,
     SLOTS,
     anybodys,
+    heirs,
     meet,
     questions_of,
     relevant,
@@ -142,3 +142,18 @@ def test_what_a_query_is_asked_of_is_told_with_what_it_shows():
         Send(Variable("o"), Literal("b")),
     )
     assert told(statements, (0, 1)) == {"o", "place", HEARD}
+
+
+def heirs_of(code, *statements):
+    return heirs(Program((*ASKS, *statements), {}, COMMANDS), code)
+
+
+def test_whoever_is_ever_told_anything_may_come_to_hold_what_is_told():
+    sends = (Send(Variable("o"), Literal("b")), Send(Literal("go"), Literal("c")))
+    assert heirs_of((0, 1, 4), *sends) == {"b", "c"}
+    assert heirs_of((4,), Send(Variable("o"), Variable("to"))) == {ANY}
+    assert heirs_of((4,), Spawn("d", Literal("u0"), "wait", ())) == {"d"}
+
+
+def test_who_tells_nobody_anything_has_no_heirs():
+    assert heirs_of((0, 1), Send(Variable("o"), Literal("b"))) == frozenset()
