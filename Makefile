@@ -4,8 +4,11 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 COMPILED := $(addprefix tests/checker/engines/fast/test_,rows.py checkpoints.py long_runs.py spill.py hash_compaction.py)
 STAMP  := $(VENV)/.installed
+WHEEL  := .wheel
+SMOKE  := $(addprefix tests/,missions paper semantics/state/test_cells.py \
+	$(addprefix bigactors/test_,big.py cli.py engines.py missions.py public_names.py run.py))
 
-.PHONY: demo live-demo test lint types fuzz bounds bench bench-bigraphs bench-cluster docs clean
+.PHONY: demo live-demo test lint types test-wheel wheel constraints fuzz bounds bench bench-bigraphs bench-cluster docs clean
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -27,6 +30,28 @@ lint: $(STAMP)
 
 types: $(STAMP)
 	$(BIN)/mypy
+
+wheel: $(STAMP)  ## what is released, into dist/: the source, and the wheel that is made of it
+	rm -rf dist
+	$(BIN)/python -m hatchling build -t sdist
+	$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-deps --no-build-isolation --wheel-dir dist dist/*.tar.gz
+
+test-wheel: wheel  ## a quick part of the suite against the installed wheel, with the repository out of its reach
+	rm -rf $(WHEEL)
+	$(PYTHON) -m venv $(WHEEL)
+	$(WHEEL)/bin/python -m pip install --quiet --disable-pip-version-check "$$(ls dist/*.whl)[ais,live,strategies]" pytest pytest-xdist
+	$(BIN)/python hatch_build.py tests $(WHEEL)/suite/tests
+	mkdir $(WHEEL)/suite/specs
+	cp -r specs/missions $(WHEEL)/suite/specs
+	cp -r docs pyproject.toml $(WHEEL)/suite
+	cd $(WHEEL)/suite && ../bin/pytest -n 2 -q $(SMOKE) --pyargs bigactors
+	cd $(WHEEL) && bin/bigactors demo --out demo
+
+constraints:  ## write constraints.txt anew: the newest of all that is needed, in a new .venv; then `make test`
+	rm -rf $(VENV)
+	PIP_CONSTRAINT= $(MAKE) $(STAMP)
+	echo '# The versions of all that .[dev] needs with which CI tests; `make constraints` writes them. A user installs without this file.' > constraints.txt
+	$(BIN)/python -m pip freeze --exclude-editable >> constraints.txt
 
 fuzz: $(STAMP)  ## 100,000 mutated missions, a million mutated packets and sentences (some 25 minutes on two cores)
 	BIGACTORS_FUZZ=100000 BIGACTORS_FUZZ_PACKETS=1000000 $(BIN)/python -m pytest -n 2 -q -m fuzz
@@ -51,4 +76,4 @@ docs: $(STAMP)  ## write the generated pages of docs/
 	$(BIN)/python -m bigactors.docs
 
 clean:
-	rm -rf $(VENV) .numba-bounds demo live-demo dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(WHEEL) .numba-bounds demo live-demo dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -25,12 +25,12 @@ from bigactors.cli import main as command
 from bigactors.commands.run import Flight, fly, prepare, record
 from bigactors.drawings import draw
 from bigactors.exits import Exit
-from bigactors.missions import shipped_missions
 from bigactors.recordings import open_recording, trace_of
 from bigactors.terminal import say, tell
 from bigactors.watchers import TOLD, Terminal
 from checker import Trace
 from physical import PhysicalProperty, circle, write_geojson
+from specs.missions import shipped_missions
 
 MISSION: Final = "spill_watch"
 AIRFIELD: Final = (37.147, -8.582, 20.0)

@@ -4,7 +4,6 @@ import hashlib
 from argparse import Namespace
 from collections.abc import Callable
 from functools import cache, partial
-from importlib.resources import files as resources
 from pathlib import Path
 
 from bigactors import __version__
@@ -13,14 +12,7 @@ from semantics.state.canonical import canonical
 from semantics.state.setting import Control, Scheduler
 from specs import Diagnostic, MissionError, Source
 from specs.elaboration import ElaboratedMission, Variation, load_mission, require_bigactor
-
-SUFFIX = ".mission"
-
-
-def shipped_missions() -> dict[str, Path]:
-    """Return the missions that ship with bigactors, by name."""
-    folder = Path(str(resources("specs"))) / "missions"
-    return {path.stem: path for path in sorted(folder.glob(f"*{SUFFIX}"))}
+from specs.missions import shipped_missions
 
 
 def locate(word: str) -> Path:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 from typing import Final, Protocol
 
 from lark import Lark, Token
@@ -81,7 +81,7 @@ class _Build(BuildWorld, BuildBehaviour):
 
 def grammar_text() -> str:
     """Return the grammar as it is written in mission.lark."""
-    return files("specs").joinpath("mission.lark").read_text(encoding="utf-8")
+    return Path(__file__).with_name("mission.lark").read_text(encoding="utf-8")
 
 
 @cache

@@ -6,7 +6,10 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "ARCHITECTURE.md", ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [
+    *(ROOT / name for name in ("ARCHITECTURE.md", "CONTRIBUTING.md", "README.md")),
+    *sorted((ROOT / "docs").glob("*.md")),
+]
 ROOMS = "adapters|bigactors|bigraphs|checker|physical|semantics|specs"
 
 PATH = re.compile(rf"`((?:{ROOMS}|tests|benchmarks|docs)/[\w./]*)`")
@@ -25,8 +28,8 @@ def maps():
 
 
 def exists(name):
-    """Tell whether a dotted name is a module or package, or something that a module defines."""
-    path = ROOT.joinpath(*name.split("."))
+    """Tell whether a dotted name (installed or not) is a module or package, or something that a module defines."""
+    path = ROOT.joinpath(*re.sub(rf"^bigactors\.(?={ROOMS})", "", name).split("."))
     if path.is_dir() or path.with_suffix(".py").exists():
         return True
     module = path.parent / "__init__.py" if path.parent.is_dir() else path.parent.with_suffix(".py")
@@ -54,7 +57,7 @@ def test_every_file_that_a_page_names_without_its_folder_exists(page):
         path.name
         for folder in (*ROOMS.split("|"), "tests", "benchmarks")
         for path in (ROOT / folder).rglob("*.py")
-    }
+    } | {path.name for path in ROOT.glob("*.py")}
     assert names - known == set()
 
 

@@ -4,6 +4,7 @@ import ast
 import sys
 from collections.abc import Iterator
 from graphlib import TopologicalSorter
+from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple
 
@@ -157,6 +158,15 @@ def test_nobody_imports_the_strategies_but_tests():
 def test_the_rooms_are_the_packages_that_are_built():
     folders = {path.parent.name for path in ROOT.glob("*/__init__.py")}
     assert folders == set(MAY_IMPORT)
+
+
+@pytest.mark.parametrize("room", sorted(MAY_IMPORT.keys() - {"bigactors"}))
+def test_what_a_room_offers_is_its_own(room):
+    package = import_module(room)
+    offered = {name: getattr(package, name) for name in getattr(package, "__all__", [])}
+    modules = {name: value.__module__.split(".")[0] for name, value in offered.items() if callable(value)}
+    own = {room, "types", "typing", "builtins"}  # unions and aliases do not say where they are from
+    assert {name: home for name, home in modules.items() if home not in own} == {}
 
 
 def test_the_arrows_have_no_cycle():

@@ -13,7 +13,7 @@ from adapters.recording.reading import Recording, is_recording
 from bigactors.exits import Exit
 from bigactors.files import read_bytes, read_json
 from bigactors.foreign import TELEMETRY, Shown, watched
-from bigactors.missions import digest_of, opening, shipped_missions, variation_of
+from bigactors.missions import digest_of, opening, variation_of
 from bigactors.mistakes import Mistake
 from bigactors.recordings import mission_of, open_recording, trace_of
 from bigactors.routes import write_route
@@ -24,6 +24,7 @@ from semantics.races.monitor import monitored
 from semantics.state.abstraction import as_it_is
 from semantics.state.printing import print_configuration
 from specs.elaboration import ElaboratedMission
+from specs.missions import shipped_missions
 
 Open = Callable[[str], ElaboratedMission]
 """Returns a mission by its path or name."""

@@ -5,11 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from bigactors.missions import canonical, digest_of, locate, open_mission, shipped_missions
+from bigactors.missions import canonical, digest_of, locate, open_mission
 from bigactors.mistakes import Mistake
 from physical import circle
 from semantics.state.setting import Control, Scheduler
 from specs.elaboration import Variation
+from specs.missions import shipped_missions
 
 
 def test_the_digest_is_of_the_text_and_of_what_the_files_say(missions):

@@ -282,9 +282,14 @@ def explore_with_ray(  # noqa: PLR0913, PLR0917  # as `explore`
 @lru_cache(maxsize=1)
 def edition() -> str:
     """Return a digest of all that explores: workers that differ in it may learn different rules."""
-    root = Path(__file__).parents[2]
     found = sha256()
-    for path in sorted(path for room in ROOMS for path in (root / room).rglob("*.py")):
-        found.update(path.relative_to(root).as_posix().encode())
+    for name, path in sorted(modules().items()):
+        found.update(name.encode())
         found.update(path.read_bytes())
     return found.hexdigest()
+
+
+def modules() -> dict[str, Path]:
+    """Return the modules that explore, by their paths from where the rooms stand: the repository, or the package."""
+    root = Path(__file__).parents[3]
+    return {path.relative_to(root).as_posix(): path for room in ROOMS for path in (root / room).rglob("*.py")}

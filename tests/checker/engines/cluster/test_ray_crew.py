@@ -232,6 +232,10 @@ def test_machines_with_another_checker_are_refused(monkeypatch):
         explore(load_mission(MISSIONS / "oil_spill.mission").initial, engine=Engine.RAY, cluster=TWO)
 
 
+def test_what_is_compared_between_machines_is_every_room_that_explores():
+    assert {name.split("/")[0] for name in ray_crew.modules()} == set(ray_crew.ROOMS)
+
+
 def test_a_limit_is_met_by_workers_too():
     initial = load_mission(MISSIONS / "takeover.mission").initial
     found = explore(initial, limits=Limits(configurations=100), engine=Engine.RAY, cluster=TWO)

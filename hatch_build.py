@@ -1,0 +1,88 @@
+"""Build a wheel that puts one name into site-packages: `bigactors`.
+
+In the repository a room is a folder at the top, and modules say `from semantics.rules import env`. Installed, that name
+would be taken from everybody else (PyPI has another `adapters`). So the wheel has `bigactors.semantics`: the modules of
+the repository, with every import of a room rewritten on the line where it stands.
+
+`python hatch_build.py FROM TO` writes a folder so: the tests that run against the wheel.
+"""
+
+import ast
+import re
+import sys
+from pathlib import Path
+from shutil import copytree, ignore_patterns
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+PACKAGE = "bigactors"
+ROOT = Path(__file__).parent
+ROOMS = sorted({path.parent.name for path in ROOT.glob("*/__init__.py")} - {PACKAGE})
+
+IMPORT = re.compile(rf"^( *(?:>>> )?from )(?=(?:{'|'.join(ROOMS)})\b[\w.]* import )", re.MULTILINE)
+"""Where an import of a room names it, in a doctest too."""
+
+COMMAND = re.compile(rf"(python -m )(?=(?:{'|'.join(ROOMS)})\b)")
+"""Where a text tells how to run a module of a room."""
+
+
+class CustomBuildHook(BuildHookInterface[Any]):
+    """What hatchling calls before and after a build; an editable install has the repository as it is."""
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Lay out the package, and give it to the wheel."""
+        if version == "editable":
+            return
+        self.folder = TemporaryDirectory()
+        write_package(Path(self.folder.name))
+        build_data["force_include"][self.folder.name] = PACKAGE
+
+    def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:  # noqa: ARG002 - hatchling's
+        """Delete what was laid out."""
+        if version != "editable":
+            self.folder.cleanup()
+
+
+def write_package(folder: Path) -> None:
+    """Write the package as it is installed, with the rooms in it."""
+    write_installed(ROOT / PACKAGE, folder)
+    for room in ROOMS:
+        if (folder / room).exists() or (folder / f"{room}.py").exists():
+            raise ValueError(f"{PACKAGE}/{room} has the name of a room: call it something else")
+        write_installed(ROOT / room, folder / room)
+    for path in sorted(folder.rglob("*.py*")):
+        refuse_imports_of_rooms(path, folder)
+
+
+def write_installed(source: Path, target: Path) -> None:
+    """Copy a folder, with its modules as they are installed."""
+    copytree(source, target, ignore=ignore_patterns("__pycache__"), dirs_exist_ok=True)
+    for path in target.rglob("*.py*"):
+        path.write_text(installed(path.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def installed(text: str) -> str:
+    """Return a module's text with `bigactors.` before the rooms that it imports from."""
+    return COMMAND.sub(rf"\1{PACKAGE}.", IMPORT.sub(rf"\1{PACKAGE}.", text))
+
+
+def refuse_imports_of_rooms(path: Path, folder: Path) -> None:
+    """Raise ValueError where a module still imports a room by the name that it has in the repository."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        match node:
+            case ast.Import(names):
+                modules = [alias.name for alias in names]
+            case ast.ImportFrom(str(module), _, 0):
+                modules = [module]
+            case _:
+                continue
+        for module in modules:
+            if module.split(".")[0] in ROOMS:
+                place = f"{path.relative_to(folder)}:{node.lineno}"
+                raise ValueError(f"{place} imports {module}: write 'from {module} import ...'")
+
+
+if __name__ == "__main__":
+    write_installed(Path(sys.argv[1]), Path(sys.argv[2]))

@@ -1,0 +1,121 @@
+"""What is built, what it is tested with, and the files that other programs read: they fit what is here."""
+
+import re
+import subprocess
+import sys
+import tomllib
+import zipfile
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+from bigactors.arguments import COMMANDS
+from hatch_build import PACKAGE, ROOMS, installed, refuse_imports_of_rooms
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def read(name):
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("dist")
+    command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)]
+    subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+    with zipfile.ZipFile(next(folder.glob("*.whl"))) as built:
+        yield built
+
+
+def test_the_wheel_puts_one_name_into_site_packages(wheel):
+    names = {name.split("/")[0] for name in wheel.namelist()}
+    assert {name for name in names if not name.endswith(".dist-info")} == {PACKAGE}
+
+
+def test_the_wheel_has_every_file_of_every_room(wheel):
+    here = {
+        path.relative_to(ROOT).as_posix() for room in (*ROOMS, PACKAGE) for path in (ROOT / room).rglob("*.*")
+    }
+    expected = {name if name.startswith(f"{PACKAGE}/") else f"{PACKAGE}/{name}" for name in here}
+    built = {name for name in wheel.namelist() if name.startswith(f"{PACKAGE}/")}
+    assert built == {name for name in expected if "__pycache__" not in name}
+
+
+@pytest.mark.parametrize(
+    ("text", "there"),
+    [
+        ("from semantics.rules import env\n", "from bigactors.semantics.rules import env\n"),
+        ("def f():\n    from specs import parse\n", "def f():\n    from bigactors.specs import parse\n"),
+        ("    >>> from physical.shape import box\n", "    >>> from bigactors.physical.shape import box\n"),
+        ("python -m adapters.simulated", "python -m bigactors.adapters.simulated"),
+        ("from bigactors.cli import main\n", "from bigactors.cli import main\n"),
+        ("from physicality import specs\n", "from physicality import specs\n"),
+        ("What comes\nfrom physical things\n", "What comes\nfrom physical things\n"),
+    ],
+)
+def test_installed_a_room_is_imported_from_the_package(text, there):
+    assert installed(text) == there
+
+
+@pytest.mark.parametrize(
+    "line", ["import semantics", "import specs.text as words", "if 1: from checker import check"]
+)
+def test_an_import_that_stays_as_it_was_is_refused(line, tmp_path):
+    (tmp_path / "a.py").write_text(f"\n{installed(line)}\n", encoding="utf-8")
+    with pytest.raises(ValueError, match=r"a\.py:2 imports \w+"):
+        refuse_imports_of_rooms(tmp_path / "a.py", tmp_path)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_what_a_page_imports_is_there(page):
+    for module, names in re.findall(
+        r"^from (bigactors[\w.]*) import (.+)$", page.read_text("utf-8"), re.MULTILINE
+    ):
+        here = import_module(re.sub(rf"^bigactors\.(?={'|'.join(ROOMS)})", "", module))
+        assert all(hasattr(here, name) for name in names.split(", ")), (module, names)
+
+
+def test_no_page_imports_a_room_by_its_name_in_the_repository():
+    assert [page.name for page in PAGES if (text := page.read_text("utf-8")) != installed(text)] == []
+
+
+def test_constraints_are_exact_and_within_what_the_project_asks_for():
+    lines = [line for line in read("constraints.txt").splitlines() if not line.startswith("#")]
+    assert [line for line in lines if not re.fullmatch(r"[\w.-]+==[\w.]+", line)] == []
+    pinned = {canonicalize_name(name): version for name, version in (line.split("==") for line in lines)}
+    asked = {each.name: each for each in requirements("dev")}
+    assert {
+        name: pinned[canonicalize_name(name)] for name, each in asked.items() if not allowed(each, pinned)
+    } == {}
+
+
+def requirements(extra):
+    project = tomllib.loads(read("pyproject.toml"))["project"]
+    for each in map(Requirement, (*project["dependencies"], *project["optional-dependencies"][extra])):
+        if each.name == project["name"]:
+            yield from (found for other in sorted(each.extras) for found in requirements(other))
+        else:
+            yield each
+
+
+def allowed(requirement, pinned):
+    return requirement.specifier.contains(pinned[canonicalize_name(requirement.name)], prereleases=True)
+
+
+def test_hooks_for_users_run_commands_that_there_are():
+    entries = re.findall(r"^  entry: bigactors (\S+)$", read(".pre-commit-hooks.yaml"), re.MULTILINE)
+    assert entries == ["fmt", "check"]
+    assert set(entries) <= set(COMMANDS)
+
+
+def test_the_workflow_runs_what_there_is():
+    workflow = read(".github/workflows/ci.yml")
+    targets = set(re.findall(r"^([\w-]+):", read("Makefile"), re.MULTILINE))
+    assert "- run: .ci/run\n" in workflow
+    assert set(re.search(r"target: \[(.+)\]", workflow)[1].split(", ")) <= targets
+    assert set(re.findall(r"^make ([\w-]+)$", read(".ci/run"), re.MULTILINE)) <= targets
