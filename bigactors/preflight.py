@@ -52,7 +52,7 @@ def check_places(mission: ElaboratedMission, plugins: tuple[Plugin, ...]) -> Non
     def objection(reaction: Reaction) -> str:
         reasons = (
             judge(str(vehicle), geometry, str(node))
-            for vehicle, place in _moves(reaction)
+            for vehicle, place in reaction.moves
             for plugin in pilots
             if plugin.owns(str(vehicle))
             for node, judge in (*((via, plugin.bar) for via in reaction.via), (place, plugin.objection))
@@ -119,9 +119,8 @@ def _instances(
 
 def _may_take(mission: ElaboratedMission, reaction: Reaction) -> bool:
     """Tell whether a reaction's movers may be at its destinations and ways, all different places."""
-    moves = tuple(_moves(reaction))
-    ways = ((node, place) for node, to in moves for place in (*reaction.via, to))
-    each_once = all(len({*reaction.via, to}) == len(reaction.via) + 1 for _, to in moves)
+    ways = ((node, place) for node, to in reaction.moves for place in (*reaction.via, to))
+    each_once = all(len({*reaction.via, to}) == len(reaction.via) + 1 for _, to in reaction.moves)
     return each_once and all(_may_be(mission, *way) for way in ways)
 
 
@@ -134,24 +133,21 @@ def _may_be(mission: ElaboratedMission, node: NodeTerm, place: PlaceTerm) -> boo
 
 def _unshown(reaction: Reaction, mission: ElaboratedMission) -> Iterator[str]:
     signature = mission.setting.signature
-    for node, place in _moves(reaction):
+    for node, place in reaction.moves:
         of, holder = _kind(mission, node), _kind(mission, place)
         if of is not None and not signature[of].driven:
             yield f"nothing shows that {node} is put into {place}"
         elif of is not None and holder is not None and of in signature[holder].carries:
             yield f"nothing shows that {node} is aboard {place}"
-    flies = any(True for _ in _moves(reaction))
     for node, links in _links(reaction):
         of = _kind(mission, node)
-        if flies or any(_is_other(link) for link in links) or (of is not None and not signature[of].driven):
+        if (
+            reaction.moves
+            or any(_is_other(link) for link in links)
+            or (of is not None and not signature[of].driven)
+        ):
             which = sorted(link if isinstance(link, str) else "a channel" for link in links)
             yield f"nothing shows that {node} joins or leaves {' and '.join(dict.fromkeys(which))}"
-
-
-def _moves(reaction: Reaction) -> Iterator[tuple[NodeTerm, PlaceTerm]]:
-    """Yield the nodes that a reaction moves, and their destinations."""
-    before = dict(reaction.redex.parents)
-    return ((node, place) for node, place in reaction.reactum.parents if before.get(node) != place)
 
 
 def _links(reaction: Reaction) -> Iterator[tuple[NodeTerm, frozenset[LinkTerm]]]:

@@ -4,11 +4,12 @@ It knows nothing of search, time, files, devices or the mission language. Genera
 property-based tests are in `semantics.strategies`, which needs the extra `strategies`.
 """
 
+from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Observation, Query
 from semantics.behaviours.program import Behaviour, Program
 from semantics.behaviours.queries import evaluate, overlay
-from semantics.behaviours.reactions import COMMANDS, Match, Pattern, Reaction, matches
+from semantics.behaviours.reactions import Match, Pattern, Reaction, matches
 from semantics.control import Obstacle, obstacle
 from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
 from semantics.extension import EXTENSION

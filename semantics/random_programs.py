@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
+from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import (
     Apply,
     Either,
@@ -18,9 +19,6 @@ from semantics.behaviours.expressions import (
 from semantics.behaviours.patterns import Anything, Elements, Exactly
 from semantics.behaviours.patterns import Pattern as CasePattern
 from semantics.behaviours.program import Behaviour, Program
-from semantics.behaviours.reactions import (
-    COMMANDS,
-)
 from semantics.behaviours.statements import (
     Assign,
     Block,
@@ -52,16 +50,6 @@ T = TypeVar("T")
 
 AGENT_NAMES = ("a", "b", "c", "d")
 SPAWNED_NAMES = ("d", "c", "a")
-ONE_ARGUMENT = frozenset({"MOVE_HOST_TO", "CONNECT_HOST_TO", "DISCONNECT_HOST_FROM"})
-TRAVELS = frozenset({"MOVE_HOST_TO", "MOVE"})
-"""Commands that may have places on their way, behind their other arguments."""
-
-
-def arity(command: str) -> int:
-    """Return how many arguments a command of the language takes, those behind VIA left out."""
-    return 1 if command in ONE_ARGUMENT else 2
-
-
 Variables = tuple[str, ...]
 """The variables in scope: `o1` holds an observation, `v1` any value."""
 
@@ -155,12 +143,12 @@ class _Writer:
         return Observe(self.query())
 
     def write_control(self, scope: Variables, _: int) -> Statement:
-        command = self.pick(["MOVE_HOST_TO", "MOVE_HOST_TO", *sorted(COMMANDS)])
+        command = COMMANDS[self.pick(["MOVE_HOST_TO", "MOVE_HOST_TO", *sorted(COMMANDS)])]
         places = [Literal(name) for name in self.names if name.startswith("place")]
         to = self.one(*places, self.name(scope))
-        before = [self.name(scope) for _ in range(arity(command) - 1)]
-        via = [self.name(scope) for _ in range(self.pick([0, 0, 0, 1, 2]))] if command in TRAVELS else []
-        return ControlBy(command, (*before, to, *via))
+        before = [self.name(scope) for _ in command.operands[1:]]
+        via = [self.name(scope) for _ in range(self.pick([0, 0, 0, 1, 2]))] if command.travels else []
+        return ControlBy(command.name, (*before, to, *via))
 
     def write_react(self, scope: Variables, depth: int) -> Statement:
         return React(self.cases(scope, depth))

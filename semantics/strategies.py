@@ -13,11 +13,11 @@ from typing import TypeVar
 from hypothesis import strategies as st
 
 from physical import Band, box, circle, point
+from semantics.behaviours.commands import COMMANDS, Command
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import All, Nodes, Of, Query
 from semantics.behaviours.program import Program
 from semantics.behaviours.reactions import (
-    COMMANDS,
     LinkTerm,
     LinkVariable,
     NodeTerm,
@@ -26,11 +26,9 @@ from semantics.behaviours.reactions import (
     PlaceTerm,
     PlaceVariable,
     Reaction,
-    move,
-    move_host_to,
 )
 from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
-from semantics.random_programs import AGENT_NAMES, ONE_ARGUMENT, random_program
+from semantics.random_programs import AGENT_NAMES, random_program
 from semantics.state.agents import Code
 from semantics.state.configuration import Configuration
 from semantics.state.initial import Beliefs, initial
@@ -268,16 +266,13 @@ def queries(names: Sequence[Name]) -> st.SearchStrategy[Query]:
 def commands(host: Name, names: Sequence[Name]) -> st.SearchStrategy[Reaction]:
     """Yield the reactions of the language's commands, from a host, over these names."""
     name = st.sampled_from(names)
-    via = st.lists(name, min_size=1, max_size=2)
-    return st.one_of(
-        st.builds(lambda place, way: move_host_to(host, place, *way), name, via),
-        st.builds(lambda entity, place, way: move(host, entity, place, *way), name, name, via),
-        *(st.builds(COMMANDS[one], st.just(host), name) for one in sorted(ONE_ARGUMENT)),
-        *(
-            st.builds(COMMANDS[two], st.just(host), name, name)
-            for two in sorted(set(COMMANDS) - ONE_ARGUMENT)
-        ),
-    )
+
+    def of(command: Command) -> st.SearchStrategy[Reaction]:
+        via = st.lists(name, max_size=2 if command.travels else 0)
+        operands = st.tuples(*(name for _ in command.operands))
+        return st.builds(lambda given, way: command(host, *given, *way), operands, via)
+
+    return st.one_of([of(command) for command in COMMANDS.values()])
 
 
 @st.composite
@@ -306,7 +301,7 @@ def reactions(draw: st.DrawFn, names: Sequence[Name], host: Name) -> Reaction:
     way = pick(draw, ["move", "command", "other"])
     if way == "move":
         holders = [name for name in names if name.startswith(("place", "vessel"))]
-        return move_host_to(host, pick(draw, holders or names))
+        return COMMANDS["MOVE_HOST_TO"](host, pick(draw, holders or names))
     if way == "command":
         return draw(commands(host, names))
     redex = draw(patterns(names, host))

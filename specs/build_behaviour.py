@@ -160,26 +160,12 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
 
     # --- control actions
 
-    def move_host(self, c: Children) -> s.MoveHost:
-        return s.MoveHost(c[1], _via(c[2]), span=cover(c))
-
-    def move(self, c: Children) -> s.Move:
-        return s.Move(c[1], c[3], _via(c[4]), span=cover(c))
+    def command(self, c: Children) -> s.Command:
+        via = c[-1].value if isinstance(c[-1], Part) else ()
+        return s.Command(str(c[0]), nodes(c), via, span=cover(c))
 
     def via(self, c: Children) -> Part:
         return Part(cover(c), nodes(c))
-
-    def connect(self, c: Children) -> s.Connect:
-        return s.Connect(c[1], span=cover(c))
-
-    def disconnect(self, c: Children) -> s.Disconnect:
-        return s.Disconnect(c[1], span=cover(c))
-
-    def hand_over(self, c: Children) -> s.HandOver:
-        return s.HandOver(c[1], c[3], span=cover(c))
-
-    def put(self, c: Children) -> s.Put:
-        return s.Put(c[1], c[3], span=cover(c))
 
     def apply_rule(self, c: Children) -> s.ApplyRule:
         return s.ApplyRule(name(c[0]), nodes(c), span=cover(c))
@@ -229,10 +215,6 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
     def group(self, c: Children) -> s.Expression:
         expression: s.Expression = c[1]
         return expression
-
-
-def _via(part: Part | None) -> tuple[s.Expression, ...]:
-    return () if part is None else part.value
 
 
 def _literal(c: Children) -> s.TextLiteral | s.IntegerLiteral | s.TruthLiteral:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from enum import Enum
 from typing import Final
 
+from semantics.behaviours.commands import COMMANDS, WAY
+
 RANGES: Final = {
     "LS0": "the file",
     "LS1": "syntax",
@@ -15,6 +17,11 @@ RANGES: Final = {
     "LS6": "environment, checks and live runs",
     "LS7": "warnings: allowed, but probably not meant",
 }
+
+_FORMS: Final = ", ".join(f"`{command.form}`" for command in COMMANDS.values())
+_WAYS: Final = " and ".join(
+    f"`{each.write(each.operands, WAY)}`" for each in COMMANDS.values() if each.travels
+)
 
 
 class Code(Enum):
@@ -117,9 +124,7 @@ class Code(Enum):
     MISSING_DESTINATION = (
         "LS109",
         "control action without its destination",
-        """Control actions are written `MOVE_HOST_TO place`, `MOVE entity TO place`, both with `VIA place, place`
-        behind where something is to be passed, `CONNECT_HOST_TO node`, `DISCONNECT_HOST_FROM node`, `HAND entity
-        TO station`, `PUT entity IN place`, `rule(arguments)` or `{ redex -> reactum }`.""",
+        f"""Control actions are written {_FORMS}, `rule(arguments)` or `{{ redex -> reactum }}`.""",
     )
     MISSPELT_KEYWORD = (
         "LS110",
@@ -215,8 +220,7 @@ class Code(Enum):
     MISPLACED_VIA = (
         "LS127",
         "'VIA' where nothing travels",
-        """Only moves have a way: `MOVE_HOST_TO place VIA gate0, gate1` and `MOVE entity TO place VIA gate0,
-        gate1`. VIA stands once, behind the destination.""",
+        f"""Only what travels has a way: {_WAYS}. VIA stands once, behind the destination.""",
     )
     # --- LS2: names and kinds
     UNKNOWN_NAME = (

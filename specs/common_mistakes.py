@@ -12,9 +12,10 @@ import re
 from collections.abc import Callable, Iterable
 from typing import Final
 
+from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS, VIA, WAY
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
-from specs.grammar import ACTION_WORDS, QUERY_WORDS, RESERVED, SECTIONS, STATEMENTS
+from specs.grammar import QUERY_WORDS, RESERVED, SECTIONS, STATEMENTS
 from specs.parse_stop import Situation, Word, is_keyword, line_of, open_brackets
 from specs.syntax.nodes import Span
 
@@ -78,7 +79,7 @@ def misspelt_word_before(at: Situation) -> Diagnostic | None:
     if at.accepted == {")"} and at.found.text == "(":
         return _misspelt(at.before, QUERY_WORDS)
     if at.accepted == {"("}:
-        return _misspelt(at.before, ACTION_WORDS)
+        return _misspelt(at.before, COMMAND_WORDS)
     if at.accepted == {":"}:
         return _misspelt(at.before, {"channel", "from"})
     if "drifts" in at.accepted:
@@ -100,21 +101,23 @@ def misplaced_statement(at: Situation) -> Diagnostic | None:
 
 def missing_destination(at: Situation) -> Diagnostic | None:
     """`control(MOVE uav0)`."""
-    for word in ("TO", "IN"):
-        if word in at.accepted:
-            message = f"expected '{word}' and a {'place' if word == 'IN' else 'destination'}, found {at.found.shown}"
-            hint = "control actions are MOVE u TO place, HAND u TO station, PUT x IN place"
-            return at.mistake(Code.MISSING_DESTINATION, message, hint)
-    if at.before.text in ACTION_WORDS and at.at_expression and at.found.text in (")", "VIA"):
+    for word in sorted(COMMAND_WORDS & at.accepted - COMMANDS.keys() - {VIA}):
+        written = [command for command in COMMANDS.values() if word in command.words]
+        wanted = " or ".join(dict.fromkeys(command.after(word) for command in written))
+        hint = f"control actions are {', '.join(command.form for command in written)}"
+        message = f"expected '{word}' and a {wanted}, found {at.found.shown}"
+        return at.mistake(Code.MISSING_DESTINATION, message, hint)
+    if at.before.text in COMMAND_WORDS and at.at_expression and at.found.text in (")", VIA):
         return at.mistake(Code.MISSING_DESTINATION, f"'{at.before.text}' needs a name behind it", "say which")
     return None
 
 
 def misplaced_via(at: Situation) -> Diagnostic | None:
     """`control(CONNECT_HOST_TO gcs0 VIA gate0)`, or VIA twice."""
-    if at.found.text != "VIA":
+    if at.found.text != VIA:
         return None
-    hint = "write MOVE_HOST_TO place VIA gate0, gate1, or MOVE u TO place VIA gate0, gate1"
+    forms = [command.write(command.operands, WAY) for command in COMMANDS.values() if command.travels]
+    hint = f"write {', or '.join(forms)}"
     return at.mistake(Code.MISPLACED_VIA, "'VIA' stands where nothing travels, or has its way already", hint)
 
 

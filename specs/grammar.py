@@ -10,6 +10,7 @@ from typing import Final, Protocol
 from lark import Lark, Token
 from lark.lexer import PatternRE, PatternStr, TerminalDef
 
+from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS, Command
 from specs.build_behaviour import BuildBehaviour
 from specs.build_world import BuildWorld
 from specs.syntax import Mission
@@ -62,15 +63,12 @@ QUERY_WORDS: Final = frozenset(
         "HOSTED_AT_HOST",
     ]
 )
-ACTION_WORDS: Final = frozenset(
-    ["MOVE_HOST_TO", "MOVE", "TO", "VIA", "CONNECT_HOST_TO", "DISCONNECT_HOST_FROM", "HAND", "PUT", "IN"]
-)
 RESERVED: Final = (
     SECTIONS
     | STATEMENTS
     | OPERATION_WORDS
     | QUERY_WORDS
-    | ACTION_WORDS
+    | COMMAND_WORDS
     | frozenset(["case", "else", "hosted_at", "with_behavior", "to", "at", "says", "someone"])
 )
 
@@ -80,8 +78,15 @@ class _Build(BuildWorld, BuildBehaviour):
 
 
 def grammar_text() -> str:
-    """Return the grammar as it is written in mission.lark."""
-    return Path(__file__).with_name("mission.lark").read_text(encoding="utf-8")
+    """Return the grammar as it is written in mission.lark, with a line for each command."""
+    text = Path(__file__).with_name("mission.lark").read_text(encoding="utf-8")
+    return text.replace("COMMANDS", "\n       | ".join(map(_rule, COMMANDS.values())))
+
+
+def _rule(command: Command) -> str:
+    """Return how a command is written, in the grammar's notation."""
+    parts = (f'"{part}"' if part in command.words else "expression" for part in command.parts)
+    return " ".join([*parts, *(["[via]"] if command.travels else [])])
 
 
 @cache

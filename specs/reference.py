@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator
 from typing import Final
 
+from semantics.behaviours.commands import COMMANDS, WAY, Command
 from specs import syntax as s
 from specs.grammar import RESERVED, grammar_text
 
@@ -76,7 +77,7 @@ NODES: Final[dict[str, tuple[type[s.Node], ...]]] = {
         s.TuplePattern,
     ),
     "Queries": (s.HostReference, s.AllNodes, s.QueryApplication),
-    "Control actions": (s.MoveHost, s.Move, s.Connect, s.Disconnect, s.HandOver, s.Put, s.ApplyRule),
+    "Control actions": (s.Command, s.ApplyRule),
     "Expressions": (
         s.Name,
         s.TextLiteral,
@@ -287,9 +288,17 @@ def forms(node: type[s.Node]) -> tuple[str, ...]:
 
 def _constructs(heading: str) -> Iterator[str]:
     for node in NODES[heading]:
+        if node is s.Command:
+            yield from map(_command, COMMANDS.values())
         shown, _, _ = _documentation(node).partition("\n\nAttributes:")  # those are about the tree
         yield f"- {' '.join(shown.split())}"
     yield ""
+
+
+def _command(command: Command) -> str:
+    told = inspect.getdoc(command.sides) or ""
+    way = f" or `{command.write(command.operands, WAY)}`" if command.travels else ""
+    return f"- `{command.form}`{way}: {told[:1].lower()}{told[1:]}"
 
 
 def _documentation(node: type[s.Node]) -> str:

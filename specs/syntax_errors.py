@@ -6,10 +6,11 @@ from typing import Final
 
 from lark import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
+from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS
 from specs.codes import Code
 from specs.common_mistakes import MISTAKES
 from specs.diagnostics import Diagnostic
-from specs.grammar import ACTION_WORDS, QUERY_WORDS, SECTIONS, STATEMENTS, Run
+from specs.grammar import QUERY_WORDS, SECTIONS, STATEMENTS, Run
 from specs.parse_stop import Situation, line_of, situation
 from specs.text import Prepared
 
@@ -50,7 +51,7 @@ _GROUPS: Final[tuple[tuple[str, str, frozenset[str], frozenset[str]], ...]] = (
     ("signature", "a declaration", SECTIONS | {"control"}, frozenset()),
     ("SELF", "an expression", _EXPRESSION, frozenset({"NAME", "STRING", "NUMBER"})),
     ("actually", "a formula", _FORMULA, frozenset({"NAME"})),
-    ("MOVE_HOST_TO", "a control action", ACTION_WORDS, frozenset({"NAME", "RULE_BODY"})),
+    (next(iter(COMMANDS)), "a control action", COMMAND_WORDS, frozenset({"NAME", "RULE_BODY"})),
     ("ALL", "a query", QUERY_WORDS | {"HOST"}, frozenset({"NAME"})),
     (
         "_",

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from functools import singledispatch
 from typing import Final
 
+from semantics.behaviours.commands import COMMANDS
 from specs import syntax as s
 
 _ESCAPES: Final = str.maketrans({'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t"})
@@ -149,37 +150,8 @@ def _(node: s.QueryApplication) -> str:
 
 
 @write.register
-def _(node: s.MoveHost) -> str:
-    return f"MOVE_HOST_TO {write(node.destination)}{_via(node.via)}"
-
-
-@write.register
-def _(node: s.Move) -> str:
-    return f"MOVE {write(node.entity)} TO {write(node.destination)}{_via(node.via)}"
-
-
-def _via(places: tuple[s.Expression, ...]) -> str:
-    return f" VIA {listed(places)}" if places else ""
-
-
-@write.register
-def _(node: s.Connect) -> str:
-    return f"CONNECT_HOST_TO {write(node.node)}"
-
-
-@write.register
-def _(node: s.Disconnect) -> str:
-    return f"DISCONNECT_HOST_FROM {write(node.node)}"
-
-
-@write.register
-def _(node: s.HandOver) -> str:
-    return f"HAND {write(node.entity)} TO {write(node.station)}"
-
-
-@write.register
-def _(node: s.Put) -> str:
-    return f"PUT {write(node.entity)} IN {write(node.place)}"
+def _(node: s.Command) -> str:
+    return COMMANDS[node.name].write(map(write, node.operands), map(write, node.via))
 
 
 @write.register

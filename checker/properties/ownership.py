@@ -125,7 +125,7 @@ class _Text:
         What may contain something may take anything along. What carries something decides where its cargo can be put.
         """
         before, after = reaction.redex, reaction.reactum
-        moved = {self._term(node) for node, _ in set(after.parents) - set(before.parents)}
+        moved = {self._term(node) for node, _ in reaction.moves}
         linked = {self._term(node) for _, node in set(after.links) ^ set(before.links)}
         places = {("children", ANY)} if moved else set()
         slots = {("parent", node) for node in moved} | {("links", node) for node in linked} | places

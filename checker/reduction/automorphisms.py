@@ -6,10 +6,10 @@ from itertools import product
 from typing import Any
 
 from checker.reduction.renaming import WORD, Renaming
+from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Fault, Literal, Variable
 from semantics.behaviours.patterns import Anything, Exactly
 from semantics.behaviours.program import Behaviour
-from semantics.behaviours.reactions import COMMANDS
 from semantics.behaviours.statements import Assign, ChooseFrom, ControlBy, For, ForEach, Spawn
 from semantics.environment import Says
 from semantics.properties.propositions import And, Or, Proposition

@@ -242,7 +242,7 @@ class _Reacting:
     def __init__(self, of: Footprints, reaction: Reaction) -> None:
         self.of = of
         self.bounds = of.bounds
-        self.redex, self.reactum = reaction.redex, reaction.reactum
+        self.reaction, self.redex, self.reactum = reaction, reaction.redex, reaction.reactum
         self.nodes = frozenset[Name]().union(*map(self.nodes_of, (*self.redex.nodes, *self.reactum.nodes)))
         self.reads: set[Slot] = set()
         self.writes: set[Slot] = set()
@@ -303,7 +303,7 @@ class _Reacting:
 
     def placing(self) -> None:
         """Bound `moved`, `stays_forest` and `drive`: who may be moved, and where to."""
-        pairs = [pair for pair in self.reactum.parents if pair not in self.redex.parents]
+        pairs = self.reaction.moves
         moving = frozenset[Name]().union(*(self.nodes_of(node) for node, _ in pairs)) & self.bounds.names
         places = frozenset[Name]().union(
             *(self.places_of(place, each) for node, place in pairs for each in self.nodes_of(node) & self.bounds.names)

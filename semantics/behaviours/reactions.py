@@ -4,9 +4,8 @@ Matching is by relations: injective on nodes, and the image of one redex region 
 own disjointness is kept by `bigraphs.matching`, for `.big` systems.)
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from typing import Final
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 
 from semantics.state.logical_model import LogicalModel
 from semantics.state.physical_model import PhysicalModel
@@ -77,6 +76,14 @@ class Pattern:
     links: tuple[tuple[LinkTerm, NodeTerm], ...] = ()
     closed: tuple[NodeTerm, ...] = ()
 
+    def beside(self, nodes: tuple[NodeTerm, ...]) -> "Pattern":
+        """Return the pattern with more nodes beside: context, of which it says nothing else."""
+        return replace(self, nodes=(*self.nodes, *nodes)) if nodes else self
+
+
+Sides = tuple[Pattern, Pattern]
+"""R and R'."""
+
 
 @dataclass(frozen=True, slots=True)
 class Reaction:
@@ -99,6 +106,12 @@ class Reaction:
 
     def __str__(self) -> str:
         return self.text
+
+    @property
+    def moves(self) -> tuple[tuple[NodeTerm, PlaceTerm], ...]:
+        """What it moves and where to, as far as its patterns tell; `moved` says it of a match."""
+        before = dict(self.redex.parents)
+        return tuple((node, place) for node, place in self.reactum.parents if before.get(node) != place)
 
 
 @dataclass(frozen=True, slots=True)
@@ -282,90 +295,3 @@ class _Search:
             return value != REGION and term.kind in (None, self.logical.sorting.kind(value))
         kind = value.partition(":")[0] if ":" in value else None
         return (term.kind is None or term.kind == kind) and (term.but is None or term.but != kind)
-
-
-# --- the commands of the language -----------------------------------------------------------------------------
-
-
-def move_host_to(host: Name, place: Name, *via: Name) -> Reaction:
-    """`MOVE_HOST_TO place VIA ...`: uses only `parent(host)`; where the host is there already it is the identity.
-
-    The places on the way are context: nodes with sites, on both sides.
-    """
-    anywhere = PlaceVariable("x")
-    nodes = (host, place, *via)
-    return Reaction(
-        f"MOVE_HOST_TO {place}{_by_way_of(via)}",
-        Pattern(nodes, parents=((host, anywhere),)),
-        Pattern(nodes, parents=((host, place),)),
-        via,
-    )
-
-
-def move(host: Name, vehicle: Name, place: Name, *via: Name) -> Reaction:
-    """`MOVE u TO place VIA ...`: the host has control authority over u; `h[c] || u[c]`, u anywhere."""
-    anywhere, authority = PlaceVariable("x"), LinkVariable("c", CONTROL_AUTHORITY)
-    links = ((authority, host), (authority, vehicle))
-    nodes = (host, vehicle, place, *via)
-    return Reaction(
-        f"MOVE {vehicle} TO {place}{_by_way_of(via)}",
-        Pattern(nodes, ((vehicle, anywhere),), links),
-        Pattern(nodes, ((vehicle, place),), links),
-        via,
-    )
-
-
-def _by_way_of(via: tuple[Name, ...]) -> str:
-    return f" VIA {', '.join(via)}" if via else ""
-
-
-def put(host: Name, cargo: Name, place: Name) -> Reaction:
-    """`PUT x IN place`: what the host holds is put somewhere: `h.(x | $0)`."""
-    nodes = (host, cargo, place)
-    return Reaction(
-        f"PUT {cargo} IN {place}", Pattern(nodes, ((cargo, host),)), Pattern(nodes, ((cargo, place),))
-    )
-
-
-def hand(host: Name, vehicle: Name, station: Name) -> Reaction:
-    """`HAND u TO g`: `h[c] || u[c] || g[d] -> h[c] || u[d] || g[d]`, c and d control authorities."""
-    old, new = LinkVariable("c", CONTROL_AUTHORITY), LinkVariable("d", CONTROL_AUTHORITY)
-    nodes = (host, vehicle, station)
-    return Reaction(
-        f"HAND {vehicle} TO {station}",
-        Pattern(nodes, links=((old, host), (old, vehicle), (new, station))),
-        Pattern(nodes, links=((old, host), (new, vehicle), (new, station))),
-    )
-
-
-def connect_host_to(host: Name, node: Name) -> Reaction:
-    """`CONNECT_HOST_TO n`: the host joins a channel of n, control authorities excepted."""
-    channel = LinkVariable("d", but=CONTROL_AUTHORITY)
-    return Reaction(
-        f"CONNECT_HOST_TO {node}",
-        Pattern((host, node), links=((channel, node),)),
-        Pattern((host, node), links=((channel, node), (channel, host))),
-    )
-
-
-def disconnect_host_from(host: Name, node: Name) -> Reaction:
-    """`DISCONNECT_HOST_FROM n`: the host leaves a channel that it shares with n, control authorities excepted."""
-    channel = LinkVariable("d", but=CONTROL_AUTHORITY)
-    return Reaction(
-        f"DISCONNECT_HOST_FROM {node}",
-        Pattern((host, node), links=((channel, node), (channel, host))),
-        Pattern((host, node), links=((channel, node),)),
-    )
-
-
-MOST_VIA: Final = 20
-"""Places that a move may name on its way: a longer path is several moves."""
-
-COMMANDS: Mapping[str, Callable[..., Reaction]] = {
-    "MOVE_HOST_TO": move_host_to,
-    "MOVE": move,
-    "PUT": put,
-    "HAND": hand,
-    "CONNECT_HOST_TO": connect_host_to,
-    "DISCONNECT_HOST_FROM": disconnect_host_from,
-}

@@ -6,15 +6,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Expression, Literal
 from semantics.behaviours.program import Behaviour, Program
-from semantics.behaviours.reactions import COMMANDS
 from semantics.behaviours.statements import Loop
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.commands import Checked
 from specs.elaboration.names import Names
-from specs.elaboration.schemas import Maker, Schema
+from specs.elaboration.schemas import Checked, Maker, Schema
 from specs.elaboration.statements import Body, Numbering, SpawnSite
 
 
@@ -130,7 +129,7 @@ def elaborate_bodies(
         name: Behaviour(name, bodies.parameters[name], body.block) for name, body in bodies.behaviours.items()
     }
     reactions: dict[str, Checked | Maker] = {
-        name: Checked(name, command, names.kinds) for name, command in COMMANDS.items()
+        name: Checked(command, names.kinds) for name, command in COMMANDS.items()
     }
     reactions |= {name: Maker(schema, names.kinds) for name, schema in bodies.schemas.items()}
     statements, lines = tuple(program.statements), tuple(program.lines)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from physical import Geometry, PhysicalError, area, band_contains, nearest_placement
+from semantics.behaviours.commands import COMMANDS, HOST, Command
 from semantics.behaviours.expressions import Expression, Host, Literal
 from semantics.behaviours.reactions import NodeVariable
 from semantics.state.physical_model import Placed
@@ -16,7 +17,7 @@ from specs.elaboration.bodies import Bodies, body_key, possible_hosts
 from specs.elaboration.findings import a
 from specs.elaboration.names import Names
 from specs.elaboration.places import Mobility
-from specs.elaboration.schemas import HOST, Schema
+from specs.elaboration.schemas import Schema
 from specs.elaboration.statements import ControlSite
 from specs.elaboration.world import World
 
@@ -25,12 +26,6 @@ MOST_HOSTS: Final = 50
 
 MOST_HOLES: Final = 50
 """Places that may swallow a node: of more than these, where it fits is left to the run."""
-
-_MOVING: Final = {"MOVE_HOST_TO": (None, 0), "MOVE": (0, 1), "PUT": (0, 1)}
-"""For each command that moves: which argument is moved (None for the host), and which is where to.
-
-What is passed on the way stands behind that.
-"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,16 +167,22 @@ def _check_site(
     site: ControlSite, hosts: tuple[str, ...], schemas: Mapping[str, Schema], ground: Ground
 ) -> None:
     name, arguments = site.statement.name, site.statement.arguments
-    if name in _MOVING:
-        moved, place = _MOVING[name]
-        movers = [_value(None if moved is None else arguments[moved], host, ground) for host in hosts]
-        places = [_value(arguments[place], host, ground) for host in hosts]
-        _report(site.where, map(ground.obstacle, movers, places), ground)
-        for node, via in zip(site.via, arguments[place + 1 :], strict=True):
-            passed = [_value(via, host, ground) for host in hosts]
-            _report(node, map(ground.bars, movers, passed), ground, Code.BAD_WAY)
+    if name in COMMANDS:
+        _check_command(site, COMMANDS[name], hosts, ground)
     elif name in schemas and len(arguments) == len(schemas[name].parameters):
         _check_use(site, schemas[name], hosts, ground)
+
+
+def _check_command(site: ControlSite, command: Command, hosts: tuple[str, ...], ground: Ground) -> None:
+    """Report what a command moves that can never be where it goes, or never pass what it passes."""
+    arguments = dict(zip(command.operands, site.statement.arguments, strict=False)) | {HOST: Host()}
+    for node, place in command.open.moves:
+        movers = [_value(arguments.get(str(node)), host, ground) for host in hosts]
+        places = [_value(arguments.get(str(place)), host, ground) for host in hosts]
+        _report(site.where, map(ground.obstacle, movers, places), ground)
+        for passed, via in zip(site.via, site.statement.arguments[len(command.operands) :], strict=True):
+            ways = [_value(via, host, ground) for host in hosts]
+            _report(passed, map(ground.bars, movers, ways), ground, Code.BAD_WAY)
 
 
 def _check_use(site: ControlSite, rule: Schema, hosts: tuple[str, ...], ground: Ground) -> None:
@@ -231,7 +232,7 @@ def _report(
 
 
 def _value(expression: Expression | None, host: str, ground: Ground) -> Someone:
-    if expression is None or isinstance(expression, Host):
+    if isinstance(expression, Host):
         return ground.node(host)
     if isinstance(expression, Literal) and str(expression.value) in ground.names.kinds:
         return ground.node(str(expression.value))

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
-from semantics.behaviours.reactions import COMMANDS
 from semantics.state.signature import REGION, Signature
 from specs import syntax as s
 from specs.codes import Code
@@ -58,8 +57,6 @@ class Names:
             if taken is not None
             else "is what lies around everything"
             if name == REGION and sort in EXCLUSIVE
-            else "is a command of the language"
-            if sort == "rule" and name in COMMANDS
             else ""
         )
         if problem:

@@ -7,14 +7,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
+from semantics.behaviours.commands import HOST, Command
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.reactions import NodeTerm, NodeVariable, Pattern, PlaceTerm, PlaceVariable, Reaction
 from semantics.behaviours.values import Value, show
 from semantics.state.signature import Name
 from specs import syntax as s
-
-HOST: Final = "HOST"
-"""Stands for the agent's host in a schema; no entity has this name, since it is reserved."""
 
 _WORD: Final = re.compile(r"[^\W\d]\w*")
 
@@ -77,6 +75,28 @@ class Schema:
         return term == HOST or (unknown and self.kinds.get(term) in (None, kind))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Checked:
+    """Makes the reactions of a command of the language; it fails for a value that is no node.
+
+    Attributes:
+        command: The command.
+        kinds: The nodes that there are.
+    """
+
+    command: Command
+    kinds: Mapping[Name, str]
+
+    def __call__(self, host: Name, *arguments: Value) -> Reaction:
+        """Return R ⇒ R'.
+
+        Raises:
+            Fault: An argument is no node.
+        """
+        nodes = (_node(value, self.kinds, f"{self.command.name} needs a node, not") for value in arguments)
+        return self.command(host, *nodes)
+
+
 @dataclass(frozen=True, slots=True)
 class Maker:
     """Makes the reactions of a schema: what `Program.reactions` holds for a rule."""
@@ -97,14 +117,13 @@ class Maker:
         return Reaction(text, _put(schema.redex, values), _put(schema.reactum, values))
 
     def _node(self, parameter: Parameter, value: Value) -> Name:
-        shown = show(value, frozenset(self.kinds))
-        if not isinstance(value, str) or value not in self.kinds:
-            raise Fault(f"a node was expected for {parameter.shown}, not {shown}")
-        if parameter.kind is not None and self.kinds[value] != parameter.kind:
+        node = _node(value, self.kinds, f"a node was expected for {parameter.shown}, not")
+        if parameter.kind is not None and self.kinds[node] != parameter.kind:
+            shown = show(value, frozenset(self.kinds))
             raise Fault(
-                f"{parameter.shown} is of kind {parameter.kind}, and {shown} is of kind {self.kinds[value]}"
+                f"{parameter.shown} is of kind {parameter.kind}, and {shown} is of kind {self.kinds[node]}"
             )
-        return value
+        return node
 
     def _text(self, values: Mapping[str, Name]) -> str:
         schema = self.schema
@@ -116,6 +135,13 @@ class Maker:
             return values[stands] + rest if stands else found[0]
 
         return _WORD.sub(word, schema.text)
+
+
+def _node(value: Value, kinds: Mapping[Name, str], otherwise: str) -> Name:
+    """Return a value that is a node; raises Fault."""
+    if not isinstance(value, str) or value not in kinds:
+        raise Fault(f"{otherwise} {show(value, frozenset(kinds))}")
+    return value
 
 
 def _put(pattern: Pattern, values: Mapping[str, Name]) -> Pattern:

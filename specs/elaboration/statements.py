@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any, Final
 
 from semantics.behaviours import statements as k
+from semantics.behaviours.commands import COMMANDS, HOST, MOST_VIA
 from semantics.behaviours.expressions import Expression, Variable
 from specs import syntax as s
 from specs.codes import Code
@@ -19,13 +20,14 @@ from specs.elaboration.expressions import (
     elaborate_node,
     elaborate_query,
 )
+from specs.elaboration.findings import Findings
 from specs.elaboration.names import Names
 from specs.elaboration.patterns import check_distinct, elaborate_pattern
 from specs.elaboration.regions import regions_of
 from specs.elaboration.rules import elaborate_rule, word_of
-from specs.elaboration.schemas import HOST, Parameter, Schema
+from specs.elaboration.schemas import Parameter, Schema
 from specs.elaboration.scopes import Scope, Variables
-from specs.elaboration.via import check_way
+from specs.writing import write
 
 _FILLED_LATER: Final = k.Tested()
 """Keeps the place of a statement until its blocks are numbered."""
@@ -60,7 +62,7 @@ class ControlSite:
     @property
     def via(self) -> tuple[s.Expression, ...]:
         """What stands behind VIA."""
-        return self.where.via if isinstance(self.where, s.MoveHost | s.Move) else ()
+        return self.where.via if isinstance(self.where, s.Command) else ()
 
 
 @dataclass(slots=True)
@@ -180,11 +182,9 @@ class _Statements:
             else:
                 check_arity(action.rule, len(action.arguments), len(rule.parameters), self.names.findings)
             return action.rule.text, tuple(self.node(each, place) for each in action.arguments)
-        name, parts = _command(action)
-        arguments = tuple(self.node(each, place) for each in parts)
-        if isinstance(action, s.MoveHost | s.Move):
-            check_way(action, arguments, self.names.findings)
-        return name, arguments
+        arguments = tuple(self.node(each, place) for each in (*action.operands, *action.via))
+        _check_way(action, arguments, self.names.findings)
+        return action.name, arguments
 
     def node(self, node: s.Expression, place: _Place) -> Expression:
         return elaborate_node(node, place.scope, self.names)
@@ -330,21 +330,24 @@ class _Statements:
         return tuple(found)
 
 
-def _command(action: s.Action) -> tuple[str, tuple[s.Expression, ...]]:
-    match action:
-        case s.MoveHost(place, via):
-            return "MOVE_HOST_TO", (place, *via)
-        case s.Move(entity, place, via):
-            return "MOVE", (entity, place, *via)
-        case s.Connect(node):
-            return "CONNECT_HOST_TO", (node,)
-        case s.Disconnect(node):
-            return "DISCONNECT_HOST_FROM", (node,)
-        case s.HandOver(entity, station):
-            return "HAND", (entity, station)
-        case s.Put(entity, place):
-            return "PUT", (entity, place)
-    raise AssertionError(action)
+def _check_way(action: s.Command, arguments: tuple[Expression, ...], findings: Findings) -> None:
+    """Report a way that is too long, or that names something twice; `arguments` is all that the action names."""
+    if len(action.via) > MOST_VIA:
+        message = f"a move passes {MOST_VIA} places at the most, and {len(action.via)} are named"
+        findings.add(Code.BAD_WAY, action.via[MOST_VIA], message, "make two moves of it")
+        return
+    command = COMMANDS[action.name]
+    named = dict(zip(command.operands, arguments, strict=False))
+    destinations = [named.get(str(place)) for _, place in command.open.moves]
+    via = arguments[len(command.operands) :]
+    for number, (place, node) in enumerate(zip(via, action.via, strict=True)):
+        if place in destinations:
+            message, hint = f"'{write(node)}' is where it goes", "leave it out: it comes last by itself"
+        elif place in via[:number]:
+            message, hint = f"'{write(node)}' is passed already", "come by a second time with another move"
+        else:
+            continue
+        findings.add(Code.BAD_WAY, node, message, hint)
 
 
 _STATEMENTS: Final[Mapping[type, Callable[[_Statements, Any, _Place, int], k.Statement]]] = {

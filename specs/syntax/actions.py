@@ -13,55 +13,17 @@ from specs.syntax.nodes import Name, Node
 
 
 @dataclass(frozen=True, slots=True)
-class MoveHost(Node):
-    """`MOVE_HOST_TO e` or `MOVE_HOST_TO e VIA v, w`: move the agent's host into a place.
+class Command(Node):
+    """`MOVE u TO e`, `HAND u TO g`: a command, each operand the name of a node, or a variable that holds one.
 
-    It passes the places behind VIA on its way, in their order: twenty at the most, each named once. These are context:
-    L has to have them, P has to show them, and nothing else is asked of them. On its way it is in none of them: what
-    flies is in transit to its destination. Live, the vehicle gets the way as a mission on board.
+    Behind `VIA v, w` stand the places that it passes on its way, in their order: twenty at the most, each named once.
+    These are context: L has to have them, P has to show them, and nothing else is asked of them. On its way it is in
+    none of them: what flies is in transit to its destination. Live, the vehicle gets the way as a mission on board.
     """
 
-    destination: Expression
+    name: str
+    operands: tuple[Expression, ...]
     via: tuple[Expression, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Move(Node):
-    """`MOVE u TO e` or `MOVE u TO e VIA v, w`: move another entity into a place."""
-
-    entity: Expression
-    destination: Expression
-    via: tuple[Expression, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Connect(Node):
-    """`CONNECT_HOST_TO e`: join a channel of a node."""
-
-    node: Expression
-
-
-@dataclass(frozen=True, slots=True)
-class Disconnect(Node):
-    """`DISCONNECT_HOST_FROM e`: leave the channels shared with a node."""
-
-    node: Expression
-
-
-@dataclass(frozen=True, slots=True)
-class HandOver(Node):
-    """`HAND u TO g`: hand the control authority over an entity to a station."""
-
-    entity: Expression
-    station: Expression
-
-
-@dataclass(frozen=True, slots=True)
-class Put(Node):
-    """`PUT x IN e`: put what a carrier holds where the carrier is, or into a carrier."""
-
-    entity: Expression
-    place: Expression
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,4 +62,4 @@ def _read(text: str) -> RuleTerm | None:
         return None
 
 
-Action: TypeAlias = MoveHost | Move | Connect | Disconnect | HandOver | Put | ApplyRule | RuleBody
+Action: TypeAlias = Command | ApplyRule | RuleBody

@@ -1,10 +1,10 @@
 """A mission of two places, a UAV, a station and a vessel with its drifter, and one run of it."""
 
 from physical import box, circle, point
+from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Host, Literal, QueryOf
 from semantics.behaviours.patterns import Anything
 from semantics.behaviours.program import Program
-from semantics.behaviours.reactions import COMMANDS
 from semantics.behaviours.statements import Case, ControlBy, Observe, React
 from semantics.state.initial import initial
 from semantics.state.physical_model import Carried, Placed

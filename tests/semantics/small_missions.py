@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from physical import box, circle, point
+from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Apply, Host, Literal, QueryOf, SetOf, TupleOf, Variable
 from semantics.behaviours.patterns import Anything
 from semantics.behaviours.program import Program
-from semantics.behaviours.reactions import COMMANDS
 from semantics.behaviours.statements import (
     Case,
     ChooseFrom,
@@ -22,6 +22,7 @@ from semantics.behaviours.statements import (
 )
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.initial import Beliefs, initial
+from semantics.state.logical_model import LogicalModel
 from semantics.state.physical_model import Carried, Placed, Placement
 from semantics.state.setting import Scheduler, Setting
 from semantics.state.signature import Kind, Signature
@@ -111,6 +112,11 @@ def of_name(operator: str, name: str) -> QueryOf:
 
 def is_in(name: str, variable: str) -> Apply:
     return Apply("in", (Literal(name), Variable(variable)))
+
+
+def logical_of(*names, **more) -> LogicalModel:
+    """Return the L that a mission over the small world begins with."""
+    return mission(names, **more).structure.logical
 
 
 def move_to(place: str) -> ControlBy:

@@ -7,9 +7,10 @@ from small_missions import SHAPES, aboard, around, enabled, explore, mission, mo
 
 from physical import circle, point
 from semantics import strategies
+from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Literal, QueryOf
 from semantics.behaviours.patterns import Anything
-from semantics.behaviours.reactions import COMMANDS, Pattern, PlaceVariable, Reaction, moved, relinked
+from semantics.behaviours.reactions import Pattern, PlaceVariable, Reaction, moved, relinked
 from semantics.behaviours.statements import Case, ControlBy, Observe, React, Send
 from semantics.control import Obstacle, applicable, is_consistent, obstacle, realisations
 from semantics.drive import drive

@@ -3,11 +3,11 @@
 import pytest
 from small_missions import GUARD, around, enabled, mission, move_to, run
 
+from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Apply, Fault, Literal, Self, Variable
 from semantics.behaviours.observations import Observation
 from semantics.behaviours.patterns import Anything, Elements, Exactly
 from semantics.behaviours.program import Behaviour, Program
-from semantics.behaviours.reactions import COMMANDS
 from semantics.behaviours.statements import Case, Display, Migrate, Observe, React, Send, Spawn
 from semantics.environment import Drops, Says
 from semantics.extension import migrate, rcv_msg, req_mgr, req_snd, say, snd, spawn

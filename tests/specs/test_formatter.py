@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from semantics.behaviours.commands import COMMANDS
 from specs import syntax as s
 from specs.diagnostics import Source
 from specs.formatter import format_mission, write_mission
@@ -68,13 +69,16 @@ queries = st.recursive(
     max_leaves=3,
 )
 bodies = st.sampled_from(["a -> b", "u[c] || b.$0 -> b.(u[c] | $0)", "a_UAV.1 -> a_UAV"]).map(s.RuleBody)
+
+
+def commanding(command):
+    operands = st.tuples(*(expressions for _ in command.operands))
+    via = tuples(expressions) if command.travels else st.just(())
+    return st.builds(s.Command, st.just(command.name), operands, via)
+
+
 actions = st.one_of(
-    st.builds(s.MoveHost, expressions),
-    st.builds(s.Move, expressions, expressions),
-    st.builds(s.Connect, expressions),
-    st.builds(s.Disconnect, expressions),
-    st.builds(s.HandOver, expressions, expressions),
-    st.builds(s.Put, expressions, expressions),
+    *map(commanding, COMMANDS.values()),
     st.builds(s.ApplyRule, names, tuples(expressions)),
     bodies,
 )

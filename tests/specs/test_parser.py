@@ -63,7 +63,7 @@ FIGURE_8 = s.BigActor(
                         s.Case(
                             s.LiteralPattern(s.TextLiteral("handover")),
                             None,
-                            (s.Control(s.HandOver(n("uav0"), n("gcs0"))),),
+                            (s.Control(s.Command("HAND", (n("uav0"), n("gcs0")))),),
                         ),
                     )
                 ),

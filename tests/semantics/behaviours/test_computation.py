@@ -4,11 +4,11 @@ from hypothesis import given
 from small_missions import mission
 
 from semantics import strategies
+from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.computation import members_of
 from semantics.behaviours.expressions import Apply, Literal, SetOf, Variable
 from semantics.behaviours.observations import Observation
 from semantics.behaviours.program import Behaviour, Program
-from semantics.behaviours.reactions import COMMANDS
 from semantics.behaviours.statements import Assign, Call, Display, For, ForEach, If, Send, While
 from semantics.behaviours.values import Truth
 from semantics.rules import fun

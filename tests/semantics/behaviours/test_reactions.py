@@ -2,31 +2,23 @@
 
 from itertools import product
 
-import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from small_missions import aboard, mission
+from small_missions import logical_of, mission
 
 from physical import point
 from semantics import strategies
 from semantics.behaviours.reactions import (
-    COMMANDS,
     LinkVariable,
     Match,
     NodeVariable,
     Pattern,
     PlaceVariable,
     Reaction,
-    hand,
     make_match,
     matches,
-    move_host_to,
-    moved,
-    relinked,
-    stays_forest,
 )
 from semantics.control import applicable
-from semantics.random_programs import arity
 from semantics.state.initial import Beliefs
 from semantics.state.logical_model import LogicalModel
 from semantics.state.physical_model import Placed
@@ -95,10 +87,6 @@ def test_matching_finds_what_a_naive_enumerator_finds(data):
 # --- matching ---------------------------------------------------------------------------------------------------
 
 
-def logical_of(*names, **more) -> LogicalModel:
-    return mission(names, **more).structure.logical
-
-
 def test_two_node_variables_stand_for_two_nodes_and_a_place_variable_for_any():
     logical = logical_of("base", "u0", "u1")
     n, m, x = NodeVariable("n", "Uav"), NodeVariable("m", "Uav"), PlaceVariable("x")
@@ -138,79 +126,6 @@ def test_a_match_is_found_once_even_if_two_relations_say_the_same():
     n = NodeVariable("n")
     pattern = Pattern((n,), ((n, "base"), (n, PlaceVariable("x"))))
     assert len(matches(pattern, logical_of("base", "u0"))) == 1
-
-
-# --- commands ---------------------------------------------------------------------------------------------------
-
-
-def test_moving_to_where_the_host_is_believed_is_the_identity():
-    logical = logical_of("base", "u0")
-    reaction = move_host_to("u0", "base")
-    (match,) = matches(reaction.redex, logical)
-    assert moved(reaction, match) == ()
-
-
-def test_a_host_does_not_move_into_itself_or_into_what_is_inside_it():
-    logical = logical_of("sea", "ship", "crate", placed={"crate": aboard("ship", "crate")})
-    assert matches(move_host_to("ship", "ship").redex, logical) == ()
-    reaction = move_host_to("ship", "crate")
-    (match,) = matches(reaction.redex, logical)
-    assert not stays_forest(reaction, match, logical)
-
-
-HANDED = {"gcs0": ["control:0"], "gcs1": ["control:1"]}
-
-
-def test_handing_over_is_the_identity_if_the_vehicle_is_on_that_channel_already():
-    logical = logical_of("u0", "gcs0", "gcs1", channels=HANDED | {"u0": ["control:0", "control:1"]})
-    reaction = hand("gcs0", "u0", "gcs1")
-    found = matches(reaction.redex, logical)
-    assert found
-    assert all(not lost for match in found for _, lost, _ in relinked(reaction, match, logical))
-
-
-def test_handing_over_changes_the_vehicles_channel_and_nothing_else():
-    logical = logical_of("u0", "gcs0", "gcs1", channels=HANDED | {"u0": ["control:0", "wifi"]})
-    reaction = hand("gcs0", "u0", "gcs1")
-    (match,) = matches(reaction.redex, logical)
-    assert relinked(reaction, match, logical) == (("u0", frozenset({"control:0"}), frozenset({"control:1"})),)
-
-
-def test_who_has_no_authority_cannot_hand_over():
-    logical = logical_of("u0", "gcs0", "gcs1", channels=HANDED | {"u0": ["control:1"]})
-    assert matches(hand("gcs0", "u0", "gcs1").redex, logical) == ()
-
-
-def test_every_command_prints_as_it_is_written():
-    shown = [str(COMMANDS[name](*"huv"[: 1 + arity(name)])) for name in sorted(COMMANDS)]
-    assert shown == [
-        "CONNECT_HOST_TO u",
-        "DISCONNECT_HOST_FROM u",
-        "HAND u TO v",
-        "MOVE u TO v",
-        "MOVE_HOST_TO u",
-        "PUT u IN v",
-    ]
-
-
-def test_moves_print_their_ways_and_name_them_as_context():
-    moving = COMMANDS["MOVE_HOST_TO"]("u0", "area", "base", "sea")
-    assert str(moving) == "MOVE_HOST_TO area VIA base, sea"
-    assert str(COMMANDS["MOVE"]("gcs0", "u0", "area", "base")) == "MOVE u0 TO area VIA base"
-    assert moving.via == ("base", "sea")
-    assert moving.redex.nodes == moving.reactum.nodes == ("u0", "area", "base", "sea")
-    straight = move_host_to("u0", "area")
-    assert (moving.redex.parents, moving.reactum.parents) == (
-        straight.redex.parents,
-        straight.reactum.parents,
-    )
-
-
-@pytest.mark.parametrize("way", [("area",), ("u0",), ("base", "base"), ("nowhere",)])
-def test_a_way_by_what_is_named_twice_or_not_believed_matches_nothing(way):
-    logical = logical_of("sea", "base", "area", "u0")
-    assert matches(move_host_to("u0", "area", "sea").redex, logical)
-    assert matches(move_host_to("u0", "area", *way).redex, logical) == ()
 
 
 def test_a_reaction_that_does_not_involve_the_host_is_not_applicable():

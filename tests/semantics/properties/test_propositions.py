@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 from small_missions import explore, figure_2, mission, move_to, run
 
 from semantics import strategies
+from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Fault, Literal
 from semantics.behaviours.program import Program, VariableOf
-from semantics.behaviours.reactions import COMMANDS
 from semantics.behaviours.statements import Assign
 from semantics.behaviours.values import Truth
 from semantics.properties.property import Property, watched, watching

@@ -3,9 +3,9 @@
 from small_missions import around, explore, is_in, mission, move_to, of_name, received
 
 from checker.properties.ownership import owned
+from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Apply, Literal, QueryOf, TupleOf, Variable
 from semantics.behaviours.program import Program
-from semantics.behaviours.reactions import COMMANDS
 from semantics.behaviours.statements import Assign, ControlBy, For, ForEach, If, Migrate, Observe, Send, Spawn
 from semantics.races.provenance import ANY, EVERYTHING
 from semantics.races.relevance import (

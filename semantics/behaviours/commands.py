@@ -1,0 +1,144 @@
+"""The commands of the language: one table, which all that knows commands by their names is derived from.
+
+Grammar, reserved words, hints, the reference, what is checked before a run, the formatter and the printed reactions
+read it; footprints and the live loop read the reactions. `docs/extending.md` says how one is added.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+from semantics.behaviours.reactions import (
+    CONTROL_AUTHORITY,
+    LinkVariable,
+    Pattern,
+    PlaceVariable,
+    Reaction,
+    Sides,
+)
+from semantics.state.signature import Name
+
+HOST: Final = "HOST"
+"""Stands for the agent's host where a reaction is still open in it; no entity has this name: it is reserved."""
+
+VIA: Final = "VIA"
+WAY: Final = ("gate0", "gate1")
+"""What is passed where a hint or the reference shows how that is written."""
+
+MOST_VIA: Final = 20
+"""Places that a move may name on its way: a longer path is several moves."""
+
+
+@dataclass(frozen=True)
+class Command:
+    """How a command is written, and the reaction that it requests.
+
+    Attributes:
+        form: Words of the language in capitals, operands in small letters: each another one, and each a node.
+        sides: R and R', given the agent's host and the operands; its docstring stands in the reference.
+        travels: Whether places to be passed may stand behind it: `VIA gate0, gate1`.
+    """
+
+    form: str
+    sides: Callable[..., Sides]
+    travels: bool = False
+
+    @cached_property
+    def parts(self) -> tuple[str, ...]:
+        """The words and operands, in the order in which they are written."""
+        return tuple(self.form.split())
+
+    @cached_property
+    def name(self) -> str:
+        """The word that it begins with."""
+        return self.parts[0]
+
+    @cached_property
+    def words(self) -> tuple[str, ...]:
+        """The words of the language in it."""
+        return tuple(part for part in self.parts if part.isupper())
+
+    @cached_property
+    def operands(self) -> tuple[str, ...]:
+        """What the operands are called."""
+        return tuple(part for part in self.parts if not part.isupper())
+
+    def after(self, word: str) -> str:
+        """Return what the operand behind a word is called."""
+        return self.parts[self.parts.index(word) + 1]
+
+    @cached_property
+    def open(self) -> Reaction:
+        """The reaction with `HOST` and the operands' own names in it: what it moves is known before any run."""
+        return self(HOST, *self.operands)
+
+    def __call__(self, host: Name, *arguments: Name) -> Reaction:
+        """Return R ⇒ R'. What stands behind the operands is passed: context, nodes with sites on both sides."""
+        operands, via = arguments[: len(self.operands)], arguments[len(self.operands) :]
+        redex, reactum = self.sides(host, *operands)
+        return Reaction(self.write(operands, via), redex.beside(via), reactum.beside(via), via)
+
+    def write(self, operands: Iterable[str], via: Iterable[str] = ()) -> str:
+        """Return the command as it is written with these operands."""
+        left = iter(operands)
+        text = " ".join(part if part.isupper() else next(left) for part in self.parts)
+        way = ", ".join(via)
+        return f"{text} {VIA} {way}" if way else text
+
+
+def move_host_to(host: Name, place: Name) -> Sides:
+    """Move the agent's host into a place. Where it is there already this is the identity."""
+    anywhere, nodes = PlaceVariable("x"), (host, place)
+    return Pattern(nodes, ((host, anywhere),)), Pattern(nodes, ((host, place),))
+
+
+def move(host: Name, entity: Name, place: Name) -> Sides:
+    """Move an entity into a place, from wherever it is. The host has control authority over it: `h[c] || u[c]`."""
+    anywhere, authority = PlaceVariable("x"), LinkVariable("c", CONTROL_AUTHORITY)
+    nodes, links = (host, entity, place), ((authority, host), (authority, entity))
+    return Pattern(nodes, ((entity, anywhere),), links), Pattern(nodes, ((entity, place),), links)
+
+
+def put(host: Name, entity: Name, place: Name) -> Sides:
+    """Put what the host holds, `h.(x | $0)`, where the host is, or into a carrier there."""
+    nodes = (host, entity, place)
+    return Pattern(nodes, ((entity, host),)), Pattern(nodes, ((entity, place),))
+
+
+def hand(host: Name, entity: Name, station: Name) -> Sides:
+    """Hand the control authority over an entity to a station: `h[c] || u[c] || g[d] -> h[c] || u[d] || g[d]`."""
+    old, new = LinkVariable("c", CONTROL_AUTHORITY), LinkVariable("d", CONTROL_AUTHORITY)
+    nodes = (host, entity, station)
+    return (
+        Pattern(nodes, links=((old, host), (old, entity), (new, station))),
+        Pattern(nodes, links=((old, host), (new, entity), (new, station))),
+    )
+
+
+def connect_host_to(host: Name, node: Name) -> Sides:
+    """Let the host join a channel of a node, control authorities excepted."""
+    channel, nodes = LinkVariable("d", but=CONTROL_AUTHORITY), (host, node)
+    return Pattern(nodes, links=((channel, node),)), Pattern(nodes, links=((channel, node), (channel, host)))
+
+
+def disconnect_host_from(host: Name, node: Name) -> Sides:
+    """Let the host leave a channel that it shares with a node, control authorities excepted."""
+    apart, joined = connect_host_to(host, node)
+    return joined, apart
+
+
+COMMANDS: Final[Mapping[str, Command]] = {
+    command.name: command
+    for command in (
+        Command("MOVE_HOST_TO place", move_host_to, travels=True),
+        Command("MOVE entity TO place", move, travels=True),
+        Command("PUT entity IN place", put),
+        Command("HAND entity TO station", hand),
+        Command("CONNECT_HOST_TO node", connect_host_to),
+        Command("DISCONNECT_HOST_FROM node", disconnect_host_from),
+    )
+}
+
+COMMAND_WORDS: Final = frozenset(word for command in COMMANDS.values() for word in command.words) | {VIA}
+"""All words that commands are written with: none of them is a name."""
