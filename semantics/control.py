@@ -1,8 +1,12 @@
-"""Control requests in a configuration: their realisations, or the reason why there is none."""
+"""Control requests in a configuration: their realisations, or the reason why there is none.
 
-from collections.abc import Iterator
+Each premise is described once: it is the guard of the rules, and the finding where it does not hold.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from typing import Final
 
 from semantics.behaviours.reactions import (
     Match,
@@ -14,10 +18,9 @@ from semantics.behaviours.reactions import (
     relinked,
     stays_forest,
 )
-from semantics.drive import Reach, drive, unloaded
+from semantics.drive import Driven, Reach, drive, unloaded
 from semantics.state.cells import Changes
 from semantics.state.configuration import Configuration
-from semantics.state.logical_model import LogicalModel
 from semantics.state.physical_model import Carried, InTransit
 from semantics.state.relations import Parent, Relation
 from semantics.state.requests import CTR, FLY
@@ -60,98 +63,161 @@ class Realisation:
 
 
 class Obstacle(Enum):
-    """Why a control next in line has no realisation."""
+    """Why a control next in line can't be made true; a later one is found only where the earlier ones are not."""
 
     UNMATCHED = "unmatched"
     INCONSISTENT = "inconsistent"
     UNREALISABLE = "unrealisable"
 
 
+@dataclass(frozen=True, slots=True)
+class Premise:
+    """What a rule asks of a match m of R: its guard, and what is found where no match fulfils it.
+
+    Attributes:
+        text: As it stands above the bar of the rule.
+        holds: Whether it holds of a match.
+        otherwise: The finding.
+    """
+
+    text: str
+    holds: Callable[[Configuration, CTR | FLY, Match], bool]
+    otherwise: Obstacle
+
+
+# --- premises ---------------------------------------------------------------------------------------------------
+
+
+def involves_host(c: Configuration, request: CTR | FLY, match: Match) -> bool:
+    """Tell whether the agent's host is a node of m(R)."""
+    return c.alpha.host(request.agent) in match.nodes(request.reaction.redex)
+
+
+def leaves_forest(c: Configuration, request: CTR | FLY, match: Match) -> bool:
+    """Tell whether L with m(R′) for m(R) is a forest."""
+    return stays_forest(request.reaction, match, c.structure.logical)
+
+
+def is_consistent(c: Configuration, request: CTR | FLY, match: Match) -> bool:
+    """Tell whether S is locally consistent with respect to m(R), missing sites included."""
+    structure, redex = c.structure, request.reaction.redex
+    full = is_full(match, redex, structure.physical)
+    return full and structure.locally_consistent(match.relations(redex), match.nodes(redex))
+
+
+def is_under_way(c: Configuration, request: CTR | FLY, match: Match) -> bool:
+    """Tell whether P has all nodes of m(R), and what travels is in transit or carried by what is."""
+    physical, nodes = c.structure.physical, match.nodes(request.reaction.redex)
+    travelling = (node for node, _ in moved(request.reaction, match) if physical.carrier(node) is None)
+    return c.structure.consistent((), nodes) and all(map(physical.transit, travelling))
+
+
+def still_matches(c: Configuration, request: CTR | FLY, match: Match) -> bool:
+    """Tell whether R matches as it did, but for where what travels is now."""
+    structure, redex = c.structure, request.reaction.redex
+    nodes = match.nodes(redex)
+    believed = all(map(structure.believes, _unmoved(request, match)))
+    known = believed and all(node in structure.logical for node in nodes)
+    return known and is_full(match, redex, structure.logical) and is_active(nodes, structure.logical)
+
+
+def is_unmoved_consistent(c: Configuration, request: CTR | FLY, match: Match) -> bool:
+    """Tell whether S is consistent with respect to what of m(R) does not travel, missing sites included."""
+    consistent = c.structure.consistent(_unmoved(request, match))
+    return consistent and is_full(match, request.reaction.redex, c.structure.physical)
+
+
+def _unmoved(request: CTR | FLY, match: Match) -> list[Relation]:
+    travelling = {node for node, _ in moved(request.reaction, match)}
+    pairs = match.relations(request.reaction.redex)
+    return [pair for pair in pairs if not (isinstance(pair, Parent) and pair.node in travelling)]
+
+
+_FOREST: Final = Premise("L[m(R) ↦ m(R′)] a forest", leaves_forest, Obstacle.UNMATCHED)
+
+PREMISES: Final[Mapping[type[CTR | FLY], tuple[Premise, ...]]] = {
+    CTR: (
+        Premise("a's host in m(R)", involves_host, Obstacle.UNMATCHED),
+        _FOREST,
+        Premise("S locally consistent w.r.t. m(R)", is_consistent, Obstacle.INCONSISTENT),
+    ),
+    FLY: (
+        Premise("m(R) in P, what travels in transit", is_under_way, Obstacle.INCONSISTENT),
+        Premise("R still matches, but for where the moved node is now", still_matches, Obstacle.UNMATCHED),
+        _FOREST,
+        Premise("its unmoved part is consistent", is_unmoved_consistent, Obstacle.INCONSISTENT),
+    ),
+}
+"""What `actuate` and `command` ask of a CTR, `commit` of a FLY, in this order; then `drive` has to give P′."""
+
+
+def _driven(
+    c: Configuration, request: CTR | FLY, match: Match, reach: Reach | None = None
+) -> Driven | Obstacle:
+    """Return P′ by a match, or the finding of the first premise that does not hold."""
+    failed = (each.otherwise for each in PREMISES[type(request)] if not each.holds(c, request, match))
+    obstacle = next(failed, None)
+    return obstacle or drive(c, c.setting, request.reaction, match, reach) or Obstacle.UNREALISABLE
+
+
+# --- guards -----------------------------------------------------------------------------------------------------
+
+
 def applicable(c: Configuration, agent: Name, reaction: Reaction) -> Iterator[Match]:
     """Yield the matches of R in L that leave L a forest and involve the agent's host."""
-    host = c.alpha.host(agent)
+    request = CTR(agent, reaction)
+    asked = [each for each in PREMISES[CTR] if each.otherwise is Obstacle.UNMATCHED]
     for match in matches(reaction.redex, c.structure.logical):
-        if host in match.nodes(reaction.redex) and stays_forest(reaction, match, c.structure.logical):
+        if all(each.holds(c, request, match) for each in asked):
             yield match
-
-
-def is_consistent(c: Configuration, reaction: Reaction, match: Match) -> bool:
-    """Tell whether S is locally consistent with respect to m(R), missing sites included."""
-    structure = c.structure
-    full = is_full(match, reaction.redex, structure.physical)
-    return full and structure.locally_consistent(match.relations(reaction.redex), match.nodes(reaction.redex))
 
 
 def realisations(c: Configuration, request: CTR) -> Iterator[Realisation]:
     """Yield the ways in which a requested control can be made true, in the order of the matches."""
-    for match in applicable(c, request.agent, request.reaction):
-        if is_consistent(c, request.reaction, match):
-            driven = drive(c, c.setting, request.reaction, match)
-            if driven is not None:
-                logical = reacting(c.structure.logical, request.reaction, match)
-                yield Realisation(match, logical, driven.changes, driven.flying, request.reaction.via)
+    for match in matches(request.reaction.redex, c.structure.logical):
+        driven = _driven(c, request, match)
+        if isinstance(driven, Driven):
+            yield _realisation(c, request, match, driven)
 
 
-def reacting(logical: LogicalModel, reaction: Reaction, match: Match) -> Changes:
-    """Write L[m(R) ↦ m(R′)]: only the relations that R′ changes."""
+def commits(c: Configuration, fly: FLY, reach: Reach | None = None) -> Realisation | None:
+    """Return what a flight comes to when it ends now, None where it can't; `reach` as `drive` has it."""
+    driven = _driven(c, fly, fly.match, reach)
+    return _realisation(c, fly, fly.match, driven) if isinstance(driven, Driven) else None
+
+
+def _realisation(c: Configuration, request: CTR | FLY, match: Match, driven: Driven) -> Realisation:
+    """Write L[m(R) ↦ m(R′)] beside P′: only the relations that R′ changes."""
+    reaction, logical = request.reaction, c.structure.logical
     changes: Changes = {}
     for node, place in moved(reaction, match):
         changes |= logical.nesting(node, place)
     for node, lost, gained in relinked(reaction, match, logical):
         changes |= logical.linking(node, (frozenset(logical.links(node)) - lost) | gained)
-    return changes
+    return Realisation(match, changes, driven.changes, driven.flying, reaction.via)
 
 
-def commits(c: Configuration, fly: FLY, reach: Reach | None = None) -> Realisation | None:
-    """Return what a flight comes to when it ends now, None where it can't; `reach` as `drive` has it."""
-    obstacle = flight_obstacle(c, fly)
-    driven = None if obstacle else drive(c, c.setting, fly.reaction, fly.match, reach)
-    if driven is None:
-        return None
-    logical = reacting(c.structure.logical, fly.reaction, fly.match)
-    return Realisation(fly.match, logical, driven.changes, driven.flying, fly.reaction.via)
-
-
-def flight_obstacle(c: Configuration, fly: FLY) -> Obstacle | None:
-    """Return why a flight can't be committed, apart from P′: R is gone, or L and P disagree on its unmoved part."""
-    structure, reaction, match = c.structure, fly.reaction, fly.match
-    travelling = [node for node, _ in moved(reaction, match)]
-    nodes = match.nodes(reaction.redex)
-    unmoved = [pair for pair in match.relations(reaction.redex) if not _moves(pair, travelling)]
-    flying = all(
-        structure.physical.transit(node) for node in travelling if structure.physical.carrier(node) is None
-    )
-    if not structure.consistent((), nodes) or not flying:
-        return Obstacle.INCONSISTENT
-    believed = all(map(structure.believes, unmoved)) and all(node in structure.logical for node in nodes)
-    if not believed or not is_full(match, reaction.redex, structure.logical):
-        return Obstacle.UNMATCHED
-    if not is_active(nodes, structure.logical) or not stays_forest(reaction, match, structure.logical):
-        return Obstacle.UNMATCHED
-    consistent = structure.consistent(unmoved) and is_full(match, reaction.redex, structure.physical)
-    return None if consistent else Obstacle.INCONSISTENT
-
-
-def _moves(pair: Relation, travelling: list[Name]) -> bool:
-    return isinstance(pair, Parent) and pair.node in travelling
+# --- findings ---------------------------------------------------------------------------------------------------
 
 
 def obstacle(c: Configuration, request: CTR | FLY) -> Obstacle | None:
     """Return why a control next in its agent's line can't be served, None where it can, or merely waits.
 
-    It waits for an entity in transit (`control timed`): that is not an inconsistency.
+    Of several matches the one counts that comes furthest. It waits for an entity in transit (`control timed`): that is
+    not an inconsistency.
     """
     if isinstance(request, FLY):
-        return flight_obstacle(c, request) or (None if commits(c, request) else Obstacle.UNREALISABLE)
-    found = list(applicable(c, request.agent, request.reaction))
-    if not found:
-        return Obstacle.UNMATCHED
-    consistent = [match for match in found if is_consistent(c, request.reaction, match)]
-    if not consistent:
-        waiting = any(_waits(c, request.reaction, match) for match in found)
-        return None if waiting else Obstacle.INCONSISTENT
-    served = (drive(c, c.setting, request.reaction, m) or _waits(c, request.reaction, m) for m in consistent)
-    return None if any(served) else Obstacle.UNREALISABLE
+        driven = _driven(c, request, request.match)
+        return None if isinstance(driven, Driven) else driven
+    hindered: dict[Match, Obstacle] = {}
+    for match in matches(request.reaction.redex, c.structure.logical):
+        driven = _driven(c, request, match)
+        if isinstance(driven, Driven):
+            return None
+        hindered[match] = driven
+    furthest = max(hindered.values(), key=list(Obstacle).index, default=Obstacle.UNMATCHED)
+    those = [match for match, each in hindered.items() if each is furthest is not Obstacle.UNMATCHED]
+    return None if any(_waits(c, request.reaction, match) for match in those) else furthest
 
 
 def _waits(c: Configuration, reaction: Reaction, match: Match) -> bool:

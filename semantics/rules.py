@@ -122,6 +122,7 @@ def actuate(c: Configuration, a: Name) -> Iterator[Transition]:
     """Control in one step: everything under `control atomic`, and what needs no flight under `control timed`.
 
     CTR(a, R ⇒ R′) ∈ η, in line      m a match of R in L
+    a's host in m(R)      L[m(R) ↦ m(R′)] a forest
     S locally consistent w.r.t. m(R)      drive(P, m(R′)) = P′
     ──────────────────────────────────────────────────────────────────────────────  ⟨actuate : CTR(a, R ⇒ R′)⟩
     ⟨α | (L, P, β, γ) | η⟩  →  ⟨α | (L[m(R) ↦ m(R′)], P′, β, γ) | η − CTR(a, R ⇒ R′)⟩
@@ -129,7 +130,7 @@ def actuate(c: Configuration, a: Name) -> Iterator[Transition]:
     for pending in c.eta.in_line(a):
         if not isinstance(pending.request, CTR):  # premise: CTR(a, R ⇒ R′) ∈ η, in line
             continue
-        for found in realisations(c, pending.request):  # premises: match, local consistency, P′
+        for found in realisations(c, pending.request):  # the other premises: PREMISES[CTR], P′
             if found.flying and c.setting.control is Control.TIMED:
                 continue
             target = c.with_(found.physical, found.logical, c.eta.removing(pending))
@@ -148,7 +149,7 @@ def command(c: Configuration, a: Name) -> Iterator[Transition]:
     for pending in c.eta.in_line(a):
         if not isinstance(pending.request, CTR):  # premise: CTR(a, R ⇒ R′) ∈ η, in line
             continue
-        for found in realisations(c, pending.request):  # premises: as actuate
+        for found in realisations(c, pending.request):  # the other premises: as actuate
             if not found.flying or found.waits(c):  # premise: not in transit
                 continue
             fly = FLY(a, pending.request.reaction, found.match)
@@ -159,7 +160,8 @@ def command(c: Configuration, a: Name) -> Iterator[Transition]:
 def commit(c: Configuration, a: Name, reach: Reach | None = None) -> Iterator[Transition]:
     """Arrive (`control timed`): the destination is where it is now, and R must still match.
 
-    FLY(a, m, R′) ∈ η, in line      R still matches, but for where the moved node is now
+    FLY(a, m, R′) ∈ η, in line      m(R) in P, what travels in transit
+    R still matches, but for where the moved node is now      L[m(R) ↦ m(R′)] a forest
     its unmoved part is consistent      drive(P, m(R′)) = P′
     ──────────────────────────────────────────────────────────────────────────────  ⟨commit : FLY(a, m, R′)⟩
     ⟨α | (L, P, β, γ) | η⟩  →  ⟨α | (L[m(R) ↦ m(R′)], P′, β, γ) | η − FLY(a, m, R′)⟩
@@ -168,7 +170,9 @@ def commit(c: Configuration, a: Name, reach: Reach | None = None) -> Iterator[Tr
     for pending in c.eta.in_line(a):
         if not isinstance(pending.request, FLY):  # premise: FLY(a, m, R′) ∈ η, in line
             continue
-        found: Realisation | None = commits(c, pending.request, reach)  # premises: match, consistency, P′
+        found: Realisation | None = commits(
+            c, pending.request, reach
+        )  # the other premises: PREMISES[FLY], P′
         if found is not None:
             target = c.with_(found.physical, found.logical, c.eta.removing(pending))
             yield Transition(Label("commit", a, pending.request), target, served=pending)

@@ -1,5 +1,8 @@
 """Realisations and obstacles of controls, `drive`, and control that takes time."""
 
+import inspect
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -12,7 +15,7 @@ from semantics.behaviours.expressions import Literal, QueryOf
 from semantics.behaviours.patterns import Anything
 from semantics.behaviours.reactions import Pattern, PlaceVariable, Reaction, moved, relinked
 from semantics.behaviours.statements import Case, ControlBy, Observe, React, Send
-from semantics.control import Obstacle, applicable, is_consistent, obstacle, realisations
+from semantics.control import PREMISES, Obstacle, applicable, is_consistent, obstacle, realisations
 from semantics.drive import drive
 from semantics.environment import Drifts, Vanishes
 from semantics.rules import actuate, command, commit
@@ -47,7 +50,7 @@ def test_drive_makes_the_reactum_true_and_disturbs_nothing_else(data):
     c = world.initial(agents={"a": ("uav0", ())}, beliefs=beliefs)
     reaction = data.draw(strategies.reactions(sorted(world.kinds), "uav0"))
     for match in applicable(c, "a", reaction):
-        driven = drive(c, c.setting, reaction, match) if is_consistent(c, reaction, match) else None
+        driven = drive(c, c.setting, reaction, match) if is_consistent(c, CTR("a", reaction), match) else None
         if driven is None:
             continue
         after = c.with_(driven.changes).structure
@@ -192,7 +195,7 @@ def test_creating_and_deleting_nothing_a_closed_node_must_be_empty_in_fact_too()
     )
     c = mission(["base", "u0", "u1"], agents={"a": ("u0", ())}, beliefs=Beliefs({"u1": REGION}))
     (match,) = applicable(c, "a", closing)
-    assert not is_consistent(c, closing, match)
+    assert not is_consistent(c, CTR("a", closing), match)
     assert obstacle(c, CTR("a", closing)) is Obstacle.INCONSISTENT
 
 
@@ -490,14 +493,45 @@ def test_every_command_of_the_language_is_realisable_somewhere():
         channels={"gcs0": ["control:0", "w"], "u0": ["control:0"], "ship": ["w"], "gcs1": ["control:1", "v"]},
         agents={"a": ("gcs0", ()), "s": ("ship", ())},
     )
-    for agent, name, arguments in (
-        ("s", "MOVE_HOST_TO", ("area",)),
-        ("a", "MOVE", ("u0", "area")),
-        ("s", "PUT", ("crate", "sea")),
-        ("a", "HAND", ("u0", "gcs1")),
-        ("a", "CONNECT_HOST_TO", ("gcs1",)),
-        ("a", "DISCONNECT_HOST_FROM", ("ship",)),
-    ):
+    somewhere = {
+        "MOVE_HOST_TO": ("s", "area"),
+        "MOVE": ("a", "u0", "area"),
+        "PUT": ("s", "crate", "sea"),
+        "HAND": ("a", "u0", "gcs1"),
+        "CONNECT_HOST_TO": ("a", "gcs1"),
+        "DISCONNECT_HOST_FROM": ("a", "ship"),
+    }
+    assert somewhere.keys() == COMMANDS.keys()
+    for name, (agent, *arguments) in somewhere.items():
         reaction = COMMANDS[name](c.alpha.host(agent), *arguments)
         assert obstacle(c, CTR(agent, reaction)) is None, name
     assert isinstance(c.structure.physical.placement("crate"), Carried)
+
+
+# --- premises -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("rule", "premise"),
+    [(actuate, each) for each in PREMISES[CTR]] + [(commit, each) for each in PREMISES[FLY]],
+    ids=lambda each: getattr(each, "text", each.__name__ if callable(each) else ""),
+)
+def test_each_premise_stands_above_the_bar_of_its_rule(rule, premise):
+    above, _, _ = inspect.getdoc(rule).partition("──")
+    assert premise.text in above
+
+
+@pytest.mark.parametrize("request_type", [CTR, FLY])
+def test_a_control_is_served_just_where_no_premise_fails(request_type, monkeypatch):
+    c = commanding(move_to("area"))
+    c = run(c, "command") if request_type is FLY else c
+    (pending,) = c.eta.all()
+    assert isinstance(pending.request, request_type)
+    assert obstacle(c, pending.request) is None
+    for number, premise in enumerate(PREMISES[request_type]):
+        never = replace(premise, holds=lambda *_: False)
+        those = (*PREMISES[request_type][:number], never, *PREMISES[request_type][number + 1 :])
+        with monkeypatch.context() as patch:
+            patch.setitem(PREMISES, request_type, those)
+            assert obstacle(c, pending.request) is premise.otherwise
+            assert not [*actuate(c, "a"), *command(c, "a"), *commit(c, "a")]
