@@ -16,6 +16,7 @@ from semantics.behaviours.expressions import (
     TupleOf,
     Variable,
 )
+from semantics.behaviours.observations import QueryOperator
 from semantics.behaviours.patterns import Anything, Elements, Exactly
 from semantics.behaviours.patterns import Pattern as CasePattern
 from semantics.behaviours.program import Behaviour, Program
@@ -130,11 +131,11 @@ class _Writer:
         return self.one(*seen, SetOf((Literal(self.pick(self.names)), Literal(self.pick(self.names)))))
 
     def query(self, depth: int = 3) -> QueryOf:
-        operator = self.pick(["CHILDREN", "PARENT", "LINKED_TO", None, "HOSTED_AT"]) if depth else None
+        operator = self.pick([*QueryOperator, None]) if depth else None
         if operator is not None:
             return QueryOf(operator, self.query(depth - 1))
         if self.pick(range(4)) == 3:
-            return QueryOf("ALL", None)
+            return QueryOf(None, None)
         return QueryOf(None, self.one(Host(), *map(Literal, self.names)))
 
     # commands

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from physical import Band, box, circle, point
 from semantics.behaviours.commands import COMMANDS, Command
 from semantics.behaviours.expressions import Fault
-from semantics.behaviours.observations import All, Nodes, Of, Query
+from semantics.behaviours.observations import All, Nodes, Of, Query, QueryOperator
 from semantics.behaviours.program import Program
 from semantics.behaviours.reactions import (
     LinkTerm,
@@ -40,7 +40,6 @@ from semantics.successors import successors
 
 CHANNELS = ("control:g0", "control:g1", "wifi")
 KIND_OF = {"place": "Place", "uav": "Uav", "vessel": "Vessel", "crate": "Crate", "station": "Station"}
-OPERATORS = ("PARENT", "CHILDREN", "LINKED_TO", "HOSTED_AT")
 
 
 T = TypeVar("T")
@@ -255,7 +254,7 @@ def queries(names: Sequence[Name]) -> st.SearchStrategy[Query]:
     ).map(lambda found: Nodes(tuple(sorted(found))))
     return st.recursive(
         leaves | st.just(All()),
-        lambda inner: st.builds(Of, st.sampled_from(OPERATORS), inner),
+        lambda inner: st.builds(Of, st.sampled_from(QueryOperator), inner),
         max_leaves=3,
     )
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from lark import Token, Transformer
 
+from semantics.behaviours.observations import QueryOperator
 from specs import syntax as s
 from specs.build_world import option
 from specs.building import (
@@ -152,11 +153,13 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
         return name(c[0])
 
     def relation(self, c: Children) -> s.QueryApplication:
-        return s.QueryApplication(str(c[0]), c[2], span=cover(c))
+        return s.QueryApplication(QueryOperator(c[0]), c[2], span=cover(c))
 
     def relation_host(self, c: Children) -> s.QueryApplication:
         span = span_of(c[0])
-        return s.QueryApplication(c[0].removesuffix("_HOST"), s.HostReference(span=span), span=span)
+        return s.QueryApplication(
+            QueryOperator(c[0].removesuffix("_HOST")), s.HostReference(span=span), span=span
+        )
 
     # --- control actions
 

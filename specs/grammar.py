@@ -11,6 +11,7 @@ from lark import Lark, Token
 from lark.lexer import PatternRE, PatternStr, TerminalDef
 
 from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS, Command
+from semantics.behaviours.observations import QueryOperator
 from specs.build_behaviour import BuildBehaviour
 from specs.build_world import BuildWorld
 from specs.syntax import Mission
@@ -50,19 +51,7 @@ STATEMENTS: Final = frozenset(
     ]
 )
 OPERATION_WORDS: Final = frozenset(["in", "not", "and", "or", "of", "true", "false", "HOST", "SELF"])
-QUERY_WORDS: Final = frozenset(
-    [
-        "ALL",
-        "PARENT",
-        "CHILDREN",
-        "LINKED_TO",
-        "HOSTED_AT",
-        "PARENT_HOST",
-        "CHILDREN_HOST",
-        "LINKED_TO_HOST",
-        "HOSTED_AT_HOST",
-    ]
-)
+QUERY_WORDS: Final = frozenset(["ALL", *QueryOperator, *(f"{word}_HOST" for word in QueryOperator)])
 RESERVED: Final = (
     SECTIONS
     | STATEMENTS
@@ -78,8 +67,10 @@ class _Build(BuildWorld, BuildBehaviour):
 
 
 def grammar_text() -> str:
-    """Return the grammar as it is written in mission.lark, with a line for each command."""
+    """Return the grammar as it is written in mission.lark, with the operators of queries and the commands."""
     text = Path(__file__).with_name("mission.lark").read_text(encoding="utf-8")
+    text = text.replace("RELATIONS_OF_HOST", " | ".join(f'"{word}_HOST"' for word in QueryOperator))
+    text = text.replace("RELATIONS", " | ".join(f'"{word}"' for word in QueryOperator))
     return text.replace("COMMANDS", "\n       | ".join(map(_rule, COMMANDS.values())))
 
 

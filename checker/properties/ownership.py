@@ -7,6 +7,7 @@ slot of its own: it stands for the parents that a missing site reads, so that tw
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import assert_never
 
 from semantics.behaviours.expressions import (
     Apply,
@@ -19,6 +20,7 @@ from semantics.behaviours.expressions import (
     TupleOf,
     Variable,
 )
+from semantics.behaviours.observations import QueryOperator
 from semantics.behaviours.program import expressions_of, reachable
 from semantics.behaviours.reactions import Pattern, Reaction, Term
 from semantics.behaviours.statements import ControlBy, Display, Migrate, Observe, Send, Spawn, Statement
@@ -196,13 +198,18 @@ class _Text:
     def _asked(self, query: QueryOf, tests: list[Name]) -> Iterator[Slot]:
         """Yield the slots that decide whether the tested names are shown."""
         inner = query.argument
-        names = tests if query.operator == "CHILDREN" else [ANY]
-        kind = "links" if query.operator == "LINKED_TO" else "parent"
-        if query.operator == "PARENT" and not isinstance(inner, QueryOf) and inner is not None:
-            names = [self.name(inner)]
-        if query.operator is not None or inner is None:
-            yield from ((kind, name) for name in names)
-        if inner is None:
-            yield ("links", ANY)
+        match query.operator:
+            case QueryOperator.CHILDREN:
+                yield from (("parent", name) for name in tests)
+            case QueryOperator.PARENT if inner is not None and not isinstance(inner, QueryOf):
+                yield ("parent", self.name(inner))
+            case QueryOperator.PARENT | QueryOperator.HOSTED_AT:
+                yield ("parent", ANY)
+            case QueryOperator.LINKED_TO:
+                yield ("links", ANY)
+            case None:
+                yield from (("parent", ANY), ("links", ANY)) if inner is None else ()
+            case _:
+                assert_never(query.operator)
         if isinstance(inner, QueryOf):
             yield from self._asked(inner, tests)

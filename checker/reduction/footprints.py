@@ -5,12 +5,13 @@ a run was seen to read. Each function names the rule whose reads and writes it b
 """
 
 from collections.abc import Iterable, Iterator
+from typing import assert_never
 
 from checker.reduction.bounds import Bounds, Names
 from checker.reduction.messages import Known, Message, wakes
 from checker.reduction.roles import Roles
 from checker.reduction.slots import NOTHING, Footprint, Slot, Slots
-from semantics.behaviours.observations import All, Nodes, Query
+from semantics.behaviours.observations import All, Nodes, Query, QueryOperator
 from semantics.behaviours.reactions import (
     LinkTerm,
     NodeTerm,
@@ -142,6 +143,8 @@ class Footprints:
             case Says(message, agent):
                 reads = [AGENTS] if self.roles.may_come(agent) else []
                 return self.slots.footprint(reads, merges=self.mail(agent, Known(message)))
+            case _:
+                assert_never(clause)
 
     def _all_of(self, names: Iterable[Name]) -> Iterator[Slot]:
         for name in names:
@@ -192,14 +195,22 @@ class _Looking:
         if isinstance(query, All):
             self.everything()
             return self.bounds.names
-        answer = {
-            "PARENT": self.parent,
-            "CHILDREN": self.children,
-            "LINKED_TO": self.linked_to,
-            "HOSTED_AT": self.hosted_at,
-        }[query.operator]
-        found = [answer(name) for name in sorted(self.ask(query.of))]
+        found = [self.answer(query.operator, name) for name in sorted(self.ask(query.of))]
         return frozenset[Name]().union(*found)
+
+    def answer(self, operator: QueryOperator, name: Name) -> Names:
+        """Return all that an operator may denote of one node."""
+        match operator:
+            case QueryOperator.PARENT:
+                return self.parent(name)
+            case QueryOperator.CHILDREN:
+                return self.children(name)
+            case QueryOperator.LINKED_TO:
+                return self.linked_to(name)
+            case QueryOperator.HOSTED_AT:
+                return self.hosted_at(name)
+            case _:
+                assert_never(operator)
 
     def everything(self) -> None:
         self.reads.update(self.of.there(self.bounds.names))

@@ -13,7 +13,7 @@ from checker.reduction.bounds import Names
 from checker.reduction.footprints import Footprints
 from checker.reduction.informants import tellers
 from checker.reduction.slots import NOTHING, Footprint, Slot, joined
-from semantics.behaviours.observations import Nodes, Of, Query
+from semantics.behaviours.observations import Nodes, Of, Query, QueryOperator
 from semantics.behaviours.program import reachable
 from semantics.behaviours.statements import Observe
 from semantics.races.provenance import ANY, SLOT, Key, Provenance
@@ -100,7 +100,7 @@ class Marks:
 
         Of the children of a place each is there or not whoever else is.
         """
-        if not isinstance(query, Of) or query.operator != "CHILDREN" or not is_local(query):
+        if not isinstance(query, Of) or query.operator != QueryOperator.CHILDREN or not is_local(query):
             return self.looking(query)
         return self.looking(query if touched.intersection(nodes_of(query)) else query.of)
 
@@ -178,7 +178,7 @@ def _rests(kept: tuple[Provenance, ...] | None) -> bool:
 def is_local(query: Of) -> bool:
     """Tell whether a query begins with nodes and goes up from them before its last step."""
     inner = query.of
-    while isinstance(inner, Of) and inner.operator == "PARENT":
+    while isinstance(inner, Of) and inner.operator == QueryOperator.PARENT:
         inner = inner.of
     return isinstance(inner, Nodes)
 

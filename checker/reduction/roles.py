@@ -139,10 +139,12 @@ class Roles:
         argument = template.argument
         if argument is None:
             return All()
-        if isinstance(argument, QueryOf):
-            return Of(str(template.operator), self.query(agent, argument))
-        leaf = Nodes(self.entities(agent, argument))
-        return leaf if template.operator is None else Of(template.operator, leaf)
+        inner = (
+            self.query(agent, argument)
+            if isinstance(argument, QueryOf)
+            else Nodes(self.entities(agent, argument))
+        )
+        return inner if template.operator is None else Of(template.operator, inner)
 
     # --- the fixpoint -----------------------------------------------------------------------------------------
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from semantics.behaviours.observations import All, Nodes, Observation, Of, Query
+from semantics.behaviours.observations import All, Nodes, Observation, Of, Query, QueryOperator
 from semantics.behaviours.values import LARGEST_NUMBER, MOST_PARTS, Truth, Value, in_order, parts, show
 from semantics.races.provenance import EVERYTHING, NOTHING, Key, Provenance, asking
 from semantics.state.signature import Name
@@ -83,7 +83,7 @@ class SetOf:
 class QueryOf:
     """A query with expressions at its leaves; `operator` None stands for the nodes that the expression names."""
 
-    operator: str | None
+    operator: QueryOperator | None
     argument: "Expression | QueryOf | None"
 
 
@@ -194,10 +194,12 @@ def query_of(template: QueryOf, scope: Scope) -> Query:
     argument = template.argument
     if argument is None:
         return All()
-    if isinstance(argument, QueryOf):
-        return Of(str(template.operator), query_of(argument, scope))
-    leaf = Nodes(names_in(evaluate(argument, scope)))
-    return leaf if template.operator is None else Of(template.operator, leaf)
+    inner = (
+        query_of(argument, scope)
+        if isinstance(argument, QueryOf)
+        else Nodes(names_in(evaluate(argument, scope)))
+    )
+    return inner if template.operator is None else Of(template.operator, inner)
 
 
 def names_in(value: Value) -> tuple[Name, ...]:

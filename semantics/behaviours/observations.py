@@ -2,10 +2,20 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from enum import StrEnum
+from typing import Any, Literal, NamedTuple
 
 from semantics.state.relations import Linked, Parent, Relation
 from semantics.state.signature import REGION, Name
+
+
+class QueryOperator(StrEnum):
+    """What can be asked of the nodes that a query denotes, by the word that it is written with."""
+
+    PARENT = "PARENT"
+    CHILDREN = "CHILDREN"
+    LINKED_TO = "LINKED_TO"
+    HOSTED_AT = "HOSTED_AT"
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,9 +38,9 @@ class All:
 
 @dataclass(frozen=True, slots=True)
 class Of:
-    """`PARENT(q)`, `CHILDREN(q)`, `LINKED_TO(q)` or `HOSTED_AT(q)`, by the operator's name."""
+    """An operator applied to what another query denotes."""
 
-    operator: str
+    operator: QueryOperator
     of: "Query"
 
     def __str__(self) -> str:
@@ -186,15 +196,18 @@ def agent_key(agent: Name) -> Name:
     return AGENT + agent
 
 
+Applied = QueryOperator | Literal["", "ALL"]
+
+
 class Step(NamedTuple):
     """One operator of a query, with what it is applied to.
 
     Attributes:
-        operator: Its name; `ALL`, or empty for the nodes that a query begins with.
+        operator: Which; `ALL`, or empty, for the nodes that a query begins with.
         names: The nodes, sorted.
     """
 
-    operator: str
+    operator: Applied
     names: tuple[Name, ...]
 
 

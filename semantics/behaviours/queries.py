@@ -5,16 +5,19 @@ was got on the way: a yes is a pair, a no follows from a place or link that was 
 """
 
 from collections.abc import Mapping
+from typing import assert_never
 
 from semantics.behaviours.observations import (
     AGENT,
     NOTHING_SEEN,
     All,
+    Applied,
     Fact,
     Nodes,
     Observation,
     Of,
     Query,
+    QueryOperator,
     Step,
     Steps,
     Swept,
@@ -54,7 +57,7 @@ def denoted(steps: Steps, physical: PhysicalModel, alpha: Agents) -> tuple[Name,
     operator, names = steps[-1]
     if operator in ("", "ALL"):
         return names
-    if operator == "PARENT":
+    if operator == QueryOperator.PARENT:
         return tuple(sorted({REGION if n == REGION else physical.abstract_parent(n) for n in names}))
     looking = _Looking(steps, physical, alpha)
     return tuple(sorted(n for n in (REGION, *looking.names) if looking.shows(n, looking.parent(n))))
@@ -63,7 +66,7 @@ def denoted(steps: Steps, physical: PhysicalModel, alpha: Agents) -> tuple[Name,
 def answers(steps: Steps, physical: PhysicalModel, alpha: Agents) -> Observation:
     """Return what the slots that a resolved query looks at say in A(P), name by name."""
     looking = _Looking(steps, physical, alpha)
-    agents = alpha.names() if any(step.operator == "HOSTED_AT" for step in steps) else ()
+    agents = alpha.names() if any(step.operator == QueryOperator.HOSTED_AT for step in steps) else ()
     names = (*looking.names, *map(agent_key, agents))
     return Observation(physical.cells.each(names, looking.fact), looking.swept())
 
@@ -76,21 +79,24 @@ class _Looking:
         self.alpha = alpha
         self.names: tuple[Name, ...] = physical.cells.read(NAMES)
         self.applied = [(operator, frozenset(names)) for operator, names in steps]
-        self.links = frozenset(link for name in self.to("LINKED_TO") for link in self.links_of(name))
+        self.links = frozenset(
+            link for name in self.to(QueryOperator.LINKED_TO) for link in self.links_of(name)
+        )
 
-    def to(self, operator: str) -> frozenset[Name]:
+    def to(self, operator: QueryOperator) -> frozenset[Name]:
         """Return all that an operator is applied to."""
-        both = (operator, "ALL") if operator in ("CHILDREN", "LINKED_TO") else (operator,)
+        all_too = operator in (QueryOperator.CHILDREN, QueryOperator.LINKED_TO)
+        both: tuple[Applied, ...] = (operator, "ALL") if all_too else (operator,)
         return frozenset[Name]().union(*(names for applied, names in self.applied if applied in both))
 
     def swept(self) -> Swept:
-        nodes = self.to("LINKED_TO") - {REGION}
-        return Swept(*(tuple(sorted(each)) for each in (self.to("CHILDREN"), nodes, self.links)))
+        nodes = self.to(QueryOperator.LINKED_TO) - {REGION}
+        return Swept(*(tuple(sorted(each)) for each in (self.to(QueryOperator.CHILDREN), nodes, self.links)))
 
     def fact(self, name: Name) -> Fact:
         """Return what is answered of one name."""
         if name.startswith(AGENT):
-            return Fact(self.alpha.host(name.removeprefix(AGENT)) in self.to("HOSTED_AT"))
+            return Fact(self.alpha.host(name.removeprefix(AGENT)) in self.to(QueryOperator.HOSTED_AT))
         parent = self.parent(name)
         links = tuple(link for link in self.links_of(name) if link in self.links) if self.links else ()
         return Fact(self.shows(name, parent), parent, links)
@@ -101,23 +107,25 @@ class _Looking:
         match operator:
             case "" | "ALL":
                 return name in inner
-            case "PARENT":
+            case QueryOperator.PARENT:
                 return any(self.physical.is_in(n, name) if n != REGION else name == n for n in sorted(inner))
-            case "CHILDREN":
+            case QueryOperator.CHILDREN:
                 return name in inner or parent in inner
-            case "LINKED_TO":
+            case QueryOperator.LINKED_TO:
                 links = {link for n in inner for link in self.links_of(n)}
                 return name in inner or (bool(links) and not links.isdisjoint(self.links_of(name)))
+            case QueryOperator.HOSTED_AT:
+                return False  # it denotes agents
             case _:
-                return False
+                assert_never(operator)
 
     def parent(self, name: Name) -> Name | None:
         """Return the parent of a node in A(P), as far as it was asked for: its own, or among children."""
         if name == REGION:
             return None
-        if name in self.to("PARENT"):
+        if name in self.to(QueryOperator.PARENT):
             return self.physical.abstract_parent(name)
-        return self.parent_among(name, self.to("CHILDREN"))
+        return self.parent_among(name, self.to(QueryOperator.CHILDREN))
 
     def parent_among(self, name: Name, places: frozenset[Name]) -> Name | None:
         if len(places) == 1:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import cache, partial
 from typing import NamedTuple
 
-from semantics.behaviours.observations import Step, Steps
+from semantics.behaviours.observations import QueryOperator, Step, Steps
 from semantics.behaviours.queries import answers, denoted
 from semantics.races.provenance import (
     ANY,
@@ -118,7 +118,9 @@ def resolved_anew(
 def _denotes_the_same(
     before: Configuration, after: Configuration, steps: Steps, names: tuple[Name, ...]
 ) -> bool:
-    if steps[-1].operator in ("", "ALL") or (steps[-1].operator == "PARENT" and not _turns_on(steps, names)):
+    if steps[-1].operator in ("", "ALL") or (
+        steps[-1].operator == QueryOperator.PARENT and not _turns_on(steps, names)
+    ):
         return True
     old, new = (denoted(steps, c.structure.physical, c.alpha) for c in (before, after))
     return old == new
@@ -127,7 +129,8 @@ def _denotes_the_same(
 def _turns_on(steps: Steps, names: tuple[Name, ...]) -> bool:
     """Tell whether what a query says of all the others may turn on the places and links of some entities."""
     return any(
-        step.operator in ("ALL", "PARENT", "LINKED_TO") and set(names).intersection(step.names)
+        step.operator not in ("", QueryOperator.CHILDREN, QueryOperator.HOSTED_AT)
+        and set(names).intersection(step.names)
         for step in steps
     )
 

@@ -10,7 +10,7 @@ from functools import cache
 from types import UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
-from semantics.behaviours.observations import All, Fact, Nodes, Observation, Of, Query, Swept
+from semantics.behaviours.observations import All, Fact, Nodes, Observation, Of, Query, QueryOperator, Swept
 from semantics.behaviours.reactions import (
     LinkVariable,
     Match,
@@ -124,6 +124,10 @@ def _read(hint: Any, data: Any, depth: int) -> Any:
         if type(data) is hint and (hint is not int or abs(data) <= LARGEST_NUMBER):
             return data
         raise ValueError(f"{data!r:.60} stands where a {hint.__name__} should")
+    if hint is QueryOperator:
+        if data in list(QueryOperator):
+            return QueryOperator(data)
+        raise ValueError(f"{data!r:.60} is no operator of queries")
     return _object(hint, data, depth)
 
 

@@ -17,6 +17,7 @@ from semantics.behaviours.expressions import (
     TupleOf,
     Variable,
 )
+from semantics.behaviours.observations import QueryOperator
 from semantics.behaviours.values import Truth
 from specs import syntax as s
 from specs.codes import Code
@@ -172,7 +173,7 @@ def elaborate_query(query: s.Query, scope: Scope, names: Names, *, inside: bool 
         case s.Name():
             return QueryOf(None, elaborate_node(query, scope, names))
         case s.QueryApplication(relation, argument):
-            if inside and relation == "HOSTED_AT":
+            if inside and relation == QueryOperator.HOSTED_AT:
                 hint = "bigActors have no parents, children or links: write HOSTED_AT outermost"
                 names.findings.add(
                     Code.WRONG_QUERY, query, "HOSTED_AT gives bigActors, and these are asked further", hint

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from semantics.behaviours.observations import QueryOperator
 from specs.syntax.nodes import Name, Node
 
 
@@ -102,7 +103,7 @@ class QueryApplication(Node):
     `HOSTED_AT_HOST` are short for the relation applied to `HOST`.
     """
 
-    relation: str
+    relation: QueryOperator
     argument: Query
 
 

@@ -4,11 +4,14 @@ import re
 
 import pytest
 
+from semantics.behaviours.commands import COMMANDS, WAY
+from semantics.behaviours.observations import QueryOperator
 from specs import syntax as s
 from specs.diagnostics import Source
 from specs.formatter import format_mission
 from specs.parser import parse
 from specs.reference import EXAMPLES, NODES, forms, grammar_parts, language_reference
+from specs.writing import write
 
 FRAMES = {
     "Geometry": "world {{ a: B = {} }}",
@@ -65,6 +68,23 @@ def test_the_form_that_is_shown_of_a_construct_reads_as_that_construct(heading, 
     frame = "{}" if node in SECTIONS else SPECIAL.get(node, FRAMES.get(heading, "{}"))
     mission = parse(Source(form, frame.format(form)))
     assert any(isinstance(part, node) for part in s.walk(mission))
+
+
+def test_the_form_of_a_query_shows_every_operator():
+    assert forms(s.QueryApplication) == tuple(f"{operator}(q)" for operator in QueryOperator)
+
+
+@pytest.mark.parametrize("command", COMMANDS.values(), ids=COMMANDS)
+def test_a_command_is_in_the_reference_and_reads_as_it_is_shown(command):
+    way = command.write(command.operands, WAY)
+    for form in (command.form, way) if command.travels else (command.form,):
+        assert f"`{form}`" in language_reference()
+        (found,) = (
+            each
+            for each in s.walk(parse(Source("m", f"def f() = {{ control({form}) }}")))
+            if isinstance(each, s.Command)
+        )
+        assert (found.name, write(found)) == (command.name, form)
 
 
 @pytest.mark.parametrize("heading", EXAMPLES)

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from semantics.behaviours.observations import All, Of, QueryOperator
 from semantics.environment import Says
 from semantics.extension import say
 from semantics.observed import WRITABLE
@@ -311,6 +312,14 @@ GOOD = parcel_json(Parcel("nomad", ("x",), running(requests=(CTR("nomad", REACTI
 def test_a_parcel_is_read_as_it_was_written():
     assert parcel_in(GOOD).running.requests == (CTR("nomad", REACTION),)
     assert objection(parted(FIRST, parting("gcs1")), parcel_in(GOOD)) == ""
+
+
+def test_a_parcel_with_an_operator_that_queries_have_not_is_refused():
+    asking = Parcel("nomad", (), running(requests=(OBS("nomad", Of(QueryOperator.PARENT, All())),)))
+    text = json.dumps(parcel_json(asking))
+    assert parcel_in(json.loads(text)) == asking
+    with pytest.raises(ValueError, match="'COUSINS' is no operator of queries"):
+        parcel_in(json.loads(text.replace("PARENT", "COUSINS")))
 
 
 def deep(levels):
