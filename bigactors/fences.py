@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from bigactors.mistakes import Mistake, suggestion
 from physical import Geometry, area, box, contains
 from physical.frame import METRES_PER_DEGREE
-from semantics.environment import Appears, Drifts
+from semantics.environment import Placing
 from semantics.state.physical_model import Placed
 from semantics.state.signature import Name
 from specs.elaboration import ElaboratedMission
@@ -72,7 +72,7 @@ def _placements(place: Name, mission: ElaboratedMission) -> Iterator[Placed]:
     if isinstance(first, Placed):
         yield first
     for clause in mission.setting.environment:
-        if isinstance(clause, Drifts | Appears) and clause.entity == place:
+        if isinstance(clause, Placing) and clause.entity == place:
             yield from (at for at in clause.placements if isinstance(at, Placed))
 
 

@@ -192,3 +192,6 @@ class Observed:
 
 
 Clause = Drifts | Drops | Leaves | Appears | Vanishes | Says
+
+Placing = Drifts | Appears
+"""The clauses that say where an entity may come to be: in their `placements`."""

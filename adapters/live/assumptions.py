@@ -6,9 +6,11 @@ containers and contents, in the current world, are those of one of the mission's
 
 from __future__ import annotations
 
+from typing import assert_never
+
 from adapters.live.sightings import Fences, contents
 from adapters.live.state import Plan
-from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Vanishes
+from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Placement
 from semantics.state.signature import Name
@@ -74,8 +76,13 @@ def _clause(plan: Plan, sort: type[Clause], entity: Name) -> Clause | None:
 def clause_of_leaving(plan: Plan, entity: Name, channel: Name) -> Leaves | Drops | None:
     """Return the clause that lets an entity leave a channel and come back."""
     for clause in plan.first.setting.environment:
-        if isinstance(clause, Leaves) and (clause.entity, clause.channel) == (entity, channel):
-            return clause
-        if isinstance(clause, Drops) and clause.channel == channel:
-            return clause
+        match clause:
+            case Leaves() if (clause.entity, clause.channel) == (entity, channel):
+                return clause
+            case Drops() if clause.channel == channel:
+                return clause
+            case Leaves() | Drops() | Drifts() | Appears() | Vanishes() | Says():
+                pass
+            case _:
+                assert_never(clause)
     return None

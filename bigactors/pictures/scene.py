@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from bigraphs.bigraph import points
 from bigraphs.drawing import KINDS, LINKS
 from physical.drawing import MapEntity
-from semantics.environment import Appears, Drifts
+from semantics.environment import Placing
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit
 from semantics.state.signature import REGION, Name
@@ -88,7 +88,5 @@ def _map_entity(c: Configuration, name: Name) -> MapEntity:
 def is_place(c: Configuration, name: Name) -> bool:
     """Tell whether something holds others and stays where it is: nothing drives it, it does not drift or appear."""
     kind = c.setting.signature[c.setting.kind(name)]
-    moves = any(
-        isinstance(clause, Drifts | Appears) and clause.entity == name for clause in c.setting.environment
-    )
+    moves = any(isinstance(clause, Placing) and clause.entity == name for clause in c.setting.environment)
     return bool(kind.contains) and not kind.driven and not moves

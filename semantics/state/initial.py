@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import assert_never
 
 from semantics.behaviours.stepping import new_process, starting
-from semantics.environment import Drops, Leaves, Says
+from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
 from semantics.state.agents import Code
 from semantics.state.cells import AGENTS, NAMES, QUEUE, Changes
 from semantics.state.configuration import Configuration
@@ -48,18 +49,28 @@ def initial(
         contents[placement_cell(name)] = placements.get(name)
         contents[channels_cell(name)] = tuple(sorted(channels.get(name, ())))
     for clause in setting.environment:
-        if isinstance(clause, Drops):
-            contents[down_cell(clause.channel)] = False
-        elif isinstance(clause, Leaves):
-            contents[clause.left] = False
-        elif isinstance(clause, Says):
-            contents[clause.counter] = clause.times
+        contents |= _remembered(clause)
     for agent, (host, code) in sorted(agents.items()):
         contents |= starting(setting, agent, host, new_process(setting, agent, host, code))
     if setting.scheduler is Scheduler.FCFS:
         contents[QUEUE] = ()
         contents |= {("watch", *QUEUE): ()} if setting.monitored else {}
     return _believing(Configuration.of(setting, contents), beliefs or Beliefs())
+
+
+def _remembered(clause: Clause) -> Changes:
+    """Return the cells of a clause of the environment, as they are at first."""
+    match clause:
+        case Drops(channel):
+            return {down_cell(channel): False}
+        case Leaves():
+            return {clause.left: False}
+        case Says():
+            return {clause.counter: clause.times}
+        case Drifts() | Appears() | Vanishes():
+            return {}
+        case _:
+            assert_never(clause)
 
 
 def _believing(c: Configuration, beliefs: Beliefs) -> Configuration:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import assert_never
 
 from semantics.environment import Appears, Clause, Drops, Leaves, Says, Vanishes
 from semantics.state.physical_model import Carried, Placed
@@ -56,7 +55,7 @@ def elaborate_environment(
     _check_repeated(phase)
     source, clauses, lines = names.findings.source, list[Clause](), list[int]()
     for each in written:
-        clause = _CLAUSES[type(each)](phase, each)
+        clause = _clause(phase, each)
         if clause is not None:
             clauses.append(clause)
             lines.append(source.line(each.span.start))
@@ -87,8 +86,10 @@ def _check_repeated(phase: _Clauses) -> None:
                 key, code = ("appears", entity.text), Code.REPEATED_SETTING
             case s.Vanishes(entity):
                 key, code = ("vanishes", entity.text), Code.REPEATED_SETTING
-            case _:
+            case s.Says() | s.Arrives():
                 continue
+            case _:
+                assert_never(clause)
         if key in seen:
             phase.names.findings.add(
                 code, clause, f"'{key[1]}' {key[0]} by two clauses", "make one of the two"
@@ -96,16 +97,28 @@ def _check_repeated(phase: _Clauses) -> None:
         seen.add(key)
 
 
-def _drifts_among(phase: _Clauses, clause: s.DriftsAmong) -> Clause | None:
-    return drifts_among(clause, phase.spots)
-
-
-def _drifts_within(phase: _Clauses, clause: s.DriftsWithin) -> Clause | None:
-    return drifts_within(clause, phase.spots, phase.mobility, phase.all)
-
-
-def _drops(phase: _Clauses, clause: s.Drops) -> Clause | None:
-    return Drops(clause.channel.text, clause.returns) if phase.names.channel(clause.channel) else None
+def _clause(phase: _Clauses, clause: s.EnvironmentClause) -> Clause | None:
+    """Return what a clause says; None where it has a mistake, or says nothing of P."""
+    match clause:
+        case s.DriftsAmong():
+            return drifts_among(clause, phase.spots)
+        case s.DriftsWithin():
+            return drifts_within(clause, phase.spots, phase.mobility, phase.all)
+        case s.Drops(channel):
+            return Drops(channel.text, clause.returns) if phase.names.channel(channel) else None
+        case s.Leaves():
+            return _leaves(phase, clause)
+        case s.Appears():
+            return _appears(phase, clause)
+        case s.Vanishes(entity):
+            return Vanishes(entity.text) if phase.names.entity(entity) is not None else None
+        case s.Says():
+            return _says(phase, clause)
+        case s.Arrives():
+            _arrives(phase, clause)
+            return None
+        case _:
+            assert_never(clause)
 
 
 def _leaves(phase: _Clauses, clause: s.Leaves) -> Clause | None:
@@ -143,10 +156,6 @@ def _spot(phase: _Clauses, spot: s.Placement | s.Name, entity: str) -> Placed | 
     return phase.spots.placed(spot, entity)
 
 
-def _vanishes(phase: _Clauses, clause: s.Vanishes) -> Clause | None:
-    return Vanishes(clause.entity.text) if phase.names.entity(clause.entity) is not None else None
-
-
 def _says(phase: _Clauses, clause: s.Says) -> Clause | None:
     message = elaborate_constant(clause.message, phase.names)
     agents = phase.names.agents
@@ -162,22 +171,9 @@ def _says(phase: _Clauses, clause: s.Says) -> Clause | None:
     return Says(message, agent, clause.times, phase.positions[id(clause)]) if known else None
 
 
-def _arrives(phase: _Clauses, clause: s.Arrives) -> Clause | None:
+def _arrives(phase: _Clauses, clause: s.Arrives) -> None:
     kind = phase.names.entity(clause.entity)
     if kind is not None and not phase.names.signature[kind].driven:
         message = f"'{clause.entity.text}' never flies: nothing can drive its kind {kind}"
         phase.names.findings.add(Code.POINTLESS_CLAUSE, clause, message, f"declare it: kind {kind} driven")
     phase.arriving.add(clause.entity.text)
-    return None
-
-
-_CLAUSES: Final[Mapping[type, Callable[[_Clauses, Any], Clause | None]]] = {
-    s.DriftsAmong: _drifts_among,
-    s.DriftsWithin: _drifts_within,
-    s.Drops: _drops,
-    s.Leaves: _leaves,
-    s.Appears: _appears,
-    s.Vanishes: _vanishes,
-    s.Says: _says,
-    s.Arrives: _arrives,
-}

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from physical import Geometry, Place, check_places
 from physical.measure import metres_text
 from physical.outliers import is_swapped, outliers
-from semantics.environment import Appears, Clause, Drifts
+from semantics.environment import Clause, Placing
 from semantics.state.physical_model import Carried, Placed
 from specs import syntax as s
 from specs.codes import Code
@@ -105,7 +105,7 @@ def _geometries(world: World, clauses: Iterable[Clause]) -> Iterator[tuple[tuple
         if isinstance(placement, Placed):
             yield (name, name), placement.geometry
     for clause in clauses:
-        if isinstance(clause, Drifts | Appears):
+        if isinstance(clause, Placing):
             for words, placement in zip(clause.words, clause.placements, strict=True):
                 if isinstance(placement, Placed):
                     yield (clause.entity, f"where {words}"), placement.geometry

@@ -68,6 +68,7 @@ def test_the_form_that_is_shown_of_a_construct_reads_as_that_construct(heading, 
     frame = "{}" if node in SECTIONS else SPECIAL.get(node, FRAMES.get(heading, "{}"))
     mission = parse(Source(form, frame.format(form)))
     assert any(isinstance(part, node) for part in s.walk(mission))
+    assert parse(Source("again", format_mission(frame.format(form)))) == mission
 
 
 def test_the_form_of_a_query_shows_every_operator():
