@@ -102,11 +102,9 @@ def misplaced_statement(at: Situation) -> Diagnostic | None:
 def missing_destination(at: Situation) -> Diagnostic | None:
     """`control(MOVE uav0)`."""
     for word in sorted(COMMAND_WORDS & at.accepted - COMMANDS.keys() - {VIA}):
-        written = [command for command in COMMANDS.values() if word in command.words]
-        wanted = " or ".join(dict.fromkeys(command.after(word) for command in written))
-        hint = f"control actions are {', '.join(command.form for command in written)}"
-        message = f"expected '{word}' and a {wanted}, found {at.found.shown}"
-        return at.mistake(Code.MISSING_DESTINATION, message, hint)
+        forms = [command.form for command in COMMANDS.values() if word in command.words]
+        message = f"expected '{word}', found {at.found.shown}"
+        return at.mistake(Code.MISSING_DESTINATION, message, f"control actions are {', '.join(forms)}")
     if at.before.text in COMMAND_WORDS and at.at_expression and at.found.text in (")", VIA):
         return at.mistake(Code.MISSING_DESTINATION, f"'{at.before.text}' needs a name behind it", "say which")
     return None

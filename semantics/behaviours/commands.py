@@ -64,10 +64,6 @@ class Command:
         """What the operands are called."""
         return tuple(part for part in self.parts if not part.isupper())
 
-    def after(self, word: str) -> str:
-        """Return what the operand behind a word is called."""
-        return self.parts[self.parts.index(word) + 1]
-
     @cached_property
     def open(self) -> Reaction:
         """The reaction with `HOST` and the operands' own names in it: what it moves is known before any run."""

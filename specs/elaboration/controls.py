@@ -9,7 +9,7 @@ from typing import Final
 from physical import Geometry, PhysicalError, area, band_contains, nearest_placement
 from semantics.behaviours.commands import COMMANDS, HOST, Command
 from semantics.behaviours.expressions import Expression, Host, Literal
-from semantics.behaviours.reactions import NodeVariable
+from semantics.behaviours.reactions import NodeVariable, PlaceTerm
 from semantics.state.physical_model import Placed
 from specs import syntax as s
 from specs.codes import Code
@@ -175,10 +175,11 @@ def _check_site(
 
 def _check_command(site: ControlSite, command: Command, hosts: tuple[str, ...], ground: Ground) -> None:
     """Report what a command moves that can never be where it goes, or never pass what it passes."""
-    arguments = dict(zip(command.operands, site.statement.arguments, strict=False)) | {HOST: Host()}
+    arguments: dict[PlaceTerm, Expression] = {HOST: Host()}
+    arguments |= zip(command.operands, site.statement.arguments, strict=False)
     for node, place in command.open.moves:
-        movers = [_value(arguments.get(str(node)), host, ground) for host in hosts]
-        places = [_value(arguments.get(str(place)), host, ground) for host in hosts]
+        movers = [_value(arguments.get(node), host, ground) for host in hosts]
+        places = [_value(arguments.get(place), host, ground) for host in hosts]
         _report(site.where, map(ground.obstacle, movers, places), ground)
         for passed, via in zip(site.via, site.statement.arguments[len(command.operands) :], strict=True):
             ways = [_value(via, host, ground) for host in hosts]

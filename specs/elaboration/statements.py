@@ -11,6 +11,7 @@ from typing import Any, Final
 from semantics.behaviours import statements as k
 from semantics.behaviours.commands import COMMANDS, HOST, MOST_VIA
 from semantics.behaviours.expressions import Expression, Variable
+from semantics.behaviours.reactions import PlaceTerm
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.expressions import (
@@ -337,8 +338,8 @@ def _check_way(action: s.Command, arguments: tuple[Expression, ...], findings: F
         findings.add(Code.BAD_WAY, action.via[MOST_VIA], message, "make two moves of it")
         return
     command = COMMANDS[action.name]
-    named = dict(zip(command.operands, arguments, strict=False))
-    destinations = [named.get(str(place)) for _, place in command.open.moves]
+    named: dict[PlaceTerm, Expression] = dict(zip(command.operands, arguments, strict=False))
+    destinations = [named.get(place) for _, place in command.open.moves]
     via = arguments[len(command.operands) :]
     for number, (place, node) in enumerate(zip(via, action.via, strict=True)):
         if place in destinations:

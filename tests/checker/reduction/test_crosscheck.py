@@ -18,9 +18,11 @@ from checker.reduction.crosscheck import Drift, outside, unheeded
 from checker.reduction.slots import NOTHING
 from semantics import Scheduler, control, strategies
 from semantics.behaviours.reactions import CONTROL_AUTHORITY
+from semantics.control import PREMISES, Obstacle, Premise
 from semantics.properties import propositions
 from semantics.properties.propositions import Ended, HasPending, HostedAt, Inside, Known, Waiting
 from semantics.races.monitor import monitored
+from semantics.state.requests import CTR
 from specs import MissionError
 from specs.elaboration import load_mission
 
@@ -85,13 +87,13 @@ check { deadlock_freedom }
 def premise(monkeypatch):
     """Put one premise more before every control: a host that L has on a control authority must be on one in P."""
 
-    def realisations(c, request):
+    def has_authority(c, request, _):
         host = c.alpha.host(request.agent)
         believed = [each for each in c.structure.logical.links(host) if each.startswith(CONTROL_AUTHORITY)]
-        if not believed or any(c.structure.physical.connected(each, host) for each in believed):
-            yield from control.realisations(c, request)
+        return not believed or any(c.structure.physical.connected(each, host) for each in believed)
 
-    monkeypatch.setattr("semantics.rules.realisations", realisations)
+    premise = Premise("a's host on an authority", has_authority, Obstacle.INCONSISTENT)
+    monkeypatch.setitem(PREMISES, CTR, (*PREMISES[CTR], premise))
 
 
 def verdict(reduce=(), **options):
@@ -108,6 +110,7 @@ def test_reductions_lose_a_violation_that_a_premise_more_makes(premise):  # noqa
 def test_a_premise_more_is_noticed(premise):  # noqa: ARG001  # it is there
     assert outside_of(start(AUTHORISED)) == {
         "actuate of 'a' reads ('channels', 'uav0'), which its footprint leaves out",
+        "hindered of 'a' reads ('channels', 'uav0'), which its footprint leaves out",
     }
 
 
