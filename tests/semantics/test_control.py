@@ -13,7 +13,7 @@ from semantics import strategies
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Literal, QueryOf
 from semantics.behaviours.patterns import Anything
-from semantics.behaviours.reactions import Pattern, PlaceVariable, Reaction, moved, relinked
+from semantics.behaviours.reactions import Pattern, PlaceVariable, Reaction, matches, moved, relinked
 from semantics.behaviours.statements import Case, ControlBy, Observe, React, Send
 from semantics.control import PREMISES, Obstacle, applicable, is_consistent, obstacle, realisations
 from semantics.drive import drive
@@ -360,7 +360,8 @@ def test_commit_requires_the_target_to_be_known_and_there():
     assert obstacle(forgotten, flying.eta.all()[0].request) is Obstacle.UNMATCHED
 
 
-def test_commit_requires_its_unmoved_part_to_hold_in_belief_and_in_fact():
+def meeting():
+    """Return u0 on its way to the area, by a rule that has u1 stay in the base."""
     x = PlaceVariable("x")
     meet = Reaction(
         "meet",
@@ -368,7 +369,11 @@ def test_commit_requires_its_unmoved_part_to_hold_in_belief_and_in_fact():
         Pattern(("u0", "u1", "area", "base"), (("u0", "area"), ("u1", "base"))),
     )
     c = mission(["base", "sea", "area", "u0", "u1"], agents={"a": ("u0", ())}, **TIMED)
-    c = run(c.with_({("line", "a"): (CTR("a", meet),)}), "command")
+    return run(c.with_({("line", "a"): (CTR("a", meet),)}), "command")
+
+
+def test_commit_requires_its_unmoved_part_to_hold_in_belief_and_in_fact():
+    c = meeting()
     fly = c.eta.all()[0].request
     assert enabled(c) == ["commit"]
     assert obstacle(c.with_({("parent", "u1"): "sea"}), fly) is Obstacle.UNMATCHED
@@ -535,3 +540,36 @@ def test_a_control_is_served_just_where_no_premise_fails(request_type, monkeypat
             patch.setitem(PREMISES, request_type, those)
             assert obstacle(c, pending.request) is premise.otherwise
             assert not [*actuate(c, "a"), *command(c, "a"), *commit(c, "a")]
+
+
+def first_failing():
+    """Return for each premise, by its request and function, a configuration in which it is the first to fail."""
+    bystander = Reaction("r", Pattern(("u1",)), Pattern(("u1",)))
+    apart = mission(["base", "u0", "u1"], agents={"a": ("u0", ())}).with_(
+        {("line", "a"): (CTR("a", bystander),)}
+    )
+    cargo = {"entities": ("sea", "ship", "crate"), "placed": {"crate": aboard("ship", "crate")}}
+    flying = run(commanding(move_to("area")), "command")
+    return {
+        (CTR, "involves_host"): apart,
+        (CTR, "leaves_forest"): commanding(move_to("crate"), host="ship", **cargo),
+        (CTR, "is_consistent"): commanding(
+            move_to("area"), beliefs=Beliefs({"area": REGION}), placed={"area": None}
+        ),
+        (FLY, "is_under_way"): flying.with_({("placement", "u0"): SHAPES["u1"]}),
+        (FLY, "still_matches"): flying.with_({("parent", "area"): None}),
+        (FLY, "leaves_forest"): flying.with_({("parent", "area"): "u0"}),
+        (FLY, "is_unmoved_consistent"): meeting().with_({("placement", "u1"): SHAPES["spill"]}),
+    }
+
+
+def test_each_premise_is_the_first_to_fail_somewhere():
+    found = first_failing()
+    assert found.keys() == {(of, each.holds.__name__) for of, each_of in PREMISES.items() for each in each_of}
+    for (of, name), c in found.items():
+        (pending,) = c.eta.all()
+        request = pending.request
+        ways = [request.match] if of is FLY else matches(request.reaction.redex, c.structure.logical)
+        failing = [next(p for p in PREMISES[of] if not p.holds(c, request, match)) for match in ways]
+        assert {each.holds.__name__ for each in failing} == {name}
+        assert obstacle(c, request) is failing[0].otherwise
