@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterable
 from ipaddress import ip_address
+from typing import assert_never
 
 from adapters.live.assumptions import broken_by_place, clause_of_leaving, relations
 from adapters.live.flying import arrive, ask_anew, doubt, obey, refuse, renew
@@ -271,6 +272,8 @@ def note(turning: Turning, report: Report) -> None:
         case Trouble(source, _, what, detail, count):
             often = f" ({count:,} times)" if count > 1 else ""
             turning.find("trouble", source, f"{source}: {what}{often}{': ' if detail else ''}{detail}")
+        case _:
+            assert_never(report)
 
 
 def _lose(turning: Turning, entity: Name, since: float) -> None:

@@ -1,14 +1,19 @@
 """What every plugin keeps to, whatever it stands for."""
 
 import asyncio
+import importlib
+import inspect
 import json
+import pkgutil
 import socket
 from contextlib import asynccontextmanager
+from pathlib import Path
 
 import aiohttp.web
 import pytest
 from worlds import EPOCH, HOME, World, running, until
 
+import adapters
 from adapters.ais import AisFeed
 from adapters.detections import Detections
 from adapters.location import LocationService
@@ -16,7 +21,11 @@ from adapters.mavlink import Autopilot, Craft
 from adapters.places import StaticPlaces
 from adapters.plugin import Aged, Gone, GoTo, HandOver, Plugin, Refused
 from adapters.simulated import Kind, Simulator, Vehicle, run
+from adapters.stations.shared import Shared
+from adapters.stations.sharing import Sharing
 from adapters.web import Listen
+from bigactors import feeds
+from bigactors.arguments.links import LIVING
 from physical import PhysicalProperty, box, write_geojson
 
 VESSEL = rb"!AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61"
@@ -108,10 +117,35 @@ async def location(_tmp_path):
     await runner.cleanup()
 
 
-PLUGINS = [autopilot, ais, places, detections, location]
+DOCS = Path(__file__).parents[2] / "docs"
+PLUGINS = {
+    Autopilot: autopilot,
+    AisFeed: ais,
+    StaticPlaces: places,
+    Detections: detections,
+    LocationService: location,
+}
+ELSEWHERE = {Plugin, Shared, Sharing}
+"""The interface, and what stands between several stations."""
 
 
-@pytest.fixture(params=PLUGINS, ids=lambda make: make.__name__)
+def is_plugin(each):
+    return inspect.isclass(each) and all(hasattr(each, name) for name in ("run", "command", "owns"))
+
+
+def test_every_plugin_is_held_to_the_contract_and_can_be_given():
+    names = {each.name for each in pkgutil.walk_packages(adapters.__path__, "adapters.")}
+    modules = [importlib.import_module(name) for name in names if not name.endswith("__main__")]
+    ours = {each for module in modules for each in vars(module).values() if is_plugin(each)} - ELSEWHERE
+    assert PLUGINS.keys() == ours
+    assert {each for each in vars(feeds).values() if is_plugin(each)} - ELSEWHERE == ours - {Autopilot}
+    plugins, options = ((DOCS / name).read_text(encoding="utf-8") for name in ("plugins.md", "cli.md"))
+    assert [each for each in ours if f"{each.__name__}(" not in plugins] == []
+    assert [name for name in feeds.FEEDS if name not in options] == []
+    assert LIVING.keys() - {"vehicles"} == feeds.FEEDS.keys() - {"places"}
+
+
+@pytest.fixture(params=PLUGINS.values(), ids=lambda make: make.__name__)
 def make(request, tmp_path):
     return lambda: request.param(tmp_path)
 
