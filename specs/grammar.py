@@ -16,40 +16,31 @@ from specs.build_behaviour import BuildBehaviour
 from specs.build_world import BuildWorld
 from specs.syntax import Mission
 
-SECTIONS: Final = frozenset(
-    [
-        "mission",
-        "signature",
-        "world",
-        "believes",
-        "rule",
-        "def",
-        "BigActor",
-        "environment",
-        "scheduler",
-        "check",
-        "live",
-    ]
-)
-STATEMENTS: Final = frozenset(
-    [
-        "observe",
-        "control",
-        "react",
-        "send",
-        "migrate",
-        "spawn",
-        "display",
-        "let",
-        "if",
-        "loop",
-        "while",
-        "for",
-        "match",
-        "choose",
-        "skip",
-    ]
-)
+
+@cache
+def grammar_text() -> str:
+    """Return the grammar as it is written in mission.lark, with the operators of queries and the commands."""
+    text = Path(__file__).with_name("mission.lark").read_text(encoding="utf-8")
+    text = text.replace("RELATIONS_OF_HOST", " | ".join(f'"{word}_HOST"' for word in QueryOperator))
+    text = text.replace("RELATIONS", " | ".join(f'"{word}"' for word in QueryOperator))
+    return text.replace("COMMANDS", "\n       | ".join(map(_rule, COMMANDS.values())))
+
+
+def _rule(command: Command) -> str:
+    """Return how a command is written, in the grammar's notation."""
+    parts = (f'"{part}"' if part in command.words else "expression" for part in command.parts)
+    return " ".join([*parts, *(["[via]"] if command.travels else [])])
+
+
+def first_words(rule: str) -> frozenset[str]:
+    """Return the words of the language that the alternatives of a rule begin with, or may begin with."""
+    (alternatives,) = re.findall(rf"^{rule}:(.+(?:\n +.+)*)", grammar_text(), re.MULTILINE)
+    names = "|".join(re.findall(r"\w+", alternatives))
+    return frozenset(re.findall(rf'^(?:{names}): \[?"(\w+)"', grammar_text(), re.MULTILINE))
+
+
+STATEMENTS: Final = first_words("_statement")
+SECTIONS: Final = first_words("_declaration") - STATEMENTS | {"mission"}
 OPERATION_WORDS: Final = frozenset(["in", "not", "and", "or", "of", "true", "false", "HOST", "SELF"])
 QUERY_WORDS: Final = frozenset(["ALL", *QueryOperator, *(f"{word}_HOST" for word in QueryOperator)])
 RESERVED: Final = (
@@ -64,20 +55,6 @@ RESERVED: Final = (
 
 class _Build(BuildWorld, BuildBehaviour):
     """Both halves of the builder."""
-
-
-def grammar_text() -> str:
-    """Return the grammar as it is written in mission.lark, with the operators of queries and the commands."""
-    text = Path(__file__).with_name("mission.lark").read_text(encoding="utf-8")
-    text = text.replace("RELATIONS_OF_HOST", " | ".join(f'"{word}_HOST"' for word in QueryOperator))
-    text = text.replace("RELATIONS", " | ".join(f'"{word}"' for word in QueryOperator))
-    return text.replace("COMMANDS", "\n       | ".join(map(_rule, COMMANDS.values())))
-
-
-def _rule(command: Command) -> str:
-    """Return how a command is written, in the grammar's notation."""
-    parts = (f'"{part}"' if part in command.words else "expression" for part in command.parts)
-    return " ".join([*parts, *(["[via]"] if command.travels else [])])
 
 
 @cache

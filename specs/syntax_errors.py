@@ -10,7 +10,7 @@ from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS
 from specs.codes import Code
 from specs.common_mistakes import MISTAKES
 from specs.diagnostics import Diagnostic
-from specs.grammar import QUERY_WORDS, SECTIONS, STATEMENTS, Run
+from specs.grammar import QUERY_WORDS, SECTIONS, STATEMENTS, Run, first_words
 from specs.parse_stop import Situation, line_of, situation
 from specs.text import Prepared
 
@@ -19,32 +19,8 @@ _EXPRESSION: Final = frozenset(["SELF", "HOST", "true", "false", "not", "!", "-"
 _OPERATORS: Final = frozenset(
     ["of", "==", "!=", "<", "<=", ">", ">=", "in", "not", "+", "-", "or", "||", "and", "&&"]
 )
-_FORMULA: Final = frozenset(
-    [
-        "actually",
-        "present",
-        "known",
-        "bound",
-        "pending",
-        "ended",
-        "waiting",
-        "forall",
-        "exists",
-        "not",
-        "!",
-        "true",
-        "false",
-        "(",
-        "[]",
-        "<>",
-        "always",
-        "eventually",
-        "next",
-        "infinitely",
-        "taken",
-        "enabled",
-    ]
-)
+_PATHS: Final = frozenset(["[]", "<>", "always", "eventually", "next", "infinitely"])
+_FORMULA: Final = first_words("_claim") | _PATHS | {"forall", "exists", "not", "!", "false", "("}
 _CONNECTIVES: Final = frozenset(["and", "&&", "or", "||", "->", "<->", "U", "R", "W", "until", "leads"])
 _GROUPS: Final[tuple[tuple[str, str, frozenset[str], frozenset[str]], ...]] = (
     ("observe", "a statement", STATEMENTS, frozenset({"NAME"})),
