@@ -53,7 +53,7 @@ RESERVED: Final = (
 )
 
 
-class _Build(BuildWorld, BuildBehaviour):
+class Build(BuildWorld, BuildBehaviour):
     """Both halves of the builder."""
 
 
@@ -68,7 +68,7 @@ def grammar() -> Lark:
         start="mission",
         keep_all_tokens=True,
         maybe_placeholders=True,
-        transformer=_Build(),
+        transformer=Build(),
         edit_terminals=_match_whole_words,
     )
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Iterator
-from typing import Final
+from typing import Final, get_args, get_type_hints
 
 from semantics.behaviours.commands import COMMANDS, WAY, Command
 from specs import syntax as s
-from specs.grammar import RESERVED, grammar_text
+from specs.grammar import RESERVED, Build, grammar_text
 
 INTRODUCTION: Final = """\
 # The mission language
@@ -36,108 +36,7 @@ MISTAKES: Final = """\
 [codes.md](codes.md) lists the diagnostics of missions, with meaning and remedy.
 """
 
-# For each heading of the grammar: what is shown under it, and a mission that uses it.
-NODES: Final[dict[str, tuple[type[s.Node], ...]]] = {
-    "Missions": (s.Mission,),
-    "Signature": (s.Signature, s.Kind),
-    "World": (s.World, s.Entity, s.ChannelDeclaration, s.FromSource, s.Keep),
-    "Geometry": (s.Point, s.Box, s.Polygon, s.Circle, s.AltitudeBand, s.Length, s.Coordinate, s.Placement),
-    "Beliefs": (s.Believes, s.BelievedIn, s.BelievedUnknown, s.BelievedLinked),
-    "Reaction rules": (s.Rule, s.Parameter, s.RuleBody),
-    "Behaviours and bigActors": (s.Definition, s.BigActor),
-    "Statements": (
-        s.Observe,
-        s.Control,
-        s.React,
-        s.Send,
-        s.Migrate,
-        s.Spawn,
-        s.Display,
-        s.Let,
-        s.Assign,
-        s.If,
-        s.Loop,
-        s.While,
-        s.For,
-        s.Match,
-        s.Choose,
-        s.Alternative,
-        s.ChooseFrom,
-        s.Call,
-        s.Skip,
-    ),
-    "Patterns": (
-        s.Case,
-        s.ObservationPattern,
-        s.MessagePattern,
-        s.VariablePattern,
-        s.Wildcard,
-        s.LiteralPattern,
-        s.ConstantPattern,
-        s.TuplePattern,
-    ),
-    "Queries": (s.HostReference, s.AllNodes, s.QueryApplication),
-    "Control actions": (s.Command, s.ApplyRule),
-    "Expressions": (
-        s.Name,
-        s.TextLiteral,
-        s.IntegerLiteral,
-        s.TruthLiteral,
-        s.SelfReference,
-        s.TupleLiteral,
-        s.SetLiteral,
-        s.UnaryOperation,
-        s.BinaryOperation,
-        s.OfKind,
-        s.FunctionCall,
-    ),
-    "Environment": (
-        s.Environment,
-        s.DriftsAmong,
-        s.DriftsWithin,
-        s.Drops,
-        s.Leaves,
-        s.Appears,
-        s.Vanishes,
-        s.Says,
-        s.Arrives,
-    ),
-    "Scheduler and control": (s.Scheduler, s.ControlMode),
-    "Checks": (
-        s.Check,
-        s.StandardProperty,
-        s.Invariant,
-        s.Reachable,
-        s.TemporalProperty,
-        s.Progress,
-        s.Fairness,
-        s.Steps,
-    ),
-    "Live runs": (s.Live, s.OnBroken, s.TimeLimit, s.Duration),
-    "Formulas": (
-        s.Inside,
-        s.LinkedTo,
-        s.Present,
-        s.Known,
-        s.Pending,
-        s.Ended,
-        s.Waiting,
-        s.HostedAt,
-        s.SameName,
-        s.Stored,
-        s.HasValue,
-        s.Negation,
-        s.Connective,
-        s.Quantified,
-        s.PathPrefix,
-        s.PathOperation,
-        s.LeadsTo,
-        s.PathQuantifier,
-        s.Taken,
-        s.Enabled,
-    ),
-}
-
+# For some headings of the grammar a mission that uses what stands under them.
 EXAMPLES: Final[dict[str, str]] = {
     "Signature": """\
 signature {
@@ -249,6 +148,7 @@ check {
 """,
 }
 
+_RULE_NAME: Final = re.compile(r"^\??(\w+)(?=:)|-> (\w+)$", re.MULTILINE)
 _HEADING: Final = re.compile(r"^//: (.+)$", re.MULTILINE)
 _RULE_CLEANUPS: Final = (
     (re.compile(r' \| ";"'), ""),  # separators
@@ -262,7 +162,7 @@ def language_reference() -> str:
     """Return the reference page, in Markdown."""
     parts = [INTRODUCTION]
     for heading, rules in grammar_parts():
-        if heading in NODES:
+        if NODES[heading]:
             parts += [f"## {heading}\n", *_constructs(heading), _fenced(rules, "ebnf")]
         if heading in EXAMPLES:
             parts += ["Example:\n", _fenced(EXAMPLES[heading], "mission")]
@@ -273,12 +173,32 @@ def language_reference() -> str:
 
 def grammar_parts() -> Iterator[tuple[str, str]]:
     """Yield the headings of the grammar with their rules, as a reader wants them."""
-    _, *parts = _HEADING.split(grammar_text())
-    for heading, rules in zip(parts[::2], parts[1::2], strict=True):
+    for heading, rules in _parts():
         shown = rules
         for pattern, replacement in _RULE_CLEANUPS:
             shown = pattern.sub(replacement, shown)
         yield heading, shown.strip() + "\n"
+
+
+def _parts() -> Iterator[tuple[str, str]]:
+    _, *parts = _HEADING.split(grammar_text())
+    return zip(parts[::2], parts[1::2], strict=True)
+
+
+def _built() -> dict[str, tuple[type[s.Node], ...]]:
+    """Return what the rules under each heading are built into, each construct where it comes first."""
+    first: dict[type[s.Node], str] = {}
+    for heading, rules in _parts():
+        methods = (getattr(Build, rule or alias, None) for rule, alias in _RULE_NAME.findall(rules))
+        for built in (get_type_hints(method)["return"] for method in methods if method is not None):
+            for each in get_args(built) or (built,):
+                if issubclass(each, s.Node):
+                    first.setdefault(each, heading)
+    return {heading: tuple(each for each in first if first[each] == heading) for heading, _ in _parts()}
+
+
+NODES: Final = _built()
+"""For each heading of the grammar the constructs that are shown under it."""
 
 
 def forms(node: type[s.Node]) -> tuple[str, ...]:

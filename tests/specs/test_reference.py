@@ -94,7 +94,7 @@ def test_an_example_parses_and_is_in_canonical_layout(heading):
 
 
 def test_every_heading_of_the_grammar_but_the_words_is_explained():
-    assert [heading for heading, _ in grammar_parts()] == [*NODES, "Words"]
+    assert [heading for heading, _ in grammar_parts() if not NODES[heading]] == ["Words"]
 
 
 def test_every_construct_is_in_the_reference():
