@@ -5,7 +5,7 @@ from itertools import chain
 from pathlib import Path
 
 import pytest
-from checked_missions import load, start
+from checked_missions import WORLD, load, start
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mission_texts import missions
@@ -17,6 +17,7 @@ from checker.reduction import Ample
 from checker.reduction.crosscheck import Drift, outside, unheeded
 from checker.reduction.slots import NOTHING
 from semantics import Scheduler, control, strategies
+from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.reactions import CONTROL_AUTHORITY
 from semantics.control import PREMISES, Obstacle, Premise
 from semantics.properties import propositions
@@ -67,6 +68,34 @@ def test_nothing_lies_outside_in_generated_missions(text, scheduler):
     except MissionError:
         return  # it is found wrong before it is run
     assert outside_of(initial, [Inside("uav0", "gate0", actually=True), Ended("a")]) == set()
+
+
+BUSY = """
+BigActor mover hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) control(MOVE uav0 TO north0) }
+BigActor sailor hosted_at vessel0 with_behavior { control(MOVE_HOST_TO gate0) }
+environment {
+  drifter0 vanishes
+  uav0 leaves mesh and returns
+  uav1 leaves control:gcs0 and returns
+  internet drops and returns
+}
+"""
+BUSY_WORLD = WORLD.replace("linked control:gcs1, mesh", "linked control:gcs0, mesh")
+REQUESTS = {
+    "MOVE_HOST_TO": ("uav0", "MOVE_HOST_TO gate0 VIA north0"),
+    "MOVE": ("uav0", "MOVE uav1 TO gate0"),
+    "PUT": ("vessel0", "PUT drifter0 IN gate0"),
+    "HAND": ("uav0", "HAND uav1 TO gcs1"),
+    "CONNECT_HOST_TO": ("uav0", "CONNECT_HOST_TO gcs1"),
+    "DISCONNECT_HOST_FROM": ("uav0", "DISCONNECT_HOST_FROM vessel0"),
+}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_nothing_lies_outside_where_others_change_all_that_a_command_may_read(name):
+    host, request = REQUESTS[name]
+    asking = f"BigActor a hosted_at {host} with_behavior {{ control({request}) }}"
+    assert outside_of(start(BUSY + asking, BUSY_WORLD), most=400, count=40) == set()
 
 
 def test_nothing_lies_outside_where_an_agent_is_spawned():
