@@ -10,6 +10,7 @@ from typing import Final, Protocol
 from lark import Lark, Token
 from lark.lexer import PatternRE, PatternStr, TerminalDef
 
+from semantics.properties.property import Asked, asked_by
 from specs.build_behaviour import BuildBehaviour
 from specs.build_world import BuildWorld
 from specs.syntax import Mission
@@ -80,8 +81,10 @@ class _Build(BuildWorld, BuildBehaviour):
 
 
 def grammar_text() -> str:
-    """Return the grammar as it is written in mission.lark."""
-    return Path(__file__).with_name("mission.lark").read_text(encoding="utf-8")
+    """Return the grammar as it is written in mission.lark, with the properties that have a name."""
+    standard = " | ".join(f'"{kind}"' for kind in asked_by(Asked.BY_DEFAULT, Asked.BY_NAME))
+    text = Path(__file__).with_name("mission.lark").read_text(encoding="utf-8")
+    return text.replace("STANDARD", standard)
 
 
 @cache
