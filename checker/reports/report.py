@@ -76,8 +76,8 @@ def _found(verdict: Verdict) -> str:
 
 
 def _examined(verdict: Verdict) -> str:
-    about = verdict.property.kind.about
-    return f"examined {verdict.examined:,} {about.one if verdict.examined == 1 else about.many}".rstrip()
+    one, many = verdict.property.kind.about.examined
+    return f"examined {verdict.examined:,} {one if verdict.examined == 1 else many}".rstrip()
 
 
 def _steps(count: int) -> str:

@@ -34,7 +34,7 @@ class About:
     Attributes:
         says: What such a property says, in a sentence.
         asked: How a mission asks for it.
-        one, many: What is examined for it, one and several; empty where that is not told.
+        examined: What is examined for it, one and several; empty where that is not told.
         reducible: Whether reductions keep it: they may leave out nothing that decides it (`checker.reduction`).
         nothing: What it means that nothing was examined, where that is no shortcoming.
         vacuous: What it means that nothing was examined, where a verdict that holds says nothing then.
@@ -43,12 +43,14 @@ class About:
 
     says: str
     asked: Asked
-    one: str
-    many: str
+    examined: tuple[str, str]
     reducible: bool
     nothing: str = ""
     vacuous: str = ""
     counted: bool = True
+
+
+CONFIGURATIONS: Final = ("configuration", "configurations")
 
 
 class PropertyKind(StrEnum):
@@ -85,74 +87,65 @@ ABOUT: Final = {
     PropertyKind.LOCAL_CONSISTENCY: About(
         "Every control next in line can be served on what the world shows.",
         Asked.BY_DEFAULT,
-        "control next in line",
-        "controls next in line",
+        ("control next in line", "controls next in line"),
         reducible=True,
         vacuous="no control was ever next in line",
     ),
     PropertyKind.RACE_FREEDOM: About(
         "No bigActor changes what another's control rests on.",
         Asked.BY_DEFAULT,
-        "control or pair of controls",
-        "controls and pairs of controls",
+        ("control or pair of controls", "controls and pairs of controls"),
         reducible=True,
         vacuous="no control was ever served",
     ),
     PropertyKind.DEADLOCK_FREEDOM: About(
         "Some bigActor can move wherever one has anything left to do.",
         Asked.BY_DEFAULT,
-        "configuration at rest",
-        "configurations at rest",
+        ("configuration at rest", "configurations at rest"),
         reducible=True,
         nothing="some bigActor can always move",
     ),
     PropertyKind.ARRIVAL: About(
         "No run waits for ever for the end of a flight.",
         Asked.BY_NAME,
-        "end of a flight",
-        "ends of flights",
+        ("end of a flight", "ends of flights"),
         reducible=True,
         vacuous="no flight ever ends",
     ),
     PropertyKind.COMPUTATION: About(
         "No bigActor's computation fails or diverges.",
         Asked.ALWAYS,
-        "internal step",
-        "internal steps",
+        ("internal step", "internal steps"),
         reducible=True,
         nothing="no bigActor computes anything that could fail",
     ),
     PropertyKind.INVARIANT: About(
         "A proposition is true of every configuration.",
         Asked.OF_CONFIGURATIONS,
-        "configuration",
-        "configurations",
+        CONFIGURATIONS,
         reducible=True,
     ),
     PropertyKind.REACHABLE: About(
-        "A proposition is true of some configuration.", Asked.OF_CONFIGURATIONS, "", "", reducible=True
+        "A proposition is true of some configuration.", Asked.OF_CONFIGURATIONS, ("", ""), reducible=True
     ),
     PropertyKind.LTL: About(
         "A formula of linear time is true of every fair run.",
         Asked.OF_RUNS,
-        "configuration",
-        "configurations",
+        CONFIGURATIONS,
         reducible=False,
         counted=False,
     ),
     PropertyKind.CTL: About(
         "A formula of branching time is true of the tree of fair runs.",
         Asked.OF_RUNS,
-        "configuration",
-        "configurations",
+        CONFIGURATIONS,
         reducible=False,
         counted=False,
     ),
     PropertyKind.PROGRESS: About(
         "Every pending request is eventually served on every fair run.",
         Asked.OF_RUNS,
-        "request",
-        "requests",
+        ("request", "requests"),
         reducible=False,
     ),
 }
