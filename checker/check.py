@@ -22,7 +22,7 @@ from checker.properties.inspections import (
 from checker.properties.ownership import owned
 from checker.properties.races import ControlRaces, StaleObservationRaces
 from checker.properties.visited import Visited
-from checker.reduction.reducer import Reduced, reducing
+from checker.reduction.reducer import Reduced
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.reduction.unfolding import told
 from checker.traces import Trace, trace_to
@@ -82,8 +82,8 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     """
     asked, limits = tuple(properties), limits or Limits()
     initial = watching(initial, asked)
-    formulas = [each.formula for each in asked if each.kind.has_proposition]
-    reducer = reducing(initial, reduce, formulas)
+    formulas, reductions = [each.formula for each in asked if each.kind.has_proposition], tuple(reduce)
+    reducer = Reduced(initial, reductions, formulas) if reductions else None
     if reducer is not None and engine is Engine.RAY:
         raise RefusedError(reducer.names[0], "the ray explorer does not reduce; leave --engine out")
     symmetric = reducer is not None and reducer.symmetry is not None

@@ -66,11 +66,3 @@ class Reduced:
             crosscheck(self.ample, c)
         if self.symmetry is not None:
             exchange(self.symmetry, c)
-
-
-def reducing(
-    initial: Configuration, reductions: Iterable[Reduction], formulas: Sequence[Proposition]
-) -> Reduced | None:
-    """Return the reducer of an exploration, None if no reduction is requested; raises RefusedError."""
-    asked = tuple(reductions)
-    return Reduced(initial, asked, formulas) if asked else None
