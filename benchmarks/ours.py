@@ -176,7 +176,7 @@ def _explore(given: argparse.Namespace, began: float) -> Explored:
     started = time.monotonic()
     found = _search(mission, given)
     seconds = time.monotonic() - started
-    result = Explored(found.size, found.transitions, list(found.bounds), seconds)
+    result = Explored(found.size, found.transitions, list(map(str, found.bounds)), seconds)
     result.processor = time.process_time()
     result.importing = started - began
     result.memory = resident()
@@ -193,7 +193,7 @@ def _search(mission: "ElaboratedMission", given: argparse.Namespace) -> "Explora
 
     reducer = None
     if given.reduce:
-        formulas = [each.formula for each in mission.properties if each.kind in ("invariant", "reachable")]
+        formulas = [each.formula for each in mission.properties if each.kind.has_proposition]
         reducer = Reduced(mission.initial, [Reduction.POR], formulas)
     seconds = None if given.minutes is None else 60 * given.minutes
     memory = None if given.gigabytes is None else int(given.gigabytes * 2**30)

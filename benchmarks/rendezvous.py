@@ -208,7 +208,7 @@ def rendezvous(robots: int) -> ElaboratedMission:
 
 def reduced(mission: ElaboratedMission) -> Exploration:
     """Explore a mission with partial-order reduction, nothing that its properties see left out."""
-    formulas = [each.formula for each in mission.properties if each.kind in ("invariant", "reachable")]
+    formulas = [each.formula for each in mission.properties if each.kind.has_proposition]
     reducer = Reduced(mission.initial, [Reduction.POR], formulas)
     return explore(mission.initial, limits=Limits(configurations=None), reduce=reducer)
 

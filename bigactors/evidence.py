@@ -9,6 +9,7 @@ from bigactors.drawings import draw_run
 from bigactors.files import file_stem, make_folder, write_json, write_text
 from bigactors.pages import MOST_PICTURES, Story, trace_page
 from checker import Trace, print_trace, to_json
+from semantics.properties.property import PropertyKind
 from semantics.state.printing import print_configuration
 
 
@@ -48,7 +49,7 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
                 details=violation.details,
             )
         if verdict.witness is not None:
-            found = verdict.property.kind == "reachable"
+            found = verdict.property.kind is PropertyKind.REACHABLE
             yield Evidence(
                 file_stem(f"{name}-witness"), f"{name}: a witness", verdict.witness, False, telling=found
             )

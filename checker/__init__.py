@@ -15,7 +15,7 @@ from checker.engines.contract import (
     MachineError,
     Progress,
 )
-from checker.limits import Interruption, Limits
+from checker.limits import Bound, Interruption, Limits, Stop
 from checker.properties.ownership import owned
 from checker.reduction import Reduction, RefusedError
 from checker.reports.report import report_json, report_text
@@ -23,6 +23,7 @@ from checker.traces import ReplayError, Step, Trace, print_loop, print_trace, re
 from checker.verdicts import Outcome, Report, Verdict, Violation
 
 __all__ = [
+    "Bound",
     "CheckpointError",
     "Cluster",
     "ClusterError",
@@ -39,6 +40,7 @@ __all__ = [
     "ReplayError",
     "Report",
     "Step",
+    "Stop",
     "Trace",
     "Verdict",
     "Violation",

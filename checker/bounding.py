@@ -11,11 +11,15 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from time import monotonic
 
-from checker.limits import GRACE, INTERRUPTION, Limits, is_full, memory_met, time_met
+from checker.limits import GRACE, Bound, Limits, Stop, is_full
 
 
 class BoundMet(Exception):  # what it is
-    """Time, memory or the user's patience has come to its end; the text says which."""
+    """Time, memory or the user's patience has come to its end."""
+
+    def __init__(self, bound: Bound) -> None:
+        super().__init__(str(bound))
+        self.bound = bound
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,13 +27,9 @@ class _Bounds:
     limits: Limits
     started: float
 
-    def met(self) -> str | None:
-        if self.limits.interruption.is_due(GRACE):
-            return INTERRUPTION
-        most = self.limits.seconds
-        if most is not None and monotonic() - self.started + self.limits.spent > most:
-            return time_met(most)
-        return memory_met(self.limits) if is_full(self.limits) else None
+    def met(self) -> Bound | None:
+        end = self.limits.end(monotonic() - self.started, grace=GRACE)
+        return self.limits.bound(Stop.MEMORY) if end is None and is_full(self.limits) else end
 
 
 _BOUNDS: ContextVar[_Bounds | None] = ContextVar("bounds", default=None)

@@ -2,17 +2,19 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 from checker.bounding import BoundMet, bounded
-from checker.engines.choose import explore
-from checker.engines.contract import Cluster, Engine, Exploration, Inspect, Keeping, Progress
-from checker.limits import INTERRUPTION, Limits, time_met
+from checker.engines.choose import explore_by
+from checker.engines.contract import Cluster, Engine, Exploration, Keeping, Options, Reporter
+from checker.limits import Limits, Part, Stop
 from checker.properties.coverage import coverage
 from checker.properties.findings import MOST_VIOLATIONS, Collected
 from checker.properties.inspections import (
+    Arrival,
     Computation,
     DeadlockFreedom,
+    Inspection,
     Invariant,
     LocalConsistency,
     Reachability,
@@ -20,26 +22,25 @@ from checker.properties.inspections import (
 from checker.properties.ownership import owned
 from checker.properties.races import ControlRaces, StaleObservationRaces
 from checker.properties.visited import Visited
-from checker.reduction.reducer import Reduced, reducing
+from checker.reduction.reducer import Reduced
 from checker.reduction.refusals import Reduction, RefusedError
+from checker.reduction.unfolding import told
 from checker.traces import Trace, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Violation
-from semantics.properties.property import Property, watching
-from semantics.properties.temporal import TEMPORAL
+from semantics.properties.property import Property, PropertyKind, watching
 from semantics.races.monitor import monitored
 from semantics.state.configuration import Configuration
 
 if TYPE_CHECKING:
     from checker.properties.temporal.decide import Decider
 
-Reporter = Callable[[Progress], None]
-
-VACUOUS = {
-    "local_consistency": "no control was ever next in line",
-    "race_freedom": "no control was ever served",
-    "arrival": "no flight ever ends",
+BY_LOOKING: dict[PropertyKind, Callable[[int], Inspection]] = {
+    PropertyKind.LOCAL_CONSISTENCY: LocalConsistency,
+    PropertyKind.DEADLOCK_FREEDOM: DeadlockFreedom,
+    PropertyKind.ARRIVAL: Arrival,
+    PropertyKind.COMPUTATION: Computation,
 }
-"""What it means that nothing was examined that a property is about."""
+"""What looks at configurations for the properties that have nothing of the mission's own to them."""
 
 PATIENCE = 1.0
 """Seconds after which a mission that the reference explorer has not got through is given to the fast one."""
@@ -81,88 +82,69 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     """
     asked, limits = tuple(properties), limits or Limits()
     initial = watching(initial, asked)
-    formulas = [each.formula for each in asked if each.kind in ("invariant", "reachable")]
-    reducer = reducing(initial, reduce, formulas)
+    formulas, reductions = [each.formula for each in asked if each.kind.has_proposition], tuple(reduce)
+    reducer = Reduced(initial, reductions, formulas) if reductions else None
     if reducer is not None and engine is Engine.RAY:
         raise RefusedError(reducer.names[0], "the ray explorer does not reduce; leave --engine out")
     symmetric = reducer is not None and reducer.symmetry is not None
     if symmetric and engine is Engine.FAST:
         raise RefusedError(Reduction.SYMMETRY, "only the reference explorer knows it; leave --engine out")
 
+    options = Options(
+        limits, report, reduce=reducer, keeping=keeping or Keeping(), cluster=cluster or Cluster()
+    )
+
     def run(engine: Engine, exploring: Limits) -> Report:
-        return _Check(initial, asked, exploring, report, engine, violations, reducer, keeping, cluster).run(
-            notes, limits
-        )
+        found = _Check(initial, asked, replace(options, engine=engine, limits=exploring), violations)
+        return found.run(notes, limits)
 
     if (keeping is not None and reducer is None) or (limits.spill is not None and not symmetric):
         engine = engine or Engine.FAST
     impatient = limits.seconds is None or limits.seconds > PATIENCE
     if engine is None and not symmetric and impatient:
         tried = run(Engine.REFERENCE, replace(limits, seconds=PATIENCE))
-        late = any(bound.startswith(time_met(PATIENCE)) for bound in tried.bounds)
+        late = any(bound.stop is Stop.TIME for bound in tried.bounds)
         return run(Engine.FAST, replace(limits, spent=limits.spent + tried.seconds)) if late else tried
     return run(engine or Engine.REFERENCE, limits)
 
 
 class _Check:
-    def __init__(  # noqa: PLR0913, PLR0917  # what `check` was told
-        self,
-        initial: Configuration,
-        properties: tuple[Property, ...],
-        limits: Limits,
-        report: Reporter | None,
-        engine: Engine,
-        most: int,
-        reducer: Reduced | None,
-        keeping: Keeping | None,
-        cluster: Cluster | None,
+    def __init__(
+        self, initial: Configuration, properties: tuple[Property, ...], options: Options, most: int
     ) -> None:
         self.initial = initial
         self.properties = properties
-        self.limits = limits
-        self.report = report
-        self.engine = engine
+        self.options = options
         self.most = most
-        self.reducer = reducer
-        self.keeping = keeping
-        self.cluster = cluster
         self.visited = Visited()
-        self.deadlock = DeadlockFreedom(most)
-        self.consistency = LocalConsistency(most)
-        self.computation = Computation(most)
+        self.inspections = {kind: make(most) for kind, make in BY_LOOKING.items()}
         self.races = ControlRaces(most)
         self.stale = StaleObservationRaces(most)
         self.formulas = {
-            each: Invariant(each.formula) if each.kind == "invariant" else Reachability(each.formula)
+            each: Invariant(each.formula)
+            if each.kind is PropertyKind.INVARIANT
+            else Reachability(each.formula)
             for each in self.properties
-            if each.kind in ("invariant", "reachable")
+            if each.kind.has_proposition
         }
-        asked = any(each.kind == "race_freedom" for each in self.properties)
+        asked = any(each.kind is PropertyKind.RACE_FREEDOM for each in self.properties)
         self.owned = asked and owned(initial)
         self.searching = asked and not self.owned
         self.remembered: Exploration | None = None
-        self.temporal = tuple(each for each in self.properties if each.kind in TEMPORAL)
+        self.temporal = tuple(each for each in self.properties if each.kind.is_of_runs)
         self.decider: Decider | None = None
 
     def run(self, notes: tuple[str, ...], whole: Limits) -> Report:
         """Explore, and decide within the limits of the whole check."""
         races = (self.races,) if self.searching else ()
-        inspections: tuple[Inspect, ...] = (
-            self.visited,
-            self.deadlock,
-            self.consistency,
-            self.computation,
-            *races,
-        )
-        everything = (*inspections, *self.formulas.values())
-        self.found = self.explore(
-            self.initial, everything, self.limits, self.reducer, edges=bool(self.temporal)
-        )
+        everything = (self.visited, *self.inspections.values(), *races, *self.formulas.values())
+        options = self.options
+        self.found = explore_by(self.initial, everything, replace(options, edges=bool(self.temporal)))
         if self.searching:
             self.remembered = self.search()
         later = self.remembered.bounds if self.remembered else []
         seconds = self.found.seconds + (self.remembered.seconds if self.remembered else 0.0)
-        with bounded(replace(whole, spent=self.limits.spent + seconds)):
+        with bounded(replace(whole, spent=options.limits.spent + seconds)):
             verdicts = tuple(map(self.decide, self.properties))
         return Report(
             verdicts=verdicts,
@@ -173,49 +155,30 @@ class _Check:
             rules=dict(sorted(self.found.rules.items())),
             notes=notes,
             seconds=seconds,
-            coverage=coverage(self.initial, self.visited, complete=self.found.complete and not self.reducer),
-            reduced=tuple(map(str, self.reducer.names)) if self.reducer else (),
+            coverage=coverage(
+                self.initial, self.visited, complete=self.found.complete and not options.reduce
+            ),
+            reduced=tuple(map(str, options.reduce.names)) if options.reduce else (),
             allowed=self.found.allowed,
-        )
-
-    def explore(
-        self,
-        start: Configuration,
-        inspections: tuple[Inspect, ...],
-        limits: Limits,
-        reduce: Reduced | None,
-        *,
-        edges: bool = False,
-    ) -> Exploration:
-        return explore(
-            start,
-            inspections,
-            limits,
-            self.report,
-            engine=self.engine,
-            edges=edges,
-            reduce=reduce,
-            keeping=self.keeping,
-            cluster=self.cluster,
         )
 
     def search(self) -> Exploration | None:
         """Explore once more, with memory and in the time that is left; None where the user has asked for the end."""
-        if INTERRUPTION in self.found.bounds:
+        if any(bound.stop is Stop.INTERRUPTION for bound in self.found.bounds):
             return None
-        limits = replace(self.limits, spent=self.limits.spent + self.found.seconds)
-        start, reduce = monitored(self.initial), None
-        if self.reducer is not None and self.reducer.putting_off:  # symmetry would lose whose a memory is
+        options, start, reduce = self.options, monitored(self.initial), None
+        limits = replace(options.limits, spent=options.limits.spent + self.found.seconds)
+        if options.reduce is not None and options.reduce.putting_off:  # symmetry would lose whose a memory is
             reduce = Reduced(start, [Reduction.POR])
-        remembered = self.explore(start, (self.stale,), limits, reduce)
-        remembered.bounds = [f"{bound}, in the search for stale observations" for bound in remembered.bounds]
+        remembered = explore_by(start, (self.stale,), replace(options, limits=limits, reduce=reduce))
+        remembered.bounds = [bound.met_in(Part.SEARCHING) for bound in remembered.bounds]
         return remembered
 
     def refused(self, asked: Property) -> str | None:
         """Return why a reduction leaves a property undecided, None where it does not."""
-        if asked.kind == "race_freedom" and self.owned:
+        if asked.kind is PropertyKind.RACE_FREEDOM and self.owned:
             return None  # decided without a search
-        return self.reducer.refuses(asked) if self.reducer else None
+        return self.options.reduce.refuses(asked) if self.options.reduce else None
 
     def decide(self, asked: Property) -> Verdict:
         """Return the verdict on one property: what a reduction may have lost is not said to hold."""
@@ -229,26 +192,30 @@ class _Check:
     def decided(self, asked: Property) -> Verdict:
         """Return what the exploration says of a property."""
         match asked.kind:
-            case "race_freedom":
+            case PropertyKind.RACE_FREEDOM:
                 return self.decide_races(asked)
-            case "reachable":
+            case PropertyKind.REACHABLE:
                 return self.decide_reachable(asked)
-            case "deadlock_freedom":
+            case PropertyKind.INVARIANT:
+                return self.decide_invariant(asked)
+            case PropertyKind.DEADLOCK_FREEDOM:
                 return self.decide_deadlock(asked)
-            case "local_consistency":
-                return self.verdict(asked, self.consistency.collected)
-            case "arrival":
+            case PropertyKind.ARRIVAL:
                 note = "flights declared to arrive are fair" if self.found.rules["commit"] else ""
-                return self.verdict(asked, self.deadlock.arrival, note)
-            case "computation":
-                return self.verdict(asked, self.computation.collected)
-            case kind if kind in TEMPORAL:
+                return self.verdict(asked, self.collected(asked.kind), note)
+            case PropertyKind.LOCAL_CONSISTENCY | PropertyKind.COMPUTATION:
+                return self.verdict(asked, self.collected(asked.kind))
+            case PropertyKind.LTL | PropertyKind.CTL | PropertyKind.PROGRESS:
                 return self.decide_temporal(asked)
             case _:
-                return self.decide_invariant(asked)
+                assert_never(asked.kind)
+
+    def collected(self, kind: PropertyKind) -> Collected:
+        """Return what was found by looking at configurations."""
+        return self.inspections[kind].collected
 
     def decide_temporal(self, asked: Property) -> Verdict:
-        if self.keeping is not None and self.keeping.compact is not None:
+        if self.options.keeping.compact is not None:
             note = "hash compaction keeps no transitions to go along"
             return Verdict(asked, Outcome.INCOMPLETE, note=note)
         from checker.properties.temporal.decide import Decider  # noqa: PLC0415 - numpy and scipy take their time to load
@@ -257,8 +224,8 @@ class _Check:
             if self.decider is None:
                 self.decider = Decider(self.found, self.temporal)
             return self.decider.decide(asked)
-        except BoundMet as bound:
-            return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {bound} was met")
+        except BoundMet as met:
+            return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {met.bound} was met")
         except MemoryError:
             return Verdict(asked, Outcome.INCOMPLETE, note="not decided: there is not enough memory")
 
@@ -280,12 +247,13 @@ class _Check:
         )
 
     def decide_deadlock(self, asked: Property) -> Verdict:
-        late = next(iter(self.deadlock.arrival.first.values()), None)
+        collected = self.collected(asked.kind)
+        late = next(iter(self.collected(PropertyKind.ARRIVAL).first.values()), None)
         if late is None:
-            return self.verdict(asked, self.deadlock.collected)
+            return self.verdict(asked, collected)
         message = _teller(self.found, late.at)(late.message)
         note = f"{message}; declare that it arrives, or check arrival"
-        return self.verdict(asked, self.deadlock.collected, note)
+        return self.verdict(asked, collected, note)
 
     def decide_invariant(self, asked: Property) -> Verdict:
         looked = self.formulas[asked]
@@ -308,7 +276,7 @@ class _Check:
     def decide_races(self, asked: Property) -> Verdict:
         if self.owned:
             note = "by ownership, without a search: no agent may write what another's control rests on"
-            served = self.witness(self.consistency.collected, self.found)
+            served = self.witness(self.collected(PropertyKind.LOCAL_CONSISTENCY), self.found)
             return Verdict(asked, Outcome.HOLDS, witness=served, note=note)
         violations = self.violations(self.races.collected, self.found)
         if self.remembered is None:
@@ -331,8 +299,8 @@ class _Check:
 
     def vacuous(self, asked: Property, outcome: Outcome, examined: int) -> tuple[str, ...]:
         """Return what it means that nothing was examined, where that makes a verdict say nothing."""
-        empty = outcome is Outcome.HOLDS and not examined and asked.kind in VACUOUS
-        return (f"vacuous: {VACUOUS[asked.kind]}",) if empty else ()
+        meaning = asked.kind.about.vacuous
+        return (f"vacuous: {meaning}",) if meaning and outcome is Outcome.HOLDS and not examined else ()
 
     def outcome(self, violated: bool, *explorations: Exploration) -> Outcome:
         if violated:
@@ -364,5 +332,4 @@ def _shown(violations: tuple[Violation, ...], most: int) -> tuple[Violation, ...
 
 def _teller(found: Exploration, number: int) -> Callable[[str], str]:
     """Return what puts the names of the run in the place of those of the configuration that stands for its end."""
-    reducer = found.reducer
-    return str if reducer is None else lambda text: reducer.told(found, number, text)
+    return lambda text: told(found, number, text)

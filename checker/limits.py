@@ -1,16 +1,64 @@
-"""Limits of an exploration: whether one is met, and the message about it."""
+"""Limits of an exploration, and the bounds that were met."""
 
 import math
 import resource
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from enum import Enum
 from time import monotonic
 
 MOST_PENDING = 64
 """Requests of one agent, or messages in one mailbox, beyond which a configuration is not explored further."""
 
-INTERRUPTION = "an interruption"
-"""The bound that is met where the user has asked for the end."""
+
+class Stop(Enum):
+    """What may stop a search or leave something out of it, in words: `{}` is in the place of each figure."""
+
+    CONFIGURATIONS = "the limit of {:,} configurations"
+    TIME = "the time limit of {:g} s"
+    MEMORY = "the memory limit of {:,.0f} MB"
+    PENDING = "more than {} requests or messages of one agent pending"
+    INTERRUPTION = "an interruption"
+    NO_MEMORY = "the end of the memory that there is"
+    NO_ROOM = "the end of the room in {}: {}"
+    NO_CHECKPOINT = "a checkpoint that can't be written to {}: {}"
+    COMPACTION = "hash compaction to {} bits: some were left out with a probability of at most {:.1g}"
+
+
+class Part(Enum):
+    """Parts of a check that bounds may be met in, beside the exploration itself."""
+
+    LOOKING = "looking at what was explored"
+    SEARCHING = "the search for stale observations"
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """A bound that was met.
+
+    Attributes:
+        stop: What it is.
+        figures: How much that was, or where.
+        within: What it was met in, the innermost part first; nothing for the exploration itself.
+    """
+
+    stop: Stop
+    figures: tuple[float | str | None, ...] = ()
+    within: tuple[Part, ...] = ()
+
+    def __str__(self) -> str:
+        return ", in ".join((self.stop.value.format(*self.figures), *(part.value for part in self.within)))
+
+    def met_in(self, part: Part) -> "Bound":
+        """Return the bound as it was met in a part of the check."""
+        return replace(self, within=(*self.within, part))
+
+    @property
+    def effect(self) -> str:
+        """What it has done, in words."""
+        whole = self.stop is Stop.COMPACTION
+        return str(self) if whole else f"stopped at {self}: what lies beyond was not explored"
+
 
 GRACE = 2.0
 """For how many seconds what was explored is looked at after that."""
@@ -53,23 +101,25 @@ class Limits:
     spill: str | None = None
     interruption: Interruption = field(default_factory=Interruption, compare=False, repr=False)
 
+    def bound(self, stop: Stop) -> Bound:
+        """Return the bound that is met at one of these limits."""
+        figures = {
+            Stop.CONFIGURATIONS: self.configurations,
+            Stop.TIME: self.seconds,
+            Stop.MEMORY: (self.memory or 0) / 1e6,
+            Stop.PENDING: self.pending,
+        }
+        return Bound(stop, (figures[stop],))
 
-def limit_met(most: int) -> str:
-    """Say that there are more configurations than were to be visited."""
-    return f"the limit of {most:,} configurations"
+    def end(self, seconds: float, share: float = 1.0, grace: float = 0.0) -> Bound | None:
+        """Return why it ends after so many seconds: the user wants that, or a share of the time is over.
 
-
-def time_met(seconds: float) -> str:
-    """Say that the time was over."""
-    return f"the time limit of {seconds:g} s"
-
-
-def end_met(limits: Limits, seconds: float, part: float = 1.0) -> str | None:
-    """Return why exploring ends after so many seconds: the user wants that, or a part of the time is over."""
-    if limits.interruption.is_due():
-        return INTERRUPTION
-    most = limits.seconds
-    return time_met(most) if most is not None and seconds + limits.spent > part * most else None
+        The end is wanted for `grace` seconds by then.
+        """
+        if self.interruption.is_due(grace):
+            return Bound(Stop.INTERRUPTION)
+        is_over = self.seconds is not None and seconds + self.spent > share * self.seconds
+        return self.bound(Stop.TIME) if is_over else None
 
 
 def is_full(limits: Limits) -> bool:
@@ -94,26 +144,3 @@ def memory_taken() -> int:
     except OSError:
         unit = 1 if sys.platform == "darwin" else 1024
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
-
-
-def memory_met(limits: Limits) -> str:
-    """Say that there was no more memory."""
-    return f"the memory limit of {(limits.memory or 0) / 1e6:,.0f} MB"
-
-
-OMITTING = "hash compaction"
-
-
-def cut(bound: str) -> str:
-    """Say what a bound has done."""
-    return bound if bound.startswith(OMITTING) else f"stopped at {bound}: what lies beyond was not explored"
-
-
-def omission_met(bits: int, chance: float) -> str:
-    """Say that configurations may have been taken for others."""
-    return f"{OMITTING} to {bits} bits: some were left out with a probability of at most {chance:.1g}"
-
-
-def crowd_met(most: int) -> str:
-    """Say that more is pending than is followed."""
-    return f"more than {most} requests or messages of one agent pending"

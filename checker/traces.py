@@ -5,8 +5,9 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from checker.engines.contract import Exploration, Reducer
+from checker.engines.contract import Exploration
 from checker.properties.inspections import is_unfair
+from checker.reduction.unfolding import run_to
 from semantics.observed import Sight, steps_seen
 from semantics.races.monitor import monitored
 from semantics.state.canonical import digest_of_step
@@ -109,17 +110,17 @@ def candidates(source: Configuration) -> tuple[Transition, ...]:
 def trace_to(found: Exploration, number: int, by: Transition | None = None) -> Trace:
     """Return a trace to a configuration of an exploration: a shortest one, unless steps were put off."""
     if found.reducer is not None:
-        return _unfolded(found, found.reducer, number, by)
+        return _unfolded(found, number, by, shortest=not found.reducer.putting_off)
     run = [found.configurations[each] for each in found.path(number)]
     trace = Trace(run[0], tuple(step_between(source, target) for source, target in pairwise(run)))
     return trace if by is None else trace.extended(by)
 
 
-def _unfolded(found: Exploration, reducer: Reducer, number: int, by: Transition | None) -> Trace:
+def _unfolded(found: Exploration, number: int, by: Transition | None, *, shortest: bool) -> Trace:
     """Return the run of the mission itself to what a configuration of a reduced exploration stands for."""
     initial = found.configurations[0] if found.start is None else found.start
-    trace = Trace(initial, (), shortest=not reducer.putting_off)
-    for transition in reducer.run_to(found, number, by):
+    trace = Trace(initial, (), shortest=shortest)
+    for transition in run_to(found, number, by):
         trace = trace.extended(transition)
     return trace
 

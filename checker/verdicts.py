@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
+from checker.limits import Bound
 from checker.properties.coverage import Coverage
 from checker.traces import Trace
 from semantics.properties.property import Property
@@ -72,7 +73,7 @@ class Report:
         configurations: How many were visited, the monitor's cells not counted.
         transitions: How many transitions they have.
         depth: The distance of the farthest.
-        bounds: The limits that were met; empty where everything was explored.
+        bounds: Those that were met; empty where everything was explored.
         rules: How many transitions each inference rule has.
         notes: What is to be known of the verdicts.
         seconds: How long it took.
@@ -85,7 +86,7 @@ class Report:
     configurations: int
     transitions: int
     depth: int
-    bounds: tuple[str, ...] = ()
+    bounds: tuple[Bound, ...] = ()
     rules: Mapping[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     seconds: float = 0.0

@@ -12,6 +12,7 @@ from lark.lexer import PatternRE, PatternStr, TerminalDef
 
 from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS, Command
 from semantics.behaviours.observations import QueryOperator
+from semantics.properties.property import Asked, asked_by
 from specs.build_behaviour import BuildBehaviour
 from specs.build_world import BuildWorld
 from specs.syntax import Mission
@@ -19,11 +20,14 @@ from specs.syntax import Mission
 
 @cache
 def grammar_text() -> str:
-    """Return the grammar as it is written in mission.lark, with the operators of queries and the commands."""
+    """Return the grammar of mission.lark, with the query operators, the commands and the named properties."""
     text = Path(__file__).with_name("mission.lark").read_text(encoding="utf-8")
     text = text.replace("RELATIONS_OF_HOST", " | ".join(f'"{word}_HOST"' for word in QueryOperator))
     text = text.replace("RELATIONS", " | ".join(f'"{word}"' for word in QueryOperator))
-    return text.replace("COMMANDS", "\n       | ".join(map(_rule, COMMANDS.values())))
+    standard = " | ".join(f'"{kind}"' for kind in asked_by(Asked.BY_DEFAULT, Asked.BY_NAME))
+    return text.replace("STANDARD", standard).replace(
+        "COMMANDS", "\n       | ".join(map(_rule, COMMANDS.values()))
+    )
 
 
 def _rule(command: Command) -> str:

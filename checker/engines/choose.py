@@ -1,10 +1,20 @@
 """Choose the engine of an exploration."""
 
 from collections.abc import Iterable
+from typing import assert_never
 
-from checker.engines.contract import Cluster, Engine, Exploration, Inspect, Keeping, Reducer, Report
+from checker.engines.contract import (
+    Cluster,
+    Engine,
+    Exploration,
+    Inspect,
+    Keeping,
+    Options,
+    Reporter,
+)
 from checker.engines.reference import explore_one_by_one
 from checker.limits import Limits
+from checker.reduction.reducer import Reduced
 from semantics.state.configuration import Configuration
 
 
@@ -12,40 +22,38 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
     initial: Configuration,
     inspect: Iterable[Inspect] = (),
     limits: Limits | None = None,
-    report: Report | None = None,
+    report: Reporter | None = None,
     every: float = 0.5,
     engine: Engine = Engine.REFERENCE,
     *,
     edges: bool = False,
-    reduce: Reducer | None = None,
+    reduce: Reduced | None = None,
     keeping: Keeping | None = None,
     cluster: Cluster | None = None,
 ) -> Exploration:
     """Visit everything that is reachable, breadth-first.
 
-    Args:
-        initial: Where to start.
-        inspect: Called with each configuration as it is expanded, in the order of discovery.
-        limits: Where to stop.
-        report: Called about once in `every` seconds.
-        every: Seconds.
-        engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
-        edges: Whether every transition is kept, as temporal properties need; the fast explorer finds them again.
-        reduce: What lets it visit less; by symmetry only the reference explorer can.
-        keeping: What the fast explorer keeps on the way, and what is doubted.
-        cluster: With whom, on several processes or machines.
+    Each configuration is given to each of `inspect` as it is expanded, in the order of discovery; the rest are the
+    attributes of `Options`.
     """
-    if engine is Engine.RAY:
-        from checker.engines.cluster.ray_crew import explore_with_ray  # noqa: PLC0415  # Ray is an extra
-
-        together = cluster or Cluster()
-        return explore_with_ray(initial, tuple(inspect), limits or Limits(), report, every, keeping, together)
-    if engine is Engine.FAST:
-        from checker.engines.fast.explorer import explore_fast  # noqa: PLC0415  # numba takes its time to load
-
-        return explore_fast(
-            initial, tuple(inspect), limits or Limits(), report, every, keeping or Keeping(), reduce
-        )
-    return explore_one_by_one(
-        initial, tuple(inspect), limits or Limits(), report, every, keeping or Keeping(), reduce, edges=edges
+    options = Options(
+        limits or Limits(), report, every, engine, edges, reduce, keeping or Keeping(), cluster or Cluster()
     )
+    return explore_by(initial, tuple(inspect), options)
+
+
+def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
+    """Visit everything that is reachable as options say."""
+    match options.engine:
+        case Engine.REFERENCE:
+            return explore_one_by_one(initial, inspect, options)
+        case Engine.FAST:
+            from checker.engines.fast.explorer import explore_fast  # noqa: PLC0415  # numba takes its time to load
+
+            return explore_fast(initial, inspect, options)
+        case Engine.RAY:
+            from checker.engines.cluster.ray_crew import explore_with_ray  # noqa: PLC0415  # Ray is an extra
+
+            return explore_with_ray(initial, inspect, options)
+        case _:
+            assert_never(options.engine)

@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING, Protocol
 
 from checker.engines.edges import Edges
 from checker.engines.estimate import Estimate
+from checker.limits import Bound, Limits
+from checker.reduction.reducer import Reduced
 from semantics.properties.propositions import Proposition
-from semantics.state.configuration import Configuration, Transition
+from semantics.state.configuration import Configuration
 from semantics.state.requests import Request
 from semantics.successors import Expansion
 
 if TYPE_CHECKING:
     from checker.engines.graph import Bools, Graph, Numbers
-    from checker.reduction.ample import Ample
 
 
 class MachineError(Exception):
@@ -100,37 +101,6 @@ class Cluster:
     address: str | None = None
 
 
-class Reducer(Protocol):
-    """What lets an exploration visit less: see `checker.reduction`."""
-
-    @property
-    def ample(self) -> "Ample | None":
-        """What chooses the transitions that are followed, None where all are."""
-
-    @property
-    def putting_off(self) -> bool:
-        """Whether steps are put off: then a trace need not be a shortest one."""
-
-    def representative(self, c: Configuration) -> Configuration:
-        """Return the configuration that stands for one."""
-
-    def choose(
-        self, c: Configuration, expansion: Expansion, later: Callable[[Transition], bool]
-    ) -> tuple[Transition, ...]:
-        """Return the transitions to be followed; `later` tells of one whether its target is yet to be expanded."""
-
-    def run_to(
-        self, found: "Exploration", number: int, by: Transition | None = None
-    ) -> tuple[Transition, ...]:
-        """Return a run of the rules to what a visited configuration stands for, and then `by`."""
-
-    def told(self, found: "Exploration", number: int, text: str) -> str:
-        """Return what is said of a visited configuration as it is said of the one that the run leads to."""
-
-    def hold(self, c: Configuration) -> None:
-        """Hold a configuration to what is taken for granted of all; raises where it is not so."""
-
-
 class Surveyed(Protocol):
     """What temporal properties ask of an exploration whose configurations are not at hand one by one."""
 
@@ -150,6 +120,34 @@ class Surveyed(Protocol):
 Inspect = Callable[[int, Configuration, Expansion], None]
 """What looks at each configuration as it is expanded, given its number."""
 
+Reporter = Callable[[Progress], None]
+"""What is told of the progress."""
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How everything is visited.
+
+    Attributes:
+        limits: Where to stop.
+        report: Told of the progress about once in `every` seconds.
+        every: Seconds.
+        engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
+        edges: Whether every transition is kept, as temporal properties need; explorers with rows find them again.
+        reduce: What lets it visit less; by symmetry only the reference explorer can.
+        keeping: What explorers with rows keep on the way, and what is doubted.
+        cluster: With whom, on several processes or machines.
+    """
+
+    limits: Limits = field(default_factory=Limits)
+    report: Reporter | None = None
+    every: float = 0.5
+    engine: Engine = Engine.REFERENCE
+    edges: bool = False
+    reduce: Reduced | None = None
+    keeping: Keeping = Keeping()
+    cluster: Cluster = Cluster()
+
 
 @dataclass(slots=True)
 class Exploration:
@@ -162,7 +160,7 @@ class Exploration:
         expanded: How many of them were expanded: all, unless time ran out.
         transitions: How many transitions there are.
         rules: How many transitions each rule has.
-        bounds: The limits that were met; empty where the exploration is complete.
+        bounds: Those that were met; empty where the exploration is complete.
         seconds: How long it took.
         rule_runs: How often an actor's rules were run in Python, where they were learned.
         edges: Every transition, where they were asked for and the reference explorer kept them.
@@ -178,13 +176,13 @@ class Exploration:
     expanded: int = 0
     transitions: int = 0
     rules: Counter[str] = field(default_factory=Counter)
-    bounds: list[str] = field(default_factory=list)
+    bounds: list[Bound] = field(default_factory=list)
     seconds: float = 0.0
     rule_runs: int | None = None
     edges: Edges | None = None
     survey: Surveyed | None = None
     allowed: int = 0
-    reducer: Reducer | None = None
+    reducer: Reduced | None = None
     start: Configuration | None = None
 
     @property
@@ -204,9 +202,6 @@ class Exploration:
             path.append(int(self.origins[path[-1]]))
         return tuple(reversed(path))
 
-
-Report = Callable[[Progress], None]
-"""What is told of the progress."""
 
 SEED = 20260
 

@@ -7,65 +7,47 @@ import time
 from collections.abc import Callable
 
 from checker.bounding import BoundMet, bounded, look
-from checker.engines.contract import Exploration, Inspect, Keeping, Progress, Reducer, Report, sample
+from checker.engines.contract import Exploration, Inspect, Options, Progress, sample
 from checker.engines.edges import Edges
 from checker.engines.estimate import estimate
-from checker.limits import Limits, crowd_met, end_met, is_full, limit_met, memory_met
+from checker.limits import Bound, Part, Stop, is_full
+from checker.reduction.reducer import Reduced
 from semantics.state.configuration import Configuration, Transition
 from semantics.successors import Expansion, expand
 
 
-def explore_one_by_one(  # noqa: PLR0913, PLR0917  # as `explore`
-    initial: Configuration,
-    inspect: tuple[Inspect, ...],
-    limits: Limits,
-    report: Report | None,
-    every: float,
-    keeping: Keeping,
-    reduce: Reducer | None,
-    *,
-    edges: bool,
-) -> Exploration:
-    """Visit everything that is reachable (see `checker.engines.choose.explore`), running the rules everywhere."""
-    explorer = _Explorer(initial, inspect, limits, report, every)
-    explorer.found.edges = Edges() if edges else None
-    if reduce is None:
+def explore_one_by_one(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
+    """Visit everything that is reachable, running the rules everywhere."""
+    explorer = _Explorer(initial, inspect, options)
+    if options.reduce is None:
         return explorer.run()
-    explorer.reduce_by(reduce)
+    explorer.reduce_by(options.reduce)
     began = time.monotonic()
     found = explorer.run()
     try:
-        with bounded(limits, began):
-            for number in sample(found.expanded, keeping.doubted):
+        with bounded(options.limits, began):
+            for number in sample(found.expanded, options.keeping.doubted):
                 look()
-                reduce.hold(found.configurations[number])
-    except BoundMet as bound:
-        explorer.bound(f"{bound}, in looking at what was explored")
+                options.reduce.hold(found.configurations[number])
+    except BoundMet as met:
+        explorer.bound(met.bound.met_in(Part.LOOKING))
     return found
 
 
 class _Explorer:
-    def __init__(
-        self,
-        initial: Configuration,
-        inspect: tuple[Inspect, ...],
-        limits: Limits,
-        report: Report | None,
-        every: float,
-    ) -> None:
+    def __init__(self, initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> None:
         self.configurations = [initial]
         self.origins = [0]
         self.depths = [0]
         self.layers = [1]
-        self.found = Exploration(self.configurations, self.origins)
+        self.found = Exploration(self.configurations, self.origins, edges=Edges() if options.edges else None)
         self.numbers = {initial: 0}
         self.inspect = inspect
-        self.limits = limits
-        self.report = report
-        self.every = every
+        self.options = options
+        self.limits = options.limits
         self.represent: Callable[[Configuration], Configuration] = _itself
 
-    def reduce_by(self, reducer: Reducer) -> None:
+    def reduce_by(self, reducer: Reduced) -> None:
         self.found.reducer, self.found.start = reducer, self.configurations[0]
         self.configurations[0] = reducer.representative(self.configurations[0])
         self.numbers = {self.configurations[0]: 0}
@@ -76,21 +58,21 @@ class _Explorer:
         self.visit_all(started)
         self.found.seconds = time.monotonic() - started
         self.found.depth = self.depths[-1]
-        self.found.bounds.sort()
+        self.found.bounds.sort(key=str)
         return self.found
 
     def visit_all(self, started: float) -> None:
         reported = started
         for number, configuration in enumerate(self.configurations):  # grows while it is gone through
             now = time.monotonic()
-            if (end := end_met(self.limits, now - started)) is not None:
+            if (end := self.limits.end(now - started)) is not None:
                 self.bound(end)
                 break
             if number % 1024 == 0 and is_full(self.limits):
-                self.bound(memory_met(self.limits))
+                self.bound(self.limits.bound(Stop.MEMORY))
                 break
-            if self.report is not None and now - reported >= self.every:
-                self.report(self.progress(number, now - started))
+            if self.options.report is not None and now - reported >= self.options.every:
+                self.options.report(self.progress(number, now - started))
                 reported = now
             self.expand(number, configuration)
 
@@ -100,7 +82,7 @@ class _Explorer:
         for inspection in self.inspect:
             inspection(number, configuration, expansion)
         if crowded(configuration, self.limits.pending):
-            self.bound(crowd_met(self.limits.pending))
+            self.bound(self.limits.bound(Stop.PENDING))
             self.missing(number)
         else:
             self.found.allowed += len(expansion.transitions)
@@ -127,7 +109,7 @@ class _Explorer:
         if target is None:
             most = self.limits.configurations
             if most is not None and len(self.configurations) >= most:
-                self.bound(limit_met(most))
+                self.bound(self.limits.bound(Stop.CONFIGURATIONS))
                 self.missing(number)
                 return
             target = self.numbers[reached] = len(self.configurations)
@@ -148,9 +130,9 @@ class _Explorer:
         if self.found.edges is not None:
             self.found.edges.partial.add(number)
 
-    def bound(self, reason: str) -> None:
-        if reason not in self.found.bounds:
-            self.found.bounds.append(reason)
+    def bound(self, bound: Bound) -> None:
+        if bound not in self.found.bounds:
+            self.found.bounds.append(bound)
 
     def progress(self, number: int, seconds: float) -> Progress:
         found = self.found

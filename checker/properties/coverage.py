@@ -6,7 +6,7 @@ A pure function of the mission and of what was visited, whatever explored it.
 from collections.abc import Iterable, Iterator, Set
 from dataclasses import dataclass
 
-from checker.properties.visited import Visited, moment_of, passages
+from checker.properties.visited import Visited, passages
 from semantics.behaviours.computation import STEPPED, Passage
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import (
@@ -26,7 +26,6 @@ from semantics.behaviours.statements import (
     branches,
 )
 from semantics.state.configuration import Configuration
-from semantics.state.signature import Name
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,11 +97,6 @@ def coverage(initial: Configuration, visited: Visited, *, complete: bool) -> Cov
         tuple(sorted({line for line, _ in lines} - met - {0})),
         tuple(sorted(gaps, key=lambda gap: (gap.line, gap.sort, gap.message))),
     )
-
-
-def passed_over(c: Configuration, a: Name) -> frozenset[Passage]:
-    """Return what an agent's computation passes over from a configuration on, in one step."""
-    return frozenset(passages(c.setting, moment_of(c, a)))
 
 
 def reached(initial: Configuration, visited: Visited) -> "Reached":

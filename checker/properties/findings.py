@@ -1,8 +1,30 @@
 """Findings: the results of inspecting configurations, collected by kind and subject."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from semantics.state.configuration import Transition
+
+Key = tuple[str, str]
+"""What is wrong: its kind and its subject; findings with one key are the same violation, met again."""
+
+
+class Seen(NamedTuple):
+    """One thing that a property is about, as it was found in a configuration.
+
+    Attributes:
+        wrong: What is wrong with it, None where nothing is.
+        by: The transition that it is about, if it is about one.
+        message: What is wrong, in words.
+        details: More lines; asked for only where they are told.
+    """
+
+    wrong: Key | None = None
+    by: Transition | None = None
+    message: str = ""
+    details: Callable[[], tuple[str, ...]] = tuple
+
 
 MOST_VIOLATIONS = 5
 """How many different violations of one property are kept with a trace, unless more are asked for."""
@@ -18,8 +40,7 @@ class Finding:
         at: The number of the configuration that it was found in.
         by: The transition that it is about, which belongs to the trace; None where it is about the configuration.
         details: More lines.
-        subject: What it is about: a request, the requests that race, ...; findings of one kind and subject are the
-            same violation, met again. Empty where the property says itself what it is about.
+        subject: What it is about: a request, the requests that race, ...; empty where the property says that itself.
     """
 
     kind: str
@@ -45,8 +66,8 @@ class Collected:
     """
 
     most: int = MOST_VIOLATIONS
-    first: dict[tuple[str, str], Finding] = field(default_factory=dict)
-    different: set[tuple[str, str]] = field(default_factory=set)
+    first: dict[Key, Finding] = field(default_factory=dict)
+    different: set[Key] = field(default_factory=set)
     count: int = 0
     examined: int = 0
     example: int | None = None
@@ -61,6 +82,14 @@ class Collected:
         self.different.add(key)
         if sum(kind == finding.kind for kind, _ in self.first) < self.most:
             self.first[key] = finding
+
+    def note(self, number: int, seen: Seen) -> None:
+        """Count what was seen in a configuration."""
+        if seen.wrong is None:
+            self.looked(number, seen.by)
+        else:
+            kind, subject = seen.wrong
+            self.add(Finding(kind, seen.message, number, seen.by, seen.details(), subject))
 
     def looked(self, number: int, by: Transition | None = None) -> None:
         """Count something that was looked at; the first is kept as an example."""

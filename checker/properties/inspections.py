@@ -1,7 +1,14 @@
 """Inspections of single configurations: local consistency, deadlock, invariants, reachability, computation."""
 
-from checker.properties.findings import MOST_VIOLATIONS, Collected, Finding
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+from itertools import chain
+from operator import itemgetter
+from typing import ClassVar, NamedTuple
+
+from checker.properties.findings import MOST_VIOLATIONS, Collected, Key, Seen
 from checker.properties.vacuity import Valuations
+from semantics.behaviours.expressions import Fault
 from semantics.behaviours.patterns import bind
 from semantics.behaviours.reactions import moved
 from semantics.behaviours.statements import Block, Call, Loop, React
@@ -9,11 +16,18 @@ from semantics.behaviours.stepping import next_statement
 from semantics.control import Obstacle, obstacle
 from semantics.environment import Says
 from semantics.properties.propositions import Proposition, holds
+from semantics.state.cells import QUEUE
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.requests import CTR, FLY, MGR, OBS, SND
-from semantics.state.setting import Setting
+from semantics.state.setting import Control, Setting
 from semantics.state.signature import Name
-from semantics.successors import Expansion
+from semantics.successors import Expansion, moves, served
+
+Rules = Callable[[Configuration, Name], Iterable[Transition | Fault]]
+"""What yields the steps of an agent."""
+
+Wait = tuple[int, str]
+"""What is waited for, in words, after its rank among what is told of all agents."""
 
 WORDS = {
     Obstacle.UNMATCHED: "its redex matches nothing in L",
@@ -22,29 +36,75 @@ WORDS = {
 }
 
 
-class LocalConsistency:
-    """For every control next in its agent's line some match is consistent and realisable (semantics.md, check 1)."""
+class Excerpt(NamedTuple):
+    """Some agents of a configuration, and what the rules allow them."""
+
+    c: Configuration
+    agents: tuple[Name, ...]
+    steps: Expansion
+
+
+class Inspection:
+    """Looks at configurations one by one, and collects what it sees of one property.
+
+    What it asks is written once, of excerpts: of all agents together where each configuration is looked at. Explorers
+    with rows ask about each agent by itself, and look only at the first configuration of each answer.
+
+    Attributes:
+        alone: The rules whose steps tell what is seen of an agent (`seen`); none where nothing is.
+        together: The rules whose steps tell whether an agent must move (`still`); none where that doesn't matter.
+        in_turn: Whether it is only about what is in its turn: of that no agent alone tells.
+        collected: What was found.
+    """
+
+    alone: ClassVar[tuple[Rules, ...]] = ()
+    together: ClassVar[tuple[Rules, ...]] = ()
+    in_turn: ClassVar[bool] = False
 
     def __init__(self, most: int = MOST_VIOLATIONS) -> None:
         self.collected = Collected(most)
 
     def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
-        """Look at every control that is next in line."""
-        served = {t.served.request: t for t in expansion.enabled if t.served is not None}
-        for a in c.alpha.names():
-            for pending in c.eta.in_line(a):
-                request = pending.request
-                if not isinstance(request, CTR | FLY):
-                    continue
-                hindered = None if request in served else obstacle(c, request)
-                if hindered is None:
-                    self.collected.looked(number, served.get(request))
-                else:
-                    message = f"{request} is {hindered.value}: {WORDS[hindered]}"
-                    found = Finding(
-                        hindered.value, message, number, None, disagreements(c, request), str(request)
-                    )
-                    self.collected.add(found)
+        """Look at a configuration."""
+        whole = Excerpt(c, c.alpha.names(), expansion)
+        still = self.still(whole)
+        for seen in chain(self.seen(whole), () if still is None else self.judged(still)):
+            self.collected.note(number, seen)
+
+    def concerns(self, _: Setting) -> bool:
+        """Tell whether a mission may have anything to be seen at all."""
+        return True
+
+    def seen(self, _: Excerpt) -> Iterator[Seen]:
+        """Yield what is seen of some agents."""
+        yield from ()
+
+    def still(self, _: Excerpt) -> tuple[Wait, ...] | None:
+        """Return in words what some agents wait for, None where one of them must move."""
+        return None
+
+    def judged(self, _: Iterable[Wait]) -> Iterator[Seen]:
+        """Yield what is seen where no agent must move, by what all of them wait for."""
+        yield from ()
+
+
+class LocalConsistency(Inspection):
+    """For every control next in its agent's line some match is consistent and realisable (semantics.md, check 1)."""
+
+    alone = (served,)
+
+    def seen(self, of: Excerpt) -> Iterator[Seen]:
+        """Yield every control that is next in line."""
+        done = {t.served.request: t for t in of.steps.enabled if t.served is not None}
+        for request in (each.request for a in of.agents for each in of.c.eta.in_line(a)):
+            if isinstance(request, CTR | FLY):
+                hindered = None if request in done else obstacle(of.c, request)
+                yield Seen(by=done.get(request)) if hindered is None else _hindered(of.c, request, hindered)
+
+
+def _hindered(c: Configuration, request: CTR | FLY, by: Obstacle) -> Seen:
+    message = f"{request} is {by.value}: {WORDS[by]}"
+    return Seen((by.value, str(request)), None, message, partial(disagreements, c, request))
 
 
 def disagreements(c: Configuration, request: CTR | FLY) -> tuple[str, ...]:
@@ -68,40 +128,49 @@ def disagreements(c: Configuration, request: CTR | FLY) -> tuple[str, ...]:
     return tuple(lines)
 
 
-class DeadlockFreedom:
-    """Not: nothing but the environment can move, and a request is pending or an agent waits (check 3).
+class DeadlockFreedom(Inspection):
+    """Not: nothing but the environment can move, and a request is pending or an agent waits (check 3)."""
 
-    Flights that need never end are collected apart, as *not arrived*.
-    """
+    together = (served, moves)
 
-    def __init__(self, most: int = MOST_VIOLATIONS) -> None:
-        self.collected = Collected(most)
-        self.arrival = Collected(most)
+    def still(self, of: Excerpt) -> tuple[Wait, ...] | None:
+        """Return what is pending, in the order of the queue where there is one, who waits, and who failed."""
+        if of.steps.by_agents:
+            return None
+        failed = ((2 * LAST, f"{fault.agent} failed") for fault in of.steps.faults)
+        return (*stuck_requests(of), *waiting_agents(of), *failed)
 
-    def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
-        """Look at every configuration in which no agent must move, and at every end of a flight."""
-        for transition in expansion.by_agents:
-            if transition.label.rule == "commit":
-                self.arrival.looked(number, transition)
-        if any(not is_unfair(c, transition) for transition in expansion.by_agents):
-            return
-        if expansion.by_agents:
-            late = sorted({str(transition.label) for transition in expansion.by_agents})
-            waits = ", ".join(late)
-            message = f"a run may wait here for ever for {waits}"
-            self.arrival.add(Finding("not arrived", message, number, subject=waits))
-            return
-        blocked = [
-            *stuck_requests(c),
-            *waiting_agents(c),
-            *(f"{fault.agent} failed" for fault in expansion.faults),
-        ]
-        if blocked:
-            who = "; ".join(blocked)
-            message = f"nothing but the environment can move, and {who}"
-            self.collected.add(Finding("deadlock", message, number, subject=who))
-        else:
-            self.collected.looked(number)
+    def judged(self, still: Iterable[Wait]) -> Iterator[Seen]:
+        """Yield a deadlock where anything is left to be done."""
+        who = "; ".join(words for _, words in sorted(still, key=itemgetter(0)))
+        message = f"nothing but the environment can move, and {who}"
+        yield Seen(("deadlock", who), None, message) if who else Seen()
+
+
+class Arrival(Inspection):
+    """No run waits for ever for the end of a flight."""
+
+    alone = (served,)
+    together = (served, moves)
+
+    def concerns(self, setting: Setting) -> bool:
+        """Tell whether there are flights."""
+        return setting.control is Control.TIMED
+
+    def seen(self, of: Excerpt) -> Iterator[Seen]:
+        """Yield every end of a flight."""
+        yield from (Seen(by=step) for step in of.steps.by_agents if step.label.rule == "commit")
+
+    def still(self, of: Excerpt) -> tuple[Wait, ...] | None:
+        """Return the ends of flights that are waited for."""
+        fair = any(not is_unfair(of.c, step) for step in of.steps.by_agents)
+        return None if fair else tuple((0, str(step.label)) for step in of.steps.by_agents)
+
+    def judged(self, still: Iterable[Wait]) -> Iterator[Seen]:
+        """Yield that flights need never end, if any is waited for."""
+        waits = ", ".join(sorted({words for _, words in still}))
+        if waits:
+            yield Seen(("not arrived", waits), None, f"a run may wait here for ever for {waits}")
 
 
 def is_unfair(c: Configuration, transition: Transition) -> bool:
@@ -116,15 +185,22 @@ def never_ends(setting: Setting, request: object) -> bool:
     return not all(node in setting.arriving for node, _ in moved(request.reaction, request.match))
 
 
-def stuck_requests(c: Configuration) -> list[str]:
-    """Return in words the requests that wait, a received or forgotten READY apart."""
-    kinds = OBS | CTR | SND | MGR | FLY
-    return [f"{each.request} is pending" for each in c.eta.all() if isinstance(each.request, kinds)]
+LAST = 1 << 30
+"""The rank of what is told after everything pending."""
 
 
-def waiting_agents(c: Configuration) -> list[str]:
-    """Return in words the agents that wait and are not at rest."""
-    return [f"{a} waits at a react" for a in c.alpha.names() if is_waiting(c, a) and not is_at_rest(c, a)]
+def stuck_requests(of: Excerpt) -> Iterator[Wait]:
+    """Yield in words the requests that wait, a received or forgotten READY apart."""
+    for pending in (each for a in of.agents for each in of.c.eta.of(a)):
+        if isinstance(pending.request, OBS | CTR | SND | MGR | FLY):
+            yield 1 + pending.position if pending.cell == QUEUE else 0, f"{pending.request} is pending"
+
+
+def waiting_agents(of: Excerpt) -> Iterator[Wait]:
+    """Yield in words the agents that wait and are not at rest."""
+    for a in of.agents:
+        if is_waiting(of.c, a) and not is_at_rest(of.c, a):
+            yield LAST, f"{a} waits at a react"
 
 
 def is_waiting(c: Configuration, a: Name) -> bool:
@@ -159,47 +235,43 @@ def stands_in(c: Configuration, number: int, block: Block) -> bool:
     return False
 
 
-class Computation:
+class Computation(Inspection):
     """No agent's internal computation fails or diverges."""
 
-    def __init__(self, most: int = MOST_VIOLATIONS) -> None:
-        self.collected = Collected(most)
+    alone = (moves,)
 
-    def __call__(self, number: int, _: Configuration, expansion: Expansion) -> None:
-        """Look at every step of internal computation."""
-        for transition in expansion.by_agents:
-            if transition.label.rule == "fun":
-                self.collected.looked(number, transition)
-        for fault in expansion.faults:
-            kind = "diverges" if fault.diverges else "fails"
+    def seen(self, of: Excerpt) -> Iterator[Seen]:
+        """Yield every step of internal computation, and every failure."""
+        yield from (Seen(by=step) for step in of.steps.by_agents if step.label.rule == "fun")
+        for fault in of.steps.faults:
             message = f"{fault.agent}: {fault}"
-            self.collected.add(Finding(kind, message, number, subject=message))
+            yield Seen(("diverges" if fault.diverges else "fails", message), None, message)
 
 
-class Invariant:
+class Invariant(Inspection):
     """A proposition is true of every configuration."""
 
-    def __init__(self, formula: Proposition) -> None:
+    WRONG: ClassVar[Key] = ("invariant", "")
+
+    def __init__(self, formula: Proposition, most: int = MOST_VIOLATIONS) -> None:
+        super().__init__(most)
         self.formula = formula
-        self.collected = Collected()
         self.valuations = Valuations(formula)
 
-    def __call__(self, number: int, c: Configuration, _: Expansion) -> None:
-        """Look at every configuration."""
-        if self.valuations.holds(c):
-            self.collected.looked(number)
-        else:
-            self.collected.add(Finding("invariant", f"not true here: {self.formula}", number))
+    def seen(self, of: Excerpt) -> Iterator[Seen]:
+        """Yield the configuration, which is one thing."""
+        good = self.valuations.holds(of.c)
+        yield Seen() if good else Seen(self.WRONG, None, f"not true here: {self.formula}")
 
 
-class Reachability:
+class Reachability(Inspection):
     """A proposition is true of some configuration; its collected example is the witness."""
 
-    def __init__(self, formula: Proposition) -> None:
+    def __init__(self, formula: Proposition, most: int = MOST_VIOLATIONS) -> None:
+        super().__init__(most)
         self.formula = formula
-        self.collected = Collected()
 
-    def __call__(self, number: int, c: Configuration, _: Expansion) -> None:
-        """Look at every configuration."""
-        if holds(self.formula, c):
-            self.collected.looked(number)
+    def seen(self, of: Excerpt) -> Iterator[Seen]:
+        """Yield the configuration where it is true."""
+        if holds(self.formula, of.c):
+            yield Seen()

@@ -1,9 +1,10 @@
 """Race-freedom (semantics.md, check 2): control races in a configuration, stale-observation races at a transition."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Set
 from itertools import combinations
 
-from checker.properties.findings import MOST_VIOLATIONS, Collected, Finding
+from checker.properties.findings import Seen
+from checker.properties.inspections import Excerpt, Inspection
 from semantics.control import applicable
 from semantics.races.monitor import CONTROLS, slots_used, stale_tests
 from semantics.races.provenance import Dependency
@@ -13,22 +14,28 @@ from semantics.state.configuration import Configuration, Transition
 from semantics.state.eta import Pending
 from semantics.state.requests import CTR, FLY, Request
 from semantics.state.setting import Scheduler
-from semantics.successors import Expansion
+from semantics.state.signature import Name
+from semantics.successors import served
 
 
-class ControlRaces:
+class ControlRaces(Inspection):
     """Two enabled controls, where serving one disables the other, or the two orders end differently."""
 
-    def __init__(self, most: int = MOST_VIOLATIONS) -> None:
-        self.collected = Collected(most)
+    def seen(self, of: Excerpt) -> Iterator[Seen]:
+        """Yield every pair of controls that are enabled, apart from the scheduler's turn."""
+        return self.between(of)
 
-    def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
-        """Look at every pair of controls that are enabled, apart from the scheduler's turn."""
-        for one, other, problem in compared(c, enabled_controls(expansion.enabled)):
-            if problem is None:
-                self.collected.looked(number, one[0])
-            else:
-                self.collected.add(_race(number, problem, one, other))
+    def between(self, of: Excerpt, pair: Set[Name] | None = None) -> Iterator[Seen]:
+        """Yield every pair of controls, or those of one or two agents."""
+        for one, other, problem in compared(of.c, enabled_controls(of.steps.enabled), pair):
+            yield Seen(by=one[0]) if problem is None else _race(problem, one[0], other[0])
+
+
+def _race(problem: tuple[str, str], one: Transition, other: Transition) -> Seen:
+    message, about = problem
+    return Seen(
+        ("control race", about), None, message, lambda: (f"enabled here: {one.label} and {other.label}",)
+    )
 
 
 Control = list[Transition]
@@ -45,16 +52,17 @@ def enabled_controls(enabled: Iterable[Transition]) -> list[Control]:
 
 
 def compared(
-    c: Configuration, controls: list[Control]
+    c: Configuration, controls: list[Control], between: Set[Name] | None = None
 ) -> Iterator[tuple[Control, Control, tuple[str, str] | None]]:
-    """Yield each pair of controls with what is wrong with it: in words, and about what.
+    """Yield each pair of controls, or those between some agents, with what is wrong with it: in words, and about what.
 
     Of one agent there are pairs under `unordered` alone; two that are equal are served by the same transitions.
     """
     unordered = c.setting.scheduler is Scheduler.UNORDERED
     twice = [(each, each) for each in controls if unordered and _is_twice(c, _request(each[0]))]
     for one, other in (*combinations(controls, 2), *twice):
-        if one[0].label.agent == other[0].label.agent and not unordered:
+        agents = {one[0].label.agent, other[0].label.agent}
+        if (len(agents) == 1 and not unordered) or between not in (None, agents):
             continue
         problem = conflict(one, other) or conflict(other, one) or different_ends(c, one, other)
         about = " and ".join(sorted(str(_request(each[0])) for each in (one, other)))
@@ -101,37 +109,28 @@ def _request(transition: Transition) -> Request:
     return transition.served.request
 
 
-def _race(number: int, problem: tuple[str, str], one: Control, other: Control) -> Finding:
-    enabled = f"enabled here: {one[0].label} and {other[0].label}"
-    return Finding("control race", problem[0], number, details=(enabled,), subject=problem[1])
-
-
-class StaleObservationRaces:
+class StaleObservationRaces(Inspection):
     """A control that rests on a test whose answer another agent's control has changed since it was observed."""
 
-    def __init__(self, most: int = MOST_VIOLATIONS) -> None:
-        self.collected = Collected(most)
+    alone = (served,)
+    in_turn = True
 
-    def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
-        """Look at every control that is served; c must be monitored."""
-        for transition in expansion.by_agents:
-            pending = transition.served
-            if transition.label.rule not in CONTROLS or pending is None:
-                continue
-            stale = is_stale(c, pending)
-            if not stale:
-                self.collected.looked(number, transition)
-                continue
-            asked = " ".join(stale[0].asked or ())
-            changed = "that answer" if stale[0].stale else "a relation that it uses"
-            message = (
-                f"{pending.request} rests on '{asked}' of observe({stale[0].query}), "
-                f"and another agent has changed {changed} since it was sensed"
-            )
-            found = Finding(
-                "stale-observation race", message, number, transition, subject=str(pending.request)
-            )
-            self.collected.add(found)
+    def seen(self, of: Excerpt) -> Iterator[Seen]:
+        """Yield every control that is served; the configuration must be monitored."""
+        for step in of.steps.by_agents:
+            if step.label.rule in CONTROLS and step.served is not None:
+                stale = is_stale(of.c, step.served)
+                yield _resting_on(stale[0], step.served.request, step) if stale else Seen(by=step)
+
+
+def _resting_on(stale: Dependency, request: Request, by: Transition) -> Seen:
+    asked = " ".join(stale.asked or ())
+    changed = "that answer" if stale.stale else "a relation that it uses"
+    message = (
+        f"{request} rests on '{asked}' of observe({stale.query}), "
+        f"and another agent has changed {changed} since it was sensed"
+    )
+    return Seen(("stale-observation race", str(request)), by, message)
 
 
 def is_stale(c: Configuration, pending: Pending) -> tuple[Dependency, ...]:

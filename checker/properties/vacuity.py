@@ -56,6 +56,13 @@ class Valuations:
         columns = {atom: valuation >> rank & 1 for rank, atom in enumerate(self.atoms)}
         return truth(self.formula, columns, 1) == 1
 
+    def add(self, part: "Valuations") -> None:
+        """Add what was met elsewhere."""
+        self.met |= part.met
+        if part.begun:
+            self.still = part.still if not self.begun or part.still is None else self.still
+            self.begun = True
+
     def compare(self, c: Configuration) -> None:
         """Note whether a configuration still answers as the first one did."""
         if not self.begun:

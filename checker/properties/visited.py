@@ -77,6 +77,15 @@ class Visited:
             self.meet(c, fault.agent)
         self.happened.update(str(transition.label.about) for transition in expansion.by_environment)
 
+    def add(self, part: "Visited") -> None:
+        """Add what was gathered elsewhere."""
+        for agent, codes in part.codes.items():
+            self.codes.setdefault(agent, set()).update(codes)
+        self.moments |= part.moments
+        self.passed |= part.passed
+        self.happened |= part.happened
+        self.known |= part.known
+
     def meet(self, c: Configuration, a: Name) -> None:
         """Note a moment of an agent, unless its cells were met before."""
         cells = (code_cell(a), store_cell(a), mailbox_cell(a), line_cell(a), host_cell(a))
@@ -84,6 +93,13 @@ class Visited:
         if key not in self.known:
             self.known.add(key)
             self.moments.add(moment_of(c, a))
+
+
+def where_it_stands(a: Name, c: Configuration) -> tuple[Code, frozenset[Passage]] | None:
+    """Return what is left of an agent to run, and what its computation passes over in one step."""
+    if a not in c.alpha:
+        return None
+    return c.read(code_cell(a)), frozenset(passages(c.setting, moment_of(c, a)))
 
 
 def moment_of(c: Configuration, a: Name) -> Moment:

@@ -31,23 +31,9 @@ class RefusedError(ValueError):
         self.reason = reason
 
 
-PRESERVED = frozenset(
-    {
-        "local_consistency",
-        "deadlock_freedom",
-        "arrival",
-        "computation",
-        "race_freedom",
-        "invariant",
-        "reachable",
-    }
-)
-"""The kinds of properties that are decided in single configurations, and that every reduction preserves."""
-
-
 def refusal(asked: Property) -> str | None:
-    """Return why a property is not decided under reductions, None if it is."""
-    if asked.kind in PRESERVED:
+    """Return why a property is not decided under reductions, None where it is."""
+    if asked.kind.about.reducible:
         return None
     return f"it is not known to be kept for properties of the kind '{asked.kind}'"
 

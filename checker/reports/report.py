@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from typing import Any
 
-from checker.limits import cut
 from checker.reports.coverage_report import coverage_json
 from checker.traces import Trace, print_length, print_trace, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
+from semantics.properties.property import PropertyKind
 from semantics.state.setting import Control
 from semantics.successors import rules_of
 
@@ -14,28 +14,6 @@ SCHEMA = "bigactors.report/1"
 """The version of the report's schema (docs/json.md)."""
 
 MARKS = {Outcome.HOLDS: "✓", Outcome.VIOLATED: "✗", Outcome.INCOMPLETE: "?"}
-
-UNITS = {
-    "local_consistency": (" control next in line", " controls next in line"),
-    "race_freedom": (" control or pair of controls", " controls and pairs of controls"),
-    "deadlock_freedom": (" configuration at rest", " configurations at rest"),
-    "arrival": (" end of a flight", " ends of flights"),
-    "computation": (" internal step", " internal steps"),
-    "invariant": (" configuration", " configurations"),
-    "ltl": (" configuration", " configurations"),
-    "ctl": (" configuration", " configurations"),
-    "progress": (" request", " requests"),
-}
-"""What is examined for each kind of property, in singular and plural; for `reachable`, configurations with it."""
-
-OF_RUNS = ("ltl", "ctl")
-"""Kinds of properties of which only one violation is searched for."""
-
-NOTHING_EXAMINED = {
-    "deadlock_freedom": "some bigActor can always move",
-    "computation": "no bigActor computes anything that could fail",
-}
-"""The texts for properties for which examining nothing is fine."""
 
 
 def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[str]:
@@ -45,7 +23,7 @@ def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[s
     complete = "complete" if report.complete else "INCOMPLETE"
     yield f"{name}: {size}, {complete}{searched}, {report.seconds:.2f} s"
     for bound in report.bounds:
-        yield f"  {cut(bound)}"
+        yield f"  {bound.effect}"
     width = max((len(verdict.property.name) for verdict in report.verdicts), default=0)
     for verdict in report.verdicts:
         yield from _verdict(verdict, width, traces=traces)
@@ -69,16 +47,20 @@ def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
 
 def _sizes(verdict: Verdict) -> Iterator[str]:
     if verdict.outcome is Outcome.VIOLATED:
-        if verdict.violations and verdict.property.kind not in OF_RUNS:
+        if verdict.violations and verdict.property.kind.about.counted:
             yield _found(verdict)
     elif verdict.witness is not None and verdict.examined:
         yield f"{_examined(verdict)}, a witness of {_steps(len(verdict.witness))}"
     elif verdict.outcome is Outcome.INCOMPLETE:
-        yield "not found so far" if verdict.property.kind == "reachable" else "nothing against it so far"
-    elif verdict.examined and verdict.property.kind not in OF_RUNS:
+        yield (
+            "not found so far"
+            if verdict.property.kind is PropertyKind.REACHABLE
+            else "nothing against it so far"
+        )
+    elif verdict.examined and verdict.property.kind.about.counted:
         yield _examined(verdict)  # no witness was looked for: that is not to say that nothing was examined
-    elif verdict.property.kind in NOTHING_EXAMINED:
-        yield NOTHING_EXAMINED[verdict.property.kind]
+    elif verdict.property.kind.about.nothing:
+        yield verdict.property.kind.about.nothing
 
 
 def _found(verdict: Verdict) -> str:
@@ -94,8 +76,8 @@ def _found(verdict: Verdict) -> str:
 
 
 def _examined(verdict: Verdict) -> str:
-    one, many = UNITS.get(verdict.property.kind, ("", ""))
-    return f"examined {verdict.examined:,}{one if verdict.examined == 1 else many}"
+    one, many = verdict.property.kind.about.examined
+    return f"examined {verdict.examined:,} {one if verdict.examined == 1 else many}".rstrip()
 
 
 def _steps(count: int) -> str:
@@ -118,7 +100,7 @@ def report_json(name: str, digest: str, report: Report, control: Control) -> dic
         "mission": name,
         "digest": digest,
         "complete": report.complete,
-        "bounds": list(report.bounds),
+        "bounds": list(map(str, report.bounds)),
         "configurations": report.configurations,
         "transitions": report.transitions,
         "depth": report.depth,

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
-from checker.limits import cut
 from checker.properties.coverage import Gap
 from checker.reports.coverage_report import coverage_text, line_text
 from checker.reports.lines import violation_line
@@ -118,7 +117,7 @@ class Result:
         return verdict.property.line or self.check_line
 
     def _cut_off(self) -> str:
-        bounds = map(cut, self.report.bounds if self.report else ())
+        bounds = (bound.effect for bound in (self.report.bounds if self.report else ()))
         return "; ".join(["not decided", *bounds])
 
     def _violation(self, verdict: Verdict, violation: Violation) -> Issue:

@@ -14,25 +14,17 @@ from urllib.parse import quote
 from checker.reports.lines import step_lines
 from checker.reports.results import Issue, Level, Result, clean
 from checker.traces import Trace
+from semantics.properties.property import PropertyKind
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 RULES = {
-    "local_consistency": "Every control next in line can be served on what the world shows.",
-    "race_freedom": "No bigActor changes what another's control rests on.",
-    "deadlock_freedom": "Some bigActor can move wherever one has anything left to do.",
-    "arrival": "No run waits for ever for the end of a flight.",
-    "invariant": "A proposition is true of every configuration.",
-    "reachable": "A proposition is true of some configuration.",
-    "ltl": "A formula of linear time is true of every fair run.",
-    "ctl": "A formula of branching time is true of the tree of fair runs.",
-    "progress": "Every pending request is eventually served on every fair run.",
-    "computation": "No bigActor's computation fails or diverges.",
+    **{str(kind): kind.about.says for kind in PropertyKind},
     "exploration": "Everything reachable is visited.",
     "coverage": "Some run reaches each statement, takes each branch, and meets each clause of the environment.",
     "vacuity": "What holds does not hold for want of anything that could break it.",
 }
-"""The descriptions of the kinds of properties."""
+"""What each kind of property says, and what else is found."""
 
 LEVELS = {Level.WRONG: "error", Level.WARNING: "warning"}
 """The levels of results; other issues are notifications."""

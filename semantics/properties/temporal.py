@@ -7,9 +7,6 @@ from semantics.properties.propositions import And, Or, Proposition
 from semantics.state.configuration import Label
 from semantics.state.signature import Name
 
-TEMPORAL = ("ltl", "ctl", "progress")
-"""The kinds of properties that are about runs, and not about configurations one by one."""
-
 ENVIRONMENTS = ("env", "say")
 """The rules that are nobody's."""
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Final, TypeVar
+from typing import TypeVar
 
 from semantics.behaviours.program import Program
-from semantics.properties.property import Property
+from semantics.properties.property import Asked, Property, PropertyKind, asked_by
 from semantics.state.setting import Control, Scheduler
 from specs import syntax as s
 from specs.codes import Code
@@ -15,12 +15,6 @@ from specs.elaboration.names import Names
 from specs.elaboration.temporal import TemporalFormulas
 
 D = TypeVar("D", bound=s.Node)
-
-DEFAULT: Final = ("local_consistency", "race_freedom", "deadlock_freedom")
-"""What is checked where a mission asks for nothing."""
-
-ALWAYS: Final = Property("computation", "computation")
-"""What is always checked: bigActors' computations neither fail nor diverge."""
 
 
 def elaborate_scheduler(mission: s.Mission, names: Names) -> Scheduler:
@@ -46,19 +40,20 @@ def _only(named: tuple[D, ...], word: str, names: Names) -> D | None:
 def elaborate_checks(
     mission: s.Mission, names: Names, bodies: Bodies, program: Program
 ) -> tuple[Property, ...]:
-    """Return the properties in the order written, or those that go without saying, and `computation`."""
+    """Return the properties in the order written, or those of the default, and those that go without saying."""
     written = [item for section in mission.each(s.Check) for item in section.properties]
     formulas, seen, found = Formulas(names, bodies, program), set[str](), list[Property]()
     temporal = TemporalFormulas(formulas)
     for item in written:
         line = names.findings.source.line(item.span.start)
         if isinstance(item, s.StandardProperty):
-            prop = Property(item.name, item.name, line=line)
+            prop = Property(PropertyKind(item.name), item.name, line=line)
         elif isinstance(item, s.TemporalProperty | s.Progress):
             prop = temporal.property(item, line)
         else:
-            kind = "invariant" if isinstance(item, s.Invariant) else "reachable"
-            formula = formulas.elaborate(item.formula, invariant=kind == "invariant")
+            invariant = isinstance(item, s.Invariant)
+            kind = PropertyKind.INVARIANT if invariant else PropertyKind.REACHABLE
+            formula = formulas.elaborate(item.formula, invariant=invariant)
             prop = Property(kind, item.label.value, formula, line)
         if prop.name in seen:
             names.findings.add(
@@ -66,4 +61,5 @@ def elaborate_checks(
             )
         seen.add(prop.name)
         found.append(prop)
-    return (*(found or (Property(name, name) for name in DEFAULT)), ALWAYS)
+    usual = [Property(kind, kind) for kind in asked_by(Asked.BY_DEFAULT)]
+    return (*(found or usual), *(Property(kind, kind) for kind in asked_by(Asked.ALWAYS)))

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import Final
 
 from semantics.properties import temporal as t
-from semantics.properties.property import Property
+from semantics.properties.property import Property, PropertyKind
 from semantics.properties.propositions import Always
 from semantics.state.setting import Control
 from semantics.successors import rules_of
@@ -69,10 +69,14 @@ class TemporalFormulas:
         fairness = tuple(each for declared in item.fairness for each in self.fairness(declared))
         if isinstance(item, s.Progress):
             name = item.label.value if item.label else "progress"
-            return Property("progress", name, line=line, fairness=fairness)
+            return Property(PropertyKind.PROGRESS, name, line=line, fairness=fairness)
         self.logic = item.logic
         return Property(
-            item.logic, item.label.value, line=line, temporal=self.formula(item), fairness=fairness
+            PropertyKind(item.logic),
+            item.label.value,
+            line=line,
+            temporal=self.formula(item),
+            fairness=fairness,
         )
 
     def formula(self, item: s.TemporalProperty) -> t.Temporal:

@@ -168,7 +168,7 @@ class ControlMode(Node):
 
 @dataclass(frozen=True, slots=True)
 class StandardProperty(Node):
-    """`local_consistency`, `race_freedom`, `deadlock_freedom` or `arrival`: the standard properties."""
+    """`race_freedom`: a standard property, which is asked for by its name alone."""
 
     name: str
 

@@ -11,6 +11,7 @@ from referencing import Registry, Resource
 from bigactors.checking import FAILURE_SCHEMA, REPORTS_SCHEMA
 from checker.reports.report import SCHEMA as REPORT
 from checker.traces import SCHEMA as TRACE
+from semantics.properties.property import PropertyKind
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -114,6 +115,10 @@ def test_the_schemas_refuse_what_is_not_so(bigactors):
 @pytest.mark.parametrize("name", [REPORT, TRACE, FAILURE_SCHEMA, REPORTS_SCHEMA])
 def test_every_schema_is_described(name):
     assert f"`{name}`" in (DOCS / "json.md").read_text(encoding="utf-8")
+
+
+def test_the_schema_of_reports_names_every_kind_of_property():
+    assert schema("report")["$defs"]["property"]["properties"]["kind"]["enum"] == list(PropertyKind)
 
 
 def test_every_member_of_a_report_is_described():

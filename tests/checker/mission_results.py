@@ -2,9 +2,9 @@
 
 from checked_missions import SPARE, load, moves, start
 
-from checker import Limits, Outcome, Report, Trace, Verdict, Violation, check
+from checker import Bound, Limits, Outcome, Report, Stop, Trace, Verdict, Violation, check
 from checker.reports.results import Issue, Level, Result
-from semantics.properties.property import Property
+from semantics.properties.property import Property, PropertyKind
 
 ENTERS = moves("gate0", "a", "uav0")
 GAPS = """
@@ -47,13 +47,17 @@ BUG = Issue(Level.BUG, "exploration", "internal error", "internal error: KeyErro
 
 
 def hostile():
-    asked = (Property("invariant", HOSTILE, line=3), Property("reachable", f"{HOSTILE} never", line=4))
+    asked = (
+        Property(PropertyKind.INVARIANT, HOSTILE, line=3),
+        Property(PropertyKind.REACHABLE, f"{HOSTILE} never", line=4),
+    )
     trace = Trace(start(ENTERS))
     verdicts = (
         Verdict(asked[0], Outcome.VIOLATED, (Violation(HOSTILE, HOSTILE, trace, (HOSTILE,)),), 1),
         Verdict(asked[1], Outcome.INCOMPLETE),
     )
-    return Result(HOSTILE, HOSTILE, Report(verdicts, 1, 0, 0, (HOSTILE,), notes=(HOSTILE,)))
+    unkept = Bound(Stop.NO_CHECKPOINT, (HOSTILE, HOSTILE))
+    return Result(HOSTILE, HOSTILE, Report(verdicts, 1, 0, 0, (unkept,), notes=(HOSTILE,)))
 
 
 def all_sorts():

@@ -20,12 +20,11 @@ from checker.engines.contract import (
     CheckpointError,
     Exploration,
     Inspect,
-    Keeping,
     MachineError,
+    Options,
     Progress,
-    Report,
 )
-from checker.limits import Limits, crowd_met, end_met, limit_met, memory_met
+from checker.limits import Bound, Stop
 from semantics.state.configuration import Configuration
 
 MOST_LOSSES = 5
@@ -52,27 +51,18 @@ class Expedition:
         is_kept: Whether the last checkpoint is of where they are.
     """
 
-    def __init__(
-        self,
-        crew: Crew,
-        initial: Configuration,
-        limits: Limits,
-        report: Report | None = None,
-        every: float = 0.5,
-        keeping: Keeping | None = None,
-    ) -> None:
+    def __init__(self, crew: Crew, initial: Configuration, options: Options) -> None:
         self.crew = crew
         self.initial = initial
-        self.limits = limits
-        self.report = report
-        self.every = every
-        self.keeping = keeping or Keeping()
-        self.digest = f"{self.keeping.digest}, {limits.configurations}, {limits.pending}"
+        self.options = options
+        self.limits = limits = options.limits
+        self.keeping = options.keeping
+        self.digest = f"{options.keeping.digest}, {limits.configurations}, {limits.pending}"
         self.folder = self._folder()
         self.latest = self._resumed()
         self.layer = 0
         self.standings: list[Standing] = []
-        self.bounds: list[str] = []
+        self.bounds: list[Bound] = []
         self.is_lost = True
         self.is_kept = False
         self.losses = 0
@@ -117,7 +107,7 @@ class Expedition:
             sum(found.expanded),
             rules.total(),
             rules,
-            sorted(self.bounds + self.met()),
+            sorted(self.bounds + self.met(), key=str),
             time.monotonic() - self.began,
             sum(standing.runs for standing in self.standings),
             survey=Survey(found),
@@ -137,12 +127,14 @@ class Expedition:
                     often = f"workers were lost {self.losses} times without a checkpoint between"
                     raise MachineError(f"{often}: {lost}") from lost
 
-    def met(self) -> list[str]:
+    def met(self) -> list[Bound]:
         """Return the bounds that left something out."""
-        most = self.limits.configurations
-        cut = [limit_met(most)] if most is not None and any(each.cut for each in self.standings) else []
-        crowded = any(each.crowded for each in self.standings)
-        return cut + ([crowd_met(self.limits.pending)] if crowded else [])
+        limits, standings = self.limits, self.standings
+        met = {
+            Stop.CONFIGURATIONS: any(each.cut for each in standings) and limits.configurations is not None,
+            Stop.PENDING: any(each.crowded for each in standings),
+        }
+        return [limits.bound(stop) for stop, is_met in met.items() if is_met]
 
     # --- rounds ---------------------------------------------------------------------------------------------------
 
@@ -184,8 +176,8 @@ class Expedition:
         self.standings = self.crew.exchange("expand", "take", self.layer, ROUND * self.crew.size)
         self.trim(before)
         now = time.monotonic()
-        if self.report is not None and now - self.reported >= self.every:
-            self.report(self.progress(now - self.began))
+        if self.options.report is not None and now - self.reported >= self.options.every:
+            self.options.report(self.progress(now - self.began))
             self.reported = now
         if now - self.kept >= self.keeping.every:
             self.save()
@@ -206,10 +198,10 @@ class Expedition:
     def look_at_bounds(self, seconds: float) -> None:
         """Note whether time, or some worker's memory, has come to its end, or the user wants the end."""
         limits = self.limits
-        if (end := end_met(limits, seconds)) is not None:
+        if (end := limits.end(seconds)) is not None:
             self.bounds.append(end)
         elif limits.memory is not None and max(each.memory for each in self.standings) > limits.memory:
-            self.bounds.append(memory_met(limits))
+            self.bounds.append(limits.bound(Stop.MEMORY))
 
     def progress(self, seconds: float) -> Progress:
         """Return how far all have come."""

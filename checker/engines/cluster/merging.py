@@ -7,55 +7,24 @@ from typing import Any
 from checker.engines.cluster.numbering import Places
 from checker.engines.contract import Inspect
 from checker.properties.findings import Collected, Finding
-from checker.properties.inspections import (
-    Computation,
-    DeadlockFreedom,
-    Invariant,
-    LocalConsistency,
-    Reachability,
-)
-from checker.properties.races import ControlRaces, StaleObservationRaces
+from checker.properties.inspections import Inspection, Invariant
 from checker.properties.visited import Visited
-
-Collector = Computation | ControlRaces | LocalConsistency | Reachability | StaleObservationRaces
 
 
 def is_mergeable(inspection: Inspect) -> bool:
     """Tell whether workers may each have found a part of what an inspection finds."""
-    return isinstance(inspection, Visited | DeadlockFreedom | Invariant | Collector)
+    return isinstance(inspection, Visited | Inspection)
 
 
 def merge(into: Inspect, parts: Sequence[Any], places: Places) -> None:
     """Let an inspection have found what parts of it have found, one for each worker."""
-    match into:
-        case Visited():
-            _merge_visited(into, parts)
-        case DeadlockFreedom():
-            merge_collected(into.collected, [part.collected for part in parts], places)
-            merge_collected(into.arrival, [part.arrival for part in parts], places)
-        case Invariant():
-            merge_collected(into.collected, [part.collected for part in parts], places)
-            _merge_valuations(into, parts)
-        case _ if isinstance(into, Collector):
-            merge_collected(into.collected, [part.collected for part in parts], places)
-
-
-def _merge_visited(into: Visited, parts: Sequence[Visited]) -> None:
+    if isinstance(into, Inspection):
+        merge_collected(into.collected, [part.collected for part in parts], places)
     for part in parts:
-        for agent, codes in part.codes.items():
-            into.codes.setdefault(agent, set()).update(codes)
-        into.moments |= part.moments
-        into.passed |= part.passed
-        into.happened |= part.happened
-        into.known |= part.known
-
-
-def _merge_valuations(into: Invariant, parts: Sequence[Invariant]) -> None:
-    begun = [part.valuations for part in parts if part.valuations.begun]
-    into.valuations.begun = bool(begun)
-    into.valuations.still = {} if begun and all(each.still is not None for each in begun) else None
-    for each in begun:
-        into.valuations.met |= each.met
+        if isinstance(into, Visited):
+            into.add(part)
+        if isinstance(into, Invariant):
+            into.valuations.add(part.valuations)
 
 
 def merge_collected(into: Collected, parts: Sequence[Collected], places: Places) -> None:

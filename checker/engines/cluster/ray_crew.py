@@ -29,11 +29,9 @@ from checker.engines.contract import (
     Cluster,
     Exploration,
     Inspect,
-    Keeping,
     MachineError,
-    Report,
+    Options,
 )
-from checker.limits import Limits
 from semantics.state.configuration import Configuration
 
 PATIENCE = 120.0
@@ -247,16 +245,8 @@ def _reach(address: str) -> None:
         raise ClusterError(f"there is no Ray cluster at {address}: {error}") from error
 
 
-def explore_with_ray(  # noqa: PLR0913, PLR0917  # as `explore`
-    initial: Configuration,
-    inspect: tuple[Inspect, ...],
-    limits: Limits,
-    report: Report | None,
-    every: float,
-    keeping: Keeping | None,
-    cluster: Cluster,
-) -> Exploration:
-    """Visit everything that is reachable (see `checker.engines.choose.explore`).
+def explore_with_ray(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
+    """Visit everything that is reachable, with workers in processes of their own.
 
     Where no folder is named for checkpoints, a cluster of one's own keeps them in a temporary one.
 
@@ -265,18 +255,18 @@ def explore_with_ray(  # noqa: PLR0913, PLR0917  # as `explore`
         MachineError: It does not start, or workers are lost again and again.
         CheckpointError: There is none to go on from, or it is of something else.
     """
+    cluster, keeping = options.cluster, options.keeping
     if not 2 <= cluster.workers <= WORKERS_AT_MOST:
         raise ClusterError(f"--engine ray takes 2 to {WORKERS_AT_MOST} workers; one is --engine fast")
     connect(cluster)
-    crew = RayCrew(initial, limits.pending, cluster.workers)
-    keeping = keeping or Keeping()
+    crew = RayCrew(initial, options.limits.pending, cluster.workers)
     if keeping.doubted:
         raise ClusterError("only the fast explorer can be doubted: --paranoid goes with --engine fast")
     if keeping.folder is None and cluster.address is None:
         folder = tempfile.mkdtemp(prefix="bigactors-")
         weakref.finalize(crew, shutil.rmtree, folder, ignore_errors=True)
-        keeping = replace(keeping, folder=folder)
-    return Expedition(crew, initial, limits, report, every, keeping).run(inspect)
+        options = replace(options, keeping=replace(keeping, folder=folder))
+    return Expedition(crew, initial, options).run(inspect)
 
 
 @lru_cache(maxsize=1)

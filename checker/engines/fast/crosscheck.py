@@ -3,9 +3,10 @@
 from collections import Counter
 
 from checker.bounding import look
-from checker.engines.contract import Reducer, sample
+from checker.engines.contract import sample
 from checker.engines.fast.engine import Space
 from checker.reduction.crosscheck import heed
+from checker.reduction.reducer import Reduced
 from semantics.state.configuration import Configuration
 from semantics.state.printing import print_configuration
 from semantics.successors import expand
@@ -15,7 +16,7 @@ class Disagreement(Exception):  # what it is
     """What was learned does not lead where the rules lead: a bug of ours."""
 
 
-def crosscheck(space: Space, count: int, reduce: Reducer | None = None) -> None:
+def crosscheck(space: Space, count: int, reduce: Reduced | None = None) -> None:
     """Compare what was learned with the rules on some configurations, and what is said of the rules with what they do.
 
     Raises:

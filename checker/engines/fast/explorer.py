@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, overload
 
 from checker.bounding import BoundMet, bounded
-from checker.engines.contract import Exploration, Inspect, Keeping, Progress, Reducer, Report
+from checker.engines.contract import Exploration, Inspect, Options, Progress
 from checker.engines.estimate import estimate
 from checker.engines.fast.checkpoint import Journey, resume, save
 from checker.engines.fast.crosscheck import crosscheck
@@ -17,16 +17,7 @@ from checker.engines.fast.engine import Space
 from checker.engines.fast.graph import GraphSurvey
 from checker.engines.fast.inspecting import inspect_fast
 from checker.engines.fast.learner import Learner
-from checker.limits import (
-    Limits,
-    crowd_met,
-    end_met,
-    is_full,
-    limit_met,
-    memory_left,
-    memory_met,
-    omission_met,
-)
+from checker.limits import Bound, Limits, Part, Stop, is_full, memory_left
 from semantics.state.configuration import Configuration
 
 if TYPE_CHECKING:
@@ -81,44 +72,27 @@ class Configurations(Sequence[Configuration]):
         return self.space.configuration(range(len(self))[number])
 
 
-def explore_fast(  # noqa: PLR0913, PLR0917  # as `explore`
-    initial: Configuration,
-    inspect: tuple[Inspect, ...],
-    limits: Limits,
-    report: Report | None,
-    every: float,
-    keeping: Keeping,
-    reduce: Reducer | None = None,
-) -> Exploration:
-    """Visit everything that is reachable (see `checker.engines.choose.explore`).
+def explore_fast(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
+    """Visit everything that is reachable, running the rules once for each way in which they look at cells.
 
     Raises:
         CheckpointError: There is none to go on from, or it is of something else.
     """
-    return _Explorer(initial, limits, report, every, keeping, reduce).run(inspect)
+    return _Explorer(initial, options).run(inspect)
 
 
 class _Explorer:
-    def __init__(
-        self,
-        initial: Configuration,
-        limits: Limits,
-        report: Report | None,
-        every: float,
-        keeping: Keeping,
-        reduce: Reducer | None,
-    ) -> None:
-        self.limits = limits
-        self.report = report
-        self.every = every
-        self.keeping = keeping
+    def __init__(self, initial: Configuration, options: Options) -> None:
+        self.options = options
+        self.limits = limits = options.limits
+        self.keeping = options.keeping
         self.learner = Learner(initial.setting, initial.state, limits.pending)  # type: ignore[arg-type]  # a stored one
-        self.reduce = reduce
-        self.space = Space(self.learner, limits.configurations, self.choosing(), keeping.compact)
+        self.reduce = options.reduce
+        self.space = Space(self.learner, limits.configurations, self.choosing(), options.keeping.compact)
         self.space.left = self.left
         self.journey = Journey(0, 1, 0.0)
         self.layers = [1]
-        self.bounds: list[str] = []
+        self.bounds: list[Bound] = []
         self.exploring = 1.0
         self.is_kept = False
 
@@ -160,7 +134,7 @@ class _Explorer:
             space.expanded,
             sum(rules.values()),
             rules,
-            sorted(self.bounds + self.met()),
+            sorted(self.bounds + self.met(), key=str),
             time.monotonic() - began,
             self.learner.runs,
             survey=survey,
@@ -172,8 +146,8 @@ class _Explorer:
         """Explore until the end, or until a bound is met."""
         try:
             self.visit_all(began)
-        except BoundMet as bound:
-            self.bounds.append(str(bound))
+        except BoundMet as met:
+            self.bounds.append(met.bound)
         except (OSError, MemoryError) as error:
             self.bounds.append(self.end_of_room(error))
 
@@ -182,20 +156,20 @@ class _Explorer:
         try:
             crosscheck(self.space, self.keeping.doubted, self.reduce)
             inspect_fast(survey, inspect)
-        except BoundMet as bound:
-            self.bounds.append(f"{bound}, in looking at what was explored")
+        except BoundMet as met:
+            self.bounds.append(met.bound.met_in(Part.LOOKING))
         except (OSError, MemoryError) as error:
-            self.bounds.append(f"{self.end_of_room(error)}, in looking at what was explored")
+            self.bounds.append(self.end_of_room(error).met_in(Part.LOOKING))
 
-    def end_of_room(self, error: OSError | MemoryError) -> str:
+    def end_of_room(self, error: OSError | MemoryError) -> Bound:
         """Return which room has come to its end: the memory that the system gives, or that in files."""
         if isinstance(error, MemoryError) or error.errno == errno.ENOMEM:
-            return "the end of the memory that there is"
-        return f"the end of the room in {self.limits.spill or 'memory'}: {error.strerror}"
+            return Bound(Stop.NO_MEMORY)
+        return Bound(Stop.NO_ROOM, (self.limits.spill or "memory", error.strerror))
 
     def limits_of_looking(self) -> Limits:
         """Return the limits; memory that came to its end, with files or without, is enough to look at what is there."""
-        full = memory_met(self.limits) in self.bounds or self.space.spilled
+        full = self.limits.bound(Stop.MEMORY) in self.bounds or self.space.spilled
         return replace(self.limits, memory=None) if full else self.limits
 
     def keep(self, seconds: float) -> None:
@@ -207,24 +181,28 @@ class _Explorer:
         try:
             save(self.space, journey, self.keeping.digest, path)
         except OSError as error:
-            unkept = f"a checkpoint that can't be written to {path}: {error.strerror}"
+            unkept = Bound(Stop.NO_CHECKPOINT, (str(path), error.strerror))
             self.bounds += [] if unkept in self.bounds else [unkept]
         self.is_kept = self.limits.interruption.is_due()
 
-    def met(self) -> list[str]:
-        most = self.limits.configurations
-        cut = [limit_met(most)] if self.space.was_cut and most is not None else []
-        crowded = [crowd_met(self.limits.pending)] if self.space.is_crowded else []
-        return cut + crowded + self.omitted()
+    def met(self) -> list[Bound]:
+        """Return the bounds that left something out."""
+        limits, space = self.limits, self.space
+        met = {
+            Stop.CONFIGURATIONS: space.was_cut and limits.configurations is not None,
+            Stop.PENDING: space.is_crowded,
+        }
+        return [limits.bound(stop) for stop, is_met in met.items() if is_met] + self.omitted()
 
-    def omitted(self) -> list[str]:
+    def omitted(self) -> list[Bound]:
         """Return how likely something was left out by hash compaction."""
         bits = self.space.compact
         if bits is None:
             return []
         from checker.engines.fast.compacting import omission  # noqa: PLC0415  # compiled where it is wanted
 
-        return [omission_met(bits, omission(self.space.probed, self.space.size, bits))]
+        chance = omission(self.space.probed, self.space.size, bits)
+        return [Bound(Stop.COMPACTION, (bits, chance))]
 
     def visit_all(self, started: float) -> None:
         reported = kept = time.monotonic()
@@ -233,8 +211,8 @@ class _Explorer:
             now = time.monotonic()
             if self.is_over(now - started):
                 return
-            if self.report is not None and now - reported >= self.every:
-                self.report(self.progress(now - started))
+            if self.options.report is not None and now - reported >= self.options.every:
+                self.options.report(self.progress(now - started))
                 reported = now
             if now - kept >= self.keeping.every:
                 self.keep(now - started)
@@ -250,10 +228,10 @@ class _Explorer:
 
     def is_over(self, seconds: float) -> bool:
         """Tell whether time or memory has come to its end, or the user wants the end, and note it."""
-        if (end := end_met(self.limits, seconds, self.exploring)) is not None:
+        if (end := self.limits.end(seconds, self.exploring)) is not None:
             self.bounds.append(end)
         elif is_full(self.limits) and not self.makes_room():
-            self.bounds.append(memory_met(self.limits))
+            self.bounds.append(self.limits.bound(Stop.MEMORY))
         return bool(self.bounds)
 
     def left(self) -> float:

@@ -3,11 +3,10 @@
 A survey says of each finding how often it occurs, and where first; there the inspection itself is asked what to say.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from functools import cache, partial, reduce
-from itertools import combinations_with_replacement
+from itertools import chain, combinations_with_replacement
 from operator import and_, or_
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,31 +16,18 @@ from checker.engines.contract import Inspect
 from checker.engines.fast.learner import Actor
 from checker.engines.fast.leaves import COPIES, COPIES_END, PAIR, PARTS, PARTS_END, STEP, WRITES, WRITES_END
 from checker.engines.fast.survey import Survey, distinct
-from checker.properties.findings import Collected
-from checker.properties.inspections import (
-    Computation,
-    DeadlockFreedom,
-    Invariant,
-    LocalConsistency,
-    Reachability,
-)
-from checker.properties.questions import (
-    Key,
-    computations,
-    controls_in_line,
-    races_between,
-    stale_controls,
-    what_is_served,
-    what_moves,
-    where_it_stands,
-)
-from checker.properties.races import ControlRaces, StaleObservationRaces
+from checker.properties.findings import Collected, Key
+from checker.properties.inspections import Excerpt, Inspection, Invariant, Reachability, Rules
+from checker.properties.races import ControlRaces
 from checker.properties.vacuity import atoms_of, truth
-from checker.properties.visited import Visited
+from checker.properties.visited import Visited, where_it_stands
+from semantics.behaviours.expressions import Fault
 from semantics.properties.propositions import Always, And, Not, Or, Proposition, holds
 from semantics.races.monitor import CONTROLS
+from semantics.state.configuration import Configuration, Transition
 from semantics.state.setting import Scheduler
-from semantics.successors import expand, served
+from semantics.state.signature import Name
+from semantics.successors import Expansion, expand, served
 
 Bools = NDArray[np.bool_]
 Tally = tuple[Key | None, int, int]
@@ -53,12 +39,24 @@ ALL = 1 << 62
 
 def inspect_fast(survey: Survey, inspections: Iterable[Inspect]) -> None:
     """Let each inspection have found what it would have found by looking at every configuration that was expanded."""
-    for each in inspections:
-        how = SURVEYS.get(type(each))
-        if how is None or (isinstance(each, StaleObservationRaces) and _takes_turns(survey)):
-            look_at_each(survey, each)
-        elif survey.size:
-            how(survey, each)
+    setting = survey.space.learner.setting
+    takes_turns = setting.scheduler is Scheduler.FCFS
+    for each in inspections if survey.size else ():
+        match each:
+            case Inspection() if not each.concerns(setting):
+                continue
+            case Visited():
+                look_at_visited(survey, each)
+            case Invariant():
+                look_at_invariant(survey, each)
+            case Reachability():
+                look_at_reachability(survey, each)
+            case ControlRaces():
+                look_at_races(survey, each)
+            case Inspection() if (each.alone or each.together) and not (each.in_turn and takes_turns):
+                look_at_agents(survey, each)
+            case _:
+                look_at_each(survey, each)
 
 
 def look_at_each(survey: Survey, inspection: Inspect) -> None:
@@ -69,12 +67,19 @@ def look_at_each(survey: Survey, inspection: Inspect) -> None:
         inspection(number, c, expand(c))
 
 
-def _takes_turns(survey: Survey) -> bool:
-    return survey.space.learner.setting.scheduler is Scheduler.FCFS
+def _collect(
+    survey: Survey, inspection: Inspection, tallies: Iterable[Tally], make: Callable[[], Inspection]
+) -> None:
+    """Let an inspection have found what there is; a new one looks once more where each was met first."""
 
+    @cache
+    def again(number: int) -> Collected:
+        fresh = make()
+        c = survey.space.configuration(number)
+        fresh(number, c, expand(c))
+        return fresh.collected
 
-def _collect(collected: Collected, tallies: Iterable[Tally], again: Callable[[int], Collected]) -> None:
-    """Add what was found to what is collected; `again` looks at one configuration once more."""
+    collected = inspection.collected
     found: dict[Key, tuple[int, int]] = {}
     for key, count, first in sorted(tallies, key=lambda tally: tally[2]):
         if key is None:
@@ -96,91 +101,54 @@ def _by_discovery(found: dict[Key, tuple[int, int]], again: Callable[[int], Coll
         yield from (key for key in again(first).first if found.get(key, (0, -1))[1] == first)
 
 
-def _again(survey: Survey, make: Callable[[], Any], number: int) -> Any:
-    c = survey.space.configuration(number)
-    inspection = make()
-    inspection(number, c, expand(c))
-    return inspection
+# --- what is asked of agents ----------------------------------------------------------------------------------
 
 
-# --- what is asked of one agent -------------------------------------------------------------------------------
+def look_at_agents(survey: Survey, inspection: Inspection) -> None:
+    """Collect what an inspection finds of agents, each by itself and all together."""
+    tallies = [*_alone(survey, inspection), *_together(survey, inspection)]
+    _collect(survey, inspection, tallies, lambda: type(inspection)(ALL))
 
 
-def look_at_consistency(survey: Survey, inspection: LocalConsistency) -> None:
-    """Collect what local consistency finds."""
-    tallies = [
-        (key, answer.count, answer.first)
-        for a in survey.agents()
-        for answer in survey.answers(partial(controls_in_line, a))
-        for key in answer.value
-    ]
-
-    def again(number: int) -> Collected:
-        found: Collected = _again(survey, lambda: LocalConsistency(ALL), number).collected
-        return found
-
-    _collect(inspection.collected, tallies, again)
+def _alone(survey: Survey, inspection: Inspection) -> Iterator[Tally]:
+    for a in survey.agents() if inspection.alone else ():
+        for answer in survey.answers(partial(_seen, inspection, a)):
+            yield from ((key, answer.count, answer.first) for key in answer.value)
 
 
-def look_at_computation(survey: Survey, inspection: Computation) -> None:
-    """Collect what fails or diverges."""
-    answers = [each for a in survey.agents() for each in survey.answers(partial(computations, a))]
-    tallies: list[Tally] = [(key, each.count, each.first) for each in answers for key in each.value[1]]
-    firsts = [each.first for each in answers if each.value[0]]
-    if firsts:
-        tallies.append((None, survey.space.rules(followed=False)["fun"], min(firsts)))
-
-    def again(number: int) -> Collected:
-        found: Collected = _again(survey, lambda: Computation(ALL), number).collected
-        return found
-
-    _collect(inspection.collected, tallies, again)
+def _seen(inspection: Inspection, a: Name, c: Configuration) -> tuple[Key | None, ...]:
+    return tuple(each.wrong for each in inspection.seen(excerpt(c, inspection.alone, (a,))))
 
 
-# --- deadlock -------------------------------------------------------------------------------------------------
+def _together(survey: Survey, inspection: Inspection) -> Iterator[Tally]:
+    """Yield what is found where no agent must move: asked agent by agent, of those that are left each time."""
+    agents = survey.agents() if inspection.together else ()
+    trees = [survey.space.learner.question(partial(_still, inspection, a)) for a in agents]
+    numbers: dict[Hashable, int] = {None: 0}
+    for block in survey.blocks() if agents else ():
+        rows, answers, kinds = block, np.zeros((0, len(block)), np.int64), np.zeros(len(block), np.int64)
+        for tree in trees:
+            said = survey.numbered(survey.space.classify(tree, rows), numbers)
+            left = said > 0
+            rows, answers = rows[left], np.vstack((answers[:, left], said[left]))
+            kinds = np.unique(kinds[left] << 32 | said[left], return_inverse=True)[1]
+        _, firsts, counts = np.unique(kinds, return_index=True, return_counts=True)
+        told = list(numbers)
+        for first, count in zip(firsts, counts, strict=True):
+            waits = chain.from_iterable(told[number] for number in answers[:, first])
+            yield from ((each.wrong, int(count), int(rows[first])) for each in inspection.judged(waits))
 
 
-def look_at_deadlocks(survey: Survey, inspection: DeadlockFreedom) -> None:
-    """Collect deadlocks, and flights that need never end."""
-    learner, agents = survey.space.learner, survey.agents()
-    asked = [partial(question, a) for question in (what_is_served, what_moves) for a in agents]
-    trees = [learner.question(question) for question in asked]
-    deadlocks: list[Tally] = []
-    late: list[Tally] = []
-    commits: list[int] = []
-
-    def again(number: int) -> DeadlockFreedom:
-        found: DeadlockFreedom = _again(survey, lambda: DeadlockFreedom(ALL), number)
-        return found
-
-    for rows in survey.blocks():
-        leaves = np.stack([survey.space.classify(tree, rows) for tree in trees], axis=1)
-        fair, ends = _first_two(learner.answers, leaves, len(agents))
-        commits += [int(row) for row in rows[ends][:1]]
-        still = np.flatnonzero(~fair)
-        kinds, firsts, counts = np.unique(leaves[still], axis=0, return_index=True, return_counts=True)
-        for first, count in zip(firsts if len(kinds) else (), counts, strict=bool(len(kinds))):
-            number = int(rows[still[first]])
-            seen = again(number)
-            deadlocks += [(key, int(count), number) for key in seen.collected.first]
-            deadlocks += [(None, int(count), number)] * seen.collected.examined
-            late += [(key, int(count), number) for key in seen.arrival.first]
-    if commits:
-        late.append((None, survey.space.rules(followed=False)["commit"], min(commits)))
-    _collect(inspection.collected, deadlocks, lambda number: again(number).collected)
-    _collect(inspection.arrival, late, lambda number: again(number).arrival)
+def _still(inspection: Inspection, a: Name, c: Configuration) -> Hashable:
+    return inspection.still(excerpt(c, inspection.together, (a,)))
 
 
-def _first_two(answers: Any, leaves: NDArray[np.int32], agents: int) -> tuple[Bools, Bools]:
-    """Return for each row whether something must happen, and whether a flight may end."""
-    known = np.unique(leaves)
-    fair = np.zeros(int(known.max()) + 1, np.bool_)
-    ends = np.zeros_like(fair)
-    for leaf in known:
-        value = answers[int(leaf)]
-        fair[leaf] = value[0]
-        ends[leaf] = value[1]
-    return np.any(fair[leaves], axis=1), np.any(ends[leaves[:, :agents]], axis=1)
+def excerpt(c: Configuration, rules: Iterable[Rules], agents: Iterable[Name]) -> Excerpt:
+    """Return some agents of a configuration, as far as they are there, and what some rules allow them."""
+    there = tuple(a for a in dict.fromkeys(agents) if a in c.alpha)
+    found = list(dict.fromkeys(step for a in there for rule in rules for step in rule(c, a)))
+    faults = tuple(each for each in found if isinstance(each, Fault))
+    return Excerpt(c, there, Expansion(tuple(s for s in found if isinstance(s, Transition)), (), (), faults))
 
 
 # --- races ----------------------------------------------------------------------------------------------------
@@ -190,16 +158,11 @@ def look_at_races(survey: Survey, inspection: ControlRaces) -> None:
     """Collect control races: of pairs that touch nothing of each other's nothing need be asked."""
     space = survey.space
     tallies: list[Tally] = []
-
-    def again(number: int) -> Collected:
-        found: Collected = _again(survey, lambda: ControlRaces(ALL), number).collected
-        return found
-
     agents = survey.agents()
     trees = {a: survey.of_actor(Actor(served, a)) for a in agents}
     unordered = space.learner.setting.scheduler is Scheduler.UNORDERED
     pairs = [(a, b) for a, b in combinations_with_replacement(agents, 2) if a != b or unordered]
-    asked = {pair: space.learner.question(partial(races_between, *pair)) for pair in pairs}
+    asked = {pair: space.learner.question(partial(_between, inspection, pair)) for pair in pairs}
     controlling = cache(partial(has_control, survey))
     independent = cache(partial(are_independent, survey))
     for rows in survey.blocks():
@@ -219,7 +182,11 @@ def look_at_races(survey: Survey, inspection: ControlRaces) -> None:
                 else:
                     together[kind] = True
             tallies += _of_rows(survey, asked[a, b], rows[together[which]])
-    _collect(inspection.collected, tallies, again)
+    _collect(survey, inspection, tallies, lambda: ControlRaces(ALL))
+
+
+def _between(inspection: ControlRaces, pair: tuple[Name, Name], c: Configuration) -> tuple[Key | None, ...]:
+    return tuple(each.wrong for each in inspection.between(excerpt(c, (served,), pair), frozenset(pair)))
 
 
 def _of_rows(survey: Survey, tree: int, rows: NDArray[np.int64]) -> Iterator[Tally]:
@@ -268,22 +235,6 @@ def written(survey: Survey, leaf: int) -> dict[int, list[int]] | None:
     return found
 
 
-def look_at_staleness(survey: Survey, inspection: StaleObservationRaces) -> None:
-    """Collect controls that rest on stale observations."""
-    tallies = [
-        (key, answer.count, answer.first)
-        for a in survey.agents()
-        for answer in survey.answers(partial(stale_controls, a))
-        for key in answer.value
-    ]
-
-    def again(number: int) -> Collected:
-        found: Collected = _again(survey, lambda: StaleObservationRaces(ALL), number).collected
-        return found
-
-    _collect(inspection.collected, tallies, again)
-
-
 # --- propositions ---------------------------------------------------------------------------------------------
 
 
@@ -327,17 +278,11 @@ def look_at_invariant(survey: Survey, inspection: Invariant) -> None:
         true = truths(survey, inspection.formula, size)
         values, firsts, counts = np.unique(true, return_index=True, return_counts=True)
         good = list(map(bool, values))
-    bad: Key = ("invariant", "")
     tallies = [
-        (None if fine else bad, int(count), int(first))
+        (None if fine else inspection.WRONG, int(count), int(first))
         for fine, first, count in zip(good, firsts, counts, strict=True)
     ]
-
-    def again(number: int) -> Collected:
-        seen: Collected = _again(survey, lambda: Invariant(inspection.formula), number).collected
-        return seen
-
-    _collect(inspection.collected, tallies, again)
+    _collect(survey, inspection, tallies, lambda: Invariant(inspection.formula))
 
 
 def look_at_reachability(survey: Survey, inspection: Reachability) -> None:
@@ -363,16 +308,3 @@ def look_at_visited(survey: Survey, inspection: Visited) -> None:
         label = space.learner.steps.get(int(step))
         if label is not None and label.agent is None:
             inspection.happened.add(str(label.about))
-
-
-SURVEYS: dict[type, Callable[[Survey, Any], None]] = {
-    Computation: look_at_computation,
-    ControlRaces: look_at_races,
-    DeadlockFreedom: look_at_deadlocks,
-    Invariant: look_at_invariant,
-    LocalConsistency: look_at_consistency,
-    Reachability: look_at_reachability,
-    StaleObservationRaces: look_at_staleness,
-    Visited: look_at_visited,
-}
-"""How each inspection surveys; those without one look at every configuration."""

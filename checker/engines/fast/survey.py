@@ -78,21 +78,32 @@ class Survey:
         self, question: Callable[[Configuration], bool], size: int | None = None
     ) -> tuple[NDArray[np.bool_], bool]:
         """Return where the answer is yes, and whether what was asked for it is not the same everywhere."""
-        tree, learner = self.space.learner.question(question), self.space.learner
+        tree = self.space.learner.question(question)
         found = [np.zeros(0, np.bool_)]
         met: set[int] = set()
+        numbers: dict[Hashable, int] = {False: 0, True: 1}
         for rows in self.blocks(size):
             leaves = self.space.classify(tree, rows)
-            known = np.unique(leaves)
-            met.update(map(int, known))
-            yes = np.zeros(int(known.max()) + 1, np.bool_)
-            yes[known] = [bool(learner.answers[int(leaf)]) for leaf in known]
-            found.append(yes[leaves])
+            met.update(known(leaves))
+            found.append(self.numbered(leaves, numbers) == 1)
         return np.concatenate(found), len(met) > 1
+
+    def numbered(self, leaves: NDArray[np.int32], numbers: dict[Hashable, int]) -> NDArray[np.int64]:
+        """Return for each leaf of a question the number of its answer; answers that are new get the next ones."""
+        there = known(leaves)
+        found = np.zeros(there[-1] + 1 if there else 0, np.int64)
+        found[there] = [numbers.setdefault(self.space.learner.answers[leaf], len(numbers)) for leaf in there]
+        return found[leaves]
 
     def of_actor(self, actor: Actor) -> int:
         """Return the tree of an actor."""
         return self.space.learner.tree(actor)
+
+
+def known(leaves: NDArray[np.int32]) -> list[int]:
+    """Return each leaf once, in order."""
+    found: list[int] = np.flatnonzero(np.bincount(leaves)).tolist()
+    return found
 
 
 def distinct(leaves: NDArray[np.int32]) -> Iterator[tuple[int, int, int]]:

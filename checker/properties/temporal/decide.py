@@ -20,7 +20,7 @@ from checker.properties.temporal.vacuity import Judged, is_judged, judge_branchi
 from checker.properties.vacuity import atoms_of
 from checker.traces import Trace, replay, step_of, to_json
 from checker.verdicts import Outcome, Verdict, Violation
-from semantics.properties.property import Property
+from semantics.properties.property import Property, PropertyKind
 from semantics.properties.propositions import Proposition
 from semantics.properties.temporal import Fairness, Now, Temporal, atoms
 
@@ -81,12 +81,14 @@ class Decider:
     def decide(self, asked: Property) -> Verdict:
         """Return the verdict on a property; what is not violated holds only where everything was explored."""
         match asked.kind:
-            case "ltl":
+            case PropertyKind.LTL:
                 return self.linear(asked)
-            case "ctl":
+            case PropertyKind.CTL:
                 return self.branching(asked)
-            case _:
+            case PropertyKind.PROGRESS:
                 return self.progress(asked)
+            case _:
+                raise AssertionError(f"{asked.kind} is not about runs")
 
     # --- linear time
 

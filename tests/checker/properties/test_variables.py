@@ -17,7 +17,7 @@ from checker import Engine, Outcome, Reduction, RefusedError, check, explore, re
 from checker.properties.inspections import Reachability
 from semantics.behaviours.program import VariableOf
 from semantics.behaviours.values import Truth
-from semantics.properties.property import Property, watching
+from semantics.properties.property import Property, PropertyKind, watching
 from semantics.properties.propositions import VariableIs
 from semantics.properties.temporal import Denied, Either, Globally, Now
 from specs import parse_bytes
@@ -397,8 +397,10 @@ def test_properties_given_beside_a_configuration_keep_what_they_name():
     mission = load_mission(SEARCH)
     assert mission.setting.program.watched == frozenset()
     asked = (
-        Property("reachable", "reached", FOUND),
-        Property("ltl", "kept", temporal=Globally(Either(Denied(Now(FOUND)), Globally(Now(FOUND))))),
+        Property(PropertyKind.REACHABLE, "reached", FOUND),
+        Property(
+            PropertyKind.LTL, "kept", temporal=Globally(Either(Denied(Now(FOUND)), Globally(Now(FOUND))))
+        ),
     )
     for engine in (Engine.REFERENCE, Engine.FAST):
         report = check(mission.initial, asked, engine=engine)

@@ -2,7 +2,7 @@
 
 from checker import Engine, Limits, explore
 from checker.properties.findings import Collected
-from checker.properties.inspections import Computation, DeadlockFreedom, LocalConsistency
+from checker.properties.inspections import Arrival, Computation, DeadlockFreedom, LocalConsistency
 from checker.properties.races import ControlRaces, StaleObservationRaces
 from semantics.properties.propositions import holds
 
@@ -23,10 +23,9 @@ class Everything:
 
     def __init__(self, formulas=()):
         self.formulas = tuple(formulas)
-        self.inspections = (LocalConsistency(), DeadlockFreedom(), Computation(), ControlRaces())
+        self.inspections = (LocalConsistency(), DeadlockFreedom(), Arrival(), Computation(), ControlRaces())
         for each in self.inspections:
             each.collected = Messages()
-        self.inspections[1].arrival = Messages()
         self.still = set()
         self.truths = set()
 
@@ -39,8 +38,7 @@ class Everything:
 
     @property
     def messages(self):
-        collected = (*(each.collected for each in self.inspections), self.inspections[1].arrival)
-        return set().union(*(each.words for each in collected))
+        return set().union(*(each.collected.words for each in self.inspections))
 
 
 def everything(initial, formulas=(), reduce=None, most=100_000, engine=Engine.REFERENCE):

@@ -18,7 +18,7 @@ from mission_results import (
     result,
 )
 
-from checker import Report
+from checker import Bound, Report, Stop
 from checker.reports.junit import junit_text
 from checker.reports.results import Result, clean
 
@@ -81,7 +81,8 @@ def test_what_was_cut_off_is_an_error_and_never_a_pass():
 
 
 def test_a_bound_that_no_verdict_tells_of_is_an_error_of_its_own():
-    case = cases(Result("m", "m", Report((), 1, 0, 0, ("a limit",)), check_line=3))["exploration incomplete"]
+    report = Report((), 1, 0, 0, (Bound(Stop.INTERRUPTION),))
+    case = cases(Result("m", "m", report, check_line=3))["exploration incomplete"]
     assert (case[0].tag, case[0].get("type"), case.get("line")) == ("error", "incomplete", "3")
 
 

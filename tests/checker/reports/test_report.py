@@ -8,9 +8,11 @@ import pytest
 from checked_missions import checked, load, moves, start
 
 from checker import (
+    Bound,
     Limits,
     Outcome,
     Report,
+    Stop,
     Trace,
     Verdict,
     Violation,
@@ -19,7 +21,7 @@ from checker import (
     report_json,
     report_text,
 )
-from semantics.properties.property import Property
+from semantics.properties.property import Property, PropertyKind
 from semantics.state.setting import Control
 
 
@@ -324,15 +326,15 @@ HOLDS, VIOLATED, INCOMPLETE = Outcome.HOLDS, Outcome.VIOLATED, Outcome.INCOMPLET
         ((), (), 0),
         ((HOLDS, HOLDS), (), 0),
         ((HOLDS, VIOLATED), (), 1),
-        ((HOLDS,), ("a limit",), 3),
-        ((HOLDS, INCOMPLETE), ("a limit",), 3),
+        ((HOLDS,), (Bound(Stop.INTERRUPTION),), 3),
+        ((HOLDS, INCOMPLETE), (Bound(Stop.INTERRUPTION),), 3),
         ((HOLDS, INCOMPLETE), (), 3),
-        ((INCOMPLETE, VIOLATED), ("a limit",), 1),
+        ((INCOMPLETE, VIOLATED), (Bound(Stop.INTERRUPTION),), 1),
         ((VIOLATED, INCOMPLETE, HOLDS), (), 1),
     ],
 )
 def test_a_violation_goes_before_what_is_incomplete_and_that_before_success(outcomes, bounds, code):
-    verdicts = tuple(Verdict(Property("invariant", "x"), outcome) for outcome in outcomes)
+    verdicts = tuple(Verdict(Property(PropertyKind.INVARIANT, "x"), outcome) for outcome in outcomes)
     report = Report(verdicts, configurations=1, transitions=0, depth=0, bounds=bounds)
     assert report.exit_code == code
     assert report.complete == (not bounds)

@@ -11,7 +11,7 @@ from semantics.behaviours.expressions import Fault, Literal
 from semantics.behaviours.program import Program, VariableOf
 from semantics.behaviours.statements import Assign
 from semantics.behaviours.values import Truth
-from semantics.properties.property import Property, watched, watching
+from semantics.properties.property import Property, PropertyKind, watched, watching
 from semantics.properties.propositions import ORDERS, IsBound, Not, Or, VariableIs, holds
 from semantics.properties.temporal import Either, Eventually, Globally, Now
 from semantics.races.monitor import monitored
@@ -24,7 +24,7 @@ N = VariableOf("a", ("n",))
 
 
 def asking(*variables):
-    return [Property("reachable", "r", IsBound(each)) for each in variables]
+    return [Property(PropertyKind.REACHABLE, "r", IsBound(each)) for each in variables]
 
 
 def storing(value, name="n"):
@@ -42,8 +42,8 @@ def test_what_properties_name_is_found_wherever_it_stands():
     m, k = VariableOf("a", ("m",)), VariableOf("b", ("k", "k#2"))
     formula = Either(Globally(Now(Not(VariableIs(N, 1)))), Eventually(Now(IsBound(m))))
     properties = [
-        Property("ltl", "t", temporal=formula),
-        Property("invariant", "i", Or((IsBound(k), VariableIs(N, 2)))),
+        Property(PropertyKind.LTL, "t", temporal=formula),
+        Property(PropertyKind.INVARIANT, "i", Or((IsBound(k), VariableIs(N, 2)))),
     ]
     assert watched(properties) == {N, m, k}
 

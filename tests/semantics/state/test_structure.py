@@ -7,7 +7,7 @@ from small_missions import aboard, figure_2, mission, run
 
 from semantics import strategies
 from semantics.behaviours.program import VariableOf
-from semantics.properties.property import Property, watching
+from semantics.properties.property import Property, PropertyKind, watching
 from semantics.properties.propositions import (
     Always,
     And,
@@ -119,7 +119,7 @@ def test_a_configuration_is_compared_by_value():
     ],
 )
 def test_propositions_of_figure_2_before_and_after_its_first_move(formula, first, moved):
-    c = watching(figure_2(), [Property("invariant", "i", formula)])
+    c = watching(figure_2(), [Property(PropertyKind.INVARIANT, "i", formula)])
     assert (holds(formula, c), holds(formula, run(c, "req_ctr", "actuate"))) == (first, moved)
 
 

@@ -17,6 +17,7 @@ import checker.limits
 from checker import Engine, Keeping, Limits, check, explore
 from checker.engines.cluster import explorer as cluster
 from checker.engines.cluster.explorer import Expedition
+from checker.engines.contract import Options
 from checker.engines.fast import engine, explorer, kernel
 from checker.engines.fast.rows import Rows
 from checker.reduction import Reduced, Reduction
@@ -180,14 +181,15 @@ def test_reduced_searches_stay_within_bounds(name):
 def test_workers_go_on_from_every_round(tmp_path, monkeypatch, name):
     monkeypatch.setattr(cluster, "ROUND", 7)
     initial = load_mission(MISSIONS / f"{name}.mission").initial
-    whole = Expedition(LocalCrew(initial, 2), initial, LIMITS).run(())
+    whole = Expedition(LocalCrew(initial, 2), initial, Options(LIMITS)).run(())
     for size in sizes(len(whole.configurations)):
         folder = str(tmp_path / str(size))
         crew = LocalCrew(initial, 2)
         keeping = Keeping(folder, every=0.0)
         limits, stop = interrupted_at(size, LIMITS)
-        Expedition(crew, initial, limits, stop, 0.0, keeping).run(())
-        again = Expedition(LocalCrew(initial, 2), initial, LIMITS, keeping=Keeping(folder, True)).run(())
+        Expedition(crew, initial, Options(limits, stop, 0.0, keeping=keeping)).run(())
+        options = Options(LIMITS, keeping=Keeping(folder, True))
+        again = Expedition(LocalCrew(initial, 2), initial, options).run(())
         assert len(again.configurations) == len(whole.configurations)
         assert again.transitions == whole.transitions
 

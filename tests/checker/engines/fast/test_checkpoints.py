@@ -13,10 +13,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from local_crew import LocalCrew
 
-from checker import CheckpointError, Engine, Keeping, Limits, explore
+from checker import CheckpointError, Engine, Keeping, Limits, Stop, explore
 from checker.engines.archive import read_archive, write_archive
 from checker.engines.cluster import checkpoints as shards
 from checker.engines.cluster.explorer import Expedition
+from checker.engines.contract import Options
 from checker.engines.fast import checkpoint, explorer
 from specs.elaboration import load_mission
 
@@ -46,7 +47,9 @@ def resume_fast(folder):
 
 
 def resume_cluster(folder):
-    return Expedition(LocalCrew(initial(), 2), initial(), LIMITS, keeping=Keeping(folder, True)).run(())
+    return Expedition(LocalCrew(initial(), 2), initial(), Options(LIMITS, keeping=Keeping(folder, True))).run(
+        ()
+    )
 
 
 @cache
@@ -64,7 +67,8 @@ def kept_fast():
 def kept_cluster():
     with TemporaryDirectory() as folder:
         limits, stop = interrupted_at(20, LIMITS)
-        Expedition(LocalCrew(initial(), 2), initial(), limits, stop, 0.0, Keeping(folder, every=0.0)).run(())
+        options = Options(limits, stop, 0.0, keeping=Keeping(folder, every=0.0))
+        Expedition(LocalCrew(initial(), 2), initial(), options).run(())
         return files_of(folder)
 
 
@@ -221,5 +225,6 @@ def test_a_checkpoint_that_cannot_be_written_is_a_bound(tmp_path):
     (tmp_path / "exploration.checkpoint" / "in the way").touch()
     found = explore(initial(), engine=Engine.FAST, limits=LIMITS, keeping=Keeping(str(tmp_path), digest="d"))
     [bound] = found.bounds
-    assert bound.startswith("a checkpoint that can't be written to ")
+    assert bound.stop is Stop.NO_CHECKPOINT
+    assert str(bound).startswith("a checkpoint that can't be written to ")
     assert not found.complete

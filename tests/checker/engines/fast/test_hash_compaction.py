@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from bigactors.cli import main
-from checker import Engine, Keeping, Limits, Outcome, check, explore
+from checker import Engine, Keeping, Limits, Outcome, Stop, check, explore
 from checker.engines.fast.compacting import omission
 from specs.elaboration import load_mission
 
@@ -33,8 +33,11 @@ def test_it_never_reads_as_complete_and_tells_the_chance():
     found = visited(32)
     assert not found.complete
     (bound,) = found.bounds
-    assert bound.startswith("hash compaction to 32 bits: some were left out with a probability of at most ")
-    assert 0 < float(bound.rsplit(" ", 1)[1]) < 1e-3
+    bits, chance = bound.figures
+    assert (bound.stop, bits) == (Stop.COMPACTION, 32)
+    assert 0 < chance < 1e-3
+    said = f"hash compaction to 32 bits: some were left out with a probability of at most {chance:.1g}"
+    assert str(bound) == bound.effect == said
 
 
 def test_with_few_bits_about_as_many_are_left_out_as_is_to_be_expected():

@@ -107,7 +107,7 @@ def test_a_checkpoint_whose_rows_are_not_the_missions_is_refused(tmp_path):
 def test_without_memory_the_search_is_incomplete(engine):
     mission = load_mission(MISSIONS / "rendezvous.mission")
     report = check(mission.initial, mission.properties, Limits(memory=1_000_000), engine=engine)
-    assert report.bounds[0] == "the memory limit of 1 MB"
+    assert str(report.bounds[0]) == "the memory limit of 1 MB"
     assert not report.complete
     assert "holds" not in {
         each.outcome.value for each in report.verdicts if each.property.kind == "invariant"

@@ -24,6 +24,7 @@ from test_decide import ONCE, THERE_AND_BACK, verdict
 
 from checker import Engine, Outcome, check
 from checker.bounding import BoundMet
+from checker.limits import Bound, Stop
 from checker.properties.occurrences import Part, at, strengthened, unneeded
 from checker.properties.temporal import vacuity
 from checker.properties.temporal.branching import Branching
@@ -198,7 +199,7 @@ def test_a_graph_that_is_too_large_is_not_gone_through_again(monkeypatch):
 
 def test_where_the_time_ends_what_holds_still_does(monkeypatch):
     def late(*_):
-        raise BoundMet("time")
+        raise BoundMet(Bound(Stop.TIME, (1.0,)))
 
     monkeypatch.setattr(vacuity, "counterexample", late)
     found = verdict(ONCE, 'ltl "q": uav0 in north0 or uav0 in vessel0')

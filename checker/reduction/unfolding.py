@@ -1,0 +1,58 @@
+"""Unfolding: what was visited under a reduction is told of the mission itself, in a run of its rules."""
+
+from itertools import pairwise
+
+from checker.engines.contract import Exploration
+from checker.reduction.reducer import Reduced
+from checker.reduction.renaming import Renaming
+from semantics.state.configuration import Configuration, Transition
+from semantics.successors import expand
+
+
+def run_to(found: Exploration, number: int, by: Transition | None = None) -> tuple[Transition, ...]:
+    """Return a run of the rules to what a visited configuration stands for, and then `by`."""
+    assert found.reducer is not None
+    steps, real, renaming = _unfold(found, found.reducer, number)
+    if by is not None:
+        steps.append(_really(found.reducer, by, real, renaming))
+    return tuple(steps)
+
+
+def told(found: Exploration, number: int, text: str) -> str:
+    """Return what is said of a visited configuration as it is said of the one that the run leads to."""
+    if found.reducer is None or found.reducer.symmetry is None:
+        return text
+    return _unfold(found, found.reducer, number)[2].inverse.text(text)
+
+
+def _unfold(
+    found: Exploration, reducer: Reduced, number: int
+) -> tuple[list[Transition], Configuration, Renaming]:
+    """Return the run, its end, and the renaming that leads from there to the visited configuration."""
+    real = found.configurations[0] if found.start is None else found.start
+    renaming = _sorting(reducer, real)
+    steps: list[Transition] = []
+    for source, target in pairwise(found.path(number)):
+        after = found.configurations[target]
+        allowed = expand(found.configurations[source]).transitions
+        taken = next(t for t in allowed if reducer.representative(t.target) == after)
+        steps.append(_really(reducer, taken, real, renaming))
+        real = steps[-1].target
+        renaming = _sorting(reducer, taken.target).after(renaming)
+    return steps, real, renaming
+
+
+def _sorting(reducer: Reduced, c: Configuration) -> Renaming:
+    return Renaming() if reducer.symmetry is None else reducer.symmetry.sorting(c)[0]
+
+
+def _really(reducer: Reduced, taken: Transition, real: Configuration, renaming: Renaming) -> Transition:
+    """Return the step of a real run that a step of what stands for its end is."""
+    if reducer.symmetry is None:
+        return taken
+    target = renaming.inverse.configuration(taken.target)
+    label = renaming.inverse.text(str(taken.label))
+    expansion = expand(real)
+    candidates = expansion.transitions + expansion.out_of_turn
+    alike = [each for each in candidates if each.target == target]
+    return next((each for each in alike if str(each.label) == label), alike[0])
