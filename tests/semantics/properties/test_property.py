@@ -1,0 +1,5 @@
+from semantics.properties.property import ABOUT, PropertyKind
+
+
+def test_every_kind_of_property_has_its_row():
+    assert set(ABOUT) == set(PropertyKind)
