@@ -1,7 +1,7 @@
 """The AIS plugin: vessels, base stations and buoys from a receiver or a recording, named by their MMSI.
 
-`physical.ais` decodes lines; this module receives, filters and stamps them. A transponder's time is not believed beyond
-the receiver's clock.
+`physical.ais_receiver` decodes lines; this module receives, filters and stamps them. A transponder's time is not
+believed beyond the receiver's clock.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from adapters.plugin import Aged, Command, Refused, World
 from adapters.transport import Port, Remote, open_port
 from adapters.troubles import Troubles
 from physical import Geometry, PhysicalError, PhysicalProperty, contains, open_file
-from physical.ais import Ear, hear
+from physical.ais_receiver import Ear, hear
 from physical.ais_reports import AisError, PositionReport
 from physical.ais_world import TIME_TO_LIVE, physical_property
 from physical.mmsi import KINDS, digits

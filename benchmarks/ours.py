@@ -20,7 +20,7 @@ from machine import resident
 
 if TYPE_CHECKING:
     from checker import Exploration
-    from checker.engines.fast.engine import Space
+    from checker.engines.fast.space import Space
     from specs.elaboration import ElaboratedMission
 
 ROOT = Path(__file__).parents[1]
@@ -204,8 +204,8 @@ def _search(mission: "ElaboratedMission", given: argparse.Namespace) -> "Explora
 def _marked(mission: "ElaboratedMission", marks: list[int], began: float) -> Explored:
     """Search up to the last mark; what was learned before a mark is in the seconds of that mark only."""
     from checker import Limits  # noqa: PLC0415
-    from checker.engines.fast.engine import Space  # noqa: PLC0415
     from checker.engines.fast.learner import Learner  # noqa: PLC0415
+    from checker.engines.fast.space import Space  # noqa: PLC0415
 
     importing, started = time.monotonic() - began, time.monotonic()
     learner = Learner(mission.initial.setting, mission.initial.state, Limits().pending)  # type: ignore[arg-type]

@@ -12,8 +12,8 @@ from adapters.ais import AisFeed
 from adapters.detections import Detections
 from adapters.location import LocationService
 from adapters.naming import NamingService
-from adapters.places import StaticPlaces
 from adapters.plugin import Plugin
+from adapters.static_places import StaticPlaces
 from adapters.web import Listen
 from bigactors.arguments.links import LIVING
 from bigactors.files import read_bytes

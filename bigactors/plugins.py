@@ -18,7 +18,7 @@ from bigactors.fences import fence_of
 from bigactors.mistakes import Mistake, suggestion
 from bigactors.stations import driven, own_station
 from physical import PhysicalError
-from semantics.behaviours.reactions import CONTROL_AUTHORITY
+from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY
 from semantics.state.physical_model import Placed
 from semantics.state.signature import REGION
 from specs.elaboration import ElaboratedMission

@@ -20,7 +20,7 @@ from bigactors.terminal import tell
 from checker.reduction.bounds import Bounds
 from checker.reduction.roles import Roles
 from semantics.behaviours.expressions import Fault
-from semantics.behaviours.reactions import CONTROL_AUTHORITY, LinkTerm, NodeTerm, PlaceTerm, Reaction
+from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY, LinkTerm, NodeTerm, PlaceTerm, Reaction
 from semantics.behaviours.statements import ControlBy
 from semantics.state.signature import Name
 from specs.elaboration import ElaboratedMission

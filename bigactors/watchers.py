@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
 
-from adapters.disk import writing
 from adapters.live.state import Finding, Heard, Turn
 from adapters.mavlink.tlog import entry
 from adapters.plugin import Report
 from adapters.private import open_private
 from adapters.recording.writing import Recorder
+from adapters.write_errors import writing
 from bigactors.mistakes import Mistake
 from bigactors.terminal import paint, say_text, tell
 

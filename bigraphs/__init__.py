@@ -31,11 +31,11 @@ from bigraphs.decomposition import Parts, recompose, take_apart
 from bigraphs.drawing import draw_bigraph, save_bigraph
 from bigraphs.errors import BigraphError, NotationError
 from bigraphs.exploration import explore
-from bigraphs.graphs import to_networkx
 from bigraphs.interface import Interface
 from bigraphs.labels import link_label, node_labels
 from bigraphs.layout import Layout, layout
 from bigraphs.matching import Match, find_matches
+from bigraphs.networkx_graphs import to_networkx
 from bigraphs.relations import from_relations
 from bigraphs.rewriting import rewrite, successors
 from bigraphs.rules import ReactionRule, matches, rule

@@ -15,7 +15,7 @@ from itertools import permutations, product
 
 from bigraphs.bigraph import Bigraph, Link, Place, children, find, link_key, points, sites_in
 from bigraphs.errors import BigraphError
-from bigraphs.placement import placements
+from bigraphs.region_matching import placements
 
 
 @dataclass(frozen=True, slots=True)

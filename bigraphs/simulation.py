@@ -10,9 +10,9 @@ from typing import NamedTuple
 from bigraphs.bigraph import Bigraph
 from bigraphs.engine.decoding import to_bigraph
 from bigraphs.engine.machine import Machine, Step
+from bigraphs.engine.node_identity import identities
 from bigraphs.engine.occurrences import Spot
 from bigraphs.engine.state import State
-from bigraphs.engine.tracing import identities
 from bigraphs.system import System, SystemKind
 
 

@@ -8,14 +8,14 @@ from typing import Any
 from checker.engines.contract import Exploration
 from checker.properties.inspections import is_unfair
 from checker.reduction.unfolding import run_to
-from semantics.observed import Sight, steps_seen
+from semantics.observed_steps import Sight, steps_seen
 from semantics.races.monitor import monitored
 from semantics.state.canonical import digest_of_step
 from semantics.state.configuration import Configuration, Label, Transition
+from semantics.state.observation_serialization import sight_json, sight_of
 from semantics.state.partition import Elsewhere
 from semantics.state.printing import print_changes
 from semantics.state.requests import Received
-from semantics.state.serialization import sight_json, sight_of
 from semantics.successors import expand
 
 SCHEMA = "bigactors.trace/1"

@@ -1,7 +1,7 @@
 """The physical model: geometry, altitude and channels of entities on the WGS 84 earth, and their motion.
 
 It reads and writes GeoJSON, waypoint files and plans. It knows nothing of bigraphs, agents or missions. AIS
-recordings are read by `physical.ais` and its neighbours, which need the extra `ais`.
+recordings are read by `physical.ais_receiver` and its neighbours, which need the extra `ais`.
 """
 
 from physical.altitude import Band, band_contains
@@ -11,14 +11,14 @@ from physical.errors import GeometryError, PhysicalError
 from physical.files import open_file
 from physical.geojson import GeoJSONError, read_geojson, reading_geojson, write_geojson
 from physical.measure import area, centroid, distance, interior_point, waypoint
-from physical.mobility import JoinChannel, LeaveChannel, MobilityCommand, Waypoint, go_to, rechannel
+from physical.mobility_commands import JoinChannel, LeaveChannel, MobilityCommand, Waypoint, go_to, rechannel
+from physical.physical_property import PhysicalProperty, Velocity
 from physical.place_files import read_places
 from physical.placement import nearest_placement, translate_to
-from physical.plan import read_plan, write_plan
-from physical.property import PhysicalProperty, Velocity
+from physical.qgc_plan import read_plan, write_plan
 from physical.shape import Geometry, box, circle, contains, equal, overlaps, point, polygon
+from physical.untrusted_text import is_text, is_word, legible, read_json
 from physical.waypoints import MissionItem, read_waypoints, visited, waypoint_places, write_waypoints
-from physical.words import is_text, is_word, legible, read_json
 
 __all__ = [
     "Band",

@@ -7,7 +7,7 @@ from io import BytesIO
 from os import PathLike
 from typing import IO
 
-from physical.ais import Ear, hear
+from physical.ais_receiver import Ear, hear
 from physical.ais_reports import AisError, PositionReport, Report, StaticReport
 from physical.files import open_file
 from physical.nmea import MAX_LINE, Reason

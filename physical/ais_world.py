@@ -6,7 +6,7 @@ from physical.ais_recording import Recording
 from physical.ais_reports import AisError, PositionReport
 from physical.geometry import contains, point
 from physical.mmsi import KINDS, entity_name, kind_of
-from physical.property import PhysicalProperty, Velocity
+from physical.physical_property import PhysicalProperty, Velocity
 from physical.shape import Geometry
 
 TIME_TO_LIVE = 600.0

@@ -20,9 +20,9 @@ from shapely.affinity import translate
 from physical.altitude import Band
 from physical.errors import PhysicalError
 from physical.frame import E7, TURN, PositionE7
-from physical.property import PhysicalProperty
+from physical.physical_property import PhysicalProperty
 from physical.shape import Geometry, canonical, circle, planar, point, polygon
-from physical.words import is_word, legible, read_json
+from physical.untrusted_text import is_word, legible, read_json
 
 MAX_BYTES: Final = 10_000_000
 MAX_FEATURES: Final = 10_000

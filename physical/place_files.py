@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from physical.geojson import read_geojson
-from physical.plan import read_plan
-from physical.property import PhysicalProperty
+from physical.physical_property import PhysicalProperty
+from physical.qgc_plan import read_plan
 from physical.waypoints import read_waypoints, waypoint_places
 
 GEOJSON: Final = (".geojson", ".json")

@@ -13,8 +13,8 @@ from typing import Final
 
 from physical.altitude import Band
 from physical.errors import PhysicalError
-from physical.mobility import MobilityCommand, Waypoint
-from physical.property import PhysicalProperty
+from physical.mobility_commands import MobilityCommand, Waypoint
+from physical.physical_property import PhysicalProperty
 from physical.shape import Geometry, point
 
 HEADER: Final = "QGC WPL 110"

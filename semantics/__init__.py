@@ -9,7 +9,7 @@ from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Observation, Query
 from semantics.behaviours.program import Behaviour, Program
 from semantics.behaviours.queries import evaluate, overlay
-from semantics.behaviours.reactions import Match, Pattern, Reaction, matches
+from semantics.behaviours.reaction_rules import Match, Pattern, Reaction, matches
 from semantics.control import Obstacle, obstacle
 from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
 from semantics.extension import EXTENSION

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-from semantics.behaviours.reactions import (
+from semantics.behaviours.reaction_rules import (
     Match,
     Reaction,
     is_active,

@@ -17,7 +17,7 @@ from semantics.behaviours.commands import COMMANDS, Command
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import All, Nodes, Of, Query, QueryOperator
 from semantics.behaviours.program import Program
-from semantics.behaviours.reactions import (
+from semantics.behaviours.reaction_rules import (
     LinkTerm,
     LinkVariable,
     NodeTerm,

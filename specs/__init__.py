@@ -10,7 +10,7 @@ from specs.codes import Code, code_table, explain, find_code
 from specs.diagnostics import Diagnostic, MissionError, Source, render, render_all
 from specs.formatter import format_mission, write_mission
 from specs.parser import parse, parse_bytes
-from specs.text import decode
+from specs.preprocessing import decode
 
 __all__ = [
     "Code",

@@ -17,8 +17,8 @@ from bigraphs.errors import NotationError
 from bigraphs.notation.paper import parse_rule
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
+from specs.preprocessing import MAX_WORD
 from specs.syntax import Name, Node, RuleBody, Span, TextLiteral
-from specs.text import MAX_WORD
 
 MOST: Final = 1_000_000_000  # whole numbers are smaller in value
 _ESCAPES: Final = {'"': '"', "\\": "\\", "n": "\n", "t": "\t"}

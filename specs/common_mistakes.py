@@ -16,7 +16,7 @@ from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS, VIA, WAY
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
 from specs.grammar import QUERY_WORDS, RESERVED, SECTIONS, STATEMENTS
-from specs.parse_stop import Situation, Word, is_keyword, line_of, open_brackets
+from specs.parse_error import Situation, Word, is_keyword, line_of, open_brackets
 from specs.syntax.nodes import Span
 
 _GEOMETRIES: Final = frozenset({"point", "box", "polygon", "circle"})

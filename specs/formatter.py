@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from specs.diagnostics import Source
 from specs.layout import Line, lay_out
 from specs.parser import build
+from specs.preprocessing import Comment, Prepared, prepare
 from specs.syntax import Mission
-from specs.text import Comment, Prepared, prepare
 
 
 def format_mission(text: str, name: str = "mission") -> str:

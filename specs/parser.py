@@ -11,9 +11,9 @@ from specs.building import Mistake, rule_mistake
 from specs.codes import Code
 from specs.diagnostics import Diagnostic, MissionError, Source
 from specs.grammar import start
+from specs.preprocessing import Prepared, decode, prepare
 from specs.syntax import Mission, Node, RuleBody, Span, parts, walk
 from specs.syntax_errors import explain_syntax_error
-from specs.text import Prepared, decode, prepare
 
 MAX_DEPTH: Final = 200
 MAX_REPORTED: Final = 50  # mistakes in rule bodies

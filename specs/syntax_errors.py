@@ -11,8 +11,8 @@ from specs.codes import Code
 from specs.common_mistakes import MISTAKES
 from specs.diagnostics import Diagnostic
 from specs.grammar import QUERY_WORDS, SECTIONS, STATEMENTS, Run, first_words
-from specs.parse_stop import Situation, line_of, situation
-from specs.text import Prepared
+from specs.parse_error import Situation, line_of, situation
+from specs.preprocessing import Prepared
 
 # Groups of words that the user knows by one name: a word only they have, that name, their words and sorts.
 _EXPRESSION: Final = frozenset(["SELF", "HOST", "true", "false", "not", "!", "-", "(", "{"])

@@ -63,7 +63,7 @@ def test_installed_a_room_is_imported_from_the_package(text, there):
 
 
 @pytest.mark.parametrize(
-    "line", ["import semantics", "import specs.text as words", "if 1: from checker import check"]
+    "line", ["import semantics", "import specs.preprocessing as words", "if 1: from checker import check"]
 )
 def test_an_import_that_stays_as_it_was_is_refused(line, tmp_path):
     (tmp_path / "a.py").write_text(f"\n{installed(line)}\n", encoding="utf-8")

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from adapters.live.flying import remember
 from adapters.live.ingest import answer, take_in
 from adapters.live.limits import check_limits
-from adapters.live.serving import in_turn
+from adapters.live.scheduling import in_turn
 from adapters.live.state import Batch, LiveState, Plan, Turn
 from adapters.live.turn import Turning
 from semantics.environment import Says

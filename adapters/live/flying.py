@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from adapters.live.orders import hand_overs, journey, renewed
-from adapters.live.serving import in_turn
+from adapters.live.scheduling import in_turn
 from adapters.live.state import Order
 from adapters.live.turn import Turning
 from adapters.plugin import Follow, HandOver
 from semantics.control import commits, realisations
-from semantics.observed import Sight, arriving
+from semantics.observed_steps import Sight, arriving
 from semantics.state.physical_model import placement_cell
 from semantics.state.requests import CTR, FLY, Request
 from semantics.state.signature import Name

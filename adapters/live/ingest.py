@@ -39,7 +39,7 @@ from adapters.plugin import (
 from semantics.behaviours.values import show
 from semantics.environment import Appears, Leaves, Says
 from semantics.extension import say
-from semantics.observed import Sight, happening
+from semantics.observed_steps import Sight, happening
 from semantics.rules import env
 from semantics.state.cells import Cell
 from semantics.state.partition import is_here, station_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from adapters.live.serving import in_turn
+from adapters.live.scheduling import in_turn
 from adapters.live.state import Waiting
 from adapters.live.turn import Turning
 from semantics.contingencies import Fallback, TimeLimit

@@ -16,9 +16,9 @@ from collections.abc import Callable, Container, Sequence
 from dataclasses import dataclass, field, replace
 
 from adapters.listening import Listening
-from adapters.live.admission import flaw_of, legible_report
 from adapters.live.core import advance, is_over, is_refused, watch
 from adapters.live.state import Answer, Batch, Finding, Heard, LiveState, Plan, Said, Saying, Turn
+from adapters.live.validation import flaw_of, legible_report
 from adapters.live.watchers import Watcher, Watchers
 from adapters.plugin import (
     Command,

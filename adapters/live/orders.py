@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from adapters.plugin import Follow, GoTo, HandOver
 from physical import waypoint
-from semantics.behaviours.reactions import CONTROL_AUTHORITY, moved, relinked
+from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY, moved, relinked
+from semantics.brr_driver import passed
 from semantics.control import Realisation, commits
-from semantics.mobility import passed
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, Placed, placement_cell
 from semantics.state.requests import CTR, FLY

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from adapters.live.turn import Turning
 from adapters.plugin import Believes, Broken, Delivered, Elsewhere, Hosts, Underway
-from semantics.observed import Sight, happening
+from semantics.observed_steps import Sight, happening
 from semantics.state.parcel_serialization import parcel_of
 from semantics.state.partition import (
     Belief,

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from adapters.plugin import Command, Follow, GoTo, HandOver, Published, Report
 from physical import PhysicalProperty
 from semantics.contingencies import Precautions
-from semantics.observed import Sight
+from semantics.observed_steps import Sight
 from semantics.state.cells import Cell
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.partition import Elsewhere, Parcel

@@ -8,14 +8,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from adapters.live.orders import hand_overs, is_authority, is_done, journey, unshown
-from adapters.live.serving import PATIENCE, STEPS_PER_SECOND, in_turn, own_steps, refilled, served
+from adapters.live.scheduling import PATIENCE, STEPS_PER_SECOND, in_turn, own_steps, refilled, served
 from adapters.live.sightings import Fences, placement_seen
 from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Outgoing, Pace, Plan, Turn
 from adapters.plugin import Command, HandOver, Hold, Return
 from semantics.behaviours.expressions import Fault
 from semantics.contingencies import Fallback
 from semantics.control import Realisation, obstacle, realisations
-from semantics.observed import Sight
+from semantics.observed_steps import Sight
 from semantics.state.configuration import Transition
 from semantics.state.eta import Pending
 from semantics.state.partition import (

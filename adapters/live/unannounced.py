@@ -13,7 +13,7 @@ from adapters.live.flying import renew
 from adapters.live.sightings import placement_seen
 from adapters.live.state import Sighting
 from adapters.live.turn import Turning
-from semantics.observed import Sight, happening
+from semantics.observed_steps import Sight, happening
 from semantics.state.cells import NAMES, Cell
 from semantics.state.physical_model import Placed, Placement, channels_cell, placement_cell
 from semantics.state.signature import REGION, Name

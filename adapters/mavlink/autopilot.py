@@ -13,10 +13,10 @@ from adapters.listening import Listening
 from adapters.mavlink import pilot as piloting
 from adapters.mavlink import roster as rosters
 from adapters.mavlink.codec import Decoder, Encoder, Garbage
+from adapters.mavlink.constants import GROUND_COMPONENT, GROUND_STATION, NO_AUTOPILOT
 from adapters.mavlink.fleet import Craft, Stations
 from adapters.mavlink.keys import Keeper
 from adapters.mavlink.message import Message, say
-from adapters.mavlink.numbers import GROUND_COMPONENT, GROUND_STATION, NO_AUTOPILOT
 from adapters.mavlink.objections import impassable, remarks, unfit
 from adapters.mavlink.pilot import Outcome, Pilot
 from adapters.mavlink.roster import Roster

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
+from adapters.mavlink.constants import Cmd, Result
 from adapters.mavlink.message import Message, say
-from adapters.mavlink.numbers import Cmd, Result
 
 AGAIN: Final = 1.5
 """Seconds before a command is sent again."""

@@ -8,9 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Final
 
+from adapters.mavlink.constants import MissionResult, MissionType
 from adapters.mavlink.items import Items, item_of
 from adapters.mavlink.message import Message, say
-from adapters.mavlink.numbers import MissionResult, MissionType
 
 ASK_AGAIN: Final = 1.0
 MAX_ITEMS: Final = 2_000

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from adapters.mavlink.numbers import Fence
+from adapters.mavlink.constants import Fence
 from adapters.mavlink.telemetry import Telemetry
 from physical import Geometry, distance, point
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Final
 
+from adapters.mavlink.constants import Cmd, Frame, MissionType
 from adapters.mavlink.message import Message, say
-from adapters.mavlink.numbers import Cmd, Frame, MissionType
 from physical import Geometry
 
 TAKEOFF_PITCH: Final = 15.0

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from adapters.mavlink.fencing import beyond, keeps_no_polygon, own_fences
 from adapters.mavlink.fleet import Craft, Stations
-from adapters.mavlink.plan import height_of
+from adapters.mavlink.loiter_radius import described, home_circle, room
+from adapters.mavlink.next_step import height_of
 from adapters.mavlink.profiles import Profile
-from adapters.mavlink.room import described, home_circle, room
 from adapters.mavlink.telemetry import Telemetry
 from adapters.plugin import Command, Follow, GoTo, HandOver
 from physical import Geometry, circle, contains, point, waypoint

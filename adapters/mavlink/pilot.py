@@ -9,21 +9,20 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from adapters.mavlink import helm as helms
-from adapters.mavlink import plan, streams
+from adapters.mavlink import next_step, streams, takeover
 from adapters.mavlink import task as tasks
 from adapters.mavlink.command import long, read_parameter
+from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, Cmd, MissionType
 from adapters.mavlink.fleet import CONTROL, Craft, Stations
-from adapters.mavlink.helm import Helm
 from adapters.mavlink.items import Items
 from adapters.mavlink.link import Link, watch
+from adapters.mavlink.loiter_radius import circle, home_circle
 from adapters.mavlink.message import Message
-from adapters.mavlink.numbers import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, Cmd, MissionType
 from adapters.mavlink.objections import not_ours, objection
 from adapters.mavlink.profiles import Profile
-from adapters.mavlink.room import circle, home_circle
 from adapters.mavlink.streams import Streams
 from adapters.mavlink.sync import Sync
+from adapters.mavlink.takeover import Helm
 from adapters.mavlink.task import Progress, Task
 from adapters.mavlink.telemetry import Position, Telemetry, absorb, property_of
 from adapters.plugin import (
@@ -124,7 +123,7 @@ class Outcome:
 def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     """Take on a command; raises Refused if it is known to be impossible."""
     if isinstance(told, GiveBack):
-        return Outcome(replace(pilot, helm=helms.given_back(pilot.known), moving=None))
+        return Outcome(replace(pilot, helm=takeover.given_back(pilot.known), moving=None))
     if pilot.helm.taken:
         raise Refused(f"it was taken over: {pilot.helm.taken}", "an operator may give it back")
     reason = objection(told, pilot.craft, pilot.stations, pilot.known)
@@ -266,7 +265,7 @@ def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
     if not _is_ours(pilot):
         return replace(pilot, helm=Helm(boots=known.boots)), ()
     command = None if pilot.moving is None else pilot.moving.command
-    helm = helms.watch(pilot.helm, known, profile, command, _undone(pilot, profile))
+    helm = takeover.watch(pilot.helm, known, profile, command, _undone(pilot, profile))
     before, pilot = pilot.helm, replace(pilot, helm=helm)
     if helm.taken and not before.taken:
         return _taken_over(pilot, now)
@@ -287,7 +286,7 @@ def _undone(pilot: Pilot, profile: Profile) -> str:
     task = pilot.moving
     if task is None or not task.accepted:
         return ""
-    step = plan.next_step(task.command, task.station, _vehicle(pilot, task, profile))
+    step = next_step.next_step(task.command, task.station, _vehicle(pilot, task, profile))
     return tasks.undone(task, step, pilot.known.boots)
 
 
@@ -331,12 +330,12 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
         return tasks.rejected(task, foreign, now)
     task = _with_height(pilot, task)
     vehicle = _vehicle(pilot, task, profile)
-    step = plan.next_step(task.command, task.station, vehicle)
+    step = next_step.next_step(task.command, task.station, vehicle)
     return tasks.advance(task, step, vehicle, lost=pilot.link.lost, now=now)
 
 
-def _vehicle(pilot: Pilot, task: Task, profile: Profile) -> plan.Vehicle:
-    return plan.Vehicle(
+def _vehicle(pilot: Pilot, task: Task, profile: Profile) -> next_step.Vehicle:
+    return next_step.Vehicle(
         system=pilot.system,
         known=pilot.known,
         profile=profile,
@@ -362,7 +361,7 @@ def _deaf(pilot: Pilot) -> str:
 
 
 def _unknown(pilot: Pilot, task: Task, now: float) -> Progress:
-    if pilot.known.mode is None or now - task.since <= helms.STRANGE:
+    if pilot.known.mode is None or now - task.since <= takeover.STRANGE:
         return Progress(task)
     return tasks.rejected(task, "it is no vehicle with ArduPilot, and only those are known here", now)
 
@@ -373,7 +372,7 @@ def _with_height(pilot: Pilot, task: Task) -> Task:
     if task.height is not None or profile is None or position is None:
         return task
     band = task.command.altitude if isinstance(task.command, GoTo | Follow) else None
-    return replace(task, height=plan.height_of(band, profile, position, pilot.craft.height_of(profile)))
+    return replace(task, height=next_step.height_of(band, profile, position, pilot.craft.height_of(profile)))
 
 
 def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Aged, ...], tuple[Report, ...]]:

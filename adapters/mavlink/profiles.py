@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
 
-from adapters.mavlink.numbers import ARDUPILOT, CIRCLE_PARAMETERS, FENCE_PARAMETERS, HEIGHT_PARAMETERS
+from adapters.mavlink.constants import ARDUPILOT, CIRCLE_PARAMETERS, FENCE_PARAMETERS, HEIGHT_PARAMETERS
 
 
 class TakeOff(StrEnum):

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from adapters.mavlink.command import long
+from adapters.mavlink.constants import AUTOPILOT_COMPONENT, AUTOPILOT_VERSION, NO_AUTOPILOT, Cmd
 from adapters.mavlink.message import Message
-from adapters.mavlink.numbers import AUTOPILOT_COMPONENT, AUTOPILOT_VERSION, NO_AUTOPILOT, Cmd
 from adapters.mavlink.pilot import Pilot
 
 ASK_EVERY: Final = 1.0

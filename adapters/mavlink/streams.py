@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from adapters.mavlink.command import long
+from adapters.mavlink.constants import STREAMS, Cmd
 from adapters.mavlink.message import Message
-from adapters.mavlink.numbers import STREAMS, Cmd
 
 MISSED: Final = 5.0
 """Seconds, or periods, without a message after which it is requested."""

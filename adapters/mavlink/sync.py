@@ -7,9 +7,9 @@ from typing import Final
 
 from adapters.mavlink import download as reading
 from adapters.mavlink import upload as writing
+from adapters.mavlink.constants import MissionType
 from adapters.mavlink.items import Items, same
 from adapters.mavlink.message import Message
-from adapters.mavlink.numbers import MissionType
 
 ROUNDS: Final = 5
 """How many differences are tolerated before the vehicle counts as refusing."""

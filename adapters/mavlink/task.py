@@ -8,10 +8,10 @@ from typing import Final
 
 from adapters.mavlink import command as telling
 from adapters.mavlink import sync as syncing
+from adapters.mavlink.constants import Cmd, MissionType, Result
 from adapters.mavlink.items import Items
 from adapters.mavlink.message import Message
-from adapters.mavlink.numbers import Cmd, MissionType, Result
-from adapters.mavlink.plan import Load, Step, Tell, Underway, Vehicle, Wait
+from adapters.mavlink.next_step import Load, Step, Tell, Underway, Vehicle, Wait
 from adapters.plugin import Accepted, Arrived, Command, Rejected, Report, Trouble
 
 PATIENCE: Final = 45.0

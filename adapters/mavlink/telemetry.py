@@ -12,9 +12,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, Final
 
-from adapters.mavlink.fleet import Craft
-from adapters.mavlink.message import Message
-from adapters.mavlink.numbers import (
+from adapters.mavlink.constants import (
     ACTIVE,
     AUTHORITY_PARAMETERS,
     AUTOPILOT_COMPONENT,
@@ -25,6 +23,8 @@ from adapters.mavlink.numbers import (
     ModeFlag,
     Result,
 )
+from adapters.mavlink.fleet import Craft
+from adapters.mavlink.message import Message
 from adapters.mavlink.profiles import Profile, profile_of
 from physical import Band, PhysicalProperty, Velocity, point
 

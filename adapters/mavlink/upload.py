@@ -13,9 +13,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Final
 
+from adapters.mavlink.constants import MissionResult, MissionType
 from adapters.mavlink.items import Items, item_message
 from adapters.mavlink.message import Message, say
-from adapters.mavlink.numbers import MissionResult, MissionType
 
 COUNT_AGAIN: Final = 2.0
 """Seconds without a request before the count is sent again."""

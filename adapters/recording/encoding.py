@@ -9,7 +9,7 @@ from adapters.live.state import Finding, Heard, LiveStep
 from adapters.plugin import Aged, Command, Gone, Report
 from physical import Band, Geometry, PhysicalProperty
 from semantics.state.canonical import digest_of_step
-from semantics.state.serialization import sight_json
+from semantics.state.observation_serialization import sight_json
 
 
 def arrival_json(heard: Heard) -> dict[str, Any]:

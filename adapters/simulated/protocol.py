@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Final
 
+from adapters.mavlink.constants import AUTOPILOT_VERSION, STREAMS, Cmd, Fence, MissionType, Result
 from adapters.mavlink.message import Message, is_for, say
-from adapters.mavlink.numbers import AUTOPILOT_VERSION, STREAMS, Cmd, Fence, MissionType, Result
 from adapters.mavlink.profiles import TakeOff
 from adapters.mavlink.signing import EPOCH, UNITS, Signing, Verdict, check
 from adapters.simulated.body import metres_to

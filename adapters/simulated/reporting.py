@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, Final
 
+from adapters.mavlink.constants import ARDUPILOT, GEOFENCE, PREARM_HEALTHY, MissionType, ModeFlag
 from adapters.mavlink.message import Message, say
-from adapters.mavlink.numbers import ARDUPILOT, GEOFENCE, PREARM_HEALTHY, MissionType, ModeFlag
 from adapters.simulated.vehicle import Vehicle
 
 DEFAULT: Final = {

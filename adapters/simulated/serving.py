@@ -11,8 +11,8 @@ from typing import Final
 
 from adapters.addresses import parse_address
 from adapters.mavlink.codec import Decoder, Encoder, Garbage
+from adapters.mavlink.constants import AUTOPILOT_COMPONENT
 from adapters.mavlink.message import Message
-from adapters.mavlink.numbers import AUTOPILOT_COMPONENT
 from adapters.mavlink.signing import stamp
 from adapters.simulated import protocol
 from adapters.simulated.disturbance import NONE, Disturbance

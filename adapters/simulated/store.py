@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Final
 
+from adapters.mavlink.constants import Cmd, Frame, MissionResult, MissionType
 from adapters.mavlink.items import Item, Items, item_message, item_of
 from adapters.mavlink.message import Message, say
-from adapters.mavlink.numbers import Cmd, Frame, MissionResult, MissionType
 
 ASK_AGAIN: Final = 1.0
 GIVE_UP: Final = 8.0

@@ -11,8 +11,8 @@ from enum import Enum
 from functools import lru_cache
 from typing import Final
 
+from adapters.mavlink.constants import AUTHORITY_PARAMETERS, Cmd, Fence, MissionType
 from adapters.mavlink.items import Item
-from adapters.mavlink.numbers import AUTHORITY_PARAMETERS, Cmd, Fence, MissionType
 from adapters.mavlink.profiles import BOAT, COPTER, PLANE, ROVER, Profile, TakeOff
 from adapters.mavlink.signing import Signing
 from adapters.simulated import body as bodies

@@ -15,7 +15,7 @@ from adapters.live.orders import is_authority, is_done
 from adapters.plugin import HandOver, Published
 from adapters.stations.entries import Said
 from adapters.stations.merge import channels_of
-from semantics.behaviours.reactions import CONTROL_AUTHORITY
+from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY
 
 LASTING: Final = 12.0
 """Seconds within which a link reads its vehicle's authority again, even if one answer is lost."""

@@ -14,7 +14,7 @@ from adapters.plugin import (
     entity_of,
 )
 from physical import PhysicalProperty, Velocity, is_word
-from semantics.state.serialization import band_of, geometry_json, geometry_of
+from semantics.state.observation_serialization import band_of, geometry_json, geometry_of
 
 MOST_BYTES: Final = 256 * 1024
 """The longest entry, as text."""

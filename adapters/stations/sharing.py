@@ -54,7 +54,7 @@ from adapters.stations.messages import MOST_BYTES, MOST_ENTRIES, Message, fittin
 from adapters.stations.outgoing import believed, entered, moved, told
 from adapters.stations.peers import Peers
 from adapters.stations.remote_station import Other
-from adapters.stations.shared import Shared
+from adapters.stations.shared_plugin import Shared
 from adapters.stations.skew import measured
 from adapters.troubles import Troubles
 from physical import PhysicalError, read_json

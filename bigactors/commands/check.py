@@ -201,7 +201,7 @@ def keep_verdict(checked: Checked, options: Namespace, key: SigningKey | None) -
 
 def keep_evidence(checked: Checked, folder: str, taken: set[str]) -> None:
     """Write the traces of a mission into a folder of its own, and say so."""
-    from bigactors.evidence import write_evidence  # noqa: PLC0415 - only who keeps traces waits for pictures
+    from bigactors.trace_files import write_evidence  # noqa: PLC0415 - only who keeps traces waits for pictures
 
     stem = name = file_stem(Path(checked.name).stem)
     number = 2

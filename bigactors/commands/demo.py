@@ -6,10 +6,10 @@ from pathlib import Path
 from bigactors.checking import Checked, check_mission
 from bigactors.commands.check import coloured, report_lines
 from bigactors.drawings import draw
-from bigactors.evidence import write_evidence
 from bigactors.exits import Exit, worst
 from bigactors.files import make_folder
 from bigactors.terminal import say
+from bigactors.trace_files import write_evidence
 from checker import Limits
 from specs.elaboration import Variation
 

@@ -8,7 +8,7 @@ from bigactors.missions import as_mistake
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, say_text, tell
 from specs import MissionError, Source, decode, format_mission, parse
-from specs.text import MAX_BYTES
+from specs.preprocessing import MAX_BYTES
 
 
 def run(options: Namespace) -> Exit:

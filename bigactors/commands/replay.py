@@ -12,12 +12,12 @@ from typing import Any
 from adapters.recording.reading import Recording, is_recording
 from bigactors.exits import Exit
 from bigactors.files import read_bytes, read_json
-from bigactors.foreign import TELEMETRY, Shown, watched
+from bigactors.foreign_recordings import TELEMETRY, Shown, watched
 from bigactors.missions import digest_of, opening, variation_of
 from bigactors.mistakes import Mistake
 from bigactors.recordings import mission_of, open_recording, trace_of
-from bigactors.routes import write_route
 from bigactors.terminal import is_terminal, paint, say, tell
+from bigactors.waypoint_export import write_route
 from bigraphs import draw_text
 from checker import ReplayError, Trace, print_loop, print_trace, replay
 from semantics.races.monitor import monitored

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from bigraphs.bigraph import Bigraph, Link, Node, Place, assemble, moved
 from bigraphs.canonical import equal
 from bigraphs.engine.patterns import Pattern, compile_pattern
-from bigraphs.engine.runs import Occurrence
 from bigraphs.engine.search import Matcher
+from bigraphs.engine.search_state import Occurrence
 from bigraphs.engine.state import make_state
 from bigraphs.engine.world import World, has_sharing
 from bigraphs.signature import Control, Signature

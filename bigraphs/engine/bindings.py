@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 
 from bigraphs.engine.patterns import Pattern
-from bigraphs.engine.runs import Placing, Run, Step
+from bigraphs.engine.search_state import Placing, Run, Step
 from bigraphs.engine.state import State
 from bigraphs.engine.world import World
 

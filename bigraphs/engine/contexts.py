@@ -5,8 +5,8 @@ from __future__ import annotations
 from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph, Place, assemble, moved
 from bigraphs.engine.patterns import Pattern, compile_pattern
-from bigraphs.engine.runs import Occurrence
 from bigraphs.engine.search import Matcher
+from bigraphs.engine.search_state import Occurrence
 from bigraphs.engine.state import State, bits
 from bigraphs.engine.world import World
 from bigraphs.system import Condition, Where

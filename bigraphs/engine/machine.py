@@ -15,8 +15,8 @@ from bigraphs.engine.labelling import Labelling
 from bigraphs.engine.occurrences import Spot
 from bigraphs.engine.patterns import compile_pattern
 from bigraphs.engine.reactions import Reaction
-from bigraphs.engine.runs import Occurrence
 from bigraphs.engine.search import Matcher
+from bigraphs.engine.search_state import Occurrence
 from bigraphs.engine.state import Key, State, make_state
 from bigraphs.engine.world import World, has_sharing
 from bigraphs.errors import BigraphError

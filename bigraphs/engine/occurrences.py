@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from bigraphs.engine.contexts import Surroundings
 from bigraphs.engine.draft import Draft
 from bigraphs.engine.reactions import Reaction
-from bigraphs.engine.runs import Occurrence
+from bigraphs.engine.search_state import Occurrence
 from bigraphs.engine.state import State
 
 

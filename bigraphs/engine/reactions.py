@@ -11,8 +11,8 @@ from bigraphs.engine.automorphisms import Representatives, symmetries
 from bigraphs.engine.contexts import ConditionCheck
 from bigraphs.engine.draft import Draft
 from bigraphs.engine.patterns import check_solid, compile_pattern
-from bigraphs.engine.runs import Occurrence
 from bigraphs.engine.search import Matcher
+from bigraphs.engine.search_state import Occurrence
 from bigraphs.engine.sharing import region_places, site_contents
 from bigraphs.engine.state import State, bits
 from bigraphs.engine.tracking import top_down, traced, track, track_edges

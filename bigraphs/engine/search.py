@@ -14,7 +14,7 @@ from typing import Final
 
 from bigraphs.engine.bindings import binding
 from bigraphs.engine.patterns import Pattern
-from bigraphs.engine.runs import Occurrence, Placing, Run, Step
+from bigraphs.engine.search_state import Occurrence, Placing, Run, Step
 from bigraphs.engine.sharing import shared_places_fit
 from bigraphs.engine.state import State, bits
 from bigraphs.engine.world import World

@@ -2,10 +2,10 @@
 
 from bigraphs.notation.bgm.systems import read_bgm
 from bigraphs.notation.big.expression_of import write_big
+from bigraphs.notation.big.fragments import Theory, read_big, read_theory
 from bigraphs.notation.big.parser import parse_expression, parse_model
 from bigraphs.notation.big.printer import format_expression, format_model
 from bigraphs.notation.big.systems import read_system
-from bigraphs.notation.big.theory import Theory, read_big, read_theory
 from bigraphs.notation.big.writer import write_system
 from bigraphs.notation.files import load_system
 from bigraphs.notation.paper import (

@@ -10,7 +10,7 @@ from checker.properties.findings import MOST_VIOLATIONS, Collected, Key, Seen
 from checker.properties.vacuity import Valuations
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.patterns import bind
-from semantics.behaviours.reactions import moved
+from semantics.behaviours.reaction_rules import moved
 from semantics.behaviours.statements import Block, Call, Loop, React
 from semantics.behaviours.stepping import next_statement
 from semantics.control import Obstacle, obstacle

@@ -22,7 +22,7 @@ from semantics.behaviours.expressions import (
 )
 from semantics.behaviours.observations import QueryOperator
 from semantics.behaviours.program import expressions_of, reachable
-from semantics.behaviours.reactions import Pattern, Reaction, Term
+from semantics.behaviours.reaction_rules import Pattern, Reaction, Term
 from semantics.behaviours.statements import ControlBy, Display, Migrate, Observe, Send, Spawn, Statement
 from semantics.races.relevance import instances
 from semantics.state.configuration import Configuration

@@ -1,6 +1,6 @@
 """Vacuity of invariants: whether one holds only because nothing could break it.
 
-Which parts of it are never needed (`checker.properties.occurrences`) is decided exactly: on the
+Which parts of it are never needed (`checker.properties.subformulas`) is decided exactly: on the
 valuations of its atoms that were met.
 """
 
@@ -11,7 +11,7 @@ from operator import and_, or_
 from typing import Any, Final
 
 from checker.bounding import look
-from checker.properties.occurrences import STILL, Part, few, never_needed, unneeded
+from checker.properties.subformulas import STILL, Part, few, never_needed, unneeded
 from semantics.properties.propositions import Always, And, Atom, Not, Or, Proposition, holds
 from semantics.state import cells
 from semantics.state.cells import Cell, Cells, Changes, Question, State, Written, is_, merged

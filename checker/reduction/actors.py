@@ -22,7 +22,7 @@ from checker.reduction.roles import Roles
 from checker.reduction.slots import NOTHING, Footprint, joined
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.program import reachable
-from semantics.behaviours.reactions import Reaction
+from semantics.behaviours.reaction_rules import Reaction
 from semantics.behaviours.statements import ControlBy, Migrate, Observe, React, Send, Spawn, Statement
 from semantics.environment import Says
 from semantics.state.agents import Code, code_cell, host_cell

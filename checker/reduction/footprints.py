@@ -12,7 +12,7 @@ from checker.reduction.messages import Known, Message, wakes
 from checker.reduction.roles import Roles
 from checker.reduction.slots import NOTHING, Footprint, Slot, Slots
 from semantics.behaviours.observations import All, Nodes, Query, QueryOperator
-from semantics.behaviours.reactions import (
+from semantics.behaviours.reaction_rules import (
     LinkTerm,
     NodeTerm,
     NodeVariable,

@@ -60,7 +60,7 @@ class Reduced:
         Raises:
             Drift: One does not hold; a bug of ours.
         """
-        from checker.reduction.crosscheck import crosscheck, exchange  # noqa: PLC0415  # for --paranoid only
+        from checker.reduction.footprint_check import crosscheck, exchange  # noqa: PLC0415  # for --paranoid only
 
         if self.ample is not None:
             crosscheck(self.ample, c)

@@ -13,7 +13,14 @@ from typing import Any
 from physical import Geometry
 from semantics.behaviours.observations import All, Nodes, Observation, Of, Swept
 from semantics.behaviours.program import VariableOf
-from semantics.behaviours.reactions import LinkVariable, Match, NodeVariable, Pattern, PlaceVariable, Reaction
+from semantics.behaviours.reaction_rules import (
+    LinkVariable,
+    Match,
+    NodeVariable,
+    Pattern,
+    PlaceVariable,
+    Reaction,
+)
 from semantics.behaviours.values import Truth, order_key
 from semantics.state.cells import AGENTS, NAMES, Cell, Changes, Row
 from semantics.state.configuration import Configuration

@@ -7,8 +7,8 @@ from enum import Enum
 
 from checker.properties.coverage import Gap
 from checker.reports.coverage_report import coverage_text, line_text
-from checker.reports.lines import violation_line
 from checker.reports.report import report_text
+from checker.reports.source_lines import violation_line
 from checker.traces import Trace, print_length, print_trace
 from checker.verdicts import Outcome, Report, Verdict, Violation
 

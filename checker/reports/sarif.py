@@ -11,8 +11,8 @@ from pathlib import PurePath
 from typing import Any
 from urllib.parse import quote
 
-from checker.reports.lines import step_lines
 from checker.reports.results import Issue, Level, Result, clean
+from checker.reports.source_lines import step_lines
 from checker.traces import Trace
 from semantics.properties.property import PropertyKind
 

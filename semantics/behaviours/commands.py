@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
-from semantics.behaviours.reactions import (
+from semantics.behaviours.reaction_rules import (
     CONTROL_AUTHORITY,
     LinkVariable,
     Pattern,

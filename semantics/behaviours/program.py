@@ -34,7 +34,7 @@ from semantics.state.agents import written
 from semantics.state.signature import Name
 
 if TYPE_CHECKING:
-    from semantics.behaviours.reactions import Reaction
+    from semantics.behaviours.reaction_rules import Reaction
 
 Names = frozenset[str]
 NONE: Names = frozenset()

@@ -26,7 +26,7 @@ from semantics.behaviours.expressions import (
 )
 from semantics.behaviours.patterns import variables
 from semantics.behaviours.program import Program, expressions_of, reachable
-from semantics.behaviours.reactions import NodeTerm, Pattern, Reaction
+from semantics.behaviours.reaction_rules import NodeTerm, Pattern, Reaction
 from semantics.behaviours.statements import (
     Assign,
     Call,

@@ -11,7 +11,7 @@ from types import UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from semantics.behaviours.observations import All, Fact, Nodes, Observation, Of, Query, QueryOperator, Swept
-from semantics.behaviours.reactions import (
+from semantics.behaviours.reaction_rules import (
     LinkVariable,
     Match,
     NodeVariable,

@@ -8,7 +8,7 @@ from semantics.state.signature import Name
 
 if TYPE_CHECKING:
     from semantics.behaviours.observations import Observation, Query
-    from semantics.behaviours.reactions import Match, Reaction
+    from semantics.behaviours.reaction_rules import Match, Reaction
 
 
 @dataclass(frozen=True, slots=True)

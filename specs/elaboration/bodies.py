@@ -13,7 +13,7 @@ from semantics.behaviours.statements import Loop
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.names import Names
-from specs.elaboration.schemas import Checked, Maker, Schema
+from specs.elaboration.rule_schemas import Checked, Maker, Schema
 from specs.elaboration.statements import Body, Numbering, SpawnSite
 
 

@@ -13,8 +13,8 @@ from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import shorten
 from specs.elaboration.geometry import elaborate_placement, moved_to
+from specs.elaboration.mobility import Mobility, moves
 from specs.elaboration.names import Names
-from specs.elaboration.places import Mobility, moves
 from specs.elaboration.world import World
 
 LIST_THEM: Final = "list its placements: drifts among ..."

@@ -11,8 +11,8 @@ from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.constants import elaborate_constant
 from specs.elaboration.drifts import Spots, drifts_among, drifts_within
+from specs.elaboration.mobility import Mobility, carries
 from specs.elaboration.names import Names
-from specs.elaboration.places import Mobility, carries
 from specs.elaboration.world import World
 
 

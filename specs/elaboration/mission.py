@@ -21,19 +21,19 @@ from specs.diagnostics import Diagnostic, MissionError, Source
 from specs.elaboration.beliefs import check_forest, elaborate_beliefs, settled
 from specs.elaboration.bodies import declare_behaviours, elaborate_bodies, named_agents
 from specs.elaboration.checks import elaborate_checks, elaborate_control, elaborate_scheduler
-from specs.elaboration.controls import Ground, check_controls
 from specs.elaboration.environment import appearing_channels, elaborate_environment
 from specs.elaboration.files import Library
 from specs.elaboration.findings import Findings
 from specs.elaboration.live import elaborate_live
+from specs.elaboration.mobility import check_nesting, elaborate_mobility, fixed_entities, warn_of_outliers
 from specs.elaboration.names import Names
-from specs.elaboration.places import check_nesting, elaborate_mobility, fixed_entities, warn_of_outliers
+from specs.elaboration.realisability import Ground, check_controls
 from specs.elaboration.rules import elaborate_rules
 from specs.elaboration.signature import elaborate_signature
 from specs.elaboration.variation import AS_WRITTEN, Variation
 from specs.elaboration.world import elaborate_world
 from specs.parser import parse_bytes
-from specs.text import MAX_BYTES
+from specs.preprocessing import MAX_BYTES
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,13 +8,20 @@ from dataclasses import dataclass, field
 from bigraphs.notation.paper import NodeTerm as WrittenNode
 from bigraphs.notation.paper import RegionTerm, RuleTerm, SiteTerm
 from semantics.behaviours.commands import HOST
-from semantics.behaviours.reactions import LinkTerm, LinkVariable, NodeTerm, NodeVariable, Pattern, PlaceTerm
+from semantics.behaviours.reaction_rules import (
+    LinkTerm,
+    LinkVariable,
+    NodeTerm,
+    NodeVariable,
+    Pattern,
+    PlaceTerm,
+)
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import a
 from specs.elaboration.names import Names
-from specs.elaboration.regions import Region, Side, region_places, regions_of
-from specs.elaboration.schemas import Moved, Parameter, Schema
+from specs.elaboration.rule_regions import Region, Side, region_places, regions_of
+from specs.elaboration.rule_schemas import Moved, Parameter, Schema
 
 
 @dataclass(slots=True)

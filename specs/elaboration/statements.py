@@ -11,7 +11,7 @@ from typing import Any, Final
 from semantics.behaviours import statements as k
 from semantics.behaviours.commands import COMMANDS, HOST, MOST_VIA
 from semantics.behaviours.expressions import Expression, Variable
-from semantics.behaviours.reactions import PlaceTerm
+from semantics.behaviours.reaction_rules import PlaceTerm
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.expressions import (
@@ -24,9 +24,9 @@ from specs.elaboration.expressions import (
 from specs.elaboration.findings import Findings
 from specs.elaboration.names import Names
 from specs.elaboration.patterns import check_distinct, elaborate_pattern
-from specs.elaboration.regions import regions_of
+from specs.elaboration.rule_regions import regions_of
+from specs.elaboration.rule_schemas import Parameter, Schema
 from specs.elaboration.rules import elaborate_rule, word_of
-from specs.elaboration.schemas import Parameter, Schema
 from specs.elaboration.scopes import Scope, Variables
 from specs.writing import write
 

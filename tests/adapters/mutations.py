@@ -7,9 +7,9 @@ from pymavlink.generator.mavcrc import x25crc
 
 from adapters.mavlink.codec import Encoder
 from adapters.mavlink.command import long, reposition
+from adapters.mavlink.constants import Cmd
 from adapters.mavlink.items import Item, item_message
 from adapters.mavlink.message import say
-from adapters.mavlink.numbers import Cmd
 from adapters.simulated import Kind, Vehicle
 from adapters.simulated.reporting import Reporter
 

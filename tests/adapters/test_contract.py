@@ -18,10 +18,10 @@ from adapters.ais import AisFeed
 from adapters.detections import Detections
 from adapters.location import LocationService
 from adapters.mavlink import Autopilot, Craft
-from adapters.places import StaticPlaces
 from adapters.plugin import Aged, Gone, GoTo, HandOver, Plugin, Refused
 from adapters.simulated import Kind, Simulator, Vehicle, run
-from adapters.stations.shared import Shared
+from adapters.static_places import StaticPlaces
+from adapters.stations.shared_plugin import Shared
 from adapters.stations.sharing import Sharing
 from adapters.web import Listen
 from bigactors import feeds

@@ -10,8 +10,8 @@ from worlds import AREA, EPOCH, World, flight, running, until
 from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.codec import Encoder
 from adapters.mavlink.command import long
+from adapters.mavlink.constants import Cmd
 from adapters.mavlink.message import say
-from adapters.mavlink.numbers import Cmd
 from adapters.mavlink.signing import Signing
 from adapters.plugin import (
     Accepted,

@@ -15,13 +15,13 @@ from adapters.detections import Detections
 from adapters.lines import MAX_LINE, Lines
 from adapters.location import LocationService
 from adapters.naming import NamingService
-from adapters.places import StaticPlaces
 from adapters.plugin import Aged, Gone, Trouble
 from adapters.simulated import run
+from adapters.static_places import StaticPlaces
 from adapters.web import Listen, serve
 from physical import PhysicalError, box, point, write_geojson, write_plan, write_waypoints
 from physical.geojson import read_geojson
-from physical.property import PhysicalProperty
+from physical.physical_property import PhysicalProperty
 
 VESSEL = rb"!AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61"
 BAD = rb"!AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*62"

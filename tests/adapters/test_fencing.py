@@ -7,7 +7,7 @@ import pytest
 from worlds import flight, until
 
 from adapters.mavlink import Craft
-from adapters.mavlink.numbers import Fence
+from adapters.mavlink.constants import Fence
 from adapters.plugin import Accepted, Arrived, GoTo, Refused, Rejected, Return, Trouble
 from adapters.simulated import Kind, run
 from adapters.simulated.body import Body, metres_to

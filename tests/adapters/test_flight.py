@@ -7,7 +7,7 @@ import pytest
 from worlds import AREA, EPOCH, FIELD, HOME, TINY, World, flight, running, until
 
 from adapters.mavlink import Autopilot, Craft, Stations
-from adapters.mavlink.numbers import MissionType
+from adapters.mavlink.constants import MissionType
 from adapters.mavlink.task import PATIENCE
 from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Hold, Refused, Rejected, Return
 from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run

@@ -7,10 +7,10 @@ from worlds import AREA
 
 from adapters.mavlink import pilot
 from adapters.mavlink.fleet import Craft, Stations
-from adapters.mavlink.helm import STRANGE, Helm, given_back, modes_of, watch
 from adapters.mavlink.message import say
 from adapters.mavlink.pilot import Pilot
 from adapters.mavlink.profiles import COPTER, PLANE, ROVER
+from adapters.mavlink.takeover import STRANGE, Helm, given_back, modes_of, watch
 from adapters.mavlink.telemetry import Position, Telemetry
 from adapters.plugin import (
     Accepted,

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from adapters.mavlink.numbers import MissionType
+from adapters.mavlink.constants import MissionType
 from adapters.simulated import Kind, Simulator, Vehicle, run
 
 pytest.importorskip("mavsdk", reason="the extra `peers` (MAVSDK) is not installed", exc_type=ImportError)

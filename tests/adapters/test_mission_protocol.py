@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from adapters.mavlink import sync, upload
+from adapters.mavlink.constants import Cmd, MissionResult, MissionType
 from adapters.mavlink.items import Item, fence, route, same
 from adapters.mavlink.message import say
-from adapters.mavlink.numbers import Cmd, MissionResult, MissionType
 from adapters.simulated.store import GIVE_UP, Store
 from physical import box, point
 

@@ -5,14 +5,14 @@ from dataclasses import replace
 import pytest
 
 from adapters.mavlink import Autopilot, pilot
+from adapters.mavlink.constants import Cmd, MissionType, Result
 from adapters.mavlink.fleet import Craft, Stations
-from adapters.mavlink.helm import STRANGE
 from adapters.mavlink.items import route
 from adapters.mavlink.message import Message, say
-from adapters.mavlink.numbers import Cmd, MissionType, Result
+from adapters.mavlink.next_step import Load, Tell, Underway, Vehicle, Wait, next_step
 from adapters.mavlink.pilot import Pilot
-from adapters.mavlink.plan import Load, Tell, Underway, Vehicle, Wait, next_step
 from adapters.mavlink.profiles import BOAT, COPTER, PLANE, ROVER, profile_of
+from adapters.mavlink.takeover import STRANGE
 from adapters.mavlink.task import PATIENCE
 from adapters.mavlink.telemetry import Position, Telemetry
 from adapters.plugin import (

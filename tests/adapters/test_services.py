@@ -9,8 +9,8 @@ from pymavlink.dialects.v20 import ardupilotmega
 from adapters.mavlink import command, link, streams
 from adapters.mavlink.codec import CodecError, Decoder, Encoder, Garbage
 from adapters.mavlink.command import Telling, long, reposition
+from adapters.mavlink.constants import STREAMS, Cmd, Result
 from adapters.mavlink.message import Message, is_for, say
-from adapters.mavlink.numbers import STREAMS, Cmd, Result
 from adapters.mavlink.telemetry import Telemetry, absorb
 from adapters.plugin import LinkLost, LinkRestored
 

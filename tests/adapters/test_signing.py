@@ -11,9 +11,9 @@ from worlds import AREA, EPOCH, flight, until
 from adapters.mavlink import signing
 from adapters.mavlink.codec import Decoder, Encoder
 from adapters.mavlink.command import long
+from adapters.mavlink.constants import Cmd
 from adapters.mavlink.keys import Keeper
 from adapters.mavlink.message import say
-from adapters.mavlink.numbers import Cmd
 from adapters.mavlink.signing import Signing, Verdict, check, load, new_key, save, setup_signing, stamp
 from adapters.plugin import Arrived, GoTo
 from adapters.simulated import Kind, Vehicle, protocol, run

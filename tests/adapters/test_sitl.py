@@ -16,7 +16,7 @@ from adapters.live.operator_socket import give_back
 from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.codec import Encoder
 from adapters.mavlink.command import long, set_parameter
-from adapters.mavlink.numbers import Cmd
+from adapters.mavlink.constants import Cmd
 from adapters.mavlink.profiles import PLANE
 from adapters.mavlink.sync import Sync
 from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Refused, Rejected, Return

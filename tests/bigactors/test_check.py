@@ -9,7 +9,7 @@ from contextlib import suppress
 import pytest
 from processes import begun
 
-from bigactors import checking, evidence
+from bigactors import checking, trace_files
 from bigactors.commands import check as command
 from checker.reports.report import MARKS
 
@@ -177,7 +177,7 @@ def test_traces_are_kept_as_text_as_json_and_as_pictures(missions, bigactors):
 
 
 def test_missions_of_one_name_keep_their_traces_apart(missions, bigactors, monkeypatch):
-    monkeypatch.setattr(evidence, "draw_run", lambda *_, **__: None)
+    monkeypatch.setattr(trace_files, "draw_run", lambda *_, **__: None)
     (missions / "sub").mkdir()
     (missions / "sub" / "holds.mission").write_text((missions / "holds.mission").read_text())
     words = ("check", "holds.mission", "sub/holds.mission", "--trace", "traces", "--no-traces")
@@ -188,7 +188,7 @@ def test_missions_of_one_name_keep_their_traces_apart(missions, bigactors, monke
 def test_properties_whose_names_differ_in_signs_only_keep_their_traces_apart(
     missions, bigactors, monkeypatch
 ):
-    monkeypatch.setattr(evidence, "draw_run", lambda *_, **__: None)
+    monkeypatch.setattr(trace_files, "draw_run", lambda *_, **__: None)
     text = (missions / "holds.mission").read_text()
     twice = text.replace('reachable "found"', 'reachable "found!": uav0 in searchArea0\n  reachable "found?"')
     (missions / "twice.mission").write_text(twice)

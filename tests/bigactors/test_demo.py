@@ -1,8 +1,8 @@
-from bigactors import evidence
+from bigactors import trace_files
 
 
 def test_the_demo_ends_well_with_verdicts_pictures_and_traces(missions, bigactors, monkeypatch):
-    monkeypatch.setattr(evidence, "draw_run", lambda *_, **__: None)  # half a minute of pictures
+    monkeypatch.setattr(trace_files, "draw_run", lambda *_, **__: None)  # half a minute of pictures
     code, out, err = bigactors("demo", "--out", "shown")
     assert (code, err) == (0, "")
     for mission in ("oil_spill", "harbour_watch"):

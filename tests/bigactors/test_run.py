@@ -20,7 +20,7 @@ from adapters.plugin import TakenOver
 from adapters.recording.writing import Recorder
 from bigactors.cli import main
 from bigactors.commands.run import conclude
-from bigactors.foreign import watched
+from bigactors.foreign_recordings import watched
 from bigactors.missions import open_mission
 from bigactors.mistakes import Mistake
 from bigactors.pictures.scene import palette_of

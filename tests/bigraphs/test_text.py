@@ -2,8 +2,8 @@ from bigraph_strategies import SIGNATURE, bigraphs
 from hypothesis import given
 
 from bigraphs.bigraph import Node, assemble
-from bigraphs.graphs import to_networkx
 from bigraphs.labels import node_labels
+from bigraphs.networkx_graphs import to_networkx
 from bigraphs.relations import from_relations
 from bigraphs.text import draw_text
 

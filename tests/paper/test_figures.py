@@ -3,8 +3,8 @@
 from bigraphs.text import draw_text
 from physical import PhysicalProperty, Waypoint, box, circle, contains, distance, point, polygon
 from semantics import COMMANDS, CTR, Configuration, Kind, Program, Setting, Signature, initial
+from semantics.brr_driver import mobility_commands
 from semantics.control import realisations
-from semantics.mobility import mobility_commands
 from semantics.state.abstraction import abstraction, merged, placement_of
 
 KINDS = Signature.of(

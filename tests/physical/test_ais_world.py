@@ -6,7 +6,7 @@ from physical.ais_recording import Counts, Recording
 from physical.ais_reports import AisError, PositionReport, StaticReport
 from physical.ais_world import KNOT, TIME_TO_LIVE, physical_property, world_at
 from physical.geometry import box, point
-from physical.property import Velocity
+from physical.physical_property import Velocity
 
 NOWHERE = Counts(0, 0, (), ())
 VESSEL, BUOY, STATION = 244660274, 992446001, 2442103

@@ -13,7 +13,7 @@ from semantics import strategies
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Literal, QueryOf
 from semantics.behaviours.patterns import Anything
-from semantics.behaviours.reactions import Pattern, PlaceVariable, Reaction, matches, moved, relinked
+from semantics.behaviours.reaction_rules import Pattern, PlaceVariable, Reaction, matches, moved, relinked
 from semantics.behaviours.statements import Case, ControlBy, Observe, React, Send
 from semantics.control import PREMISES, Obstacle, applicable, is_consistent, obstacle, realisations
 from semantics.drive import drive

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from semantics.behaviours.expressions import Fault
-from semantics.behaviours.reactions import LinkVariable, NodeVariable, Pattern, PlaceVariable
+from semantics.behaviours.reaction_rules import LinkVariable, NodeVariable, Pattern, PlaceVariable
 from specs.diagnostics import MissionError, Source
 from specs.elaboration import elaborate
 from specs.parser import parse

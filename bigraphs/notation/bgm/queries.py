@@ -9,7 +9,7 @@ from typing import Final
 from bigraphs.bigraph import Bigraph
 from bigraphs.notation.bgm.syntax import Ask, Count, Operation, Query, Scoped, Wide
 from bigraphs.notation.bgm.terms import Terms, holes
-from bigraphs.notation.big.shapes import pattern_of
+from bigraphs.notation.big.solidity import pattern_of
 from bigraphs.notation.big.syntax import Span
 from bigraphs.properties import (
     Both,

@@ -23,7 +23,7 @@ from bigraphs.notation.bgm.syntax import (
 )
 from bigraphs.notation.bgm.terms import Terms, holes, names_in
 from bigraphs.notation.big.findings import Findings
-from bigraphs.notation.big.shapes import faults
+from bigraphs.notation.big.solidity import faults
 from bigraphs.notation.big.syntax import MAX_SIZE, Span
 from bigraphs.properties import Property
 from bigraphs.signature import Control, Signature

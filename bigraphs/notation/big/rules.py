@@ -9,7 +9,7 @@ from bigraphs.bigraph import Bigraph
 from bigraphs.notation.big.declarations import ConditionTerm, ReactDeclaration
 from bigraphs.notation.big.expressions import Evaluation
 from bigraphs.notation.big.scope import Frame
-from bigraphs.notation.big.shapes import faults, pattern_of
+from bigraphs.notation.big.solidity import faults, pattern_of
 from bigraphs.notation.big.syntax import Expression, Span, ValueExpression
 from bigraphs.system import Condition, Position, Rule, SystemKind, Value, Where, call
 

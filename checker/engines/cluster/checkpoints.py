@@ -20,8 +20,8 @@ from checker.engines.contract import CheckpointError
 from checker.engines.fast import kernel as loops
 from checker.engines.fast.checkpoint import is_time
 from checker.engines.fast.columns import Packing
-from checker.engines.fast.engine import MOST_ROWS
 from checker.engines.fast.kernel import CROWDS, CUT, EXPANDED, LIMIT, SIZE
+from checker.engines.fast.space import MOST_ROWS
 
 SCHEMA = "bigactors.shard/2"
 UNKNOWN = -1

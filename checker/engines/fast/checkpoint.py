@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from checker.engines.archive import Kinds, read_archive, write_archive
 from checker.engines.contract import CheckpointError
 from checker.engines.fast.columns import Packing
-from checker.engines.fast.engine import Space
 from checker.engines.fast.kernel import CROWDS, CUT, EXPANDED, LIMIT, SIZE
+from checker.engines.fast.space import Space
 from semantics.state.canonical import canonical
 
 SCHEMA = "bigactors.checkpoint/2"

@@ -4,8 +4,8 @@ from collections import Counter
 
 from checker.bounding import look
 from checker.engines.contract import sample
-from checker.engines.fast.engine import Space
-from checker.reduction.crosscheck import heed
+from checker.engines.fast.space import Space
+from checker.reduction.footprint_check import heed
 from checker.reduction.reducer import Reduced
 from semantics.state.configuration import Configuration
 from semantics.state.printing import print_configuration

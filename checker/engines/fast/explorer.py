@@ -13,10 +13,10 @@ from checker.engines.contract import Exploration, Inspect, Options, Progress
 from checker.engines.estimate import estimate
 from checker.engines.fast.checkpoint import Journey, resume, save
 from checker.engines.fast.crosscheck import crosscheck
-from checker.engines.fast.engine import Space
 from checker.engines.fast.graph import GraphSurvey
 from checker.engines.fast.inspecting import inspect_fast
 from checker.engines.fast.learner import Learner
+from checker.engines.fast.space import Space
 from checker.limits import Bound, Limits, Part, Stop, is_full, memory_left
 from semantics.state.configuration import Configuration
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.engine import Space
 from checker.engines.fast.learner import Actor
+from checker.engines.fast.space import Space
 from semantics.state.cells import AGENTS
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name

@@ -6,7 +6,7 @@ from checker.bounding import BoundMet
 from checker.engines.contract import Exploration
 from checker.engines.graph import Graph, graph_of
 from checker.properties import vacuity
-from checker.properties.occurrences import STILL
+from checker.properties.subformulas import STILL
 from checker.properties.temporal.automaton import TooLargeError
 from checker.properties.temporal.branching import Branching
 from checker.properties.temporal.components import Conditions

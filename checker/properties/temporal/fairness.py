@@ -6,7 +6,7 @@ import numpy as np
 
 from checker.engines.graph import Bools, Graph
 from checker.properties.temporal.components import Conditions, Streett
-from semantics.behaviours.reactions import moved
+from semantics.behaviours.reaction_rules import moved
 from semantics.properties.temporal import SERVES, Fairness, Steps
 from semantics.state.configuration import Label
 from semantics.state.requests import FLY

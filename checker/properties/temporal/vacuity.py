@@ -11,7 +11,7 @@ from typing import Final, cast
 
 from checker.bounding import BoundMet
 from checker.engines.graph import Graph
-from checker.properties.occurrences import Formula, Part, at, few, never_needed, unneeded
+from checker.properties.subformulas import Formula, Part, at, few, never_needed, unneeded
 from checker.properties.temporal.automaton import TooLargeError
 from checker.properties.temporal.branching import Branching
 from checker.properties.temporal.components import Conditions, fair_components

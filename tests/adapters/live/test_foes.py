@@ -19,8 +19,8 @@ from pyais.encode import encode_dict
 from adapters.mavlink import signing
 from adapters.mavlink.codec import Encoder
 from adapters.mavlink.command import long
+from adapters.mavlink.constants import Cmd
 from adapters.mavlink.message import say
-from adapters.mavlink.numbers import Cmd
 from adapters.mavlink.tlog import read_tlog
 from adapters.simulated import Disturbance, Kind, Vehicle
 from bigactors.mistakes import Mistake

@@ -12,7 +12,7 @@ from worlds import ROUND
 
 from adapters.live.operator_socket import give_back
 from adapters.mavlink.command import long
-from adapters.mavlink.numbers import Cmd, Result
+from adapters.mavlink.constants import Cmd, Result
 from adapters.simulated import Kind, Vehicle, protocol
 from adapters.simulated.reporting import Reporter
 from bigactors.cli import main

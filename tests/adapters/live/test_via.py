@@ -8,8 +8,8 @@ from live_missions import EAST, TOUR, WEST, Run, plan_of, seen
 
 from adapters.live.core import resumed
 from adapters.live.state import Heard
+from adapters.mavlink.constants import Cmd, MissionType
 from adapters.mavlink.items import e7
-from adapters.mavlink.numbers import Cmd, MissionType
 from adapters.plugin import Arrived, Follow
 from adapters.simulated import Disturbance, Kind, Vehicle
 from physical import PhysicalProperty, box, circle, contains, point, waypoint

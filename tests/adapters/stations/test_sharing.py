@@ -311,7 +311,7 @@ class Link(Camera):
 def test_a_command_waits_for_the_link_to_learn_that_the_vehicle_was_handed_to_us(
     tmp_path, monkeypatch, learns
 ):
-    monkeypatch.setattr("adapters.stations.shared.LASTING", 1.0)
+    monkeypatch.setattr("adapters.stations.shared_plugin.LASTING", 1.0)
     table = both()
     gcs0, gcs1 = (Node(peers_of(table, name, tmp_path), tmp_path) for name in ("gcs0", "gcs1"))
     link = Link()

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from mission_texts import missions
 
 from checker import Engine, Limits, Outcome, Reduction, RefusedError, check, explore
-from checker.engines.fast import engine
+from checker.engines.fast import space
 from checker.reduction import Ample, Proviso, Reduced
 from checker.reduction.footprints import Footprints
 from checker.reduction.slots import NOTHING
@@ -133,9 +133,9 @@ def test_both_explorers_follow_the_same_steps_of_a_mission(name, variation):
 @pytest.mark.parametrize("batch", [2, 64])
 @pytest.mark.parametrize("name", ["takeover", "rendezvous", "surveillance", "nomad", "broken_deadlock"])
 def test_it_chooses_the_same_where_one_thread_gathers_and_another_stores(name, batch, monkeypatch):
-    monkeypatch.setattr(engine, "cores", lambda: 2)
-    monkeypatch.setattr(engine, "WORTH", 1)
-    monkeypatch.setattr(engine, "BATCH", batch)
+    monkeypatch.setattr(space, "cores", lambda: 2)
+    monkeypatch.setattr(space, "WORTH", 1)
+    monkeypatch.setattr(space, "BATCH", batch)
     initial = load_mission(MISSIONS / f"{name}.mission").initial
     agreed(initial)
     agreed(monitored(initial))

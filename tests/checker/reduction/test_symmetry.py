@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from checker import Engine, Keeping, Limits, Reduction, RefusedError, check, explore
 from checker.reduction import Reduced
-from checker.reduction.crosscheck import Drift
+from checker.reduction.footprint_check import Drift
 from checker.reduction.renaming import Renaming
 from checker.reduction.symmetry import Symmetry
 from checker.traces import replay, to_json

@@ -24,9 +24,9 @@ from mission_results import (
 )
 
 from checker import check
-from checker.reports.lines import step_lines, violation_line
 from checker.reports.results import Result, clean
 from checker.reports.sarif import RULES, artifact, sarif_json
+from checker.reports.source_lines import step_lines, violation_line
 from specs.elaboration import load_mission
 
 ROOT = Path(__file__).parents[3]

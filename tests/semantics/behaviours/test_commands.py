@@ -7,7 +7,7 @@ from small_missions import aboard, logical_of
 
 from semantics.behaviours import commands
 from semantics.behaviours.commands import COMMANDS
-from semantics.behaviours.reactions import Sides, matches, moved, relinked, stays_forest
+from semantics.behaviours.reaction_rules import Sides, matches, moved, relinked, stays_forest
 
 move_host_to, hand = COMMANDS["MOVE_HOST_TO"], COMMANDS["HAND"]
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from semantics.behaviours.observations import All, Of, QueryOperator
 from semantics.environment import Says
 from semantics.extension import say
-from semantics.observed import WRITABLE
+from semantics.observed_steps import WRITABLE
 from semantics.state.agents import code_cell
 from semantics.state.canonical import written
 from semantics.state.parcel_serialization import parcel_json

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from bigraphs.algebra import lean
 from bigraphs.canonical import canonical
 from bigraphs.interface import Interface
-from bigraphs.notation.big.shapes import faults, pattern_of
+from bigraphs.notation.big.solidity import faults, pattern_of
 from bigraphs.notation.big.systems import bigraphs_of
 from bigraphs.signature import Control, Signature
 from bigraphs.system import (

@@ -18,7 +18,7 @@ from checker import Engine, Keeping, Limits, check, explore
 from checker.engines.cluster import explorer as cluster
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
-from checker.engines.fast import engine, explorer, kernel
+from checker.engines.fast import explorer, kernel, space
 from checker.engines.fast.rows import Rows
 from checker.reduction import Reduced, Reduction
 from semantics import Scheduler
@@ -46,9 +46,9 @@ def checked(test):
 @pytest.fixture(autouse=True)
 def small_rooms(monkeypatch):
     """Let rooms grow, batches be too small for a row, and the clock be looked at after every other row."""
-    monkeypatch.setattr(engine, "FIRST_ROWS", 8)
-    monkeypatch.setattr(engine, "BATCH", 8)
-    monkeypatch.setattr(engine, "WORTH", 4)
+    monkeypatch.setattr(space, "FIRST_ROWS", 8)
+    monkeypatch.setattr(space, "BATCH", 8)
+    monkeypatch.setattr(space, "WORTH", 4)
     monkeypatch.setattr(explorer, "CHUNK", 2)
 
 

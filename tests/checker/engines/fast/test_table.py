@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from checker import Limits
-from checker.engines.fast import engine
+from checker.engines.fast import space as spaces
 from checker.engines.fast.compacting import tag_of, write_tags
-from checker.engines.fast.engine import Space
 from checker.engines.fast.learner import Learner
+from checker.engines.fast.space import Space
 from checker.engines.fast.table import (
     ENTERED,
     bits_for,
@@ -74,7 +74,7 @@ def test_a_table_takes_at_most_nine_bytes_a_row_each_time_when_it_grows():
 
 @pytest.mark.parametrize("budget", range(100_000, 310_000, 30_000))
 def test_a_table_grows_by_less_where_memory_ends_so_that_rows_have_it(budget, monkeypatch):
-    monkeypatch.setattr(engine, "BATCH", 256)
+    monkeypatch.setattr(spaces, "BATCH", 256)
     initial = load_mission(MISSIONS / "rendezvous.mission").initial
     space = Space(Learner(initial.setting, initial.state, Limits().pending), None)
     row = 8 * space.packing.words + 4

@@ -7,7 +7,7 @@ import pytest
 from checked_missions import checked, load, verdict_of
 
 from checker import Engine, Limits, ReplayError, Trace, check, print_trace, replay, report_text, to_json
-from checker.reports.lines import violation_line
+from checker.reports.source_lines import violation_line
 from checker.verdicts import Outcome
 
 THERE_AND_BACK = """

@@ -25,7 +25,7 @@ from test_decide import ONCE, THERE_AND_BACK, verdict
 from checker import Engine, Outcome, check
 from checker.bounding import BoundMet
 from checker.limits import Bound, Stop
-from checker.properties.occurrences import Part, at, strengthened, unneeded
+from checker.properties.subformulas import Part, at, strengthened, unneeded
 from checker.properties.temporal import vacuity
 from checker.properties.temporal.branching import Branching
 from checker.properties.temporal.linear import counterexample

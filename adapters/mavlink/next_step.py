@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from adapters.mavlink import command as to
+from adapters.mavlink.constants import AUTHORITY_PARAMETERS, Cmd, Fence, MissionType
 from adapters.mavlink.items import Items, e7, fence, route
 from adapters.mavlink.message import Message
-from adapters.mavlink.numbers import AUTHORITY_PARAMETERS, Cmd, Fence, MissionType
 from adapters.mavlink.profiles import Profile, TakeOff
 from adapters.mavlink.telemetry import Position, Telemetry
 from adapters.plugin import Command, Follow, GiveBack, GoTo, HandOver, Hold, Rebind, Return

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from bigraphs.canonical import equal
 from bigraphs.errors import BigraphError, NotationError
 from bigraphs.notation.big.expression_of import write_big
-from bigraphs.notation.big.theory import read_big, read_theory
+from bigraphs.notation.big.fragments import read_big, read_theory
 from bigraphs.relations import from_relations
 from bigraphs.rewriting import successors
 

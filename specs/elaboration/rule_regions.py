@@ -14,7 +14,7 @@ from functools import cached_property
 
 from bigraphs.notation.paper import NodeTerm as WrittenNode
 from bigraphs.notation.paper import RegionTerm, SiteTerm
-from semantics.behaviours.reactions import NodeTerm, PlaceTerm, PlaceVariable
+from semantics.behaviours.reaction_rules import NodeTerm, PlaceTerm, PlaceVariable
 
 Owner = int | NodeTerm
 """What a site stands under: a region by its index, or a node."""

@@ -9,15 +9,15 @@ from typing import Final
 from physical import Geometry, PhysicalError, area, band_contains, nearest_placement
 from semantics.behaviours.commands import COMMANDS, HOST, Command
 from semantics.behaviours.expressions import Expression, Host, Literal
-from semantics.behaviours.reactions import NodeVariable, PlaceTerm
+from semantics.behaviours.reaction_rules import NodeVariable, PlaceTerm
 from semantics.state.physical_model import Placed
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.bodies import Bodies, body_key, possible_hosts
 from specs.elaboration.findings import a
+from specs.elaboration.mobility import Mobility
 from specs.elaboration.names import Names
-from specs.elaboration.places import Mobility
-from specs.elaboration.schemas import Schema
+from specs.elaboration.rule_schemas import Schema
 from specs.elaboration.statements import ControlSite
 from specs.elaboration.world import World
 

@@ -9,8 +9,8 @@ from typing import Final
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
 from specs.grammar import keywords, spellings
+from specs.preprocessing import Prepared
 from specs.syntax.nodes import Span
-from specs.text import Prepared
 
 _WORD: Final = re.compile(r'"(?:[^"\\\n]|\\.)*+"|\w+|<->|<>|\[\]|=>|==|!=|<=|>=|->|\|\||&&|\S')
 _NAME: Final = re.compile(r"[^\W\d_]\w*")

@@ -11,8 +11,8 @@ from bigactors.mistakes import Mistake, suggestion
 from checker import Trace
 from physical import Geometry, MobilityCommand, visited, write_plan, write_waypoints
 from physical.place_files import PLAN, WAYPOINTS
+from semantics.brr_driver import mobility_commands
 from semantics.control import Realisation, realisations
-from semantics.mobility import mobility_commands
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import InTransit
 from semantics.state.requests import CTR

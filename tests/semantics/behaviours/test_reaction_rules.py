@@ -8,7 +8,7 @@ from small_missions import logical_of, mission
 
 from physical import point
 from semantics import strategies
-from semantics.behaviours.reactions import (
+from semantics.behaviours.reaction_rules import (
     LinkVariable,
     Match,
     NodeVariable,

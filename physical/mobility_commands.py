@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from physical.altitude import Band
 from physical.errors import PhysicalError
 from physical.measure import waypoint
-from physical.property import PhysicalProperty
+from physical.physical_property import PhysicalProperty
 from physical.shape import Geometry
 
 

@@ -5,7 +5,7 @@ from typing import Any
 from physical import Band, Geometry, point
 from physical.frame import E7
 from physical.shape import MAX_VERTICES, canonical
-from semantics.observed import WRITABLE, Sight
+from semantics.observed_steps import WRITABLE, Sight
 from semantics.state.cells import Cell
 from semantics.state.parcel_serialization import elsewhere_json, elsewhere_of
 from semantics.state.partition import Elsewhere

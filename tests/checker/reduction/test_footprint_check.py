@@ -14,11 +14,11 @@ from test_partial_order import CHANGED, NAMES, POR, SPAWNED, VARIATIONS, atoms_o
 from checker import Engine, Keeping, Limits, Outcome, check, explore
 from checker.engines.contract import sample
 from checker.reduction import Ample
-from checker.reduction.crosscheck import Drift, outside, unheeded
+from checker.reduction.footprint_check import Drift, outside, unheeded
 from checker.reduction.slots import NOTHING
 from semantics import Scheduler, control, strategies
 from semantics.behaviours.commands import COMMANDS
-from semantics.behaviours.reactions import CONTROL_AUTHORITY
+from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY
 from semantics.control import PREMISES, Obstacle, Premise
 from semantics.properties import propositions
 from semantics.properties.propositions import Ended, HasPending, HostedAt, Inside, Known, Waiting

@@ -1,8 +1,8 @@
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from physical.ais import GROUP_TABLE, Ear, hear
 from physical.ais_fragments import FRAGMENT_TABLE
+from physical.ais_receiver import GROUP_TABLE, Ear, hear
 from physical.ais_reports import PositionReport, StaticReport
 from physical.nmea import MAX_LINE, Reason, checksum
 

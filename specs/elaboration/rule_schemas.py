@@ -9,7 +9,14 @@ from typing import Final
 
 from semantics.behaviours.commands import HOST, Command
 from semantics.behaviours.expressions import Fault
-from semantics.behaviours.reactions import NodeTerm, NodeVariable, Pattern, PlaceTerm, PlaceVariable, Reaction
+from semantics.behaviours.reaction_rules import (
+    NodeTerm,
+    NodeVariable,
+    Pattern,
+    PlaceTerm,
+    PlaceVariable,
+    Reaction,
+)
 from semantics.behaviours.values import Value, show
 from semantics.state.signature import Name
 from specs import syntax as s

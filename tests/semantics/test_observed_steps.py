@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 from small_missions import figure_2, run
 
 from physical import Band, box, circle, point, translate_to
-from semantics.observed import Sight, admitting, arriving, happening, steps_seen
+from semantics.observed_steps import Sight, admitting, arriving, happening, steps_seen
 from semantics.state.canonical import canonical, digest_of_step, written
+from semantics.state.observation_serialization import placement_of, sight_json, sight_of, value_json
 from semantics.state.physical_model import Carried, InTransit, Placed, channels_cell, placement_cell
 from semantics.state.relations import Parent
-from semantics.state.serialization import placement_of, sight_json, sight_of, value_json
 from semantics.state.setting import Control
 
 BASE, AREA = Placed(point(37.16, -8.71)), Placed(point(36.75, -8.65))

@@ -4,7 +4,7 @@ import pytest
 
 from specs.codes import Code
 from specs.diagnostics import MissionError, Source
-from specs.text import decode, prepare
+from specs.preprocessing import decode, prepare
 
 
 def refused(text):

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from semantics.behaviours.reactions import moved
+from semantics.behaviours.reaction_rules import moved
 from semantics.drive import Reach
 from semantics.environment import Observed
 from semantics.rules import commit, env

@@ -13,8 +13,8 @@ from typing import Any, Final
 from physical.altitude import Band
 from physical.errors import PhysicalError
 from physical.shape import Geometry, point
+from physical.untrusted_text import read_json
 from physical.waypoints import MAX_CHARACTERS, MAX_ITEMS, AltitudeFrame, Command, MissionItem
-from physical.words import read_json
 
 FILE_TYPE: Final = "Plan"
 MAX_DEPTH: Final = 8
