@@ -14,9 +14,8 @@ from typing import BinaryIO
 from adapters.live.state import Finding, Heard, Turn
 from adapters.mavlink.tlog import entry
 from adapters.plugin import Report
-from adapters.private import open_private
 from adapters.recording.writing import Recorder
-from adapters.write_errors import writing
+from adapters.written_files import open_private, writing
 from bigactors.mistakes import Mistake
 from bigactors.terminal import paint, say_text, tell
 

@@ -4,10 +4,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
-from checker.bounding import BoundMet, bounded
 from checker.engines.choose import explore_by
 from checker.engines.contract import Cluster, Engine, Exploration, Keeping, Options, Reporter
-from checker.limits import Limits, Part, Stop
+from checker.limits import BoundMet, Limits, Part, Stop, bounded
 from checker.properties.coverage import coverage
 from checker.properties.findings import MOST_VIOLATIONS, Collected
 from checker.properties.inspections import (

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Final
 
 from adapters.mavlink.message import Message, say
-from adapters.private import open_private, others_may_read
+from adapters.written_files import open_private, others_may_read
 from physical import PhysicalError, open_file, read_json
 
 EPOCH: Final = 1_420_070_400

@@ -12,9 +12,8 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
-from adapters.private import open_private
 from adapters.recording.decompression import opened
-from adapters.write_errors import writing
+from adapters.written_files import open_private, writing
 from physical import PhysicalError, open_file, read_json
 
 MAGIC: Final = b"\x89MCAP0\r\n"

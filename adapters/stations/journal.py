@@ -13,9 +13,8 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
-from adapters.private import open_private
 from adapters.stations.entries import MOST_BYTES, Content, Entry, Posted, Took, entry_of, entry_text
-from adapters.write_errors import writing
+from adapters.written_files import open_private, writing
 from physical import PhysicalError, read_json
 
 SCHEMA: Final = "bigactors.station/2"

@@ -19,8 +19,7 @@ from bigactors.signatures import load_key
 from bigactors.terminal import paint, say, tell
 from bigactors.verdict_files import verdict_json
 from checker import Cluster, Engine, Keeping, Limits, Reduction, report_text
-from checker.reports.coverage_report import coverage_text
-from checker.reports.report import MARKS
+from checker.reports.report import MARKS, coverage_text
 from checker.reports.results import caution_text
 from checker.verdicts import Outcome
 from semantics.successors import rules_of

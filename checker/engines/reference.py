@@ -6,11 +6,10 @@ It visits each configuration once, in the order of its distance from the first, 
 import time
 from collections.abc import Callable
 
-from checker.bounding import BoundMet, bounded, look
 from checker.engines.contract import Exploration, Inspect, Options, Progress, sample
 from checker.engines.edges import Edges
 from checker.engines.estimate import estimate
-from checker.limits import Bound, Part, Stop, is_full
+from checker.limits import Bound, BoundMet, Part, Stop, bounded, is_full, look
 from checker.reduction.reducer import Reduced
 from semantics.state.configuration import Configuration, Transition
 from semantics.successors import Expansion, expand

@@ -2,16 +2,20 @@
 
 A part is *never needed* if the formula holds whatever stands in its place: if it still holds with false there where it
 stands positively, with true where negatively (Kupferman and Vardi, Vacuity detection in temporal model checking, 1999).
+A quantifier is elaborated into one operand for each entity of a kind; what is said of its body is said once, and not of
+each instance.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, Final
 
-from checker.properties.quantified import Path, is_quantified
 from semantics.properties.propositions import Always, And, Not, Or, Proposition
 from semantics.properties.temporal import Both, Denied, Either, Now, Temporal, parts
 from semantics.state.signature import Name
+
+Path = tuple[int, ...]
+"""Where a part stands in a formula: which operand of which operand."""
 
 Formula = Proposition | Temporal
 Operand = tuple[Path, Formula]
@@ -172,3 +176,41 @@ def _unneeded(
             yield around, part
         else:
             yield from _unneeded(formula, part, kinds, holds)
+
+
+def is_quantified(operands: Sequence[Any], kinds: Mapping[Name, str]) -> bool:
+    """Tell whether operands of a connective differ in one name only, which goes through all entities of a kind."""
+    if len(operands) < 2:
+        return False
+    names = _varying([list(_words(part)) for part in operands])
+    if names is None or not isinstance(names[0], str) or names[0] not in kinds:
+        return False
+    return set(names) == {name for name, kind in kinds.items() if kind == kinds[names[0]]}
+
+
+def _varying(operands: list[list[Any]]) -> list[Any] | None:
+    """Return the word of each operand that the others have another for, None where they differ in more."""
+    first = operands[0]
+    if any(len(words) != len(first) for words in operands):
+        return None
+    places = [at for at in range(len(first)) if len({repr(words[at]) for words in operands}) > 1]
+    found = [{repr(words[at]): words[at] for at in places} for words in operands]
+    if not all(len(each) == 1 for each in found):
+        return None
+    return [next(iter(each.values())) for each in found]
+
+
+def _words(formula: Any) -> Iterator[Any]:
+    """Yield what a formula is made of, from left to right; `true` and `false` alike, as comparing names gives them."""
+    if isinstance(formula, Always):
+        yield "always"
+    elif isinstance(formula, tuple):
+        yield len(formula)
+        for each in formula:
+            yield from _words(each)
+    elif hasattr(formula, "__dataclass_fields__"):
+        yield type(formula)
+        for each in fields(formula):
+            yield from _words(getattr(formula, each.name))
+    else:
+        yield formula

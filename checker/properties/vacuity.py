@@ -10,7 +10,7 @@ from functools import reduce
 from operator import and_, or_
 from typing import Any, Final
 
-from checker.bounding import look
+from checker.limits import look
 from checker.properties.subformulas import STILL, Part, few, never_needed, unneeded
 from semantics.properties.propositions import Always, And, Atom, Not, Or, Proposition, holds
 from semantics.state import cells

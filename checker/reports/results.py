@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from checker.properties.coverage import Gap
-from checker.reports.coverage_report import coverage_text, line_text
-from checker.reports.report import report_text
+from checker.reports.report import coverage_text, line_text, report_text
 from checker.reports.source_lines import violation_line
 from checker.traces import Trace, print_length, print_trace
 from checker.verdicts import Outcome, Report, Verdict, Violation

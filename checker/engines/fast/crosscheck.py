@@ -2,9 +2,9 @@
 
 from collections import Counter
 
-from checker.bounding import look
 from checker.engines.contract import sample
 from checker.engines.fast.space import Space
+from checker.limits import look
 from checker.reduction.footprint_check import heed
 from checker.reduction.reducer import Reduced
 from semantics.state.configuration import Configuration

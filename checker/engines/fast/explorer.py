@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, overload
 
-from checker.bounding import BoundMet, bounded
 from checker.engines.contract import Exploration, Inspect, Options, Progress
 from checker.engines.estimate import estimate
 from checker.engines.fast.checkpoint import Journey, resume, save
@@ -17,7 +16,7 @@ from checker.engines.fast.graph import GraphSurvey
 from checker.engines.fast.inspecting import inspect_fast
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.space import Space
-from checker.limits import Bound, Limits, Part, Stop, is_full, memory_left
+from checker.limits import Bound, BoundMet, Limits, Part, Stop, bounded, is_full, memory_left
 from semantics.state.configuration import Configuration
 
 if TYPE_CHECKING:

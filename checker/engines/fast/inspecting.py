@@ -11,11 +11,11 @@ from operator import and_, or_
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.bounding import look
 from checker.engines.contract import Inspect
 from checker.engines.fast.learner import Actor
 from checker.engines.fast.leaves import COPIES, COPIES_END, PAIR, PARTS, PARTS_END, STEP, WRITES, WRITES_END
 from checker.engines.fast.survey import Survey, distinct
+from checker.limits import look
 from checker.properties.findings import Collected, Key
 from checker.properties.inspections import Excerpt, Inspection, Invariant, Reachability, Rules
 from checker.properties.races import ControlRaces

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.bounding import look
 from checker.engines.fast import kernel
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.columns import Packing, packing, shifts
@@ -40,6 +39,7 @@ from checker.engines.fast.pages import Pages
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.table import bits_for, most_in, rebuild, slots_for, slots_within, write_numbers
 from checker.engines.fast.trees import RECORD
+from checker.limits import look
 from semantics.state.cells import AGENTS, Row
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Scheduler

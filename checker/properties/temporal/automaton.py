@@ -12,7 +12,7 @@ from itertools import product
 
 import networkx as nx
 
-from checker.bounding import look
+from checker.limits import look
 from checker.properties.temporal.negation_normal_form import FALSE, TRUE, Formulas, Literal, Number
 from semantics.properties.temporal import Temporal
 

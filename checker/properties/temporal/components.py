@@ -6,8 +6,8 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
-from checker.bounding import look
 from checker.engines.graph import Bools, Numbers
+from checker.limits import look
 from checker.properties.temporal.digraph import Arrows, Indices, rows_of
 
 

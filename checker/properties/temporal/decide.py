@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Iterator
 
-from checker.bounding import BoundMet
 from checker.engines.contract import Exploration
 from checker.engines.graph import Graph, graph_of
+from checker.limits import BoundMet
 from checker.properties import vacuity
 from checker.properties.subformulas import STILL
 from checker.properties.temporal.automaton import TooLargeError

@@ -7,8 +7,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.bounding import look
 from checker.engines.graph import Bools, Numbers
+from checker.limits import look
 from checker.properties.temporal.effort import Effort
 
 Indices = NDArray[np.int64]

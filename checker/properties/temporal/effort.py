@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Final
 
-from checker.bounding import look
+from checker.limits import look
 
 MOST: Final = 8_000_000
 LAYER: Final = 250

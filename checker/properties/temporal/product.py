@@ -5,8 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from checker.bounding import look
 from checker.engines.graph import Bools, Graph, Numbers
+from checker.limits import look
 from checker.properties.temporal.automaton import Automaton, Move
 from checker.properties.temporal.components import Conditions
 from checker.properties.temporal.digraph import leaving

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from checker.bounding import look
 from checker.engines.graph import Bools, Graph, Numbers
+from checker.limits import look
 from checker.properties.temporal.components import Conditions, fair_components
 from checker.properties.temporal.digraph import shortest
 from checker.properties.temporal.fairness import arrives

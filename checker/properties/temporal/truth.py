@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from checker.bounding import look
 from checker.engines.graph import Bools, Graph
+from checker.limits import look
 from semantics.properties.propositions import Always, And, Not, Or, Proposition, holds
 from semantics.properties.temporal import (
     Both,

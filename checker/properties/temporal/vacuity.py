@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from functools import reduce
 from typing import Final, cast
 
-from checker.bounding import BoundMet
 from checker.engines.graph import Graph
+from checker.limits import BoundMet
 from checker.properties.subformulas import Formula, Part, at, few, never_needed, unneeded
 from checker.properties.temporal.automaton import TooLargeError
 from checker.properties.temporal.branching import Branching

@@ -8,7 +8,7 @@ from mission_texts import missions
 from checker import Engine, Limits, check, explore
 from checker.properties.coverage import Tally, coverage
 from checker.properties.visited import Visited
-from checker.reports.coverage_report import coverage_json, coverage_text
+from checker.reports.report import coverage_json, coverage_text
 from semantics.successors import expand
 from specs import MissionError
 

@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from checker import check
-from checker.properties.quantified import is_quantified
-from checker.properties.subformulas import replaced
+from checker.properties.subformulas import is_quantified, replaced
 from checker.properties.vacuity import Valuations, atoms_of, remarks_on, truth
 from semantics.properties.propositions import Always, And, Ended, Inside, LinkedWith, Not, Or, Waiting, holds
 

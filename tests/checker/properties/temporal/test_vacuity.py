@@ -23,8 +23,7 @@ from structures import (
 from test_decide import ONCE, THERE_AND_BACK, verdict
 
 from checker import Engine, Outcome, check
-from checker.bounding import BoundMet
-from checker.limits import Bound, Stop
+from checker.limits import Bound, BoundMet, Stop
 from checker.properties.subformulas import Part, at, strengthened, unneeded
 from checker.properties.temporal import vacuity
 from checker.properties.temporal.branching import Branching

@@ -7,9 +7,9 @@ import pytest
 
 from adapters.mavlink import signing
 from adapters.mavlink.signing import Signing
-from adapters.private import open_private, others_may_read
 from adapters.recording.mcap_files import McapWriter
 from adapters.stations.journal import Journal
+from adapters.written_files import open_private, others_may_read
 from bigactors.watchers import Log
 
 

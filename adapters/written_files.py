@@ -1,9 +1,11 @@
-"""Files that only their owner may read: recordings, logs and keys, whatever the umask or their former mode."""
+"""Files that are written: readable by their owner only (recordings, logs, keys), and named by the errors of writing."""
 
 from __future__ import annotations
 
 import os
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO, Final, cast
 
@@ -30,3 +32,12 @@ def _opened(path: str, flags: int) -> int:
         os.close(handle)
         raise
     return handle
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Give an OSError inside the name of the file that could not be written."""
+    try:
+        yield
+    except OSError as error:
+        raise OSError(error.errno, error.strerror or str(error), str(path)) from error

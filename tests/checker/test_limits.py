@@ -5,12 +5,11 @@ from pathlib import Path
 
 import pytest
 
-import checker.bounding
 import checker.engines.fast.explorer
+import checker.limits
 from checker import Engine, Keeping, Limits, Outcome, check, explore
-from checker.bounding import BoundMet, bounded, look
 from checker.engines.fast import crosscheck
-from checker.limits import GRACE
+from checker.limits import GRACE, BoundMet, bounded, look
 from specs.elaboration import load_mission
 
 CHECK = import_module("checker.check")  # its name is taken by the function
@@ -23,7 +22,7 @@ class Clock:
 
     def __init__(self, monkeypatch):
         self.now = 0.0
-        monkeypatch.setattr(checker.bounding, "monotonic", lambda: self.now)
+        monkeypatch.setattr(checker.limits, "monotonic", lambda: self.now)
 
     def jumps_before(self, monkeypatch, place, name):
         within = getattr(place, name)
