@@ -18,9 +18,14 @@ def visited(bits, name="rendezvous", limits=None):
     return explore(mission.initial, limits=limits, engine=Engine.FAST, keeping=Keeping(compact=bits))
 
 
+@pytest.fixture(scope="module")
+def exact():
+    """All that the rendezvous comes to, compared in full."""
+    return explore(load_mission(RENDEZVOUS).initial, engine=Engine.FAST)
+
+
 @pytest.mark.parametrize("bits", [40, 64])
-def test_with_many_bits_the_same_is_visited(bits):
-    exact = explore(load_mission(RENDEZVOUS).initial, engine=Engine.FAST)
+def test_with_many_bits_the_same_is_visited(bits, exact):
     found = visited(bits)
     assert list(found.configurations) == list(exact.configurations)
     assert found.rules == exact.rules
