@@ -21,8 +21,11 @@ demo: $(STAMP)  ## check the shipped missions and draw them
 live-demo: $(STAMP)  ## fly a verified mission with a simulated plane and a replayed AIS feed, into live-demo/
 	$(BIN)/python -m bigactors.live_demo live-demo
 
-test: lint types $(STAMP)  ## everything that must hold
-	$(BIN)/python -m pytest -n 2 -q
+# Processes that the tests start would compile all modules again where no bytecode is kept.
+test fuzz: export PYTHONDONTWRITEBYTECODE =
+
+test: lint types $(STAMP)  ## everything that must hold; of the long tests a part (tests/scale.py)
+	$(BIN)/python -m pytest -n 2 --dist worksteal -q
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
@@ -53,8 +56,8 @@ constraints:  ## write constraints.txt anew: the newest of all that is needed, i
 	echo '# The versions of all that .[dev] needs with which CI tests; `make constraints` writes them. A user installs without this file.' > constraints.txt
 	$(BIN)/python -m pip freeze --exclude-editable >> constraints.txt
 
-fuzz: $(STAMP)  ## 100,000 mutated missions, a million mutated packets and sentences (some 25 minutes on two cores)
-	BIGACTORS_FUZZ=100000 BIGACTORS_FUZZ_PACKETS=1000000 $(BIN)/python -m pytest -n 2 -q -m fuzz
+fuzz: $(STAMP)  ## the long tests whole, 100,000 mutated missions, a million mutated packets and sentences (some 25 minutes on two cores)
+	BIGACTORS_FUZZ=100000 BIGACTORS_FUZZ_PACKETS=1000000 $(BIN)/python -m pytest -n 2 -q -m "fuzz or hypothesis"
 
 bounds: $(STAMP)  ## the compiled loops with checks of bounds over all missions, cut and gone on with at many sizes (nightly: some 40 minutes)
 	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q -m bounds

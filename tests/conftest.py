@@ -1,13 +1,18 @@
 """Hypothesis profiles: `default` finds the same examples in every run, `thorough` looks further."""
 
 import os
+import sys
+from pathlib import Path
 
 from hypothesis import HealthCheck, settings
 
+sys.path.insert(0, str(Path(__file__).parent))  # for scale
+
+from scale import examples
+
 _SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]  # whole configurations are large values
 
-settings.register_profile(
-    "default", max_examples=60, deadline=None, derandomize=True, suppress_health_check=_SLOW
-)
+_DEFAULT = examples(60, deadline=None, derandomize=True, suppress_health_check=_SLOW)
+settings.register_profile("default", _DEFAULT)
 settings.register_profile("thorough", max_examples=2000, deadline=None, suppress_health_check=_SLOW)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))

@@ -3,6 +3,7 @@
 import ast
 import sys
 from collections.abc import Iterator
+from functools import cache
 from graphlib import TopologicalSorter
 from importlib import import_module
 from pathlib import Path
@@ -81,12 +82,14 @@ class Import(NamedTuple):
 
 
 def walk(node: ast.AST, *, at_import: bool = True) -> Iterator[tuple[ast.AST, bool]]:
-    """Yield nodes with whether they run when the module is imported; what only type checkers read is passed over."""
+    """Yield statements with whether they run when the module is imported; what only type checkers read does not."""
     for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.expr):  # nothing is imported there
+            continue
         if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
             yield from ((below, False) for below, _ in walk(child))
             continue
-        inside = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
+        inside = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef)
         yield child, at_import
         yield from walk(child, at_import=at_import and not inside)
 
@@ -113,7 +116,11 @@ def imports_of(path: Path) -> Iterator[Import]:
             yield from (Import(file, node.lineno, each, at_import) for each in within if each in MODULES)
 
 
-IMPORTS = [found for path in FILES for found in imports_of(path)]
+@cache
+def imports() -> list[Import]:
+    """Return every import of every file, read once and by the tests of it only."""
+    return [found for path in FILES for found in imports_of(path)]
+
 
 # Values whose operators and texts are worked out by what is built on them.
 DELEGATES = {
@@ -127,32 +134,32 @@ def room_of(found: Import) -> str:
 
 
 def test_the_walk_sees_the_rooms():
-    assert {room_of(found) for found in IMPORTS} >= set(MAY_IMPORT) - {"adapters"}
-    assert len(IMPORTS) > 300
+    assert {room_of(found) for found in imports()} >= set(MAY_IMPORT) - {"adapters"}
+    assert len(imports()) > 300
 
 
 @pytest.mark.parametrize("room", MAY_IMPORT)
 def test_a_room_imports_the_rooms_below_it_only(room):
     others = set(MAY_IMPORT) - MAY_IMPORT[room] - {room}
-    assert [str(found) for found in IMPORTS if room_of(found) == room and found.top in others] == []
+    assert [str(found) for found in imports() if room_of(found) == room and found.top in others] == []
 
 
 def test_each_library_stays_in_the_room_that_needs_it():
     known = sys.stdlib_module_names | set(MAY_IMPORT)
     strays = [
         str(found)
-        for found in IMPORTS
+        for found in imports()
         if found.top not in known and not found.file.startswith(LIBRARIES.get(found.top, ("nowhere",)))
     ]
     assert strays == []
 
 
 def test_what_takes_long_to_load_is_imported_where_it_is_needed():
-    assert [str(found) for found in IMPORTS if found.top in LAZY and found.at_import] == []
+    assert [str(found) for found in imports() if found.top in LAZY and found.at_import] == []
 
 
 def test_nobody_imports_the_strategies_but_tests():
-    assert [str(found) for found in IMPORTS if found.module == "semantics.strategies"] == []
+    assert [str(found) for found in imports() if found.module == "semantics.strategies"] == []
 
 
 def test_the_rooms_are_the_packages_that_are_built():
@@ -177,7 +184,7 @@ def test_the_arrows_have_no_cycle():
 def test_no_modules_import_each_other_in_a_circle():
     """Imports for types and in functions count; a package's own names for its modules (`__init__`) don't."""
     graph: dict[str, set[str]] = {module: set() for module in MODULES}
-    for found in IMPORTS:
+    for found in imports():
         module = module_of(found.file)
         if not found.file.endswith("__init__.py") and found.module not in DELEGATES.get(module, ()):
             graph[module].add(found.module)

@@ -133,6 +133,8 @@ def holding(words: Words, now: float) -> Said | None:
         if not isinstance(_said(entry).published, Gone) and _said(entry).until >= newest.time
     ]
     latest = _said(max(told, key=_since)) if told else newest
+    if latest is newest:  # so it is where one station alone hears it
+        return newest
     return replace(newest, published=on(newest.published, channels_of(latest.published)), since=latest.since)
 
 
@@ -145,6 +147,8 @@ def _newest(found: Sequence[Entry], now: float) -> Said:
         entry for entry in found if _said(entry).time >= time - ABREAST and _said(entry).until > now
     ] or [newest]
     ahead = _said(max(abreast, key=lambda entry: (_said(entry).clock or 0, _stamp(entry))))
+    if ahead.time == time:
+        return ahead
     # Its time becomes the later one: time stamps must grow, or a run would keep an older report.
     return replace(ahead, published=stamped_at(ahead.published, time))
 

@@ -2,8 +2,9 @@ import struct
 
 import pytest
 from bigraph_strategies import bigraphs
-from hypothesis import given, settings
+from hypothesis import given
 from matplotlib.figure import Figure
+from scale import examples
 
 from bigraphs.algebra import close
 from bigraphs.drawing import draw_bigraph, save_bigraph
@@ -54,7 +55,7 @@ def test_labels_shrink_with_the_axes():
     assert sizes[0] < sizes[1]
 
 
-@settings(max_examples=15)
+@examples(15)
 @given(bigraphs(sharing=True, max_nodes=6))
 def test_every_bigraph_can_be_drawn(bigraph):
     assert draw_bigraph(bigraph).patches or not bigraph.regions

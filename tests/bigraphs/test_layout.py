@@ -1,10 +1,11 @@
 from itertools import combinations, pairwise
 
 from bigraph_strategies import bigraphs
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextToPath
+from scale import examples
 
 from bigraphs.labels import node_labels
 from bigraphs.layout import GAP, Box, label_size, layout, pill_width, text_width
@@ -89,7 +90,7 @@ def test_curves_run_from_the_border_of_their_nodes_to_their_name(bigraph):
 
 
 @given(anything)
-@settings(max_examples=20)
+@examples(20)
 def test_the_layout_is_the_same_again(bigraph):
     assert layout(bigraph) == layout(bigraph)
     assert route(bigraph, layout(bigraph)) == route(bigraph, layout(bigraph))

@@ -4,8 +4,9 @@ from collections import Counter
 
 import pytest
 from checked_missions import checked, load, verdict_of
-from hypothesis import assume, given, reject, settings
+from hypothesis import assume, given, reject
 from mission_texts import missions
+from scale import examples
 
 from checker import Limits, Outcome, explore
 from specs import MissionError
@@ -29,7 +30,7 @@ def view(c):
     ), asked
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(missions())
 def test_what_is_reachable_in_one_line_is_in_several_and_what_is_in_several_is_in_none(text):
     one, several, none = (reached(f"{text}scheduler {scheduler}") for scheduler in SCHEDULERS)
@@ -37,7 +38,7 @@ def test_what_is_reachable_in_one_line_is_in_several_and_what_is_in_several_is_i
     assert one <= several <= none
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(missions())
 def test_what_is_reachable_in_one_step_is_when_control_takes_time(text):
     without = text.replace("control atomic\n", "").replace("control timed\n", "")

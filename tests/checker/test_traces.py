@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 from checked_missions import checked, load, moves, rules_of, verdict_of, violation
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from scale import examples
 
 from checker import Limits, ReplayError, Step, Trace, check, explore, print_trace, replay, to_json
 from checker.traces import MOST_STEPS, candidates, step_of, trace_to
@@ -132,7 +133,7 @@ def candidates_of(run):
     return [t for t in candidates(source) if str(t.label) == str(last.label)]
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(initial_configurations(monitored=None), st.randoms(use_true_random=False))
 def test_every_configuration_of_a_generated_mission_has_a_trace_that_replays(c, random):
     found = explore(c, limits=Limits(configurations=80))

@@ -4,8 +4,9 @@ import inspect
 from dataclasses import replace
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from scale import examples
 from small_missions import SHAPES, aboard, around, enabled, explore, mission, move_to, run
 
 from physical import circle, point
@@ -42,7 +43,7 @@ def by(name, *arguments):
 # --- drive ------------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=100)
+@examples(100)
 @given(st.data())
 def test_drive_makes_the_reactum_true_and_disturbs_nothing_else(data):
     world = data.draw(strategies.worlds())
@@ -462,7 +463,7 @@ def test_a_command_from_a_carrier_keeps_the_shape_of_what_is_carried():
     assert arrived == at_once.structure.physical.placement("u0")
 
 
-@settings(max_examples=100)
+@examples(100)
 @given(st.data())
 def test_atomic_control_is_command_then_commit_with_nothing_between(data):
     world = data.draw(strategies.worlds())

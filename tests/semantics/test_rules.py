@@ -1,8 +1,9 @@
 """The seven rules: for each its conclusion, and for each premise what happens without it."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from scale import examples
 from small_missions import (
     GUARD,
     SHAPES,
@@ -285,7 +286,7 @@ def test_actuate_requires_room_in_the_new_place():
     assert list(actuate(c, "a")) == []
 
 
-@settings(max_examples=100)
+@examples(100)
 @given(st.data(), st.sampled_from(Control))
 def test_after_a_control_the_structure_is_locally_consistent_with_the_reactum(data, control):
     c = data.draw(

@@ -3,8 +3,9 @@
 import random
 from contextlib import suppress
 
-from hypothesis import find, given, settings
+from hypothesis import find, given
 from hypothesis import strategies as st
+from scale import examples
 
 from physical import contains
 from semantics import strategies
@@ -69,7 +70,7 @@ def test_a_configuration_has_the_scheduler_and_control_that_were_asked_for(c):
 def test_the_rules_of_the_paper_are_all_reached_by_random_runs():
     seen: set[str] = set()
 
-    @settings(max_examples=200)
+    @examples(200)
     @given(strategies.initial_configurations(), st.randoms(use_true_random=False))
     def run(c: Configuration, dice: random.Random) -> None:
         with suppress(Fault):

@@ -4,8 +4,9 @@ import itertools
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from scale import examples
 
 from semantics.behaviours.commands import COMMANDS
 from specs import syntax as s
@@ -225,7 +226,7 @@ def read(text):
     return parse(Source("m", text))
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(missions)
 def test_what_is_written_reads_as_the_same_tree_and_is_formatted_already(mission):
     text = write_mission(mission)
@@ -235,7 +236,7 @@ def test_what_is_written_reads_as_the_same_tree_and_is_formatted_already(mission
     assert format_mission(again) == again
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(missions, st.randoms(use_true_random=False))
 def test_comments_are_all_kept_wherever_they_stand(mission, random):
     lines, number = [], itertools.count()

@@ -5,11 +5,10 @@ import time
 from contextlib import suppress
 from dataclasses import dataclass, field
 
-from live_missions import WEST
+from live_missions import WEST, verify
 
 from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
 from bigactors.arguments import parse_arguments
-from bigactors.cli import main
 from bigactors.commands.run import fly, prepare, record
 from bigactors.recordings import open_recording, trace_of
 from bigactors.watchers import Terminal
@@ -169,7 +168,7 @@ def flown_in(folder, mission, vehicle, *more, disturbance=GOOD, foe=None, second
         name = "flown.mission"
         (folder / name).write_text(mission)
     verdict = str(folder / "flown.verdict.json")
-    assert main(["check", "--no-traces", "--control", "timed", "--verdict", verdict, name]) == 0
+    verify(name, verdict)
     line = [
         "run",
         name,

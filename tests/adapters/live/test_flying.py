@@ -5,7 +5,7 @@ from functools import reduce
 from operator import xor
 
 import pytest
-from live_missions import TOUR
+from live_missions import TOUR, verify
 from pyais.encode import encode_dict
 
 from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
@@ -26,7 +26,7 @@ def verified(tmp_path, monkeypatch):
     def check(name, *more):
         monkeypatch.chdir(tmp_path)
         verdict = str(tmp_path / f"{name}.verdict.json")
-        assert main(["check", "--no-traces", "--control", "timed", "--verdict", verdict, name, *more]) == 0
+        verify(name, verdict, *more)
         return tmp_path
 
     return check
@@ -132,10 +132,7 @@ def test_with_a_third_of_all_packets_lost_a_mission_is_flown_and_committed_as_it
     monkeypatch.chdir(tmp_path)
     mission = tmp_path / "tour.mission"
     mission.write_text(TOUR_MISSION)
-    assert (
-        main(["check", "--no-traces", "--control", "timed", "--verdict", "tour.verdict.json", str(mission)])
-        == 0
-    )
+    verify(mission, "tour.verdict.json")
     flight = prepare(options_of(str(mission), tmp_path, "--record", "run.mcap", "--for", "1500"))
     bad = Disturbance(loss=0.3, duplication=0.1, delay=(0.0, 0.3))
     with record(flight) as tape:
@@ -160,10 +157,7 @@ def test_a_vessel_in_the_way_is_said_and_the_vehicles_hold(tmp_path, monkeypatch
     monkeypatch.chdir(tmp_path)
     mission = tmp_path / "tour.mission"
     mission.write_text(TOUR_MISSION)
-    assert (
-        main(["check", "--no-traces", "--control", "timed", "--verdict", "tour.verdict.json", str(mission)])
-        == 0
-    )
+    verify(mission, "tour.verdict.json")
     fields = {
         "type": 1,
         "mmsi": 244999001,

@@ -15,6 +15,7 @@ import pytest
 from audited import PATROL, PLACES, SHUTTLE, airborne, copter, flown_in
 from live_missions import EAST
 from pyais.encode import encode_dict
+from scale import soak
 
 from adapters.mavlink import signing
 from adapters.mavlink.codec import Encoder
@@ -38,6 +39,7 @@ def flying(tmp_path, monkeypatch):
 BAD = Disturbance(loss=0.3, duplication=0.1, delay=(0.0, 1.0))
 
 
+@soak  # test_flying has a shorter one
 def test_the_oil_spill_mission_completes_though_a_third_is_lost_and_the_rest_comes_late_and_twice(
     flying, tmp_path
 ):

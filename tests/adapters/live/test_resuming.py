@@ -8,7 +8,7 @@ import sys
 import time
 from contextlib import contextmanager
 
-from live_missions import TOUR
+from live_missions import TOUR, verify
 
 from adapters.recording.mcap_files import RecordingError
 from adapters.recording.reading import read_recording
@@ -79,7 +79,7 @@ def rules(path):
 def test_a_killed_run_is_resumed_after_its_vehicle_was_compared(tmp_path, capsys):
     mission, verdict = tmp_path / "tour.mission", tmp_path / "tour.verdict.json"
     mission.write_text(MISSION)
-    assert main(["check", "--no-traces", "--control", "timed", "--verdict", str(verdict), str(mission)]) == 0
+    verify(mission, verdict)
     port, first, second = free_port(), tmp_path / "first.mcap", tmp_path / "second.mcap"
     at = f"uav0=udp:127.0.0.1:{port}"
     line = ["-m", "bigactors", "run", str(mission), "--vehicle", at, "--socket", str(tmp_path / "s")]

@@ -48,11 +48,15 @@ def free_port():
 
 
 def until(what, seconds=60.0):
+    """Look until something is so; looks that take long are taken less often, so that the stations can go on."""
     end = time.monotonic() + seconds
-    while not (found := what()):
-        assert time.monotonic() < end, "it did not come to pass in time"
-        time.sleep(0.1)
-    return found
+    while True:
+        began = time.monotonic()
+        if found := what():
+            return found
+        ended = time.monotonic()
+        assert ended < end, "it did not come to pass in time"
+        time.sleep(max(0.1, 2 * (ended - began)))
 
 
 def peers_toml(reached, *, listen=None, hosts=None, scheme="tcp", tls=None):
@@ -151,6 +155,7 @@ class Station:
         ]
         self._line += ["--socket", str(self.socket), *(more or ["--unverified"])]
         self._process = None
+        self._mission = None
         self._replayed = (None, None)
 
     def start(self):
@@ -200,9 +205,13 @@ class Station:
         size = self.recording.stat().st_size if self.recording.exists() else 0
         if self._replayed[0] != (self.recording, size):
             recording = self._read()
-            trace = None if recording is None else trace_of(recording, mission_of(recording))
+            trace = None if recording is None else self._trace_of(recording)
             self._replayed = ((self.recording, size), trace)
         return self._replayed[1]
+
+    def _trace_of(self, recording):
+        self._mission = self._mission or mission_of(recording)  # which is the same in all that it records
+        return trace_of(recording, self._mission)
 
     def _read(self):
         try:

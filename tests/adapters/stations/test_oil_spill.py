@@ -4,6 +4,7 @@ gcs0 runs the pilot and the tower and has a link to the UAV; gcs1 runs the shore
 spills; gcs2 runs nobody and hears the drifters. The UAV obeys, and answers, only the station that has the authority.
 """
 
+from functools import cache
 from math import cos, hypot, radians
 from operator import itemgetter
 
@@ -102,9 +103,13 @@ def whole(station):
 
 def read(station, topic):
     """Return what a station has recorded under a topic, with the times."""
-    return [
-        (message.time, message.data) for message in read_recording(station.recording, arrivals=True).of(topic)
-    ]
+    return [(message.time, message.data) for message in recorded(station.recording).of(topic)]
+
+
+@cache
+def recorded(path):
+    """Return a recording that has ended."""
+    return read_recording(path, arrivals=True)
 
 
 def labels(station, *rules):

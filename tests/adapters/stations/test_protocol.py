@@ -5,9 +5,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from live_missions import EAST, WEST
+from scale import examples
 from test_sharing import MISSION, Node, World
 
 from adapters.plugin import Delivered
@@ -118,7 +119,7 @@ def happens(data, company):
         company.carry(data.draw(st.integers(0, len(company.under_way) - 1)))
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(st.data())
 def test_whatever_was_lost_doubled_or_reordered_all_come_to_one_world(data):
     with company_of_three() as company:
@@ -200,7 +201,7 @@ def read_or_none(data):
         return None
 
 
-@settings(max_examples=100, deadline=None)
+@examples(100)
 @given(st.data())
 def test_no_change_of_a_message_breaks_more_than_itself(data):
     with company_of_three() as company:

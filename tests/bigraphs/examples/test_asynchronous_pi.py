@@ -7,8 +7,9 @@ all others, as the generator gives them out.
 from dataclasses import replace
 
 from exploring import explored
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from scale import examples
 
 from bigraphs.algebra import parallel, substitution
 from bigraphs.canonical import canonical
@@ -85,7 +86,7 @@ def processes(draw, depth=2, known=FREE, path="z"):
     return tuple(found)
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(processes())
 def test_a_process_reduces_as_its_own_semantics_says(start):
     assert explored(replace(SYSTEM, initial=encoded(start))) == reachable(start)

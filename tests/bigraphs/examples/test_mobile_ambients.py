@@ -6,8 +6,9 @@ A process is a sorted tuple of (kind, name, process): `amb` n[P], and the prefix
 from dataclasses import replace
 
 from exploring import explored
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from scale import examples
 
 from bigraphs.algebra import parallel, substitution
 from bigraphs.canonical import canonical
@@ -108,7 +109,7 @@ def same_reductions(start):
     return states == set(map(encoded, wanted)) and steps == {(encoded(a), encoded(b)) for a, b in between}
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(processes())
 def test_a_process_reduces_as_its_own_semantics_says(start):
     assert same_reductions(start)

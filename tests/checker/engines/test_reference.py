@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 from checked_missions import enumerate_naively, load, moves, start
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
+from scale import examples
 
 from checker import Limits, check, explore
 from checker.engines.choose import explore_by
@@ -44,7 +45,7 @@ def test_it_equals_a_naive_enumeration_and_its_depths_are_shortest(text):
     equals_naive_enumeration(monitored(c))
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(initial_configurations(monitored=None))
 def test_it_equals_a_naive_enumeration_of_generated_missions(c):
     assume(explore(c, limits=Limits(configurations=150)).complete)

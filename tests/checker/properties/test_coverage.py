@@ -2,8 +2,9 @@
 
 import pytest
 from checked_missions import SPARE, WORLD, load
-from hypothesis import given, reject, settings
+from hypothesis import given, reject
 from mission_texts import missions
+from scale import examples
 
 from checker import Engine, Limits, check, explore
 from checker.properties.coverage import Tally, coverage
@@ -172,7 +173,7 @@ def test_coverage_as_data_says_the_same():
     }
 
 
-@settings(max_examples=25, deadline=None)
+@examples(25)
 @given(missions())
 def test_every_engine_covers_the_same(text):
     limits = Limits(configurations=2_000)
@@ -181,7 +182,7 @@ def test_every_engine_covers_the_same(text):
     assert one == other
 
 
-@settings(max_examples=25, deadline=None)
+@examples(25)
 @given(missions())
 def test_coverage_agrees_with_the_steps_that_the_rules_take(text):
     """What a process notes while the rules run is what is computed again from projections."""

@@ -2,8 +2,9 @@
 
 import pytest
 from checked_missions import WORLD, load, moves, start, verdict
-from hypothesis import assume, event, given, reject, settings
+from hypothesis import assume, event, given, reject
 from mission_texts import missions
+from scale import examples
 
 from checker import Limits, explore, owned
 from checker.properties.races import ControlRaces, StaleObservationRaces
@@ -26,7 +27,7 @@ def races(c, most=1_500):
 # --- owned implies that the search finds nothing --------------------------------------------------------------
 
 
-@settings(max_examples=100)
+@examples(100)
 @given(missions())
 def test_what_is_owned_has_no_race(text):
     try:
@@ -39,7 +40,7 @@ def test_what_is_owned_has_no_race(text):
         assert races(c) in (set(), None)
 
 
-@settings(max_examples=30)
+@examples(30)
 @given(initial_configurations())
 def test_what_is_owned_among_generated_configurations_has_no_race(c):
     assume(len(c.alpha.names()) > 1)

@@ -5,9 +5,10 @@ from random import Random
 
 import pytest
 from checked_missions import WORLD, kinds, load, moves, rules_of, start, verdict, violation
-from hypothesis import event, given, reject, settings
+from hypothesis import event, given, reject
 from hypothesis import strategies as st
 from mission_texts import missions
+from scale import examples
 from stale_by_definition import Judge, companies, text_of
 
 from checker import Limits, explore
@@ -845,7 +846,7 @@ def test_what_a_mission_lets_the_monitor_forget_would_have_made_no_race(path):
     assert remembering_everything(c) in (None, first_races(c))
 
 
-@settings(max_examples=100)
+@examples(100)
 @given(
     st.one_of(
         missions(("bare", "tested", "looked")),
@@ -866,7 +867,7 @@ def test_what_the_monitor_forgets_would_have_made_no_race(text):
 # --- by definition --------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=300)
+@examples(300)
 @given(companies(), st.sampled_from(["atomic", "timed"]), st.integers(0, 1 << 32))
 def test_in_a_run_each_control_is_stale_that_is_so_by_definition_and_no_other(company, control, seed):
     first = WORLD.count("\n") + 1

@@ -10,8 +10,9 @@ from pathlib import Path
 
 import pytest
 from checked_missions import WORLD, checked, load, rules_of, verdict_of
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from scale import examples
 
 from checker import Engine, Outcome, Reduction, RefusedError, check, explore, replay, to_json
 from checker.properties.inspections import Reachability
@@ -268,7 +269,7 @@ def asked(invariant, reachable, claim):
         yield f'ltl "l": {written(claim)}'
 
 
-@settings(deadline=None, max_examples=150)
+@examples(150)
 @everything
 def test_verdicts_are_those_of_an_interpreter_that_forgets_nothing(block, invariant, reachable, claim):
     mission = mission_of(block, *asked(invariant, reachable, claim))
@@ -279,7 +280,7 @@ def test_verdicts_are_those_of_an_interpreter_that_forgets_nothing(block, invari
             assert replay(mission.initial, to_json(trace, "", "")) == trace
 
 
-@settings(deadline=None, max_examples=15)
+@examples(15)
 @everything
 def test_the_fast_explorer_and_reductions_say_the_same(block, invariant, reachable, claim):
     wanted = expected(block, invariant, reachable, claim)

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 from checked_missions import WORLD, load, start
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from mission_texts import missions
+from scale import crossed, examples
 from test_partial_order import CHANGED, NAMES, POR, SPAWNED, VARIATIONS, atoms_of
 
 from checker import Engine, Keeping, Limits, Outcome, check, explore
@@ -41,8 +42,7 @@ def outside_of(initial, formulas=(), most=60, count=5):
     return found
 
 
-@pytest.mark.parametrize("variation", VARIATIONS.values(), ids=VARIATIONS)
-@pytest.mark.parametrize("name", NAMES)
+@crossed(NAMES, VARIATIONS)
 def test_nothing_lies_outside_in_a_mission(name, variation):
     mission = load_mission(MISSIONS / f"{name}.mission", variation)
     formulas = [each.formula for each in mission.properties if each.kind in ("invariant", "reachable")]
@@ -55,13 +55,13 @@ GENERATED = strategies.initial_configurations(
 
 
 @given(GENERATED, st.data())
-@settings(max_examples=40)
+@examples(40)
 def test_nothing_lies_outside_in_generated_programs(initial, data):
     assert outside_of(initial, data.draw(st.lists(atoms_of(initial), max_size=2))) == set()
 
 
 @given(missions(), st.sampled_from(["", "scheduler unordered\n"]))
-@settings(max_examples=15)
+@examples(15)
 def test_nothing_lies_outside_in_generated_missions(text, scheduler):
     try:
         initial = load(text + scheduler).initial

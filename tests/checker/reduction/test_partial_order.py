@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 from checked_missions import load, start
 from everything_found import everything, stale_races
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from mission_texts import missions
+from scale import crossed, examples
 
 from checker import Engine, Limits, Outcome, Reduction, RefusedError, check, explore
 from checker.engines.fast import space
@@ -69,16 +70,23 @@ def outcomes(report):
 
 ENDLESS = ("nomad", "search_and_deploy")
 """Under `unordered` they ask again and again before they are served."""
+ORDERED = {name: each for name, each in VARIATIONS.items() if each.scheduler is Scheduler.PROGRAM_ORDER}
 
 
-@pytest.mark.parametrize("variation", VARIATIONS.values(), ids=VARIATIONS)
-@pytest.mark.parametrize("name", SMALL)
-def test_a_mission_has_the_same_findings(name, variation):
-    if name in ENDLESS and variation.scheduler is Scheduler.UNORDERED:
-        return
+def same_findings(name, variation):
     mission = load_mission(MISSIONS / f"{name}.mission", variation)
     formulas = [each.formula for each in mission.properties if each.kind in ("invariant", "reachable")]
-    assert compared(mission.initial, formulas) is not None
+    return compared(mission.initial, formulas) is not None
+
+
+@crossed([name for name in SMALL if name not in ENDLESS], VARIATIONS)
+def test_a_mission_has_the_same_findings(name, variation):
+    assert same_findings(name, variation)
+
+
+@crossed(ENDLESS, ORDERED)
+def test_a_mission_that_asks_again_and_again_has_the_same_findings(name, variation):
+    assert same_findings(name, variation)
 
 
 @pytest.mark.parametrize("name", SMALL)
@@ -122,8 +130,7 @@ def agreed(initial, formulas=(), most=600):
     return fast[2][0] < fast[2][1]
 
 
-@pytest.mark.parametrize("variation", VARIATIONS.values(), ids=VARIATIONS)
-@pytest.mark.parametrize("name", NAMES)
+@crossed(NAMES, VARIATIONS)
 def test_both_explorers_follow_the_same_steps_of_a_mission(name, variation):
     mission = load_mission(MISSIONS / f"{name}.mission", variation)
     formulas = [each.formula for each in mission.properties if each.kind in ("invariant", "reachable")]
@@ -174,14 +181,14 @@ def test_both_explorers_report_the_same(name):
     ),
     st.data(),
 )
-@settings(max_examples=60)
+@examples(60)
 def test_both_explorers_follow_the_same_steps_of_generated_programs(initial, data):
     agreed(initial, data.draw(st.lists(atoms_of(initial), max_size=2)), most=120)
     agreed(monitored(initial), most=120)
 
 
 @given(missions(), st.sampled_from(["", "scheduler unordered\n"]))
-@settings(max_examples=25)
+@examples(25)
 def test_both_explorers_follow_the_same_steps_of_generated_missions(text, scheduler):
     with suppress(MissionError):
         agreed(load(text + scheduler).initial, [Inside("uav0", "gate0", actually=True), Ended("a")], most=200)
@@ -208,13 +215,13 @@ def atoms_of(initial):
     ),
     st.data(),
 )
-@settings(max_examples=40)
+@examples(40)
 def test_generated_programs_have_the_same_findings(initial, data):
     compared(initial, data.draw(st.lists(atoms_of(initial), max_size=2)), most=300)
 
 
 @given(missions(), st.sampled_from(["", "scheduler unordered\n"]))
-@settings(max_examples=20)
+@examples(20)
 def test_generated_missions_have_the_same_findings(text, scheduler):
     with suppress(MissionError):  # some are found wrong before they are run
         formulas = [Inside("uav0", "gate0", actually=True), Ended("a")]

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 from checked_missions import load
 from everything_found import everything
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from scale import examples
 
 from checker import Engine, Keeping, Limits, Reduction, RefusedError, check, explore
 from checker.reduction import Reduced
@@ -297,7 +298,7 @@ def swarms(draw):
 
 
 @given(swarms())
-@settings(max_examples=12)
+@examples(12)
 def test_generated_swarms_are_equivariant_and_found_alike(text):
     initial = load(text, "").initial
     symmetry = Symmetry(initial)

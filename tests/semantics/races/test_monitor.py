@@ -1,6 +1,7 @@
 """Stale-observation races: what a control rests on, and what others have changed in it."""
 
-from hypothesis import given, settings
+from hypothesis import given
+from scale import examples
 from small_missions import around, explore, is_in, mission, move_to, of_name, received, run
 
 from semantics import strategies
@@ -197,7 +198,7 @@ def test_an_agent_may_be_called_queue():
     assert {each.unmonitored() for each in explore(c).configurations} == set(explore(still).configurations)
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(strategies.initial_configurations())
 def test_monitoring_changes_no_configuration(c):
     plain, watched = reach(c, 120), reach(monitored(c), 120)

@@ -1,7 +1,8 @@
 import pytest
 from big_strategies import expressions, models, values
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from scale import examples
 
 from bigraphs.errors import NotationError
 from bigraphs.notation.big.parser import parse_expression, parse_model
@@ -23,7 +24,7 @@ def test_values_are_read_back_as_written(expression):
     assert value(format_value(expression)) == expression
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(models)
 def test_files_are_read_back_as_written(model):
     assert parse_model(format_model(model)) == model

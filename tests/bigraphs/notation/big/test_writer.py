@@ -1,7 +1,8 @@
 from dataclasses import replace
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
+from scale import examples
 from system_strategies import canonical_system, systems
 
 from bigraphs.errors import BigraphError
@@ -26,7 +27,7 @@ end
 """
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(systems())
 def test_a_system_is_read_back_as_written(system):
     assert canonical_system(read_system(write_system(system))) == canonical_system(system)

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from local_crew import LocalCrew
+from scale import examples
 
 from checker import CheckpointError, Engine, Keeping, Limits, MachineError, explore
 from checker.engines.archive import read_archive, write_archive
@@ -96,7 +97,7 @@ def test_each_configuration_is_one_step_behind_the_one_that_it_was_reached_from(
 
 
 @given(strategies.initial_configurations())
-@settings(max_examples=25)
+@examples(25)
 def test_workers_visit_of_generated_missions_what_one_process_visits(initial):
     limits = Limits(configurations=60)
     one, other = inspections(), inspections()

@@ -3,7 +3,8 @@
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
+from scale import crossed, examples
 
 from checker import Engine, Limits, check, explore
 from checker.properties.temporal.decide import kept_graph
@@ -54,8 +55,7 @@ def explored(initial, engine, limits=FEW):
     return (*visited, found.transitions, found.rules, found.bounds)
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("variation", VARIATIONS.values(), ids=VARIATIONS)
+@crossed(NAMES, VARIATIONS)
 def test_a_mission_is_explored_alike_by_both_engines(name, variation):
     initial = load_mission(MISSIONS / f"{name}.mission", variation).initial
     assert explored(initial, Engine.FAST) == explored(initial, Engine.REFERENCE)
@@ -68,14 +68,13 @@ def test_a_monitored_mission_is_explored_alike_by_both_engines(name):
 
 
 @given(strategies.initial_configurations())
-@settings(max_examples=100)
+@examples(100)
 def test_generated_missions_are_explored_alike_by_both_engines(initial):
     limits = Limits(configurations=60)
     assert explored(initial, Engine.FAST, limits) == explored(initial, Engine.REFERENCE, limits)
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("variation", VARIATIONS.values(), ids=VARIATIONS)
+@crossed(NAMES, VARIATIONS)
 def test_both_engines_come_to_the_same_report(name, variation):
     mission = load_mission(MISSIONS / f"{name}.mission", variation)
     reports = [check(mission.initial, mission.properties, FEW, engine=engine) for engine in ENGINES]
@@ -91,7 +90,7 @@ def test_both_engines_examine_as_much_where_too_much_is_pending(name):
 
 
 @given(strategies.initial_configurations())
-@settings(max_examples=60)
+@examples(60)
 def test_generated_missions_are_judged_alike_by_both_engines(initial):
     kinds = asked_by(Asked.BY_DEFAULT, Asked.BY_NAME, Asked.ALWAYS)
     properties = [Property(kind, kind) for kind in kinds]

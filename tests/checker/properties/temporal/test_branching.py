@@ -1,7 +1,8 @@
 """Branching time: fixpoints on arrays beside fixpoints on sets."""
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from scale import examples
 from structures import Sets, Unrolled, branching, conditions, fairnesses, is_fair, is_run, truths
 
 from checker.properties.temporal.branching import Branching
@@ -10,14 +11,14 @@ from semantics.properties.temporal import OnAllPaths, OnSomePath, parts
 declarations = st.lists(fairnesses, max_size=3)
 
 
-@settings(max_examples=300)
+@examples(300)
 @given(truths(), branching, declarations)
 def test_a_formula_is_true_where_the_definitions_say_so(truth, formula, declared):
     found = Branching(truth.graph, truth, conditions(truth, declared)).where(formula)
     assert set(found.nonzero()[0].tolist()) == Sets(truth, declared).where(formula)
 
 
-@settings(max_examples=300)
+@examples(300)
 @given(truths(), branching, declarations)
 def test_evidence_is_a_fair_run_and_fulfils_the_formula_if_that_is_about_one_path(truth, formula, declared):
     checked = Branching(truth.graph, truth, conditions(truth, declared))

@@ -1,7 +1,8 @@
 """Linear time: the automata and the search beside runs that are enumerated and evaluated by the definitions."""
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from scale import examples
 from structures import (
     STEPS,
     P,
@@ -60,19 +61,19 @@ def decided_as_by_enumeration(truth, formula, declared):
         assert not is_true_on(found, formula, truth)
 
 
-@settings(max_examples=200)
+@examples(200)
 @given(truths(), linear, st.lists(fairnesses, max_size=3))
 def test_a_formula_is_violated_if_a_fair_run_violates_it(truth, formula, declared):
     decided_as_by_enumeration(truth, formula, declared)
 
 
-@settings(max_examples=200)
+@examples(200)
 @given(truths(), st.sampled_from(RECURRENCES), st.lists(fairnesses, min_size=1, max_size=3))
 def test_what_recurs_is_violated_if_a_fair_run_violates_it(truth, formula, declared):
     decided_as_by_enumeration(truth, formula, declared)
 
 
-@settings(max_examples=150)
+@examples(150)
 @given(truths(most=3), linear)
 def test_after_a_run_without_a_loop_the_formula_is_false_whatever_follows(truth, formula):
     found = counterexample(truth.graph, truth, formula, conditions(truth, []))
@@ -82,7 +83,7 @@ def test_after_a_run_without_a_loop_the_formula_is_false_whatever_follows(truth,
             assert not Unrolled(truth, before, loop).holds(formula)
 
 
-@settings(max_examples=150)
+@examples(150)
 @given(truths(most=3), linear)
 def test_the_two_evaluations_of_a_run_agree(truth, formula):
     for stem, loop in lassos(truth.graph, 4):

@@ -4,8 +4,9 @@ from dataclasses import replace
 from random import Random
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from scale import examples
 from structures import (
     Unrolled,
     branching,
@@ -38,7 +39,7 @@ def cut_truths(draw):
     return truth, replace(truth, graph=cut.total(), known={})
 
 
-@settings(max_examples=300)
+@examples(300)
 @given(cut_truths(), linear, declarations)
 def test_a_run_found_in_a_part_violates_the_formula_in_the_whole(truths, formula, declared):
     whole, part = truths
@@ -52,7 +53,7 @@ def test_a_run_found_in_a_part_violates_the_formula_in_the_whole(truths, formula
         assert not Unrolled(whole, stem, loop).holds(formula)
 
 
-@settings(max_examples=300)
+@examples(300)
 @given(cut_truths(), branching, declarations)
 def test_what_is_sure_of_a_part_is_true_of_the_whole_and_what_is_true_may_be(truths, formula, declared):
     whole, part = truths
@@ -62,7 +63,7 @@ def test_what_is_sure_of_a_part_is_true_of_the_whole_and_what_is_true_may_be(tru
     assert not (true & ~seen.where(formula, perhaps=True)).any()
 
 
-@settings(max_examples=200)
+@examples(200)
 @given(cut_truths(), branching, declarations)
 def test_evidence_of_what_is_sure_is_a_fair_run_of_the_whole(truths, formula, declared):
     whole, part = truths

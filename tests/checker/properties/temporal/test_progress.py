@@ -5,8 +5,9 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from scale import examples
 
 from checker import Limits, explore
 from checker.properties.temporal.decide import Decider
@@ -37,7 +38,7 @@ EXTRA = st.lists(
 )
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(initial_configurations(monitored=False), EXTRA)
 def test_a_request_is_starved_where_linear_time_says_so(c, extra):
     found = explore(c, limits=Limits(configurations=400), edges=True)

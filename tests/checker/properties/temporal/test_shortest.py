@@ -5,8 +5,9 @@ from itertools import pairwise
 from random import Random
 
 import numpy as np
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from scale import examples
 from structures import (
     STEPS,
     P,
@@ -64,7 +65,7 @@ def violates(truth, formula, declared, stem, loop):
     return is_fair(truth, loop, declared) and not Unrolled(truth, stem, loop).holds(formula)
 
 
-@settings(max_examples=250)
+@examples(250)
 @given(truths(5), formulas, st.lists(fairnesses, max_size=3))
 def test_no_lasso_that_violates_a_formula_is_shorter_than_one_said_to_be_shortest(truth, formula, declared):
     found = shortest_counterexample(truth.graph, truth, formula, conditions(truth, declared))
@@ -76,7 +77,7 @@ def test_no_lasso_that_violates_a_formula_is_shorter_than_one_said_to_be_shortes
     assert not any(violates(truth, formula, declared, *each) for each in shorter)
 
 
-@settings(max_examples=200)
+@examples(200)
 @given(truths(5), st.lists(fairnesses, max_size=3))
 def test_no_fair_lasso_through_some_configurations_is_shorter(truth, declared):
     tree = Branching(truth.graph, truth, conditions(truth, declared))

@@ -4,8 +4,9 @@ from dataclasses import fields, replace
 
 import pytest
 from checked_missions import load
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from scale import examples
 from structures import (
     P,
     Q,
@@ -55,7 +56,7 @@ def told(formula, holds):
     return {part.paths[0] for _, part in unneeded(formula, {}, holds)}
 
 
-@settings(max_examples=120)
+@examples(120)
 @given(truths(3), branching, st.lists(fairnesses, max_size=2))
 def test_a_part_is_never_needed_if_anything_may_stand_there_in_branching_time(truth, formula, declared):
     naive = Sets(truth, declared)
@@ -72,7 +73,7 @@ def test_a_part_is_never_needed_if_anything_may_stand_there_in_branching_time(tr
     assert all(any(path[: len(one)] == one for one in found) for path in leaves)
 
 
-@settings(max_examples=120)
+@examples(120)
 @given(truths(3), linear, st.lists(fairnesses, max_size=2))
 def test_no_run_violates_a_formula_in_which_anything_stands_for_a_part_that_is_never_needed(
     truth, formula, declared
