@@ -50,6 +50,7 @@ def test_what_is_not_there_is_told():
 
 
 OWN = {
+    "bigactors/__init__.py",
     "bigactors/docs.py",
     "bigactors/pages/trace_page.py",
     "bigraphs/examples/__init__.py",
