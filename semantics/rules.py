@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from semantics.behaviours.computation import compute, enter_case
 from semantics.behaviours.expressions import evaluated, name_in, query_of
 from semantics.behaviours.queries import answers, overlay, resolve
-from semantics.behaviours.reaction_rules import Reaction
+from semantics.behaviours.reaction_rules import Reaction, in_flight
 from semantics.behaviours.statements import ControlBy, Observe, React, at_internal
 from semantics.behaviours.stepping import continuing, next_statement, process_of, resting_on
 from semantics.control import Realisation, commits, realisations
@@ -149,10 +149,11 @@ def command(c: Configuration, a: Name) -> Iterator[Transition]:
     for pending in c.eta.in_line(a):
         if not isinstance(pending.request, CTR):  # premise: CTR(a, R ⇒ R′) ∈ η, in line
             continue
+        reaction = pending.request.reaction
         for found in realisations(c, pending.request):  # the other premises: as actuate
             if not found.flying or found.waits(c):  # premise: not in transit
                 continue
-            fly = FLY(a, pending.request.reaction, found.match)
+            fly = FLY(a, reaction, in_flight(reaction, found.match))
             target = c.with_(found.departing(c), c.eta.replacing(pending, fly))
             yield Transition(Label("command", a, pending.request), target, served=pending)
 

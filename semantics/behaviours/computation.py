@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from semantics.behaviours.expressions import Expression, Fault, Scope, evaluated, truth
+from semantics.behaviours.expressions import Expression, Fault, Scope, evaluated, members_asked, truth
 from semantics.behaviours.observations import Observation
 from semantics.behaviours.patterns import bind
 from semantics.behaviours.program import Behaviour, Program
@@ -32,7 +32,7 @@ from semantics.behaviours.statements import (
     While,
 )
 from semantics.behaviours.values import Value, in_order, show
-from semantics.races.provenance import EVERYTHING, NOTHING, Provenance, asking, deciding
+from semantics.races.provenance import NOTHING, Provenance, asking, deciding
 from semantics.state.agents import Code, Store
 
 MOST_STEPS: Final = 10_000
@@ -118,9 +118,9 @@ class Process:
         return evaluated(expression, self.scope)
 
     def members(self, expression: Expression) -> tuple[tuple[Value, ...], Provenance]:
-        """Return what to go through, with what it rests on: of an observation, everything that it showed."""
+        """Return what to go through, with what it rests on: of an observation, which names it showed."""
         value, rests_on = self.evaluate(expression)
-        return members_of(value), asking(rests_on, (EVERYTHING,))
+        return members_of(value), asking(rests_on, members_asked(value))
 
     def variables(self) -> tuple[Store, tuple[Provenance, ...]]:
         """Return the variables that what is left may read or that are watched, sorted, with what each rests on.

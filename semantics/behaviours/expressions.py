@@ -2,11 +2,12 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from semantics.behaviours.observations import All, Nodes, Observation, Of, Query, QueryOperator
 from semantics.behaviours.values import LARGEST_NUMBER, MOST_PARTS, Truth, Value, in_order, parts, show
-from semantics.races.provenance import EVERYTHING, NOTHING, Key, Provenance, asking
+from semantics.races.provenance import ANY, EVERYTHING, MEMBERS, NOTHING, SIZE, Key, Provenance, asking
 from semantics.state.signature import Name
 
 
@@ -306,6 +307,31 @@ def _linked(_: Scope, a: Value, b: Value, seen: Value) -> Value:
     return Truth.of(bool(observation.links(str(a)) & observation.links(str(b))))
 
 
+def members_asked(*values: Value, key: Key = MEMBERS) -> tuple[Key, ...]:
+    """Return what is asked where only the members of values matter: of an observation inside another value, everything.
+
+    `ANY` stands for a value that is not known yet: either may be asked.
+    """
+    return _asked(key, ANY in values, any(map(_holds_observation, values)))
+
+
+def _in_asked(name: Value, _: Value) -> tuple[Key, ...]:
+    """Return what `in` asks: to find an observation in a set compares it with all that others say."""
+    return _asked(("in", str(name)), name == ANY, _holds_observation((name,)))
+
+
+def _asked(key: Key, either: bool, everything: bool) -> tuple[Key, ...]:
+    if either:
+        return (key, EVERYTHING)
+    return (EVERYTHING,) if everything else (key,)
+
+
+def _holds_observation(value: Value) -> bool:
+    """Tell whether an observation is among the parts of a tuple or a set."""
+    inside = value if isinstance(value, tuple | frozenset) else ()
+    return any(isinstance(part, Observation) or _holds_observation(part) for part in inside)
+
+
 def _keys(*kinds: str) -> Callable[..., tuple[Key, ...]]:
     return lambda *values: tuple((kind, str(value)) for kind, value in zip(kinds, values, strict=False))
 
@@ -315,7 +341,7 @@ OPERATORS: Mapping[str, Operator] = {
         2,
         "whether a name is in a set or was shown in an observation",
         lambda _, x, y: Truth.of(x in (y if isinstance(y, Observation) else _members(y))),
-        _keys("in"),
+        _in_asked,
     ),
     "==": Operator(
         2, "whether two values are the same", lambda _, x, y: Truth.of(type(x) is type(y) and x == y)
@@ -327,26 +353,45 @@ OPERATORS: Mapping[str, Operator] = {
     "<=": Operator(2, "whether a number is at most another", _compare(lambda a, b: a <= b)),
     ">": Operator(2, "whether a number is more than another", _compare(lambda a, b: a > b)),
     ">=": Operator(2, "whether a number is at least another", _compare(lambda a, b: a >= b)),
-    "+": Operator(2, "the sum of two numbers, the union of two sets", _add),
-    "-": Operator(2, "the difference of two numbers or sets", _subtract),
+    "+": Operator(2, "the sum of two numbers, the union of two sets", _add, members_asked),
+    "-": Operator(2, "the difference of two numbers or sets", _subtract, members_asked),
     "not": Operator(1, "the contrary of a truth value", lambda _, x: Truth.of(not truth(x))),
-    "of": Operator(2, "the members of a kind", _of_kind),
-    "union": Operator(2, "the members of either set", lambda _, a, b: _members(a) | _members(b)),
+    "of": Operator(2, "the members of a kind", _of_kind, members_asked),
+    "union": Operator(
+        2, "the members of either set", lambda _, a, b: _members(a) | _members(b), members_asked
+    ),
     "minus": Operator(
         2,
         "the members of the first set that are not in the second",
         lambda _, a, b: _members(a) - _members(b),
+        members_asked,
     ),
-    "intersect": Operator(2, "the members of both sets", lambda _, a, b: _members(a) & _members(b)),
-    "size": Operator(1, "how many members a set or an observation has", lambda _, a: len(_members(a))),
+    "intersect": Operator(
+        2, "the members of both sets", lambda _, a, b: _members(a) & _members(b), members_asked
+    ),
+    "size": Operator(
+        1,
+        "how many members a set or an observation has",
+        lambda _, a: len(_members(a)),
+        partial(members_asked, key=SIZE),
+    ),
     "empty": Operator(
-        1, "whether a set or an observation has no member", lambda _, a: Truth.of(not _members(a))
+        1,
+        "whether a set or an observation has no member",
+        lambda _, a: Truth.of(not _members(a)),
+        members_asked,
     ),
     "nodes": Operator(
-        1, "the nodes that an observation shows, as a set", lambda _, a: frozenset(_seen(a).shown)
+        1,
+        "the nodes that an observation shows, as a set",
+        lambda _, a: frozenset(_seen(a).shown),
+        members_asked,
     ),
     "agents": Operator(
-        1, "the agents that an observation shows, as a set", lambda _, a: frozenset(_seen(a).agents)
+        1,
+        "the agents that an observation shows, as a set",
+        lambda _, a: frozenset(_seen(a).agents),
+        members_asked,
     ),
     "kind": Operator(1, "the kind of an entity, as a text", lambda scope, a: scope.kinds[str(a)]),
     "parent": Operator(
@@ -364,7 +409,7 @@ OPERATORS: Mapping[str, Operator] = {
     "linked": Operator(
         3, "whether an observation saw two nodes on one link", _linked, _keys("links", "links")
     ),
-    "first": Operator(1, "the first member of a set, in the order of names", _first),
+    "first": Operator(1, "the first member of a set, in the order of names", _first, members_asked),
     "element": Operator(2, "one element of a tuple, counted from 0", _element),
 }
 

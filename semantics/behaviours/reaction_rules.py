@@ -163,6 +163,17 @@ def moved(reaction: Reaction, match: Match) -> tuple[tuple[Name, Name], ...]:
     return tuple((node, place) for node, place in after if before.get(node) != place)
 
 
+def in_flight(reaction: Reaction, match: Match) -> Match:
+    """Return what `commit` still asks of a match: a place where only what moves was is forgotten, as if unknown.
+
+    Wherever that is by then, it is put for where it was; and nothing moves to the region.
+    """
+    redex, gone = reaction.redex, {node for node, _ in moved(reaction, match)}
+    places = [place for side in (redex, reaction.reactum) for _, place in side.parents]
+    left = (place for node, place in redex.parents if match[node] in gone and places.count(place) == 1)
+    return match.rebound({place: REGION for place in left if isinstance(place, PlaceVariable)})
+
+
 def relinked(
     reaction: Reaction, match: Match, model: LogicalModel
 ) -> tuple[tuple[Name, frozenset[Name], frozenset[Name]], ...]:

@@ -13,7 +13,9 @@ from semantics.behaviours.queries import answers, denoted
 from semantics.races.provenance import (
     ANY,
     EVERYTHING,
+    MEMBERS,
     NOTHING,
+    SIZE,
     SLOT,
     Dependency,
     Key,
@@ -138,7 +140,7 @@ def _turns_on(steps: Steps, names: tuple[Name, ...]) -> bool:
 def _answers_about(names: tuple[Name, ...]) -> Questions:
     """Return the answers to a query that may differ where only what it says of these entities does."""
     answers_to = {(kind, name) for kind in ("in", "parent", "links") for name in names}
-    return frozenset(answers_to | {("children", ANY), EVERYTHING})
+    return frozenset(answers_to | {("children", ANY), MEMBERS, SIZE, EVERYTHING})
 
 
 def touched(before: Configuration, after: Configuration) -> tuple[Name, ...]:

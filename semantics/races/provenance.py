@@ -18,6 +18,11 @@ SLOT = "slot "
 EVERYTHING: Key = ("all",)
 """The question whose answer is the whole observation."""
 
+MEMBERS: Key = ("members",)
+"""The question which names the observation shows, wherever and on whichever links they were seen."""
+
+SIZE: Key = ("size",)
+"""The question how many they are."""
 
 ANY: Name = "*"
 """Stands, in a key or among agents, for every name."""
@@ -124,13 +129,17 @@ def differences(
     everywhere = names is None or before.swept != after.swept
     about = {name for name, _ in (*before.facts, *after.facts)} if everywhere else frozenset(names or ())
     keys: set[Key] = set()
+    gained = 0
     for name in sorted(about):
         old, new = before.fact(name), after.fact(name)
         if old.shown != new.shown:
-            keys.add(("in", name.removeprefix(AGENT)))
+            keys |= {("in", name.removeprefix(AGENT)), MEMBERS}
+            gained += 1 if new.shown else -1
         if old.parent != new.parent:
             places = {place for place in (old.parent, new.parent) if place is not None}
             keys |= {("parent", name), *(("children", place) for place in places)}
         if old.links != new.links:
             keys.add(("links", name))
+    if gained:
+        keys.add(SIZE)
     return frozenset(keys | {EVERYTHING}) if keys or before.swept != after.swept else frozenset()

@@ -22,6 +22,7 @@ from semantics.behaviours.expressions import (
     SetOf,
     TupleOf,
     free,
+    members_asked,
     reads_host,
 )
 from semantics.behaviours.patterns import variables
@@ -43,7 +44,7 @@ from semantics.behaviours.statements import (
     Spawn,
     Statement,
 )
-from semantics.races.provenance import ANY, EVERYTHING, SLOT, Key
+from semantics.races.provenance import ANY, SLOT, Key
 from semantics.state.agents import Code
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Setting
@@ -217,7 +218,7 @@ def questions_in(setting: Setting, reach: frozenset[int], hosts: Names) -> Quest
         for expression in expressions_of(statement):
             found.update(_asked(expression))
         if isinstance(statement, For | ChooseFrom) and free(statement.members):
-            found.add(EVERYTHING)
+            found.update(members_asked(ANY))
         if isinstance(statement, ControlBy):
             found |= _slots(setting, statement, hosts)
     return frozenset(found)

@@ -339,6 +339,26 @@ def test_commit_makes_the_reactum_true():
     assert after.eta.all() == ()
 
 
+def test_a_flight_forgets_where_it_was_believed_to_set_out():
+    believed = [Beliefs(), Beliefs(parents={"u0": REGION})]
+    flights = [
+        run(commanding(move_to("area"), beliefs=each), "command").eta.all()[0].request for each in believed
+    ]
+    assert flights[0] == flights[1]
+
+
+def test_a_flight_remembers_a_place_of_which_the_reaction_says_more():
+    x = PlaceVariable("x")
+    beside = Reaction(
+        "beside",
+        Pattern(("u0", "u1", "area"), (("u0", x), ("u1", x))),
+        Pattern(("u0", "u1", "area"), (("u0", "area"), ("u1", x))),
+    )
+    c = mission(("base", "area", "u0", "u1"), (), {"a": ("u0", ())}, **TIMED)
+    c = run(c.with_({("line", "a"): (CTR("a", beside),)}), "command")
+    assert c.eta.all()[0].request.match[x] == "base"
+
+
 def test_commit_requires_a_flight_in_line():
     c = run(commanding(move_to("area")), "command")
     fly = c.eta.all()[0].request

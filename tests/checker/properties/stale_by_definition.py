@@ -2,7 +2,7 @@
 
 A run is kept whole: the world before and after each step, who took it, and what each line of the text had asked, tested
 and sent. Nothing is forgotten and nothing is merged. Missions are of lines that stand for themselves, so that what a
-control depends on is read off the lines; tests are of the form `name in o`.
+control depends on is read off the lines; tests are of the form `name in o` or `size(o) < 3`.
 """
 
 from dataclasses import dataclass, field, replace
@@ -14,15 +14,21 @@ from semantics.state.requests import CTR, FLY
 
 HOSTS = {"a": "uav0", "b": "uav1", "c": "uav0", "d": "gcs0"}
 DRIVERS = tuple(f"control(MOVE_HOST_TO {place})" for place in ("gate0", "gate0", "north0", "south0"))
-MOVES = dict.fromkeys("abc", DRIVERS) | {"d": ("control(MOVE uav0 TO gate0)", "control(MOVE uav0 TO south0)")}
+PILOTS = tuple(
+    f"control({each})" for each in ("MOVE uav0 TO gate0", "MOVE uav0 TO south0", "HAND uav0 TO gcs1")
+)
+MOVES = dict.fromkeys("abc", DRIVERS) | {"d": PILOTS}
 QUERIES = (
     "CHILDREN(gate0)",
     "CHILDREN(PARENT(HOST))",
     "CHILDREN(PARENT(uav1))",
     "PARENT(uav1)",
     "LINKED_TO(uav0)",
+    "LINKED_TO(uav1)",
 )
-NAMES = ("uav0", "uav0", "uav1", "uav1", "vessel0", "gate0")
+NAMES = ("uav0", "uav0", "uav1", "uav1", "vessel0", "gate0", "", "")
+"""Whom a line asks for; empty where it asks how many there are."""
+
 TELLING = ("tested", "told", "reported", "reported")
 WAYS = (*TELLING, "bare", "woken", "heard", "trusted", "trusted", "relayed", "relayed")
 """How an agent comes to a control, or lets another know; the first tells most."""
@@ -41,7 +47,7 @@ class Line:
     to: str = ""
 
     def text(self, number: int) -> str:
-        test = f"{self.name} in o"
+        test = f"{self.name} in o" if self.name else "size(o) < 3"
         match self.way:
             case "bare":
                 return self.control
@@ -124,14 +130,14 @@ class World:
 
 @dataclass(frozen=True)
 class Test:
-    """`name in o`, of an observation.
+    """`name in o`, or `size(o)`, of an observation.
 
     Attributes:
         at: When it was sensed.
         operator: The outermost operator of its query.
         around: Whose parent it was applied to, if it was.
         node: What it was applied to otherwise.
-        name: The name asked for.
+        name: The name asked for; empty where the number is.
         holders: Who held it from when on.
         by_value: Of each time that it was handed on, whether as what a value was computed from.
     """
@@ -167,14 +173,18 @@ class Test:
         rank = max(rank for rank, (since, _) in enumerate(self.holders) if since <= change.time)
         return list(zip([who for _, who in self.holders], (*self.by_value, False), strict=True))[rank:]
 
-    def answer(self, world: World, node: str) -> bool:
+    def answer(self, world: World, node: str) -> int:
+        asked = [self.name] if self.name else sorted(world.parents)
+        return sum(self.shows(name, world, node) for name in asked)
+
+    def shows(self, name: str, world: World, node: str) -> bool:
         match self.operator:
             case "CHILDREN":
-                return self.name == node or world.parents.get(self.name) == node
+                return name == node or world.parents.get(name) == node
             case "PARENT":
-                return world.parents.get(node) == self.name
+                return world.parents.get(node) == name
             case _:
-                return self.name == node or bool(world.links[node] & world.links.get(self.name, frozenset()))
+                return name == node or bool(world.links[node] & world.links.get(name, frozenset()))
 
 
 @dataclass(frozen=True)
@@ -305,8 +315,9 @@ def differs(change: Change, slot: tuple[str, str]) -> bool:
 
 
 def slots_of(reaction: str, host: str) -> frozenset[tuple[str, str]]:
-    """Return the slots that a move uses: where what is moved is, and on which links it and its station are."""
+    """Return the slots that a control uses: where what is moved is, and on which links it and its stations are."""
     words = reaction.split()
     if words[0] == "MOVE_HOST_TO":
         return frozenset({("parent", host)})
-    return frozenset({("parent", words[1]), ("links", words[1]), ("links", host)})
+    links = frozenset({("links", words[1]), ("links", host)})
+    return links | {("links", words[3]) if words[0] == "HAND" else ("parent", words[1])}

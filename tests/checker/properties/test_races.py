@@ -19,7 +19,7 @@ from semantics import extension
 from semantics.behaviours import stepping
 from semantics.races import monitor
 from semantics.races.monitor import monitored
-from semantics.races.provenance import ANY, EVERYTHING
+from semantics.races.provenance import ANY, EVERYTHING, MEMBERS, SIZE
 from semantics.races.relevance import SLOTS
 from semantics.successors import expand
 from specs import MissionError
@@ -304,6 +304,54 @@ def test_a_relation_that_the_redex_uses_may_not_have_been_changed_by_another_sin
     assert stale(text) == {"a"}
     message = violation(verdict(text, "race_freedom"), STALE).message
     assert message.endswith("another agent has changed a relation that it uses since it was sensed")
+
+
+HANDS_OVER = "BigActor b hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }\n"
+"""Changes on which links `LINKED_TO(uav1)` shows uav0, and not whom it shows: all are on one mesh."""
+
+GOES_OFF = "BigActor b hosted_at vessel0 with_behavior { control(DISCONNECT_HOST_FROM uav1) }\n"
+
+
+def looks_around(test):
+    return f"""
+    BigActor a hosted_at uav1 with_behavior {{
+      observe(LINKED_TO(uav1))
+      react {{ case obs => {test} {{ control(MOVE_HOST_TO gate0) }} }}
+    }}
+    """
+
+
+OF_MEMBERS = {
+    "their number": "if size(obs) < 9",
+    "their lack": "if not empty(obs)",
+    "their kind": "if not empty(obs of Vessel)",
+    "the nodes": "if not empty(nodes(obs))",
+    "a difference": "if not empty(obs - {gcs0})",
+    "a union": "if size({gcs0} + obs) < 9",
+    "the first": "if first(obs) == gcs1",
+    "each": "for x in obs",
+    "one": "choose x in obs",
+}
+
+
+@pytest.mark.parametrize("test", OF_MEMBERS.values(), ids=OF_MEMBERS)
+def test_on_which_links_something_was_seen_does_not_matter_where_only_the_members_are_asked(test):
+    assert stale(looks_around(test) + HANDS_OVER) == set()
+    assert stale(looks_around(test) + GOES_OFF) == {"a"}
+
+
+OF_ALL = ("obs == obs", "obs != 0", "size({obs, 1}) == 2", "obs in {obs}", "element((obs, 1), 1) == 1")
+
+
+def test_a_number_of_members_that_stays_the_same_is_the_same_answer():
+    swaps = "BigActor b hosted_at gcs1 with_behavior { control(HAND uav1 TO gcs2) }\n"
+    assert stale(looks_around("if size(obs) == 4") + swaps) == set()
+    assert stale(looks_around("if size(obs - {vessel0}) == 3") + swaps) == {"a"}
+
+
+@pytest.mark.parametrize("test", OF_ALL)
+def test_who_asks_of_a_whole_observation_or_of_one_in_a_set_rests_on_all_that_it_says(test):
+    assert stale(looks_around(f"if {test}") + HANDS_OVER) == {"a"}
 
 
 def test_after_a_fresh_observation_there_is_no_race():
@@ -803,7 +851,9 @@ def test_what_comes_after_rests_on(text):
 
 # --- what is forgotten ----------------------------------------------------------------------------------------
 
-EVERY = frozenset({(kind, ANY) for kind in ("in", "parent", "children", "links")} | SLOTS | {EVERYTHING})
+EVERY = frozenset(
+    {(kind, ANY) for kind in ("in", "parent", "children", "links")} | SLOTS | {MEMBERS, SIZE, EVERYTHING}
+)
 
 
 class All:

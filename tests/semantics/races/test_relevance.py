@@ -7,7 +7,7 @@ from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Apply, Literal, QueryOf, TupleOf, Variable
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import Assign, ControlBy, For, ForEach, If, Migrate, Observe, Send, Spawn
-from semantics.races.provenance import ANY, EVERYTHING
+from semantics.races.provenance import ANY, EVERYTHING, MEMBERS, SIZE
 from semantics.races.relevance import (
     HEARD,
     SLOTS,
@@ -49,9 +49,16 @@ def test_a_name_that_is_computed_may_be_any():
     assert asked(statements, (0,)) == {("parent", ANY)}
 
 
-def test_going_through_an_observation_asks_for_all_of_it():
+def test_what_is_not_known_yet_may_be_an_observation_or_hold_one():
+    number = Assign("n", Apply("size", (Variable("o"),)))
+    found = Assign("x", Apply("in", (Variable("p"), Variable("o"))))
+    assert asked((number,), (0,)) == {SIZE, EVERYTHING}
+    assert asked((found,), (0,)) == {("in", ANY), EVERYTHING}
+
+
+def test_going_through_an_observation_asks_who_its_members_are_or_for_all_of_one_among_them():
     statements = (For(Variable("o"), "rest", 1), ForEach("x", "rest", (2,)), move_to("area"))
-    assert EVERYTHING in asked(statements, (0,))
+    assert {MEMBERS, EVERYTHING} <= asked(statements, (0,))
 
 
 def test_a_control_may_use_the_slots_of_every_place_that_its_argument_may_name():
