@@ -25,7 +25,7 @@ live-demo: $(STAMP)  ## fly a verified mission with a simulated plane and a repl
 test fuzz: export PYTHONDONTWRITEBYTECODE =
 
 test: lint types $(STAMP)  ## everything that must hold; of the long tests a part (tests/scale.py)
-	$(BIN)/python -m pytest -n 2 --dist worksteal -q
+	$(BIN)/python -m pytest -n 3 --dist worksteal -q
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
