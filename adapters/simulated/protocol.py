@@ -26,6 +26,9 @@ FARTHEST: Final = 50_000.0
 CHANGE_MODE: Final = 1
 """MAV_DO_REPOSITION_FLAGS: into guided mode from any other."""
 
+FLAGS: Final = 0xFFFF
+"""The largest set of flags that is taken; NaN is none."""
+
 HIGHEST: Final = 10_000.0
 LARGEST: Final = 1e6
 LONGEST: Final = 3.6e9
@@ -149,11 +152,11 @@ def _reposition(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Resu
     if message.name != "COMMAND_INT" or not vehicle.armed:
         return Result.DENIED
     latitude, longitude = message["x"] / 1e7, message["y"] / 1e7
-    height, circle = message["z"], message["param3"] or vehicle.circle
+    height, flags, circle = message["z"], message["param2"], message["param3"] or vehicle.circle
     far = metres_to(vehicle.body, latitude, longitude)[0] > FARTHEST
-    if far or not abs(height) <= HIGHEST or not 0 < circle <= FARTHEST:
+    if far or not abs(height) <= HIGHEST or not 0 < circle <= FARTHEST or not 0 <= flags <= FLAGS:
         return Result.DENIED
-    if vehicle.mode != profile.guided and not int(message["param2"]) & CHANGE_MODE:
+    if vehicle.mode != profile.guided and not int(flags) & CHANGE_MODE:
         return Result.FAILED if profile.takeoff is TakeOff.MISSION else Result.DENIED
     if profile.takeoff is not TakeOff.NONE and not vehicle.holds(latitude, longitude, height):
         return Result.DENIED if profile.takeoff is TakeOff.MISSION else Result.FAILED
