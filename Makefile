@@ -56,7 +56,7 @@ constraints:  ## write constraints.txt anew: the newest of all that is needed, i
 	echo '# The versions of all that .[dev] needs with which CI tests; `make constraints` writes them. A user installs without this file.' > constraints.txt
 	$(BIN)/python -m pip freeze --exclude-editable >> constraints.txt
 
-fuzz: $(STAMP)  ## the long tests whole, 100,000 mutated missions, a million mutated packets and sentences (some 25 minutes on two cores)
+fuzz: $(STAMP)  ## the long tests whole, 100,000 mutated missions, a million mutated packets and sentences (nightly: an hour or more)
 	BIGACTORS_FUZZ=100000 BIGACTORS_FUZZ_PACKETS=1000000 $(BIN)/python -m pytest -n 2 -q -m "fuzz or hypothesis"
 
 bounds: $(STAMP)  ## the compiled loops with checks of bounds over all missions, cut and gone on with at many sizes (nightly: some 40 minutes)
