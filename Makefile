@@ -63,7 +63,7 @@ bounds: $(STAMP)  ## the compiled loops with checks of bounds over all missions,
 	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q -m bounds
 	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q $(COMPILED)
 
-bench: $(STAMP)  ## the explorer beside SPIN, its growth, the largest missions; writes docs/performance.md (some 25 minutes)
+bench: $(STAMP)  ## the explorer beside SPIN, its growth, the largest missions; writes docs/explanation/performance.md (some 25 minutes)
 	$(BIN)/python benchmarks/run.py
 	$(BIN)/python benchmarks/growth.py
 	$(BIN)/python benchmarks/largest.py

@@ -1,4 +1,4 @@
-"""Write the tables of docs/performance.md from the benchmarks' results, between its markers.
+"""Write the tables of docs/explanation/performance.md from the benchmarks' results, between its markers.
 
 Usage: `python benchmarks/tables.py [--results FOLDER] [--page FILE]`. What was not measured yet stays.
 """
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 RESULTS = Path(__file__).parent / "results"
-PAGE = Path(__file__).parents[1] / "docs" / "performance.md"
+PAGE = Path(__file__).parents[1] / "docs" / "explanation" / "performance.md"
 
 Kept = dict[str, Any]
 

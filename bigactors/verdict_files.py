@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from bigactors.signatures import SigningKey, TrustedKey
 
 SCHEMA = "bigactors.verdict/1"
-"""The version of the schema of verdict files (docs/verdict.md)."""
+"""The version of the schema of verdict files (docs/reference/verdict.schema.json)."""
 
 SUFFIX = ".verdict.json"
 

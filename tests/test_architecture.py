@@ -8,7 +8,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 PAGES = [
     *(ROOT / name for name in ("ARCHITECTURE.md", "CONTRIBUTING.md", "README.md")),
-    *sorted((ROOT / "docs").glob("*.md")),
+    *sorted((ROOT / "docs").rglob("*.md")),
 ]
 ROOMS = "adapters|bigactors|bigraphs|checker|physical|semantics|specs"
 
@@ -104,7 +104,7 @@ def test_a_map_of_the_checker_names_every_module(folder):
 
 
 def test_a_decision_is_a_short_record_with_a_claim_for_its_title():
-    page = (ROOT / "docs" / "decisions.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "explanation" / "decisions.md").read_text(encoding="utf-8")
     records = [record.split("\n\n")[0].partition("\n") for record in page.split("\n### ")[1:]]
     assert len(records) > 60
     for title, _, text in records:

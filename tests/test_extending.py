@@ -1,4 +1,4 @@
-"""docs/extending.md: what it names exists, and a command that is added as it says is known everywhere."""
+"""docs/how-to/extending.md: what it names exists, and a command that is added as it says is known everywhere."""
 
 import ast
 import json
@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PAGE = (ROOT / "docs" / "extending.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "how-to" / "extending.md").read_text(encoding="utf-8")
 ROW = re.compile(r"^\| `(?P<file>[\w./]+)`(?:: `(?P<symbol>\w+)`)? \| .+ \| (?P<found>.*) \|$", re.MULTILINE)
 
 

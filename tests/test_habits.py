@@ -16,7 +16,7 @@ from bigactors.arguments import COMMANDS
 from hatch_build import PACKAGE, ROOMS, installed, refuse_imports_of_rooms
 
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 
 def read(name):

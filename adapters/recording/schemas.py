@@ -1,4 +1,4 @@
-"""JSON schemas of a recording's messages, one for each topic; docs/recording.md prints them."""
+"""JSON schemas of a recording's messages, one for each topic; docs/reference/recording.md prints them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _OBSERVED: Final = {
         "agent": {**_TEXT, "description": "Who left for another station, has entered, or was learned of."},
         "station": {**_TEXT, "description": "Where to, or where from."},
         "number": {"type": "integer", "minimum": 1},
-        "parcel": {"type": "object", "description": "What has entered (docs/stations.md)."},
+        "parcel": {"type": "object", "description": "What has entered (docs/how-to/stations.md)."},
         "host": {**_TEXT, "description": "Where the agent is hosted."},
         "node": {**_TEXT, "description": "Of what another station has written into L,"},
         "slot": {"enum": ["parent", "links"], "description": "in which slot,"},
@@ -101,7 +101,7 @@ LEFT_OUT: Final = _object(
 )
 
 STEP: Final = _object(
-    "A transition, as the step of a trace (docs/trace.schema.json) has it.",
+    "A transition, as the step of a trace (docs/reference/trace.schema.json) has it.",
     ("number", "label", "choice", "digest"),
     number={"type": "integer", "minimum": 1},
     label={**_TEXT, "description": "The transition, such as ⟨sense : OBS(a, ALL)⟩."},
@@ -160,7 +160,7 @@ REPORT: Final = _object(
     node=_TEXT,
     slot=_TEXT,
     names=_TEXTS,
-    parcel={"type": "object", "description": "A parcel from another station (docs/stations.md)."},
+    parcel={"type": "object", "description": "A parcel from another station (docs/how-to/stations.md)."},
 )
 
 SAYING: Final = _object(

@@ -97,7 +97,7 @@ def read_peers(path: Path, station: str) -> Peers:
     try:
         said = tomllib.loads(data.decode())
     except (ValueError, RecursionError) as error:
-        raise _mistake(f"it is no TOML: {_reason(error):.200}", "see docs/stations.md") from error
+        raise _mistake(f"it is no TOML: {_reason(error):.200}", "see docs/how-to/stations.md") from error
     return peers_of(said, station, path.parent)
 
 

@@ -45,7 +45,9 @@ COMMAND = Command(
 
 
 def _several_processes(parser: Parser) -> None:
-    group = parser.add_argument_group("several processes or machines, by --engine ray (docs/cluster.md)")
+    group = parser.add_argument_group(
+        "several processes or machines, by --engine ray (docs/how-to/cluster.md)"
+    )
     group.add_argument(
         "--workers", metavar="N", type=at_least_one, help="how many processes share the rows (default 2)"
     )
@@ -64,7 +66,7 @@ def _report(parser: Parser) -> None:
         "--json",
         metavar="FILE",
         type=named,
-        help="write the report as JSON (docs/json.md); - for standard output, alone",
+        help="write the report as JSON (docs/reference/json.md); - for standard output, alone",
     )
     group.add_argument(
         "--output",
@@ -72,8 +74,8 @@ def _report(parser: Parser) -> None:
         action="append",
         default=[],
         type=output,
-        help=f"write the report for other programs (docs/output.md): {', '.join(FORMATS)}; - as FILE for standard "
-        "output, alone; may be repeated",
+        help=f"write the report for other programs (docs/reference/output.md): {', '.join(FORMATS)}; - as FILE for "
+        "standard output, alone; may be repeated",
     )
     group.add_argument(
         "--trace",
@@ -86,7 +88,7 @@ def _report(parser: Parser) -> None:
         "--verdict",
         metavar="FILE",
         type=named,
-        help="write the verdict that `run` needs (docs/live.md); of one mission, with --control timed",
+        help="write the verdict that `run` needs (docs/explanation/live.md); of one mission, with --control timed",
     )
     group.add_argument(
         "--sign",
@@ -142,7 +144,7 @@ def _exploring(parser: Parser) -> None:
         type=reductions,
         default=(),
         help="visit less, where that is sound: por (partial-order reduction), symmetry, or por,symmetry "
-        "(docs/reduction.md)",
+        "(docs/explanation/reduction.md)",
     )
 
 
@@ -173,7 +175,7 @@ def _long_runs(parser: Parser) -> None:
         type=tag_bits,
         help=f"keep only {LEAST_TAG} to {MOST_TAG} bits of the hash of each configuration; the report gives the "
         "probability of omissions, and what would hold everywhere is incomplete (with --engine fast only; "
-        "docs/performance.md)",
+        "docs/explanation/performance.md)",
     )
     group.add_argument(
         "--paranoid",

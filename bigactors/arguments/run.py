@@ -56,7 +56,8 @@ def fill(parser: Parser) -> None:
         "--peers",
         metavar="FILE",
         type=named,
-        help="the stations (TOML): where each is reached, what it hosts; all share what one sees (docs/stations.md)",
+        help="the stations (TOML): where each is reached, what it hosts; all share what one sees "
+        "(docs/how-to/stations.md)",
     )
     parser.add_argument(
         "--station-log",

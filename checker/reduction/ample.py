@@ -1,7 +1,7 @@
 """Partial-order reduction: the ample subset of the steps that a configuration allows.
 
-Independent steps of different actors are followed in one order only. docs/reduction.md explains why this is sound, and
-for which properties it is refused.
+Independent steps of different actors are followed in one order only. docs/explanation/reduction.md explains why this is
+sound, and for which properties it is refused.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping

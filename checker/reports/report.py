@@ -11,7 +11,7 @@ from semantics.state.setting import Control
 from semantics.successors import rules_of
 
 SCHEMA = "bigactors.report/1"
-"""The version of the report's schema (docs/json.md)."""
+"""The version of the report's schema (docs/reference/json.md)."""
 
 MARKS = {Outcome.HOLDS: "✓", Outcome.VIOLATED: "✗", Outcome.INCOMPLETE: "?"}
 
@@ -93,7 +93,7 @@ def _violation(violation: Violation, *, traces: bool) -> Iterator[str]:
 
 
 def report_json(name: str, digest: str, report: Report, control: Control) -> dict[str, Any]:
-    """Return a report as plain data; the schema is documented in docs/json.md."""
+    """Return a report as plain data; the schema is documented in docs/reference/json.md."""
     silent = [rule.__name__ for rule in rules_of(control) if rule.__name__ not in report.rules]
     return {
         "schema": SCHEMA,

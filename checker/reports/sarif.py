@@ -1,4 +1,4 @@
-"""Reports as SARIF 2.1.0, the format of code scanners; docs/sarif.schema.json has the parts used.
+"""Reports as SARIF 2.1.0, the format of code scanners; docs/reference/sarif.schema.json has the parts used.
 
 Source: https://docs.oasis-open.org/sarif/sarif/v2.1.0/sarif-v2.1.0.html; §s are its sections.
 """

@@ -1,7 +1,7 @@
 """The commands of the language: one table, which all that knows commands by their names is derived from.
 
 Grammar, reserved words, hints, the reference, what is checked before a run, the formatter and the printed reactions
-read it; footprints and the live loop read the reactions. `docs/extending.md` says how one is added.
+read it; footprints and the live loop read the reactions. `docs/how-to/extending.md` says how one is added.
 """
 
 from collections.abc import Callable, Iterable, Mapping

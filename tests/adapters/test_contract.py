@@ -117,7 +117,7 @@ async def location(_tmp_path):
     await runner.cleanup()
 
 
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = Path(__file__).parents[2] / "docs" / "reference"
 PLUGINS = {
     Autopilot: autopilot,
     AisFeed: ais,

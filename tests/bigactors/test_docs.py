@@ -12,13 +12,13 @@ def test_a_stale_page_is_told(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(docs, "FOLDER", tmp_path)
     assert docs.main([]) == 0
     assert docs.main(["--check"]) == 0
-    (tmp_path / "rules.md").write_text("older", encoding="utf-8")
+    (tmp_path / "reference" / "rules.md").write_text("older", encoding="utf-8")
     assert docs.main(["--check"]) == 1
-    assert capsys.readouterr().out == "docs/rules.md is stale: run python -m bigactors.docs\n"
+    assert capsys.readouterr().out == "docs/reference/rules.md is stale: run python -m bigactors.docs\n"
 
 
 def test_every_rule_is_printed_with_its_bar():
-    page = docs.pages()["rules.md"]
+    page = docs.pages()["reference/rules.md"]
     for rule in (*RULES, *TIMED_RULES, *EXTENSION):
         section = page.split(f"\n### {rule.__name__}\n")[1].split("\n### ")[0]
         assert "───" in section
@@ -26,8 +26,8 @@ def test_every_rule_is_printed_with_its_bar():
 
 
 def test_every_command_is_on_the_page_whatever_the_terminal(monkeypatch):
-    wide = docs.pages()["cli.md"]
+    wide = docs.pages()["reference/cli.md"]
     monkeypatch.setenv("COLUMNS", "40")
-    assert docs.pages()["cli.md"] == wide
+    assert docs.pages()["reference/cli.md"] == wide
     for command in COMMANDS:
         assert f"\n## bigactors {command}\n" in wide

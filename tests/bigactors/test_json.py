@@ -1,4 +1,4 @@
-"""What the commands write is what docs/json.md and its schemas say."""
+"""What the commands write is what docs/reference/json.md and its schemas say."""
 
 import json
 from pathlib import Path
@@ -13,7 +13,7 @@ from checker.reports.report import SCHEMA as REPORT
 from checker.traces import SCHEMA as TRACE
 from semantics.properties.property import PropertyKind
 
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = Path(__file__).parents[2] / "docs" / "reference"
 
 
 def schema(name):

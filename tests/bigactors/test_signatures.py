@@ -12,7 +12,7 @@ from jsonschema import Draft202012Validator
 
 from bigactors.verdict_files import _seal
 
-SCHEMA = Path(__file__).parents[2] / "docs" / "verdict.schema.json"
+SCHEMA = Path(__file__).parents[2] / "docs" / "reference" / "verdict.schema.json"
 CHECK = ("check", "--no-traces", "--control", "timed", "--verdict", "v.json", "oil_spill")
 RUN = (
     "run",

@@ -12,7 +12,7 @@ from bigactors.mistakes import Mistake
 from bigactors.verdict_files import find_verdict, licence_for
 from specs.elaboration.variation import AS_WRITTEN
 
-SCHEMA = Path(__file__).parents[2] / "docs" / "verdict.schema.json"
+SCHEMA = Path(__file__).parents[2] / "docs" / "reference" / "verdict.schema.json"
 
 
 @pytest.fixture

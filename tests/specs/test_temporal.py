@@ -13,7 +13,7 @@ from specs.elaboration import elaborate
 from specs.formatter import format_mission
 from specs.parser import parse
 
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = Path(__file__).parents[2] / "docs" / "reference"
 WORLD = """
 signature { kind Location contains UAV kind UAV driven }
 world {

@@ -47,7 +47,7 @@ def message(number, agent="op1", text="told", station="gcs0"):
     return Delivered(station, 1.0, number, json.loads(json.dumps(parcel_json(Parcel(agent, (text,))))))
 
 
-TRACES = json.loads((Path(__file__).parents[3] / "docs" / "trace.schema.json").read_text())
+TRACES = json.loads((Path(__file__).parents[3] / "docs" / "reference" / "trace.schema.json").read_text())
 
 
 def replayed(run):

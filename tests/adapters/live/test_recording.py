@@ -79,7 +79,7 @@ def test_a_recording_replays_to_the_same_configurations(recorded):
 def test_a_live_run_is_a_trace_like_any_other(recorded):
     path, _ = recorded
     data = read_recording(path).trace(SCHEMA)
-    schema = json.loads(Path("docs/trace.schema.json").read_text())
+    schema = json.loads(Path("docs/reference/trace.schema.json").read_text())
     schema["properties"]["digest"] = {"type": "string"}
     jsonschema.validate(data, schema)
     again = replay(mission(FLIGHT).initial, data)

@@ -6,7 +6,7 @@ import pytest
 from bigraphs.notation import read_system
 from bigraphs.notation.codes import CODES
 
-PAGE = (Path(__file__).parents[3] / "docs" / "big.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "reference" / "big.md").read_text(encoding="utf-8")
 FILES = re.findall(r"```big\n(.*?)```", PAGE, re.DOTALL)
 
 
