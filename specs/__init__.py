@@ -6,25 +6,6 @@ tree), `syntax_errors`, `common_mistakes` and `codes` (what can be wrong), `diag
 to text: `writing`, `layout`, `formatter`.
 """
 
-from specs.codes import Code, code_table, explain, find_code
-from specs.diagnostics import Diagnostic, MissionError, Source, render, render_all
-from specs.formatter import format_mission, write_mission
-from specs.parser import parse, parse_bytes
-from specs.preprocessing import decode
+import lazy_loader
 
-__all__ = [
-    "Code",
-    "Diagnostic",
-    "MissionError",
-    "Source",
-    "code_table",
-    "decode",
-    "explain",
-    "find_code",
-    "format_mission",
-    "parse",
-    "parse_bytes",
-    "render",
-    "render_all",
-    "write_mission",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

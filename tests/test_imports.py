@@ -1,6 +1,8 @@
 """The arrows between the rooms, and which library each room may use: the table of the design, walked."""
 
 import ast
+import re
+import subprocess
 import sys
 from collections.abc import Iterator
 from functools import cache
@@ -44,6 +46,7 @@ LIBRARIES = {
     "nicegui": ("adapters/",),
     "cryptography": ("bigactors/signatures.py",),
     "hypothesis": ("semantics/strategies.py",),
+    "lazy_loader": tuple(f"{room}/__init__.py" for room in (*MAY_IMPORT, "bigraphs/notation")),
     "matplotlib": ("bigraphs/drawing.py", "physical/drawing.py", "physical/map_", "bigactors/pictures/"),
 }
 
@@ -95,10 +98,14 @@ def walk(node: ast.AST, *, at_import: bool = True) -> Iterator[tuple[ast.AST, bo
 
 
 def module_of(file: str) -> str:
-    return file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+    return re.sub(r"(/__init__)?\.pyi?$", "", file).replace("/", ".")
 
 
-FILES = [path for room in MAY_IMPORT for path in sorted((ROOT / room).rglob("*.py"))]
+FILES = [
+    path
+    for room in MAY_IMPORT
+    for path in sorted((ROOT / room).rglob("*.py")) + sorted((ROOT / room).rglob("*.pyi"))
+]
 MODULES = {module_of(path.relative_to(ROOT).as_posix()) for path in FILES}
 
 
@@ -176,6 +183,12 @@ def test_what_a_room_offers_is_its_own(room):
     assert {name: home for name, home in modules.items() if home not in own} == {}
 
 
+def test_a_function_is_not_hidden_by_the_module_of_its_name():
+    program = "import checker.check, semantics.successors; from checker import check; print(check.__name__)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout == "check\n"
+
+
 def test_the_arrows_have_no_cycle():
     for room, below in MAY_IMPORT.items():
         assert all(room not in MAY_IMPORT[other] for other in below)
@@ -186,7 +199,7 @@ def test_no_modules_import_each_other_in_a_circle():
     graph: dict[str, set[str]] = {module: set() for module in MODULES}
     for found in imports():
         module = module_of(found.file)
-        if not found.file.endswith("__init__.py") and found.module not in DELEGATES.get(module, ()):
+        if "__init__.py" not in found.file and found.module not in DELEGATES.get(module, ()):
             graph[module].add(found.module)
     assert list(TopologicalSorter(graph).static_order())  # it raises CycleError, with the circle
 

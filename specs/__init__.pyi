@@ -1,0 +1,14 @@
+from .codes import Code as Code
+from .codes import code_table as code_table
+from .codes import explain as explain
+from .codes import find_code as find_code
+from .diagnostics import Diagnostic as Diagnostic
+from .diagnostics import MissionError as MissionError
+from .diagnostics import Source as Source
+from .diagnostics import render as render
+from .diagnostics import render_all as render_all
+from .formatter import format_mission as format_mission
+from .formatter import write_mission as write_mission
+from .parser import parse as parse
+from .parser import parse_bytes as parse_bytes
+from .preprocessing import decode as decode
