@@ -11,6 +11,7 @@ from semantics.behaviours.expressions import (
     Host,
     Literal,
     QueryOf,
+    RouteOf,
     Self,
     SetOf,
     TupleOf,
@@ -106,7 +107,8 @@ class _Writer:
         seen = [Apply("nodes", (Variable(name),)) for name in scope if name.startswith("o")]
         go = TupleOf((Literal("go"), leaf))
         one = SetOf((leaf,))
-        return self.one(leaf, go, *seen, one, Apply("first", (one,)))
+        route = RouteOf((leaf, self.leaf(scope)))
+        return self.one(leaf, go, *seen, one, Apply("first", (one,)), route)
 
     def name(self, scope: Variables) -> Expression:
         seen = [
@@ -128,7 +130,8 @@ class _Writer:
 
     def members(self, scope: Variables) -> Expression:
         seen = [Variable(name) for name in scope if name.startswith("o")]
-        return self.one(*seen, SetOf((Literal(self.pick(self.names)), Literal(self.pick(self.names)))))
+        two = (Literal(self.pick(self.names)), Literal(self.pick(self.names)))
+        return self.one(*seen, SetOf(two), RouteOf(two))
 
     def query(self, depth: int = 3) -> QueryOf:
         operator = self.pick([*QueryOperator, None]) if depth else None

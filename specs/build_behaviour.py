@@ -215,6 +215,9 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
     def set_of(self, c: Children) -> s.SetLiteral:
         return s.SetLiteral(nodes(c), span=cover(c))
 
+    def route_of(self, c: Children) -> s.RouteLiteral:
+        return s.RouteLiteral(nodes(c), span=cover(c))
+
     def group(self, c: Children) -> s.Expression:
         expression: s.Expression = c[1]
         return expression

@@ -342,8 +342,8 @@ class Code(Enum):
     WRONG_VALUE = (
         "LS407",
         "value of another type",
-        """A node or a bigActor is expected, and this is a number, a truth value, a tuple or a text that is no
-        name.""",
+        """A node or a bigActor is expected, and this is a number, a truth value, a tuple, a route or a text that is
+        no name; or something to go through is expected, and this is a tuple.""",
     )
     # --- LS5: reaction rules
     RULE_SYNTAX = (

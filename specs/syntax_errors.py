@@ -15,7 +15,7 @@ from specs.parse_error import Situation, line_of, situation
 from specs.preprocessing import Prepared
 
 # Groups of words that the user knows by one name: a word only they have, that name, their words and sorts.
-_EXPRESSION: Final = frozenset(["SELF", "HOST", "true", "false", "not", "!", "-", "(", "{"])
+_EXPRESSION: Final = frozenset(["SELF", "HOST", "true", "false", "not", "!", "-", "(", "{", "["])
 _OPERATORS: Final = frozenset(
     ["of", "==", "!=", "<", "<=", ">", ">=", "in", "not", "+", "-", "or", "||", "and", "&&"]
 )

@@ -112,6 +112,11 @@ def _(node: s.SetLiteral) -> str:
 
 
 @write.register
+def _(node: s.RouteLiteral) -> str:
+    return f"[{listed(node.items)}]"
+
+
+@write.register
 def _(node: s.UnaryOperation) -> str:
     if node.operator == "not":
         return f"not {inner(node.operand, 3)}"

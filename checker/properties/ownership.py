@@ -16,6 +16,7 @@ from semantics.behaviours.expressions import (
     Host,
     Literal,
     QueryOf,
+    RouteOf,
     SetOf,
     TupleOf,
     Variable,
@@ -187,7 +188,7 @@ class _Text:
         match expression:
             case Apply("in", (item, Variable(_))):
                 yield self.name(item)
-            case Apply(_, parts) | TupleOf(parts) | SetOf(parts):
+            case Apply(_, parts) | TupleOf(parts) | SetOf(parts) | RouteOf(parts):
                 for part in parts:
                     yield from self._asks(part)
             case Either(_, first, second):

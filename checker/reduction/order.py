@@ -5,9 +5,22 @@ from dataclasses import fields, is_dataclass
 from typing import Any
 
 from checker.reduction.messages import Unknown, may_take
-from semantics.behaviours.expressions import Apply, Literal
-from semantics.behaviours.patterns import Exactly
-from semantics.behaviours.statements import ChooseFrom, Display, For, ForEach, React, Send
+from semantics.behaviours.expressions import Apply, Expression, Literal, RouteOf, Variable
+from semantics.behaviours.patterns import Exactly, variables
+from semantics.behaviours.program import Program
+from semantics.behaviours.statements import (
+    Assign,
+    Call,
+    ChooseFrom,
+    Display,
+    For,
+    ForEach,
+    Match,
+    React,
+    Send,
+    Spawn,
+    Statement,
+)
 from semantics.environment import Says
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Scheduler
@@ -19,13 +32,14 @@ def ordered(c: Configuration) -> str | None:
     told = any(isinstance(each, Send) for each in program.statements)
     told |= any(isinstance(each, Says) for each in environment)
     unordered = c.setting.scheduler is Scheduler.UNORDERED
+    routes = _routes(program)
     for number, statement in enumerate(program.statements):
         line = (
             f" (line {program.lines[number]})"
             if number < len(program.lines) and program.lines[number]
             else ""
         )
-        if isinstance(statement, For | ForEach):
+        if isinstance(statement, For) and not _is_route(statement.members, routes):
             return f"a 'for' goes through names in their order{line}"
         if isinstance(statement, ChooseFrom):
             return f"where one alternative of 'choose' fails, those after it in the order of names are lost{line}"
@@ -38,6 +52,43 @@ def ordered(c: Configuration) -> str | None:
             if any(unordered or (told and may_take(case.pattern, Unknown())) for case in guarded):
                 return f"a guard is tried on messages in the order of names, and may fail{line}"
     return None
+
+
+def _routes(program: Program) -> frozenset[str]:
+    """Return the variables that never hold anything but a route; a greatest fixpoint, since loops lead back."""
+    given = [each for statement in program.statements for each in _given(statement, program)]
+    routes = frozenset(variable for variable, _ in given)
+    while True:
+        others = {variable for variable, value in given if value is None or not _is_route(value, routes)}
+        if not others:
+            return routes
+        routes -= others
+        given = [(variable, value) for variable, value in given if variable in routes]
+
+
+def _given(statement: Statement, program: Program) -> Iterator[tuple[str, Expression | None]]:
+    """Yield what a statement gives to variables, None for what the text does not say."""
+    match statement:
+        case Assign(variable, value):
+            yield variable, value
+        case Call(behaviour, arguments) | Spawn(_, _, behaviour, arguments):
+            yield from zip(program.behaviours[behaviour].parameters, arguments, strict=True)
+        case ForEach(variable) | ChooseFrom(variable):
+            yield variable, None
+        case React(cases) | Match(_, cases):
+            yield from ((variable, None) for case in cases for variable in variables(case.pattern))
+
+
+def _is_route(value: Expression, routes: frozenset[str]) -> bool:
+    """Tell whether an expression is a route, in the order that is written, where so many variables are."""
+    match value:
+        case RouteOf():
+            return True
+        case Variable(name):
+            return name in routes
+        case Apply("+" | "-" | "minus" | "intersect" | "of", (first, *_)):
+            return _is_route(first, routes)
+    return False
 
 
 def parts(value: Any) -> Iterator[Any]:

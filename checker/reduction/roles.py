@@ -15,6 +15,7 @@ from semantics.behaviours.expressions import (
     Host,
     Literal,
     QueryOf,
+    RouteOf,
     Self,
     SetOf,
     TupleOf,
@@ -36,7 +37,7 @@ from semantics.behaviours.statements import (
     Spawn,
     Statement,
 )
-from semantics.behaviours.values import Truth
+from semantics.behaviours.values import Route, Truth, within
 from semantics.environment import Says
 from semantics.state.requests import MGR, SND
 from semantics.state.signature import REGION, Name
@@ -102,7 +103,7 @@ class Roles:
     # --- what expressions may name ----------------------------------------------------------------------------
 
     def names(self, agent: Name, expression: Expression) -> Names | None:
-        """Return the names that a value, or the members of a set, may be; None for any."""
+        """Return the names that a value, or the members of a set or a route, may be; None for any."""
         match expression:
             case Literal(value):
                 return _spelled(value)
@@ -112,7 +113,7 @@ class Roles:
                 return frozenset({agent})
             case Variable(name):
                 return self.roles[agent].named.get(name, frozenset())
-            case SetOf(items):
+            case SetOf(items) | RouteOf(items):
                 return _either(self.names(agent, item) for item in items)
             case Apply("parent", (node, _)):
                 return self._places(self.names(agent, node))
@@ -250,6 +251,6 @@ def _spelled(value: object) -> Names | None:
     """Return the names in a constant; None for a value that may hold any."""
     if isinstance(value, str):
         return frozenset({value})
-    if isinstance(value, frozenset):
-        return _either(map(_spelled, value))
+    if isinstance(value, frozenset | Route):
+        return _either(map(_spelled, within(value)))
     return frozenset() if isinstance(value, int | Truth) else None

@@ -9,8 +9,15 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from semantics.behaviours.expressions import Expression, Fault, Scope, evaluated, members_asked, truth
-from semantics.behaviours.observations import Observation
+from semantics.behaviours.expressions import (
+    Expression,
+    Fault,
+    Scope,
+    evaluated,
+    in_turn,
+    members_asked,
+    truth,
+)
 from semantics.behaviours.patterns import bind
 from semantics.behaviours.program import Behaviour, Program
 from semantics.behaviours.statements import (
@@ -31,7 +38,7 @@ from semantics.behaviours.statements import (
     Tested,
     While,
 )
-from semantics.behaviours.values import Value, in_order, show
+from semantics.behaviours.values import Value, show
 from semantics.races.provenance import NOTHING, Provenance, asking, deciding
 from semantics.state.agents import Code, Store
 
@@ -173,7 +180,7 @@ def _choose(process: Process, statement: Choice) -> Iterator[Process]:
     members, rests_on = process.members(statement.members)
     if not members:
         raise Fault("there is nothing to choose from")
-    for member in members:
+    for member in dict.fromkeys(members):  # a route may pass one twice
         chosen = process.fork()
         chosen.scope.binding({statement.variable: member}, rests_on)
         chosen.enter(statement.body, chosen.leave() | deciding(rests_on))
@@ -182,16 +189,15 @@ def _choose(process: Process, statement: Choice) -> Iterator[Process]:
 
 
 def members_of(value: Value) -> tuple[Value, ...]:
-    """Return what a `for` or `choose` goes through: the members of a set or an observation, in order.
+    """Return what a `for` or `choose` goes through: the stops of a route, or the members of a set or an observation.
 
     Raises:
-        Fault: It is neither.
+        Fault: It is none of these.
     """
-    if isinstance(value, Observation):
-        return tuple(sorted({*value.shown, *value.agents}))
-    if isinstance(value, frozenset):
-        return in_order(value)
-    raise Fault(f"a set or an observation was expected, not {show(value)}")
+    try:
+        return in_turn(value)
+    except TypeError as error:
+        raise Fault(f"{error}, not {show(value)}") from error
 
 
 def _step(process: Process, statement: Internal) -> None:

@@ -1,12 +1,22 @@
 """Expressions of the host language, and their evaluation with the observations that a value depends on."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
 from semantics.behaviours.observations import All, Nodes, Observation, Of, Query, QueryOperator
-from semantics.behaviours.values import LARGEST_NUMBER, MOST_PARTS, Truth, Value, in_order, parts, show
+from semantics.behaviours.values import (
+    LARGEST_NUMBER,
+    MOST_PARTS,
+    Route,
+    Truth,
+    Value,
+    in_order,
+    parts,
+    show,
+    within,
+)
 from semantics.races.provenance import ANY, EVERYTHING, MEMBERS, NOTHING, SIZE, Key, Provenance, asking
 from semantics.state.signature import Name
 
@@ -81,6 +91,13 @@ class SetOf:
 
 
 @dataclass(frozen=True, slots=True)
+class RouteOf:
+    """A route."""
+
+    items: tuple["Expression", ...]
+
+
+@dataclass(frozen=True, slots=True)
 class QueryOf:
     """A query with expressions at its leaves; `operator` None stands for the nodes that the expression names."""
 
@@ -88,7 +105,7 @@ class QueryOf:
     argument: "Expression | QueryOf | None"
 
 
-Expression = Literal | Variable | Host | Self | Apply | Either | TupleOf | SetOf
+Expression = Literal | Variable | Host | Self | Apply | Either | TupleOf | SetOf | RouteOf
 
 
 @dataclass(slots=True)
@@ -142,6 +159,8 @@ def evaluate(expression: Expression, scope: Scope) -> Value:
             return _small(tuple(evaluate(item, scope) for item in items))
         case SetOf(items):
             return _small(frozenset(evaluate(item, scope) for item in items))
+        case RouteOf(items):
+            return _small(Route(tuple(evaluate(item, scope) for item in items)))
         case Either(stop_at, first, second):
             value = truth(evaluate(first, scope))
             return Truth.of(value) if value is stop_at else Truth.of(truth(evaluate(second, scope)))
@@ -190,7 +209,7 @@ def query_of(template: QueryOf, scope: Scope) -> Query:
     """Return the query with `HOST`, variables and other expressions resolved.
 
     Raises:
-        Fault: A leaf is no name and no set of names.
+        Fault: A leaf is no name, and no set or route of names.
     """
     argument = template.argument
     if argument is None:
@@ -209,7 +228,7 @@ def names_in(value: Value) -> tuple[Name, ...]:
     Raises:
         Fault: It stands for none.
     """
-    members = in_order(value) if isinstance(value, frozenset) else (value,)
+    members = in_order(_members(value)) if isinstance(value, frozenset | Route) else (value,)
     if not all(isinstance(member, str) for member in members):
         raise Fault(f"a name was expected, not {show(value)}")
     return tuple(str(member) for member in members)
@@ -250,9 +269,20 @@ class Operator:
 def _members(value: Value) -> frozenset[Value]:
     if isinstance(value, Observation):
         return frozenset(value.shown) | frozenset(value.agents)
-    if isinstance(value, frozenset):
-        return value
-    raise TypeError("a set or an observation was expected")
+    if isinstance(value, frozenset | Route):
+        return frozenset(within(value))
+    raise TypeError("a set, a route or an observation was expected")
+
+
+def _each(value: Value) -> Collection[Value]:
+    """Return the members of a set or an observation; of a route each as often as it stands there, in its order."""
+    return value.stops if isinstance(value, Route) else _members(value)
+
+
+def _only(value: Value, wanted: Callable[[Value], bool]) -> Value:
+    """Return the members that are wanted: of a route as a route."""
+    kept = filter(wanted, _each(value))
+    return Route(tuple(kept)) if isinstance(value, Route) else frozenset(kept)
 
 
 def _number(value: Value) -> int:
@@ -274,28 +304,46 @@ def _seen(value: Value) -> Observation:
 
 
 def _add(_: Scope, a: Value, b: Value) -> Value:
+    if isinstance(a, Route) and isinstance(b, Route):
+        return _small(Route(a.stops + b.stops))
     return a | _members(b) if isinstance(a, frozenset) else _bounded(_number(a) + _number(b))
 
 
 def _subtract(_: Scope, a: Value, b: Value) -> Value:
-    return _bounded(_number(a) - _number(b)) if isinstance(a, int) else _members(a) - _members(b)
+    return _bounded(_number(a) - _number(b)) if isinstance(a, int) else _minus(_, a, b)
+
+
+def _minus(_: Scope, a: Value, b: Value) -> Value:
+    without = _members(b)
+    return _only(a, lambda member: member not in without)
+
+
+def _intersect(_: Scope, a: Value, b: Value) -> Value:
+    both = _members(b)
+    return _only(a, lambda member: member in both)
 
 
 def _of_kind(scope: Scope, value: Value, kind: Value) -> Value:
-    return frozenset(item for item in _members(value) if scope.kinds.get(str(item)) == kind)
+    return _only(value, lambda item: scope.kinds.get(str(item)) == kind)
 
 
 def _first(_: Scope, value: Value) -> Value:
-    members = in_order(_members(value))
+    members = in_turn(value)
     if not members:
-        raise ValueError("the set is empty")
+        raise ValueError(f"the {'route' if isinstance(value, Route) else 'set'} is empty")
     return members[0]
 
 
+def in_turn(value: Value) -> tuple[Value, ...]:
+    """Return the members of a set or an observation in canonical order, those of a route in its own."""
+    return value.stops if isinstance(value, Route) else in_order(_members(value))
+
+
 def _element(_: Scope, value: Value, index: Value) -> Value:
-    if not isinstance(value, tuple) or not 0 <= _number(index) < len(value):
+    items = within(value)
+    if not isinstance(items, tuple) or not 0 <= _number(index) < len(items):
         raise IndexError("no such element")
-    return value[_number(index)]
+    return items[_number(index)]
 
 
 def _compare(holds: Callable[[int, int], bool]) -> Callable[..., Value]:
@@ -327,9 +375,8 @@ def _asked(key: Key, either: bool, everything: bool) -> tuple[Key, ...]:
 
 
 def _holds_observation(value: Value) -> bool:
-    """Tell whether an observation is among the parts of a tuple or a set."""
-    inside = value if isinstance(value, tuple | frozenset) else ()
-    return any(isinstance(part, Observation) or _holds_observation(part) for part in inside)
+    """Tell whether an observation is among the parts of a tuple, a set or a route."""
+    return any(isinstance(part, Observation) or _holds_observation(part) for part in within(value))
 
 
 def _keys(*kinds: str) -> Callable[..., tuple[Key, ...]]:
@@ -339,7 +386,7 @@ def _keys(*kinds: str) -> Callable[..., tuple[Key, ...]]:
 OPERATORS: Mapping[str, Operator] = {
     "in": Operator(
         2,
-        "whether a name is in a set or was shown in an observation",
+        "whether a name is in a set or a route, or was shown in an observation",
         lambda _, x, y: Truth.of(x in (y if isinstance(y, Observation) else _members(y))),
         _in_asked,
     ),
@@ -353,8 +400,10 @@ OPERATORS: Mapping[str, Operator] = {
     "<=": Operator(2, "whether a number is at most another", _compare(lambda a, b: a <= b)),
     ">": Operator(2, "whether a number is more than another", _compare(lambda a, b: a > b)),
     ">=": Operator(2, "whether a number is at least another", _compare(lambda a, b: a >= b)),
-    "+": Operator(2, "the sum of two numbers, the union of two sets", _add, members_asked),
-    "-": Operator(2, "the difference of two numbers or sets", _subtract, members_asked),
+    "+": Operator(
+        2, "the sum of two numbers, the union of two sets, one route behind another", _add, members_asked
+    ),
+    "-": Operator(2, "the difference of two numbers, sets or routes", _subtract, members_asked),
     "not": Operator(1, "the contrary of a truth value", lambda _, x: Truth.of(not truth(x))),
     "of": Operator(2, "the members of a kind", _of_kind, members_asked),
     "union": Operator(
@@ -363,22 +412,20 @@ OPERATORS: Mapping[str, Operator] = {
     "minus": Operator(
         2,
         "the members of the first set that are not in the second",
-        lambda _, a, b: _members(a) - _members(b),
+        _minus,
         members_asked,
     ),
-    "intersect": Operator(
-        2, "the members of both sets", lambda _, a, b: _members(a) & _members(b), members_asked
-    ),
+    "intersect": Operator(2, "the members of both sets", _intersect, members_asked),
     "size": Operator(
         1,
-        "how many members a set or an observation has",
-        lambda _, a: len(_members(a)),
+        "how many members a set, a route or an observation has",
+        lambda _, a: len(_each(a)),
         partial(members_asked, key=SIZE),
     ),
     "empty": Operator(
         1,
-        "whether a set or an observation has no member",
-        lambda _, a: Truth.of(not _members(a)),
+        "whether a set, a route or an observation has no member",
+        lambda _, a: Truth.of(not _each(a)),
         members_asked,
     ),
     "nodes": Operator(
@@ -409,8 +456,10 @@ OPERATORS: Mapping[str, Operator] = {
     "linked": Operator(
         3, "whether an observation saw two nodes on one link", _linked, _keys("links", "links")
     ),
-    "first": Operator(1, "the first member of a set, in the order of names", _first, members_asked),
-    "element": Operator(2, "one element of a tuple, counted from 0", _element),
+    "first": Operator(
+        1, "the first member of a route, or of a set in the order of names", _first, members_asked
+    ),
+    "element": Operator(2, "one element of a tuple or a route, counted from 0", _element),
 }
 
 
@@ -427,7 +476,7 @@ def reads_host(expression: Any) -> bool:
 def leaves(expression: Any) -> Iterator[Expression]:
     """Yield the constants, variables and names of which an expression or a query is made."""
     match expression:
-        case Apply(_, parts) | TupleOf(parts) | SetOf(parts):
+        case Apply(_, parts) | TupleOf(parts) | SetOf(parts) | RouteOf(parts):
             for part in parts:
                 yield from leaves(part)
         case Either(_, first, second):

@@ -111,7 +111,10 @@ class While:
 
 @dataclass(frozen=True, slots=True)
 class For:
-    """`for x in e { ... }`: evaluates e, and goes through its members in canonical order by `each`, a `ForEach`."""
+    """`for x in e { ... }`: evaluates e, and goes through its members in turn by `each`, a `ForEach`.
+
+    The turn of a route is its own, that of a set or an observation canonical.
+    """
 
     members: Expression
     rest: str

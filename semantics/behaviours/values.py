@@ -1,5 +1,6 @@
-"""The values of behaviours: names, texts, numbers, booleans, tuples, sets and observations."""
+"""The values of behaviours: names, texts, numbers, booleans, tuples, sets, routes and observations."""
 
+from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Union
 
@@ -22,7 +23,14 @@ class Truth(Enum):
         return Truth.TRUE if value else Truth.FALSE
 
 
-Value = Union[str, int, Truth, tuple["Value", ...], frozenset["Value"], "Observation"]
+@dataclass(frozen=True, slots=True)
+class Route:
+    """`[a, b, a]`: values in their order, each as often as it is written; never equal to a tuple."""
+
+    stops: tuple["Value", ...]
+
+
+Value = Union[str, int, Truth, tuple["Value", ...], frozenset["Value"], Route, "Observation"]
 """Names and texts are both strings: a text that spells a name is that name."""
 
 
@@ -30,12 +38,19 @@ LARGEST_NUMBER = 10**18
 """Numbers lie between this and its negative: what is printed, compared and stored stays small."""
 
 MOST_PARTS = 1000
-"""How many parts a tuple or set may have, parts of parts included."""
+"""How many parts a tuple, set or route may have, parts of parts included."""
 
 
 def parts(value: Value) -> int:
     """Count a value and its parts, as often as they occur."""
-    return 1 + sum(map(parts, value)) if isinstance(value, tuple | frozenset) else 1
+    return 1 + sum(map(parts, within(value)))
+
+
+def within(value: Value) -> "tuple[Value, ...] | frozenset[Value]":
+    """Return the parts of a tuple, a set or a route; nothing of another value."""
+    if isinstance(value, Route):
+        return value.stops
+    return value if isinstance(value, tuple | frozenset) else ()
 
 
 def order_key(value: Value) -> tuple[str, str]:
@@ -44,6 +59,8 @@ def order_key(value: Value) -> tuple[str, str]:
         return ("frozenset", repr(sorted(order_key(item) for item in value)))
     if isinstance(value, tuple):
         return ("tuple", repr([order_key(item) for item in value]))
+    if isinstance(value, Route):
+        return ("route", repr([order_key(item) for item in value.stops]))
     if isinstance(value, int):
         return ("int", f"{value + LARGEST_NUMBER:019d}")
     if isinstance(value, str | Truth):
@@ -72,6 +89,8 @@ def show(value: Value, names: "frozenset[str] | None" = None) -> str:
         return value.value
     if isinstance(value, tuple):
         return f"({', '.join(show(item, names) for item in value)})"
+    if isinstance(value, Route):
+        return f"[{', '.join(show(item, names) for item in value.stops)}]"
     if isinstance(value, frozenset):
         return f"{{{', '.join(show(item, names) for item in in_order(value))}}}"
     return str(value)

@@ -19,6 +19,7 @@ from semantics.behaviours.expressions import (
     Host,
     Literal,
     QueryOf,
+    RouteOf,
     SetOf,
     TupleOf,
     free,
@@ -232,7 +233,7 @@ def _asked(expression: Expression | QueryOf | None) -> Iterator[Key]:
                 yield from OPERATORS[operator].asks(*shown)
             for each in arguments:
                 yield from _asked(each)
-        case TupleOf(items) | SetOf(items):
+        case TupleOf(items) | SetOf(items) | RouteOf(items):
             for each in items:
                 yield from _asked(each)
         case Either(_, first, second):

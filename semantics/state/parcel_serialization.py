@@ -19,7 +19,7 @@ from semantics.behaviours.reaction_rules import (
     PlaceVariable,
     Reaction,
 )
-from semantics.behaviours.values import LARGEST_NUMBER, MOST_PARTS, Truth, Value, in_order, parts
+from semantics.behaviours.values import LARGEST_NUMBER, MOST_PARTS, Route, Truth, Value, in_order, parts
 from semantics.state.partition import Belief, Elsewhere, Parcel, Passage, Running, Whereabouts
 from semantics.state.requests import CTR, FLY, MGR, OBS, READY, SND, Request
 
@@ -96,6 +96,8 @@ def _plain(value: Any) -> Any:
             return [_plain(each) for each in value]
         case frozenset():
             return {"set": [_plain(each) for each in in_order(value)]}
+        case Route(stops):
+            return {"route": [_plain(each) for each in stops]}
         case Observation():
             facts = [[name, _plain(fact)] for name, fact in value.facts]
             return {"seen": facts, "swept": _plain(value.swept)}
@@ -184,6 +186,8 @@ def _any_value(data: Any, depth: int) -> Value:
             return tuple(_any_value(each, depth + 1) for each in data)
         case {"set": list(members)}:
             return frozenset(_any_value(each, depth + 1) for each in members)
+        case {"route": list(stops)}:
+            return Route(tuple(_any_value(each, depth + 1) for each in stops))
         case {"truth": "true" | "false" as truth}:
             return Truth(truth)
         case {"seen": _}:

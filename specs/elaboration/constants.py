@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from semantics.behaviours.values import Truth, Value
+from semantics.behaviours.values import Route, Truth, Value
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import shorten
@@ -26,6 +26,8 @@ def elaborate_constant(node: s.Expression, names: Names, bound: Mapping[str, str
             return tuple(elaborate_constant(item, names, bound) for item in items)
         case s.SetLiteral(items):
             return frozenset(elaborate_constant(item, names, bound) for item in items)
+        case s.RouteLiteral(items):
+            return Route(tuple(elaborate_constant(item, names, bound) for item in items))
         case s.Name(name):
             if bound and name in bound:
                 return bound[name]
@@ -33,6 +35,6 @@ def elaborate_constant(node: s.Expression, names: Names, bound: Mapping[str, str
                 names.entity(node, otherwise=f'a text stands in quotes: "{shorten(name)}"')
             return name
         case _:
-            hint = "write a text, a number, a name, true, false, or a tuple or set of these"
+            hint = "write a text, a number, a name, true, false, or a tuple, set or route of these"
             names.findings.add(Code.NOT_CONSTANT, node, "this is not a fixed value", hint)
             return ""

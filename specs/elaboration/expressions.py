@@ -12,6 +12,7 @@ from semantics.behaviours.expressions import (
     Host,
     Literal,
     QueryOf,
+    RouteOf,
     Self,
     SetOf,
     TupleOf,
@@ -51,6 +52,8 @@ def elaborate_expression(node: s.Expression, scope: Scope, names: Names) -> Expr
             return TupleOf(_all(items, scope, names))
         case s.SetLiteral(items):
             return SetOf(_all(items, scope, names))
+        case s.RouteLiteral(items):
+            return RouteOf(_all(items, scope, names))
         case s.UnaryOperation():
             return _unary(node, scope, names)
         case s.BinaryOperation():
@@ -154,7 +157,9 @@ def _named(node: s.Expression, scope: Scope, names: Names, wanted: str) -> Expre
     if isinstance(node, s.TextLiteral) and node.value not in known:
         message = f"a {wanted} is expected here, and a text that names none is given"
         names.findings.add(Code.WRONG_VALUE, node, message, names.findings.suggest(node.value, known))
-    elif isinstance(node, s.IntegerLiteral | s.TruthLiteral | s.TupleLiteral | s.SetLiteral | other):
+    elif isinstance(
+        node, s.IntegerLiteral | s.TruthLiteral | s.TupleLiteral | s.SetLiteral | s.RouteLiteral | other
+    ):
         hint = "write its name, or a variable that holds it"
         names.findings.add(Code.WRONG_VALUE, node, f"a {wanted} is expected here", hint)
     return elaborate_expression(node, scope, names)

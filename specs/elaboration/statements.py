@@ -162,6 +162,12 @@ class _Statements:
     def expression(self, node: s.Expression, place: _Place) -> Expression:
         return elaborate_expression(node, place.scope, self.names)
 
+    def collection(self, node: s.Expression, place: _Place) -> Expression:
+        if isinstance(node, s.TupleLiteral):
+            hint = f"in this order it is a route: {write(s.RouteLiteral(node.items))}"
+            self.names.findings.add(Code.WRONG_VALUE, node, "nothing goes through a tuple", hint)
+        return self.expression(node, place)
+
     # --- commands
 
     def observe(self, node: s.Observe, place: _Place, _: int) -> k.Statement:
@@ -279,7 +285,7 @@ class _Statements:
         return k.While(test, self.block(node.body, place.scope.inner(), tail=False))
 
     def for_(self, node: s.For, place: _Place, _: int) -> k.Statement:
-        members, rest = self.expression(node.collection, place), self.program.variables.rest()
+        members, rest = self.collection(node.collection, place), self.program.variables.rest()
         inner, each = place.scope.inner(), self.program.reserve(node)
         variable = self.bind(inner, node.variable)
         self.program.statements[each] = k.ForEach(variable, rest, self.block(node.body, inner, tail=False))
@@ -298,7 +304,7 @@ class _Statements:
         return k.Choose(tuple(found))
 
     def choose_from(self, node: s.ChooseFrom, place: _Place, _: int) -> k.Statement:
-        members, inner = self.expression(node.collection, place), place.scope.inner()
+        members, inner = self.collection(node.collection, place), place.scope.inner()
         variable = self.bind(inner, node.variable)
         return k.ChooseFrom(variable, members, self.block(node.body, inner, tail=place.tail))
 

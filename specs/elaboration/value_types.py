@@ -11,6 +11,7 @@ from semantics.behaviours.expressions import (
     Expression,
     Host,
     Literal,
+    RouteOf,
     Self,
     SetOf,
     TupleOf,
@@ -20,7 +21,7 @@ from semantics.behaviours.observations import Observation
 from semantics.behaviours.patterns import Anything, variables
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import Assign, Call, ChooseFrom, ForEach, Match, React, Spawn, Statement
-from semantics.behaviours.values import Truth
+from semantics.behaviours.values import Route, Truth
 
 Types = frozenset[type]
 
@@ -30,6 +31,7 @@ WORDS: Final[Mapping[type, str]] = {
     Truth: "true and false",
     tuple: "tuples",
     frozenset: "sets",
+    Route: "routes",
     Observation: "observations",
 }
 """What values of each type are called."""
@@ -39,7 +41,7 @@ NONE: Final = Types()
 
 _RESULTS: Final[Mapping[str, type]] = {
     **dict.fromkeys(("in", "==", "!=", "<", "<=", ">", ">=", "not", "empty", "linked"), Truth),
-    **dict.fromkeys(("of", "union", "minus", "intersect", "nodes", "agents", "children"), frozenset),
+    **dict.fromkeys(("union", "nodes", "agents", "children"), frozenset),
     **dict.fromkeys(("kind", "parent"), str),
     "size": int,
 }
@@ -91,10 +93,12 @@ def _types(expression: Expression, known: Mapping[str, Types]) -> Types:
             return Types({tuple})
         case SetOf():
             return Types({frozenset})
+        case RouteOf():
+            return Types({Route})
         case Either():
             return Types({Truth})
         case Apply(operator, _) if operator in _RESULTS:
             return Types({_RESULTS[operator]})
-        case Apply("+" | "-", (left, _)):
-            return Types(int if each is int else frozenset for each in _types(left, known))
+        case Apply("+" | "-" | "of" | "minus" | "intersect", (left, _)):
+            return Types(each if each in (int, Route) else frozenset for each in _types(left, known))
     return ANY

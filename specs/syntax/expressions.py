@@ -55,6 +55,18 @@ class SetLiteral(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class RouteLiteral(Node):
+    """`[gate0, gate1, gate0]` or `[]`: a route.
+
+    An ordered list: `for` goes through it in its order, and what stands in it twice is passed twice. `r + s` is one
+    route behind the other; `r - s`, `minus`, `intersect` and `r of Location` leave some stops out and keep the order of
+    the others.
+    """
+
+    items: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class UnaryOperation(Node):
     """`not e` (also `!e`), `-e`: negation."""
 
@@ -116,6 +128,7 @@ Expression: TypeAlias = (
     | SelfReference
     | TupleLiteral
     | SetLiteral
+    | RouteLiteral
     | UnaryOperation
     | BinaryOperation
     | OfKind

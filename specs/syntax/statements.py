@@ -131,7 +131,10 @@ class While(Node):
 
 @dataclass(frozen=True, slots=True)
 class For(Node):
-    """`for x in e { ... }`: repeat for each element, in the order of their names."""
+    """`for x in e { ... }`: repeat for each stop of a route, or each member of a set or an observation.
+
+    A route is gone through in its order, a set and an observation in the order of names.
+    """
 
     variable: Name
     collection: Expression

@@ -15,6 +15,7 @@ EVERYONES = (
 DRIVERS = (
     *(f"control(MOVE_HOST_TO {place})" for place in (*PLACES, "vessel0")),
     "control(MOVE_HOST_TO south0 VIA north0, gate0)",
+    "for p in [north0, gate0] { control(MOVE_HOST_TO p) }",
     *EVERYONES,
 )
 CONTROLS = {
@@ -41,6 +42,7 @@ TESTS = (
     "empty(o of UAV)",
     "parent(uav1, o) == north0",
     "linked(uav0, gcs0, o)",
+    "north0 in [parent(uav1, o), gate0]",
 )
 RULES = """
 rule land(u: UAV, b: Location) { u[c] || b.$0 -> b.(u[c] | $0) }

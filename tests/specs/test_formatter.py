@@ -57,6 +57,7 @@ def bigger_expressions(smaller):
         st.builds(s.FunctionCall, names, tuples(smaller)),
         st.builds(s.TupleLiteral, tuples(smaller, 2)),
         st.builds(s.SetLiteral, tuples(smaller)),
+        st.builds(s.RouteLiteral, tuples(smaller)),
     )
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from semantics.behaviours.observations import NOTHING_SEEN, Fact, Observation, Swept
+from semantics.behaviours.values import Route
 from semantics.state.requests import READY, SND
 from semantics.state.signature import Name
 
@@ -63,6 +64,8 @@ def holes(skeleton: Any) -> Iterator[Hole]:
         case tuple():
             for part in skeleton:
                 yield from holes(part)
+        case Route(stops):
+            yield from holes(stops)
         case READY():
             yield from holes(skeleton.observation)
         case SND():
@@ -82,6 +85,9 @@ def _mapped(value: Any, kind: type, change: Callable[[Any], Any], *, sets: bool 
         case SND():
             message = _mapped(value.message, kind, change, sets=sets)
             return value if message is value.message else replace(value, message=message)
+        case Route(stops):
+            changed = _mapped(stops, kind, change, sets=sets)
+            return value if changed is stops else Route(changed)
         case tuple() if type(value) is tuple:
             parts = tuple(_mapped(part, kind, change, sets=sets) for part in value)
             return value if all(map(_same, parts, value)) else parts

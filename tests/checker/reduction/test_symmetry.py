@@ -115,6 +115,10 @@ REFUSED = {
         {"body": "observe(ALL) react { case o => for x in o { skip } }"},
         "a 'for' goes through names",
     ),
+    "iterated, a set or a route": (
+        {"body": "let r = [room0] if HOST in r { r = {room0, dock0} } for x in r { skip }"},
+        "a 'for' goes through names",
+    ),
     "chosen from": (
         {"body": "observe(ALL) react { case o => choose x in o { observe(PARENT(x)) } }"},
         "those after it in the order of names are lost",
@@ -273,6 +277,9 @@ STEPS = (
     'send ("at", HOST, SELF) to base',
     'react { case "go" => skip }',
     "migrate(gcs0)",
+    "for p in [room0, dock0, room0] { control(MOVE_HOST_TO p) }",
+    "send [HOST, dock0] to base",
+    "let r = [HOST, gcs0] for h in r + [HOST] { observe(PARENT(h)) react { case o => skip } }",
 )
 BASES = (
     "BigActor base hosted_at gcs0 with_behavior { loop { react { case m: Message => skip } } }",

@@ -6,10 +6,20 @@ from small_missions import mission
 from semantics import strategies
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.computation import members_of
-from semantics.behaviours.expressions import Apply, Literal, SetOf, Variable
+from semantics.behaviours.expressions import Apply, Literal, RouteOf, SetOf, Variable
 from semantics.behaviours.observations import Observation
 from semantics.behaviours.program import Behaviour, Program
-from semantics.behaviours.statements import Assign, Call, Display, For, ForEach, If, Send, While
+from semantics.behaviours.statements import (
+    Assign,
+    Call,
+    ChooseFrom,
+    Display,
+    For,
+    ForEach,
+    If,
+    Send,
+    While,
+)
 from semantics.behaviours.values import Truth
 from semantics.rules import fun
 
@@ -25,6 +35,19 @@ def test_for_goes_through_a_set_in_canonical_order():
     members = SetOf((Literal("b"), Literal(2), Literal(-1), Literal("a")))
     t = shown(For(members, "#x", 1), ForEach("x", "#x", (2,)), Display(Variable("x")))
     assert t.shown == ("-1", "2", "a", "b")
+
+
+def test_for_goes_through_a_route_in_its_order_and_as_often_as_it_passes():
+    stops = RouteOf((Literal("b"), Literal("a"), Literal("b")))
+    t = shown(For(stops, "#x", 1), ForEach("x", "#x", (2,)), Display(Variable("x")))
+    assert t.shown == ("b", "a", "b")
+
+
+def test_choose_takes_each_stop_of_a_route_once():
+    stops = RouteOf((Literal("b"), Literal("a"), Literal("b")))
+    program = Program((ChooseFrom("x", stops, (1,)), Display(Variable("x"))), {}, COMMANDS)
+    c = mission(["u0"], agents={"a": ("u0", (0,))}, program=program)
+    assert [t.shown for t in fun(c, "a")] == [("b",), ("a",)]
 
 
 def test_an_observation_is_gone_through_by_all_that_it_shows():

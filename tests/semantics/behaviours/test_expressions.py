@@ -10,6 +10,7 @@ from semantics.behaviours.expressions import (
     Either,
     Fault,
     Literal,
+    RouteOf,
     Scope,
     SetOf,
     TupleOf,
@@ -17,7 +18,7 @@ from semantics.behaviours.expressions import (
     evaluate,
 )
 from semantics.behaviours.observations import Observation
-from semantics.behaviours.values import LARGEST_NUMBER, Truth
+from semantics.behaviours.values import LARGEST_NUMBER, Route, Truth
 from semantics.state.relations import Linked, Parent
 
 SEEN = Observation.of(("base", "u0"), ("a",), (Parent("u0", "base"), Linked("w", "u0"), Linked("w", "u1")))
@@ -57,13 +58,30 @@ def of(operator, *values):
         ("kind", ("u0",), "Uav"),
         ("first", (frozenset({"b", "a"}),), "a"),
         ("element", (("x", "y"), 1), "y"),
+        ("in", ("b", Route(("a", "b"))), Truth.TRUE),
+        ("in", ("c", Route(("a", "b"))), Truth.FALSE),
+        ("==", (Route(("a", "b")), Route(("a", "b"))), Truth.TRUE),
+        ("==", (Route(("a", "b")), Route(("b", "a"))), Truth.FALSE),
+        ("==", (Route(("a", "b")), ("a", "b")), Truth.FALSE),
+        ("==", (Route(()), frozenset()), Truth.FALSE),
+        ("size", (Route(("a", "b", "a")),), 3),
+        ("empty", (Route(()),), Truth.TRUE),
+        ("first", (Route(("b", "a")),), "b"),
+        ("element", (Route(("b", "a", "b")), 2), "b"),
+        ("+", (Route(("b", "a")), Route(("b",))), Route(("b", "a", "b"))),
+        ("+", (frozenset({"a"}), Route(("b", "b"))), frozenset({"a", "b"})),
+        ("-", (Route(("b", "a", "b", "c")), frozenset({"a"})), Route(("b", "b", "c"))),
+        ("minus", (Route(("b", "a")), Route(("b",))), Route(("a",))),
+        ("intersect", (Route(("u0", "x", "u0")), SEEN), Route(("u0", "u0"))),
+        ("union", (Route(("b", "a", "b")), frozenset({"c"})), frozenset({"a", "b", "c"})),
+        ("of", (Route(("u0", "base", "u0")), "Uav"), Route(("u0", "u0"))),
     ],
 )
 def test_operators_mean_what_they_say(operator, arguments, expected):
     assert of(operator, *arguments) == expected
 
 
-@pytest.mark.parametrize("wrong", [7, "text", Truth.TRUE, (1,), frozenset({1}), SEEN])
+@pytest.mark.parametrize("wrong", [7, "text", Truth.TRUE, (1,), frozenset({1}), Route((1,)), SEEN])
 @pytest.mark.parametrize("name", sorted(OPERATORS))
 def test_an_operator_gives_a_value_or_a_fault_of_anything(name, wrong):
     with suppress(Fault):
@@ -85,7 +103,15 @@ def test_numbers_are_bounded():
         of("-", 1 - LARGEST_NUMBER, 1)
 
 
-@pytest.mark.parametrize("make", [lambda x: TupleOf((x, x)), lambda x: SetOf((x, TupleOf((x,))))])
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda x: TupleOf((x, x)),
+        lambda x: SetOf((x, TupleOf((x,)))),
+        lambda x: RouteOf((x, x)),
+        lambda x: Apply("+", (RouteOf((x,)), RouteOf((x, x)))),
+    ],
+)
 def test_values_are_bounded(make):
     with pytest.raises(Fault, match="parts"):
         nest(make, 100)
@@ -95,6 +121,12 @@ def nest(make, times):
     nested = 1
     for _ in range(times):
         nested = value(make(Variable("x")), x=nested)
+
+
+def test_routes_do_not_grow_without_bound_behind_each_other():
+    route = Route(("a",) * 600)
+    with pytest.raises(Fault, match="parts"):
+        of("+", route, route)
 
 
 def test_a_fault_prints_sets_in_order():

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from semantics.behaviours.observations import All, Of, QueryOperator
+from semantics.behaviours.values import Route
 from semantics.environment import Says
 from semantics.extension import say
 from semantics.observed_steps import WRITABLE
@@ -312,6 +313,13 @@ GOOD = parcel_json(Parcel("nomad", ("x",), running(requests=(CTR("nomad", REACTI
 def test_a_parcel_is_read_as_it_was_written():
     assert parcel_in(GOOD).running.requests == (CTR("nomad", REACTION),)
     assert objection(parted(FIRST, parting("gcs1")), parcel_in(GOOD)) == ""
+
+
+def test_a_route_is_read_as_it_was_written_and_as_no_tuple():
+    said = Parcel("nomad", (Route(("b", ("a", Route(())), "b")),), running())
+    data = json.loads(json.dumps(parcel_json(said)))
+    assert parcel_in(data) == said
+    assert parcel_in(data).mail[0] != ("b", ("a", ()), "b")
 
 
 def test_a_parcel_with_an_operator_that_queries_have_not_is_refused():

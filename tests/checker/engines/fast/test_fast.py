@@ -3,10 +3,11 @@
 from pathlib import Path
 
 import pytest
+from checked_missions import load
 from hypothesis import given
 from scale import crossed, examples
 
-from checker import Engine, Limits, check, explore
+from checker import Engine, Limits, Outcome, check, explore
 from checker.properties.temporal.decide import kept_graph
 from semantics import Control, Scheduler, strategies
 from semantics.properties.property import Asked, Property, asked_by
@@ -97,6 +98,35 @@ def test_generated_missions_are_judged_alike_by_both_engines(initial):
     limits = Limits(configurations=60)
     reports = [check(initial, properties, limits, engine=engine) for engine in ENGINES]
     assert told(reports[0]) == told(reports[1])
+
+
+ROUTES = """
+BigActor a hosted_at uav0 with_behavior {
+  for place in [gate0, north0, gate0] {
+    control(MOVE_HOST_TO place)
+    observe(PARENT(uav1))
+    react { case o => send [o, place] to b }
+  }
+}
+BigActor b hosted_at uav1 with_behavior {
+  let way = []
+  loop {
+    react {
+      case m: Message =>
+        way = [element(m, 1)] + (way - [gate0])
+        if gate0 in way and uav1 in element(m, 0) { control(MOVE_HOST_TO gate0) }
+    }
+  }
+}
+check { race_freedom local_consistency reachable "back": b.way == [gate0, north0] }
+"""
+
+
+def test_routes_with_observations_in_them_are_judged_alike_by_both_engines():
+    mission = load(ROUTES)
+    reports = [check(mission.initial, mission.properties, engine=engine) for engine in ENGINES]
+    assert told(reports[0]) == told(reports[1])
+    assert (reports[0].configurations, reports[0].verdicts[2].outcome) == (310, Outcome.HOLDS)
 
 
 def test_the_rules_are_run_far_less_often_than_there_are_transitions():
