@@ -43,7 +43,7 @@ class BuildWorld(Transformer[Token, s.Mission]):
     # --- signature
 
     def signature(self, c: Children) -> s.Signature:
-        return s.Signature(nodes(c), span=cover(c))
+        return s.Signature(nodes(c), c[1] is not None and str(c[1]) == "standard", span=cover(c))
 
     def kind(self, c: Children) -> s.Kind:
         said = once(c[2:], c[1])

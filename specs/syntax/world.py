@@ -111,9 +111,13 @@ class Kind(Node):
 
 @dataclass(frozen=True, slots=True)
 class Signature(Node):
-    """`signature { kind ... }`: the kinds of nodes."""
+    """`signature { kind ... }`, `signature standard` or `signature standard { kind ... }`: the kinds of nodes.
+
+    `standard` declares the kinds of the paper, as shown below; a kind of that name adds to it.
+    """
 
     kinds: tuple[Kind, ...]
+    standard: bool = False
 
 
 # --- world
