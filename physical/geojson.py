@@ -31,6 +31,9 @@ MAX_VERTICES: Final = 100_000
 Json = Mapping[str, object]
 
 
+_ORDER: Final = "a position of GeoJSON is [longitude, latitude], in degrees, east and north positive"
+
+
 class GeoJSONError(PhysicalError):
     """A mistake in a GeoJSON text; `problems` has every one that was found, each with its feature."""
 
@@ -65,7 +68,8 @@ def reading_geojson(text: str | bytes) -> Iterator[PhysicalProperty]:
             found.append(_property(feature))
         except PhysicalError as problem:
             where = f"feature {index}{_label(feature)}"
-            problems.append(PhysicalError(problem.code, problem.message, problem.hint, where))
+            hint = _ORDER if problem.code in ("latitude", "longitude") else problem.hint
+            problems.append(PhysicalError(problem.code, problem.message, hint, where))
         else:
             yield found[-1]
     problems += _repeated(found)

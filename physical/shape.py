@@ -205,10 +205,12 @@ def _position(latitude: float, longitude: float) -> PositionE7:
         if not -limit <= value <= limit:  # false of NaN too
             # An int may be too long to be shown or made a float.
             shown = value if isinstance(value, float) or abs(value) < E7 else "given"
+            swapped = name == "latitude" and -180 <= latitude <= 180 and isinstance(longitude, int | float)
+            doubt = "are they swapped? " if swapped and -90 <= longitude <= 90 else ""
             raise GeometryError(
                 "not-finite" if isinstance(value, float) and not math.isfinite(value) else name,
                 f"the {name} {shown} is not between -{limit} and {limit}",
-                "positions are (latitude, longitude), in degrees, north and east positive",
+                f"{doubt}positions are (latitude, longitude), in degrees, north and east positive",
             )
     return rounded(latitude, longitude)
 

@@ -11,8 +11,10 @@ from specs.building import (
     Children,
     Mistake,
     Part,
+    check_hemispheres,
     cover,
     decimal,
+    degrees,
     name,
     names,
     nodes,
@@ -43,7 +45,7 @@ class BuildWorld(Transformer[Token, s.Mission]):
     # --- signature
 
     def signature(self, c: Children) -> s.Signature:
-        return s.Signature(nodes(c), span=cover(c))
+        return s.Signature(nodes(c), c[1] is not None and str(c[1]) == "standard", span=cover(c))
 
     def kind(self, c: Children) -> s.Kind:
         said = once(c[2:], c[1])
@@ -101,10 +103,16 @@ class BuildWorld(Transformer[Token, s.Mission]):
         return s.Length(c[0].value, str(c[1]), span=cover(c))
 
     def coordinate(self, c: Children) -> s.Coordinate:
-        return s.Coordinate(c[1].value, c[3].value, span=cover(c))
+        latitude, longitude = c[1], c[3]
+        check_hemispheres(latitude, longitude)
+        written = (latitude.word, longitude.word)
+        return s.Coordinate(latitude.value, longitude.value, written, span=cover(c))
 
     def number(self, c: Children) -> Part:
         return Part(cover(c), decimal(c[0], c[1]))
+
+    def degrees(self, c: Children) -> Part:
+        return Part(cover(c), *degrees(c[0]))
 
     # --- beliefs
 

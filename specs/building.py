@@ -7,6 +7,7 @@ child's place is its place in the grammar.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias, TypeVar
@@ -23,6 +24,14 @@ from specs.syntax import Name, Node, RuleBody, Span, TextLiteral
 MOST: Final = 1_000_000_000  # whole numbers are smaller in value
 _ESCAPES: Final = {'"': '"', "\\": "\\", "n": "\n", "t": "\t"}
 _NAMES: Final = frozenset({"NAME", "CHANNEL", "DROPPING"})
+
+ANGLES: Final = "write 37°08'49\"N, 37°8.82'N or 37.147"
+"""How an angle may be written, for hints."""
+
+SIXTY: Final = 60
+_MARKS: Final = {"º": "°", "′": "'", "’": "'", "″": '"', "”": '"'}
+_ANGLE_PART: Final = re.compile(r"([0-9.]+)([°'\"])")
+_DECIMAL: Final = re.compile(r"[0-9]{1,6}(?:\.[0-9]{1,20})?")
 
 Child: TypeAlias = Any  # a token, a node, a Part or None, as the grammar says
 Children: TypeAlias = Sequence[Child]
@@ -128,6 +137,31 @@ def decimal(sign: Token | None, token: Token) -> float:
             )
         )
     return -value if sign and value else value
+
+
+def degrees(token: Token) -> tuple[float, str]:
+    """Return an angle written in degrees, minutes and seconds, and how it is written; raises Mistake."""
+    text = "".join(_MARKS.get(mark, mark) for mark in str(token) if not mark.isspace()).replace("''", '"')
+    parts = {mark: number for number, mark in _ANGLE_PART.findall(text)}
+    if not all(map(_DECIMAL.fullmatch, parts.values())) or any(
+        float(parts.get(mark, 0)) >= SIXTY for mark in "'\""
+    ):
+        message = f"'{_short(token)}' is no angle: minutes and seconds are numbers below {SIXTY}"
+        raise Mistake(Diagnostic(Code.BAD_COORDINATE, span_of(token), message, ANGLES))
+    value = sum(float(parts.get(mark, 0)) / SIXTY**power for power, mark in enumerate("°'\""))
+    return -value if text[-1] in "SW" else value, text
+
+
+def check_hemispheres(latitude: Part, longitude: Part) -> None:
+    """Raise Mistake where a letter says that the first angle is a longitude, or the second a latitude."""
+    if latitude.word[-1:] not in ("E", "W") and longitude.word[-1:] not in ("N", "S"):
+        return
+    found = latitude if latitude.word[-1:] in ("E", "W") else longitude
+    which, place = ("longitude", "first") if found is latitude else ("latitude", "second")
+    other = "latitude" if found is latitude else "longitude"
+    message = f"{found.word} is a {which}, and the {other} stands {place}"
+    hint = "write (latitude, longitude): exchange the two"
+    raise Mistake(Diagnostic(Code.BAD_COORDINATE, found.span, message, hint))
 
 
 def once(clauses: Children, owner: Token) -> dict[str, Part]:

@@ -232,7 +232,10 @@ class Code(Enum):
     UNKNOWN_KIND = (
         "LS202",
         "unknown kind",
-        """A kind is used that the signature does not declare: `signature { kind UAV driven }`.""",
+        """A kind is used that no signature declares. `signature standard` declares the kinds of the paper: Location,
+        OilSpill, UAV, Vessel, Tanker, Drifter and Station. Others are declared by `signature { kind Tug driven }`, or
+        beside those, `signature standard { kind Tug driven  kind Location contains Tug }`. A kind is reported once,
+        where it is used first.""",
     )
     DUPLICATE_NAME = (
         "LS203",

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable
 from typing import Final
 
 from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS, VIA, WAY
+from specs.building import ANGLES
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
 from specs.grammar import QUERY_WORDS, RESERVED, SECTIONS, STATEMENTS
@@ -21,6 +22,7 @@ from specs.syntax.nodes import Span
 
 _GEOMETRIES: Final = frozenset({"point", "box", "polygon", "circle"})
 _QUOTES: Final = "'`\u2018\u2019\u201c\u201d\u201e\u00ab\u00bb"
+_ANGLE_MARKS: Final = tuple("°º'′’\"″”")
 _COMPARISONS: Final = frozenset({"==", "!=", "<", "<=", ">", ">=", "in", "not"})
 _SYMBOL: Final = re.compile(r"[\w\s\"()\[\]{},;:.=<>!&|+\-]")
 _CLOSE: Final = 0.7
@@ -41,6 +43,28 @@ def unknown_character(at: Situation) -> Diagnostic | None:
         quote = at.found.text in _QUOTES
         hint = 'strings take straight double quotes: "handover"' if quote else "remove it"
         return at.mistake(Code.UNKNOWN_CHARACTER, f"{at.found.shown} has no meaning here", hint)
+    return None
+
+
+def bad_angle(at: Situation) -> Diagnostic | None:
+    """`(37°08'49", 8°35')`, `(37 08 49, 8 35 0)`, `(37,147, -8,58)`."""
+    behind = at.before.is_number and at.accepted in ({","}, {")"})
+    if behind and at.found.text == "," and at.accepted == {")"}:
+        hint = "a decimal number has a point, 37.147; a height stands behind: altitude 90 m"
+        return at.mistake(Code.BAD_COORDINATE, "a coordinate has two numbers, and here is a third", hint)
+    if behind and at.found.text[:1] in _ANGLE_MARKS:
+        message = "an angle in degrees, minutes and seconds ends with its letter: N, S, E or W"
+        return at.mistake(Code.BAD_COORDINATE, message, ANGLES)
+    if behind and at.found.is_number:
+        hint = f"separate latitude and longitude; degrees and minutes have their marks: {ANGLES}"
+        return at.mistake(Code.MISSING_COMMA, f"expected ',' before {at.found.shown}", hint)
+    if behind and at.found.text in tuple(":NSEW"):
+        message = (
+            f"{at.found.shown} is not part of a number; degrees and minutes are written with their marks"
+        )
+        return at.mistake(Code.BAD_COORDINATE, message, ANGLES)
+    if "DEGREES" in at.sorts and at.found.text[:1] in "NSEW" and at.found.text[1:2].isdecimal():
+        return at.mistake(Code.BAD_COORDINATE, "the letter of an angle stands behind it", ANGLES)
     return None
 
 
@@ -240,6 +264,7 @@ def loose_number(at: Situation) -> Diagnostic | None:
 
 
 MISTAKES: Final[tuple[Callable[[Situation], Diagnostic | None], ...]] = (
+    bad_angle,
     unknown_character,
     unclosed_section,
     misplaced_header,

@@ -149,6 +149,13 @@ def _block(head: Callable[[s.Node], str], items: str) -> Callable[[Layout, s.Nod
     return lambda layout, node: layout.block(node.span, [head(node)], getattr(node, items))
 
 
+def _signature(layout: Layout, node: s.Signature) -> None:
+    if node.standard and not node.kinds and not layout.commented(node.span):
+        layout.line(node.span.start, _head(node))
+    else:
+        layout.block(node.span, [_head(node)], node.kinds)
+
+
 def _head(node: s.Node) -> str:
     match node:
         case s.BigActor(name, host, _):
@@ -164,6 +171,8 @@ def _head(node: s.Node) -> str:
             return f"choose {write(variable)} in {write(collection)}"
         case s.Match(subject, _):
             return f"match {write(subject)}"
+        case s.Signature(_, standard):
+            return "signature standard" if standard else "signature"
     return type(node).__name__.lower()
 
 
@@ -177,7 +186,7 @@ _BLOCKS: Final[dict[type[s.Node], Callable[..., None]]] = {
     },
     **{sort: _block(_head, "cases") for sort in (s.React, s.Match)},
     s.Choose: _block(_head, "alternatives"),
-    s.Signature: _block(_head, "kinds"),
+    s.Signature: _signature,
     s.World: _block(_head, "entries"),
     s.Believes: _block(_head, "beliefs"),
     s.Environment: _block(_head, "clauses"),

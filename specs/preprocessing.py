@@ -22,6 +22,7 @@ MAX_WORDS: Final = 60_000
 
 _SCAN: Final = re.compile(
     r"""(?P<comment>(?://|\#)[^\n]*)
+      | [NSEW]?[0-9.]{1,30}+\s?[°º][^,()\n]*  # an angle, whose marks are no quotes
       | (?P<string>"(?:[^"\\\n]|\\.)*+")
       | (?P<quote>")
       | (?P<open>[(\[{])

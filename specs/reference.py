@@ -10,6 +10,7 @@ from typing import Final, get_args, get_type_hints
 from semantics.behaviours.commands import COMMANDS, WAY, Command
 from specs import syntax as s
 from specs.grammar import RESERVED, Build, grammar_text
+from specs.standard_signature import STANDARD
 
 INTRODUCTION: Final = """\
 # The mission language
@@ -164,6 +165,8 @@ def language_reference() -> str:
     for heading, rules in grammar_parts():
         if NODES[heading]:
             parts += [f"## {heading}\n", *_constructs(heading), _fenced(rules, "ebnf")]
+        if heading == "Signature":
+            parts += ["`signature standard` declares:\n", _fenced(STANDARD, "mission")]
         if heading in EXAMPLES:
             parts += ["Example:\n", _fenced(EXAMPLES[heading], "mission")]
     reserved = ", ".join(f"`{word}`" for word in sorted(RESERVED))

@@ -354,7 +354,8 @@ def _(node: s.Placement) -> str:
 
 @write.register
 def _(node: s.Coordinate) -> str:
-    return f"({decimal(node.latitude)}, {decimal(node.longitude)})"
+    latitude, longitude = node.written
+    return f"({latitude or decimal(node.latitude)}, {longitude or decimal(node.longitude)})"
 
 
 @write.register

@@ -48,18 +48,18 @@ class _Clauses:
 
 def elaborate_environment(
     mission: s.Mission, names: Names, world: World, mobility: Mobility
-) -> tuple[tuple[Clause, ...], tuple[int, ...], frozenset[str]]:
-    """Return the clauses of a mission and the line of each, and the entities whose flights always end."""
+) -> tuple[tuple[Clause, ...], tuple[s.Span, ...], frozenset[str]]:
+    """Return the clauses of a mission and where each stands, and the entities whose flights always end."""
     written = tuple(clause for section in mission.each(s.Environment) for clause in section.clauses)
     phase = _Clauses(names, world, mobility, Spots(names, world), written)
     _check_repeated(phase)
-    source, clauses, lines = names.findings.source, list[Clause](), list[int]()
+    clauses, spans = list[Clause](), list[s.Span]()
     for each in written:
         clause = _clause(phase, each)
         if clause is not None:
             clauses.append(clause)
-            lines.append(source.line(each.span.start))
-    return tuple(clauses), tuple(lines), frozenset(phase.arriving)
+            spans.append(each.span)
+    return tuple(clauses), tuple(spans), frozenset(phase.arriving)
 
 
 def appearing_channels(mission: s.Mission, names: Names) -> None:

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from physical import Band, Geometry, PhysicalError, box, centroid, circle, point, polygon, translate_to
+from physical.measure import metres_text
+from physical.outliers import is_swapped, outliers
 from semantics.state.physical_model import Placed
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import Findings
+from specs.writing import write
 
 
 def elaborate_geometry(node: s.Geometry, findings: Findings) -> Geometry | None:
     """Return the geometry that is written, None (and a finding) where it is none on the earth."""
     try:
-        return _geometry(node)
+        geometry = _geometry(node)
+        _warn_of_swapped_corner(node, findings)
+        return geometry
     except PhysicalError as error:
         findings.add(Code.BAD_GEOMETRY, node, error.message, error.hint)
         return None
@@ -28,6 +33,20 @@ def _geometry(node: s.Geometry) -> Geometry:
             return polygon([_pair(corner) for corner in corners])
         case s.Circle(centre, radius):
             return circle(_pair(centre), radius.metres)
+
+
+def _warn_of_swapped_corner(node: s.Geometry, findings: Findings) -> None:
+    """Warn of a corner far from the others that would be near them with its latitude and longitude exchanged."""
+    if not isinstance(node, s.Box | s.Polygon):
+        return
+    corners = (node.first, node.second) if isinstance(node, s.Box) else node.corners
+    spread = {key: point(*_pair(corner)) for key, corner in enumerate(corners)}
+    for key, metres in outliers(spread).items():
+        rest = [each for other, each in spread.items() if other != key]
+        if is_swapped(spread[key], rest, metres):
+            message = f"the corner {write(corners[key])} lies {metres_text(metres)} from the others"
+            hint = "are latitude and longitude swapped? exchanged, it would be near"
+            findings.warn(Code.FAR_FROM_THE_REST, corners[key], message, hint)
 
 
 def _pair(coordinate: s.Coordinate) -> tuple[float, float]:

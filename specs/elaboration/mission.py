@@ -93,8 +93,8 @@ def elaborate(
     declare_behaviours(mission, names)
     mobility = elaborate_mobility(mission, names, world)
     check_nesting(names, world, mobility)
-    clauses, clause_lines, arriving = elaborate_environment(mission, names, world, mobility)
-    warn_of_outliers(names, world, clauses)
+    clauses, clause_spans, arriving = elaborate_environment(mission, names, world, mobility)
+    warn_of_outliers(names, world, zip(clauses, clause_spans, strict=True))
     beliefs = elaborate_beliefs(mission, names)
     bodies, program = elaborate_bodies(mission, names, elaborate_rules(mission, names))
     agents = {}
@@ -116,7 +116,7 @@ def elaborate(
         scheduler,
         control,
         arriving,
-        clause_lines=clause_lines,
+        clause_lines=tuple(source.line(span.start) for span in clause_spans),
     )
     there = {name: world.channels[name] for name in world.placements}
     begin = partial(initial, placements=world.placements, channels=there, agents=agents)

@@ -86,26 +86,28 @@ def check_nesting(names: Names, world: World, mobility: Mobility) -> None:
         names.findings.add(Code.PLACES_OVERLAP, max(spans), str(conflict), hint)
 
 
-def warn_of_outliers(names: Names, world: World, clauses: Iterable[Clause]) -> None:
+def warn_of_outliers(names: Names, world: World, clauses: Iterable[tuple[Clause, s.Span]]) -> None:
     """Warn of what lies so far from everything else that its latitude and longitude may be swapped."""
-    geometries = dict(_geometries(world, clauses))
+    geometries = dict(_geometries(names, world, clauses))
     found = outliers(geometries)
     rest = [geometry for key, geometry in geometries.items() if key not in found]
-    for (name, words), metres in found.items():
-        swapped = is_swapped(geometries[name, words], rest, metres)
-        hint = "are latitude and longitude swapped? the other way about it would be near" if swapped else ""
+    for (span, words), metres in found.items():
+        swapped = is_swapped(geometries[span, words], rest, metres)
+        hint = "are latitude and longitude swapped? exchanged, it would be near" if swapped else ""
         message = f"{words} lies {metres_text(metres)} from everything else"
         hint = hint or "look at its coordinates: missions say (latitude, longitude)"
-        names.findings.warn(Code.FAR_FROM_THE_REST, names.spans["entity", name], message, hint)
+        names.findings.warn(Code.FAR_FROM_THE_REST, span, message, hint)
 
 
-def _geometries(world: World, clauses: Iterable[Clause]) -> Iterator[tuple[tuple[str, str], Geometry]]:
-    """Yield where each entity is or may come to be, with its name and how it is called."""
+def _geometries(
+    names: Names, world: World, clauses: Iterable[tuple[Clause, s.Span]]
+) -> Iterator[tuple[tuple[s.Span, str], Geometry]]:
+    """Yield where each entity is or may come to be, with where that is said and how it is called."""
     for name, placement in world.placements.items():
         if isinstance(placement, Placed):
-            yield (name, name), placement.geometry
-    for clause in clauses:
+            yield (names.spans["entity", name], name), placement.geometry
+    for clause, span in clauses:
         if isinstance(clause, Placing):
             for words, placement in zip(clause.words, clause.placements, strict=True):
                 if isinstance(placement, Placed):
-                    yield (clause.entity, f"where {words}"), placement.geometry
+                    yield (span, f"where {words}"), placement.geometry

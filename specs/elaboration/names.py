@@ -9,7 +9,7 @@ from typing import Final
 from semantics.state.signature import REGION, Signature
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import Findings, a
+from specs.elaboration.findings import Findings, a, shorten
 
 SORTS: Final = ("entity", "agent", "kind", "channel", "rule", "behaviour")
 WORDS: Final = {
@@ -36,6 +36,8 @@ class Names:
         rules: The named rules.
         behaviours: The parametrised behaviours.
         agents: All bigActors, spawned ones too, with their hosts (None for spawned ones).
+        channels: All channels.
+        lacking: Kinds that were reported as undeclared.
     """
 
     findings: Findings
@@ -46,6 +48,7 @@ class Names:
     behaviours: dict[str, s.Definition] = field(default_factory=dict)
     agents: dict[str, s.Name | None] = field(default_factory=dict)
     channels: set[str] = field(default_factory=set)
+    lacking: set[str] = field(default_factory=set)
 
     def declare(self, sort: str, name: str, where: s.Node | s.Span) -> bool:
         """Give a name its meaning; reports one that has a meaning already, and tells whether all is well."""
@@ -87,14 +90,15 @@ class Names:
             self._missing(name, "entity", self.kinds, otherwise)
         return kind
 
-    def kind(self, name: s.Name, otherwise: str = "") -> bool:
-        """Tell whether there is such a kind, and report one that there isn't."""
+    def kind(self, name: s.Name) -> bool:
+        """Tell whether there is such a kind, and report one that there isn't, once: only rules' bodies name any."""
         if name.text in self.signature.kinds:
             return True
-        declared = otherwise or f"declare it: signature {{ kind {name.text} }}"
-        self.findings.unknown(
-            name, self.signature.kinds, sort="kind", code=Code.UNKNOWN_KIND, otherwise=declared
-        )
+        if name.text not in self.lacking:
+            self.lacking.add(name.text)
+            kinds = [kind for sort, kind in self.spans if sort == "kind"]
+            declare = f"declare it: signature {{ kind {shorten(name.text)} }}"
+            self.findings.unknown(name, kinds, sort="kind", code=Code.UNKNOWN_KIND, otherwise=declare)
         return False
 
     def agent(self, name: s.Name) -> bool:

@@ -171,9 +171,8 @@ def _unknown(reading: _Reading, node: WrittenNode) -> None:
 
 def _check_control(reading: _Reading, node: WrittenNode, term: NodeTerm | None) -> None:
     control = node.control or ""
-    if control not in reading.names.signature.kinds:
-        hint = reading.names.findings.suggest(control, reading.names.signature.kinds)
-        reading.mistake(Code.UNKNOWN_KIND, node, f"unknown kind '{control}'", hint)
+    if not reading.names.kind(s.Name(control, span=reading.where(node))):
+        reading.sound = False
         return
     kind = control if term is None else reading.kinds.get(term)
     if term == HOST and kind is None:

@@ -1,23 +1,126 @@
-"""The signature phase: kinds."""
+"""The signature phase: kinds, and one error for each that is not declared."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Final
+
 from semantics.state.signature import Kind, Signature
 from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.findings import shorten
 from specs.elaboration.names import Names
+from specs.elaboration.proposed_signature import proposed
+from specs.standard_signature import standard_kinds
+
+_MOST_NAMED: Final = 8
+
+Kinds = dict[str, Kind]
+Uses = dict[str, list[s.Name]]
 
 
 def elaborate_signature(mission: s.Mission, names: Names) -> None:
-    """Declare the kinds of a mission."""
-    declared = [kind for section in mission.each(s.Signature) for kind in section.kinds]
-    first = [kind for kind in declared if names.declare("kind", kind.name.text, kind.name)]
-    names.signature = Signature.of(_kind(kind) for kind in first)
-    for kind in declared:
-        for other in (*kind.contains, *kind.carries):
-            names.kind(other)
+    """Declare the kinds of a mission; after the error, those that it lacks are as a signature to paste has them."""
+    kinds = _declared(mission, names)
+    uses = _undeclared(mission, kinds)
+    if uses and not mission.each(s.Signature):
+        kinds = _lacking_signature(mission, uses, names)
+    elif uses:
+        kinds = _lacking_kinds(mission, kinds, uses, names)
+    names.signature = Signature.of(kinds.values())
+
+
+def _declared(mission: s.Mission, names: Names) -> Kinds:
+    sections = mission.each(s.Signature)
+    standard = next((section for section in sections if section.standard), None)
+    if standard is None:
+        base = Kinds()
+    else:
+        base = _standard()
+        for name in base:
+            names.declare("kind", name, standard)
+    found = dict(base)
+    for kind in (kind for section in sections for kind in section.kinds):
+        name = kind.name.text
+        if name in base:
+            found[name] = _extended(base.pop(name), _kind(kind))
+        elif names.declare("kind", name, kind.name):
+            found[name] = _kind(kind)
+    return found
+
+
+def _standard() -> Kinds:
+    return {kind.name.text: _kind(kind) for kind in standard_kinds()}
 
 
 def _kind(kind: s.Kind) -> Kind:
     contains = frozenset(other.text for other in kind.contains)
     carries = frozenset(other.text for other in kind.carries)
     return Kind(kind.name.text, contains, carries, kind.driven, kind.passive)
+
+
+def _extended(kind: Kind, by: Kind) -> Kind:
+    """Return a kind with what is said of it elsewhere too."""
+    contains, carries = kind.contains | by.contains, kind.carries | by.carries
+    return Kind(kind.name, contains, carries, kind.driven or by.driven, kind.passive or by.passive)
+
+
+# --- kinds that are not declared
+
+
+def _undeclared(mission: s.Mission, kinds: Kinds) -> Uses:
+    """Return where each undeclared kind is used, in the order of the text; rules' bodies are looked at later."""
+    found = Uses()
+    used = (name for node in s.walk(mission) for name in _kinds_in(node))
+    for name in sorted(used, key=lambda name: name.span):
+        if name.text not in kinds:
+            found.setdefault(name.text, []).append(name)
+    return found
+
+
+def _kinds_in(node: s.Node) -> tuple[s.Name, ...]:
+    match node:
+        case s.Entity() | s.Parameter() | s.OfKind() | s.Quantified() | s.Keep():
+            return (node.kind,)
+        case s.Kind():
+            return (*node.contains, *node.carries)
+        case _:
+            return ()
+
+
+def _lacking_signature(mission: s.Mission, uses: Uses, names: Names) -> Kinds:
+    """Report that there is no signature, with one to paste."""
+    standard = _standard() if uses.keys() & _standard().keys() else Kinds()
+    own = proposed(mission, tuple(kind for kind in uses if kind not in standard))
+    holding = [kind for kind in uses if own and kind in standard and standard[kind].contains]
+    own = (*(Kind(kind, frozenset(each.name for each in own)) for kind in holding), *own)
+    shown = [shorten(kind) for kind in uses]
+    shown = shown if len(shown) <= _MOST_NAMED else [*shown[:_MOST_NAMED], "others"]
+    few = shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"
+    body = [f"{{ {'  '.join(map(_written, own))} }}"] if own else []
+    remedy = " ".join(["signature", *(["standard"] if standard else []), *body])
+    where = next(iter(uses.values()))[0]
+    names.findings.add(Code.UNKNOWN_KIND, where, f"no signature declares {few}", f"write: {remedy}")
+    return standard | {kind.name: _extended(kind, standard.get(kind.name, kind)) for kind in own}
+
+
+def _lacking_kinds(mission: s.Mission, kinds: Kinds, uses: Uses, names: Names) -> Kinds:
+    """Report each kind that the signature lacks; afterwards, what contains anything contains it."""
+    own = {kind.name: kind for kind in proposed(mission, tuple(uses))}
+    for kind, where in uses.items():
+        times = f", used {len(where)} times" if len(where) > 1 else ""
+        similar = "" if kind in _standard() else names.findings.suggest(kind, kinds)
+        hint = similar or f"declare it: signature {{ {_written(own[kind])} }}"
+        names.findings.add(Code.UNKNOWN_KIND, where[0], f"unknown kind '{shorten(kind)}'{times}", hint)
+    holding = {
+        name: replace(kind, contains=kind.contains | own.keys()) if kind.contains else kind
+        for name, kind in kinds.items()
+    }
+    return holding | own
+
+
+def _written(kind: Kind) -> str:
+    clauses = [f"contains {', '.join(sorted(kind.contains))}"] if kind.contains else []
+    clauses += ["driven"] if kind.driven else []
+    clauses += [f"carries {', '.join(sorted(kind.carries))}"] if kind.carries else []
+    return " ".join(["kind", kind.name, *clauses])

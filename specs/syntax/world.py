@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from specs.syntax.expressions import TextLiteral
@@ -26,13 +26,19 @@ class Length(Node):
 
 @dataclass(frozen=True, slots=True)
 class Coordinate(Node):
-    """`(37.04, -8.59)`.
+    """`(37.04, -8.59)`, or `(37°02'24"N, 8°35.4'W)`.
 
-    Latitude, then longitude, in degrees (WGS 84).
+    Latitude, then longitude, in degrees (WGS 84); minutes and seconds may be left out, the letter may not.
+
+    Attributes:
+        latitude: In degrees, positive in the north.
+        longitude: In degrees, positive in the east.
+        written: Each of the two, where it is written with its letter.
     """
 
     latitude: float
     longitude: float
+    written: tuple[str, str] = field(default=("", ""), compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,9 +117,13 @@ class Kind(Node):
 
 @dataclass(frozen=True, slots=True)
 class Signature(Node):
-    """`signature { kind ... }`: the kinds of nodes."""
+    """`signature { kind ... }`, `signature standard` or `signature standard { kind ... }`: the kinds of nodes.
+
+    `standard` declares the kinds of the paper, as shown below; a kind of that name adds to it.
+    """
 
     kinds: tuple[Kind, ...]
+    standard: bool = False
 
 
 # --- world

@@ -220,7 +220,7 @@ def test_all_problems_are_reported_at_once_and_carry_their_hints():
         "feature 0 (a): the feature has no kind\n"
         'hint: write "kind" into its properties\n'
         "feature 3 (c): the latitude 99 is not between -90 and 90\n"
-        "hint: positions are (latitude, longitude), in degrees, north and east positive\n"
+        "hint: a position of GeoJSON is [longitude, latitude], in degrees, east and north positive\n"
         "2 features have the name b\n"
         "hint: names are unique"
     )

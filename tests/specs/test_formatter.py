@@ -336,3 +336,8 @@ def test_long_lines_are_broken_between_items():
 def test_an_empty_mission_is_empty():
     assert format_mission(" \n\n ") == ""
     assert format_mission("// only this") == "// only this\n"
+
+
+def test_an_angle_is_laid_out_with_the_marks_that_it_was_written_with():
+    written = "world { a: B = point (37º 08′ 49.5″ N, -8.50) }"
+    assert "point (37°08'49.5\"N, -8.5)" in format_mission(written)

@@ -214,3 +214,30 @@ def test_deep_trees_that_are_accepted_can_be_compared_hashed_and_printed():
     assert mission == read("def f() = {" + "loop { " * 197 + "}" * 198)
     assert hash(mission)
     assert repr(mission)
+
+
+@pytest.mark.parametrize(
+    ("written", "position"),
+    [
+        ("37°08'49\"N, 8°35'W", (37 + 8 / 60 + 49 / 3600, -(8 + 35 / 60))),
+        ("37°8.82'S, 8.5°E", (-(37 + 8.82 / 60), 8.5)),
+        ("37º 08′ 49.5″ N, -8.5", (37 + 8 / 60 + 49.5 / 3600, -8.5)),
+        ("37° 8’ 30’’ N, 8°0'30\"W", (37 + 8 / 60 + 30 / 3600, -30 / 3600 - 8)),
+    ],
+)
+def test_degrees_minutes_and_seconds_are_a_position(written, position):
+    (world,) = read(f"world {{ a: B = point ({written}) }}").declarations
+    found = world.entries[0].placement.geometry.position
+    assert (found.latitude, found.longitude) == pytest.approx(position, abs=1e-12)
+
+
+@pytest.mark.parametrize("angle", ["37°60'N", "37°08'60\"N", "37..1°N", "37°1.'N"])
+def test_what_is_no_angle_is_refused(angle):
+    assert code_of(f"world {{ a: B = point ({angle}, 8) }}") is Code.BAD_COORDINATE
+
+
+def test_an_angle_without_an_end_takes_no_time():
+    text = "world { a: B = point (" + " ".join(["1." * 4000] * 100) + " }"
+    start = time.perf_counter()
+    code_of(text)
+    assert time.perf_counter() - start < 5  # it would be hours if it were looked at from each of its digits
