@@ -3,7 +3,7 @@
 It knows the calculus by `semantics.successors` alone: nothing of files, vehicles or the mission language.
 """
 
-from checker.check import check
+from checker.check import Checkable, check
 from checker.engines.choose import explore
 from checker.engines.cluster.crew import ClusterError
 from checker.engines.contract import (
@@ -20,10 +20,11 @@ from checker.properties.ownership import owned
 from checker.reduction import Reduction, RefusedError
 from checker.reports.report import report_json, report_text
 from checker.traces import ReplayError, Step, Trace, print_loop, print_trace, replay, to_json
-from checker.verdicts import Outcome, Report, Verdict, Violation
+from checker.verdicts import Outcome, Report, UnknownPropertyError, Verdict, Verdicts, Violation
 
 __all__ = [
     "Bound",
+    "Checkable",
     "CheckpointError",
     "Cluster",
     "ClusterError",
@@ -42,7 +43,9 @@ __all__ = [
     "Step",
     "Stop",
     "Trace",
+    "UnknownPropertyError",
     "Verdict",
+    "Verdicts",
     "Violation",
     "check",
     "explore",

@@ -11,6 +11,7 @@ from typing import Final
 from physical import open_file
 from semantics.contingencies import Precautions
 from semantics.properties.property import Property, watched
+from semantics.state.brief import cut
 from semantics.state.configuration import Configuration
 from semantics.state.initial import initial
 from semantics.state.setting import Control, Scheduler, Setting
@@ -68,6 +69,12 @@ class ElaboratedMission:
     warnings: tuple[Diagnostic, ...]
     begin: Callable[[Setting], Configuration] = field(repr=False)
     empty: bool
+
+    def __repr__(self) -> str:
+        return (
+            f"<ElaboratedMission {cut(self.name)} agents={len(self.initial.alpha.names())} "
+            f"entities={len(self.setting.kinds)} properties={len(self.properties)}>"
+        )
 
     def under(self, scheduler: Scheduler, control: Control) -> ElaboratedMission:
         """Return the same mission under another scheduler and kind of control; no file is read again."""
