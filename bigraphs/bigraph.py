@@ -86,7 +86,9 @@ class Bigraph:
 
     def __repr__(self) -> str:
         links = self.edges + len(self.outer_names)
-        return f"<Bigraph nodes={len(self.nodes)} links={links} regions={self.regions} sites={len(self.sites)}>"
+        return (
+            f"<Bigraph nodes={len(self.nodes)} links={links} regions={self.regions} sites={len(self.sites)}>"
+        )
 
     def __str__(self) -> str:
         from bigraphs.text import draw_text  # noqa: PLC0415 - drawing is built on values

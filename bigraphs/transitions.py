@@ -61,7 +61,9 @@ class TransitionSystem:
     reason: str = ""
 
     def __repr__(self) -> str:
-        return f"<TransitionSystem states={len(self)} transitions={len(self.targets)} complete={self.complete}>"
+        return (
+            f"<TransitionSystem states={len(self)} transitions={len(self.targets)} complete={self.complete}>"
+        )
 
     @property
     def complete(self) -> bool:

@@ -104,7 +104,9 @@ class Verdicts(tuple[Verdict, ...]):
 
 def _instead(name: str, names: list[str]) -> str:
     near = get_close_matches(cut(name), names, 3)
-    return f"did you mean {' or '.join(map(repr, near))}?" if near else f"there are {', '.join(names) or 'none'}"
+    return (
+        f"did you mean {' or '.join(map(repr, near))}?" if near else f"there are {', '.join(names) or 'none'}"
+    )
 
 
 @dataclass(frozen=True, slots=True)

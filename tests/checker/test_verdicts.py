@@ -46,7 +46,9 @@ def test_a_mission_is_checked_for_what_it_asks_with_its_notes():
     by_parts = check(mission.initial, mission.properties, notes=mission.notes)
     whole = check(mission)
     assert (whole.verdicts, whole.notes) == (by_parts.verdicts, by_parts.notes)
-    assert [each.property for each in check(mission, mission.properties[:1]).verdicts] == [mission.properties[0]]
+    assert [each.property for each in check(mission, mission.properties[:1]).verdicts] == [
+        mission.properties[0]
+    ]
 
 
 def test_a_configuration_is_not_checked_for_nothing():

@@ -276,7 +276,11 @@ def test_a_mission_that_ships_is_loaded_by_its_name_unless_a_file_has_it(tmp_pat
     ("name", "message", "hint"),
     [
         ("oil_spil", "there is no such file", "did you mean 'oil_spill'?"),
-        ("nothing/of_it", "there is no such file", "give the path of a mission, or the name of one that ships: "),
+        (
+            "nothing/of_it",
+            "there is no such file",
+            "give the path of a mission, or the name of one that ships: ",
+        ),
         ("", "the path of the mission is empty", ""),
         (".", "this is a folder, not a mission", "give the path of a mission"),
         ("x" * 5000, "this is no path of a file", "give the path of a mission"),
