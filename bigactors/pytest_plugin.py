@@ -185,8 +185,8 @@ class PropertyItem(pytest.Item):
             raise PropertyUndecidedError(said)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """Return what is said of a property that does not hold, and a traceback of anything else."""
-        if isinstance(excinfo.value, PropertyViolatedError | PropertyUndecidedError):
+        """Return what is said of a property or a mission, and a traceback of anything else."""
+        if isinstance(excinfo.value, PropertyViolatedError | PropertyUndecidedError | MissionWarning):
             return str(excinfo.value)
         return super().repr_failure(excinfo, style)
 

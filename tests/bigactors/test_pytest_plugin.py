@@ -147,11 +147,13 @@ def test_warnings_on_a_mission_are_warnings_of_pytest(folder, texts):
     text = texts["holds"].replace("check {", 'check {\n  invariant "i": forall v: Nobody . v in base0')
     text = text.replace("kind UAV driven", "kind UAV driven\n  kind Nobody")
     put(folder, weak=text)
-    result = ran(folder, "weak.mission")
+    result = ran(folder, "weak.mission", "-W", "default::bigactors.pytest_plugin.MissionWarning")
     result.assert_outcomes(passed=6, warnings=2)
     result.stdout.fnmatch_lines(["*weak.mission:24: MissionWarning: there is no Nobody *"])
     strict = ran(folder, "weak.mission", "-W", "error::bigactors.pytest_plugin.MissionWarning")
     strict.assert_outcomes(passed=5, failed=1)
+    assert "Traceback" not in strict.stdout.str()
+    assert "warn_explicit" not in strict.stdout.str()
 
 
 def test_a_mission_is_explored_once_and_for_what_is_selected(folder, monkeypatch):
