@@ -2,8 +2,8 @@
 
     import bigactors
 
-    mission = bigactors.load_mission("oil_spill.mission")
-    report = bigactors.check(mission.initial, mission.properties)
+    report = bigactors.check(bigactors.load_mission("oil_spill"))
+    report.verdicts["race_freedom"]
 
 The names and where each lives are listed in `__init__.pyi`, which type checkers read too. Importing this package loads
 nothing: a home is loaded when a name of it is first used.

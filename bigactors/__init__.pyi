@@ -9,6 +9,7 @@ from checker import Report as Report
 from checker import Step as Step
 from checker import Trace as Trace
 from checker import Verdict as Verdict
+from checker import Verdicts as Verdicts
 from checker import Violation as Violation
 from checker import check as check
 from checker import explore as explore

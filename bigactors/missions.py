@@ -7,30 +7,20 @@ from functools import cache, partial
 from pathlib import Path
 
 from bigactors import __version__
-from bigactors.mistakes import Mistake, suggestion
+from bigactors.mistakes import Mistake
 from semantics.state.canonical import canonical
 from semantics.state.setting import Control, Scheduler
 from specs import Diagnostic, MissionError, Source
-from specs.elaboration import ElaboratedMission, Variation, load_mission, require_bigactor
-from specs.missions import shipped_missions
+from specs.elaboration import ElaboratedMission, Variation, find_mission, load_mission, require_bigactor
 
 
 def locate(word: str) -> Path:
-    """Return the path of a mission: a file, or one that ships, given by its name."""
-    shipped = shipped_missions()
+    """Return the path of a mission: a file, or one that ships, given by its name; raises Mistake."""
     try:
-        if not word:
-            raise Mistake("the path of the mission is empty")
-        if word in shipped and not Path(word).is_file():
-            return shipped[word]
-        if Path(word).exists() and not Path(word).is_dir():
-            return Path(word)
-        reason = "this is a folder, not a mission" if Path(word).is_dir() else "there is no such file"
-    except (OSError, ValueError):
-        reason = "this is no path of a file"
-    near = suggestion(word, shipped) if "/" not in word else ""
-    hint = near or "give the path of a mission, or the name of one that ships: " + ", ".join(shipped)
-    raise Mistake(reason, hint, word)
+        return find_mission(word)
+    except MissionError as error:
+        (found,) = error.diagnostics
+        raise Mistake(found.message, found.hint, word) from error
 
 
 def variation_of(options: Namespace) -> Variation:

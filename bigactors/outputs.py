@@ -14,6 +14,7 @@ from bigactors.files import check_writable, json_text, write_text
 from bigactors.missions import diagnostic_json, locate
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say_text
+from checker import Report
 from checker.reports.annotations import annotations
 from checker.reports.junit import junit_text
 from checker.reports.results import Issue, Level, Result
@@ -108,18 +109,21 @@ FORMATS: Final[dict[str, Callable[[Sequence[Checked | Failed], Exit], str]]] = {
 
 def result_of(checked: Checked | Failed) -> Result:
     """Return a mission's result in the shape that the formats share."""
-    file = file_of(checked.name)
     if isinstance(checked, Checked):
-        mission = checked.mission
-        return Result(
-            checked.name,
-            file,
-            checked.report,
-            check_line=check_line(mission),
-            text=mission.source.text,
-            cautions=cautions_of(mission),
-        )
-    return Result(checked.name, file, failures=tuple(_failures(checked)))
+        return result_on(checked.mission, checked.name, checked.report)
+    return Result(checked.name, file_of(checked.name), failures=tuple(_failures(checked)))
+
+
+def result_on(mission: ElaboratedMission, name: str, report: Report) -> Result:
+    """Return the report on a mission with the places in its text."""
+    return Result(
+        name,
+        file_of(name),
+        report,
+        check_line=check_line(mission),
+        text=mission.source.text,
+        cautions=cautions_of(mission),
+    )
 
 
 def file_of(name: str) -> str:

@@ -84,6 +84,12 @@ class Bigraph:
 
         return compose(self, other)
 
+    def __repr__(self) -> str:
+        links = self.edges + len(self.outer_names)
+        return (
+            f"<Bigraph nodes={len(self.nodes)} links={links} regions={self.regions} sites={len(self.sites)}>"
+        )
+
     def __str__(self) -> str:
         from bigraphs.text import draw_text  # noqa: PLC0415 - drawing is built on values
 

@@ -60,6 +60,11 @@ class TransitionSystem:
     seconds: float
     reason: str = ""
 
+    def __repr__(self) -> str:
+        return (
+            f"<TransitionSystem states={len(self)} transitions={len(self.targets)} complete={self.complete}>"
+        )
+
     @property
     def complete(self) -> bool:
         """Say whether every reachable state is there, with all of its transitions."""

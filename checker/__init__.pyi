@@ -1,3 +1,4 @@
+from .check import Checkable as Checkable
 from .check import check as check
 from .engines.choose import explore as explore
 from .engines.cluster.crew import ClusterError as ClusterError
@@ -26,5 +27,7 @@ from .traces import replay as replay
 from .traces import to_json as to_json
 from .verdicts import Outcome as Outcome
 from .verdicts import Report as Report
+from .verdicts import UnknownPropertyError as UnknownPropertyError
 from .verdicts import Verdict as Verdict
+from .verdicts import Verdicts as Verdicts
 from .verdicts import Violation as Violation

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, Protocol, assert_never
 
 from checker.engines.choose import explore_by
 from checker.engines.contract import Cluster, Engine, Exploration, Keeping, Options, Reporter
@@ -25,7 +25,7 @@ from checker.reduction.reducer import Reduced
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.reduction.unfolding import told
 from checker.traces import Trace, trace_to
-from checker.verdicts import Outcome, Report, Verdict, Violation
+from checker.verdicts import Outcome, Report, Verdict, Verdicts, Violation
 from semantics.properties.property import Property, PropertyKind, watching
 from semantics.races.monitor import monitored
 from semantics.state.configuration import Configuration
@@ -45,9 +45,25 @@ PATIENCE = 1.0
 """Seconds after which a mission that the reference explorer has not got through is given to the fast one."""
 
 
+class Checkable(Protocol):
+    """A mission: where it starts, what it asks, and what is to be known of the verdicts."""
+
+    @property
+    def initial(self) -> Configuration:
+        """The first configuration."""
+
+    @property
+    def properties(self) -> tuple[Property, ...]:
+        """What is to be decided."""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a report says besides."""
+
+
 def check(  # noqa: PLR0913 - each says one thing of a check
-    initial: Configuration,
-    properties: Iterable[Property],
+    start: Configuration | Checkable,
+    properties: Iterable[Property] | None = None,
     limits: Limits | None = None,
     report: Reporter | None = None,
     notes: tuple[str, ...] = (),
@@ -64,8 +80,8 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     once more with what observations rest on remembered. Configurations are counted without that memory.
 
     Args:
-        initial: Where to start.
-        properties: What is to be decided.
+        start: A mission, or a configuration to start from.
+        properties: What is to be decided; what the mission asks where it is left out.
         limits: Where to stop.
         report: Told of the progress.
         notes: What the report is to say besides.
@@ -78,9 +94,10 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     Raises:
         RefusedError: A reduction is unsound for the mission, or nothing in it allows one. Properties that it is
             unsound for are not decided, unless something was found against them.
+        TypeError: A configuration is given without properties.
     """
-    asked, limits = tuple(properties), limits or Limits()
-    initial = watching(initial, asked)
+    initial, asked, notes = _asked(start, properties, notes)
+    initial, limits = watching(initial, asked), limits or Limits()
     formulas, reductions = [each.formula for each in asked if each.kind.has_proposition], tuple(reduce)
     reducer = Reduced(initial, reductions, formulas) if reductions else None
     if reducer is not None and engine is Engine.RAY:
@@ -105,6 +122,18 @@ def check(  # noqa: PLR0913 - each says one thing of a check
         late = any(bound.stop is Stop.TIME for bound in tried.bounds)
         return run(Engine.FAST, replace(limits, spent=limits.spent + tried.seconds)) if late else tried
     return run(engine or Engine.REFERENCE, limits)
+
+
+def _asked(
+    start: Configuration | Checkable, properties: Iterable[Property] | None, notes: tuple[str, ...]
+) -> tuple[Configuration, tuple[Property, ...], tuple[str, ...]]:
+    """Return where to start, what is asked, and what the report says besides."""
+    if not isinstance(start, Configuration):
+        asked = start.properties if properties is None else tuple(properties)
+        return start.initial, asked, notes or start.notes
+    if properties is None:
+        raise TypeError("a configuration asks nothing: give the properties too, or a mission")
+    return start, tuple(properties), notes
 
 
 class _Check:
@@ -144,7 +173,7 @@ class _Check:
         later = self.remembered.bounds if self.remembered else []
         seconds = self.found.seconds + (self.remembered.seconds if self.remembered else 0.0)
         with bounded(replace(whole, spent=options.limits.spent + seconds)):
-            verdicts = tuple(map(self.decide, self.properties))
+            verdicts = Verdicts(map(self.decide, self.properties))
         return Report(
             verdicts=verdicts,
             configurations=self.found.size,

@@ -10,6 +10,7 @@ from checker.properties.inspections import is_unfair
 from checker.reduction.unfolding import run_to
 from semantics.observed_steps import Sight, steps_seen
 from semantics.races.monitor import monitored
+from semantics.state.brief import cut
 from semantics.state.canonical import digest_of_step
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.state.observation_serialization import sight_json, sight_of
@@ -41,6 +42,9 @@ class Step:
     target: Configuration
     sight: Sight | Elsewhere | None = None
 
+    def __repr__(self) -> str:
+        return f"<Step {cut(self.label)}>"
+
 
 @dataclass(frozen=True, slots=True)
 class Trace:
@@ -67,6 +71,9 @@ class Trace:
 
     def __len__(self) -> int:
         return len(self.steps)
+
+    def __repr__(self) -> str:
+        return f"<Trace {print_length(self)}>"
 
     @property
     def configurations(self) -> tuple[Configuration, ...]:

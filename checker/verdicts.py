@@ -1,13 +1,17 @@
 """Verdicts: the results of a check, as data."""
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from enum import Enum
+from typing import SupportsIndex, overload
 
 from checker.limits import Bound
 from checker.properties.coverage import Coverage
 from checker.traces import Trace
 from semantics.properties.property import Property
+from semantics.state.brief import cut
 
 
 class Outcome(Enum):
@@ -36,6 +40,9 @@ class Violation:
     details: tuple[str, ...] = ()
     subject: str = ""
 
+    def __repr__(self) -> str:
+        return f"<Violation {cut(self.kind)} steps={len(self.trace)}: {cut(self.message)}>"
+
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
@@ -63,13 +70,51 @@ class Verdict:
     different: int = 0
     remarks: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        found = f" violations={len(self.violations)}" if self.violations else ""
+        return f"<Verdict {cut(self.property.name)} {self.outcome.value}{found}>"
+
+
+class UnknownPropertyError(KeyError):
+    """A property that a report has no verdict of."""
+
+    __str__ = Exception.__str__
+
+
+class Verdicts(tuple[Verdict, ...]):
+    """The verdicts of a report in the mission's order; one is also found by the name of its property."""
+
+    __slots__ = ()
+
+    @overload
+    def __getitem__(self, which: SupportsIndex | str) -> Verdict: ...
+    @overload
+    def __getitem__(self, which: slice) -> tuple[Verdict, ...]: ...
+    def __getitem__(self, which: SupportsIndex | slice | str) -> Verdict | tuple[Verdict, ...]:
+        if not isinstance(which, str):
+            return super().__getitem__(which)
+        found = {verdict.property.name: verdict for verdict in self}
+        if which not in found:
+            raise UnknownPropertyError(f"no verdict on '{cut(which)}': {_instead(which, list(found))}")
+        return found[which]
+
+    def __contains__(self, which: object) -> bool:
+        return super().__contains__(which) or any(each.property.name == which for each in self)
+
+
+def _instead(name: str, names: list[str]) -> str:
+    near = get_close_matches(cut(name), names, 3)
+    return (
+        f"did you mean {' or '.join(map(repr, near))}?" if near else f"there are {', '.join(names) or 'none'}"
+    )
+
 
 @dataclass(frozen=True, slots=True)
 class Report:
     """All that a check found.
 
     Attributes:
-        verdicts: One for each property, in the mission's order.
+        verdicts: One for each property, in the mission's order; `verdicts["race_freedom"]` is one by its name.
         configurations: How many were visited, the monitor's cells not counted.
         transitions: How many transitions they have.
         depth: The distance of the farthest.
@@ -82,7 +127,7 @@ class Report:
         allowed: How many transitions the visited configurations allow, followed or not.
     """
 
-    verdicts: tuple[Verdict, ...]
+    verdicts: Verdicts
     configurations: int
     transitions: int
     depth: int
@@ -93,6 +138,11 @@ class Report:
     coverage: Coverage | None = None
     reduced: tuple[str, ...] = ()
     allowed: int = 0
+
+    def __repr__(self) -> str:
+        counts = Counter(verdict.outcome.value for verdict in self.verdicts)
+        found = " ".join(f"{outcome.value}={counts[outcome.value]}" for outcome in Outcome)
+        return f"<Report {found} configurations={self.configurations} complete={self.complete}>"
 
     @property
     def complete(self) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 from specs.codes import Code
@@ -20,7 +20,7 @@ class Source:
     """A mission's text and what it is called in messages; lines end in line feeds."""
 
     name: str
-    text: str
+    text: str = field(repr=False)
 
     def line(self, offset: int) -> int:
         """Return the number of the line that holds `offset`, counted from 1."""

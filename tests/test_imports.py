@@ -35,6 +35,7 @@ LIBRARIES = {
     "numba": ("checker/",),
     "ray": ("checker/engines/cluster/ray_crew.py",),
     "scipy": ("checker/properties/temporal/components.py",),
+    "pytest": ("bigactors/pytest_plugin.py",),
     "pyais": ("physical/ais_decode.py",),
     "pymavlink": ("adapters/mavlink/codec.py",),
     "aiohttp": ("adapters/web.py",),

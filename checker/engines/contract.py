@@ -185,6 +185,12 @@ class Exploration:
     reducer: Reduced | None = None
     start: Configuration | None = None
 
+    def __repr__(self) -> str:
+        return (
+            f"<Exploration configurations={self.size} transitions={self.transitions} depth={self.depth} "
+            f"complete={self.complete}>"
+        )
+
     @property
     def size(self) -> int:
         """How many configurations were visited."""

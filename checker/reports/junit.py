@@ -7,7 +7,7 @@ properties of a mission, so only suites have times.
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Sequence
 
-from checker.reports.results import Issue, Level, Result, clean, issue_text, result_text
+from checker.reports.results import Issue, Level, Result, clean, placed_text, result_text
 from checker.verdicts import Verdict
 
 
@@ -58,7 +58,7 @@ def _case(result: Result, name: str, line: int, issues: Sequence[Issue]) -> ET.E
         failed = first.level is Level.WRONG and result.report is not None
         sort = "incomplete" if first.level is Level.INCOMPLETE else _kind(first)
         problem = _element("failure" if failed else "error", type=sort, message=first.message)
-        problem.text = clean("\n\n".join(_placed(result, issue) for issue in issues))
+        problem.text = clean("\n\n".join(placed_text(result, issue) for issue in issues))
         case.append(problem)
     return case
 
@@ -69,11 +69,6 @@ def _name(issue: Issue) -> str:
 
 def _kind(issue: Issue) -> str:
     return issue.identity[2] if issue.trace is not None else issue.rule
-
-
-def _placed(result: Result, issue: Issue) -> str:
-    place = ":".join(str(part) for part in (result.file, issue.line, issue.column) if part)
-    return f"{place}: {issue.title}\n{issue_text(issue)}"
 
 
 def _element(tag: str, **attributes: str) -> ET.Element:

@@ -105,9 +105,17 @@ class Result:
             return
         yield from self.cautions
         for verdict in self.report.verdicts:
-            for remark in verdict.remarks:
-                yield self._remark(verdict, remark)
-        covered = self.report.coverage
+            yield from self.remarks_of(verdict)
+        yield from self.gaps()
+
+    def remarks_of(self, verdict: Verdict) -> Iterator[Issue]:
+        """Yield warnings about a verdict that says less than it seems to."""
+        for remark in verdict.remarks:
+            yield self._remark(verdict, remark)
+
+    def gaps(self) -> Iterator[Issue]:
+        """Yield warnings about parts that no run reaches."""
+        covered = self.report.coverage if self.report else None
         for gap in covered.gaps if covered is not None and covered.complete else ():
             yield self._gap(gap)
 
@@ -166,6 +174,12 @@ def issue_text(issue: Issue) -> str:
         lines.append(f"{print_length(issue.trace)}:")
         lines += [f"  {line}" for line in print_trace(issue.trace)]
     return "\n".join(lines)
+
+
+def placed_text(result: Result, issue: Issue) -> str:
+    """Return an issue as text, after its place in the mission."""
+    place = ":".join(str(part) for part in (result.file, issue.line, issue.column) if part)
+    return f"{place}: {issue.title}\n{issue_text(issue)}"
 
 
 def caution_text(name: str, caution: Issue) -> Iterator[str]:

@@ -8,6 +8,7 @@ from typing import Final
 from semantics.behaviours.program import VariableOf
 from semantics.properties.propositions import Always, Proposition
 from semantics.properties.temporal import Fairness, Temporal
+from semantics.state.brief import cut
 from semantics.state.configuration import Configuration
 
 TRUE: Final = Always(True)
@@ -175,6 +176,9 @@ class Property:
     line: int = 0
     temporal: Temporal | None = None
     fairness: tuple[Fairness, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<Property {cut(self.name)}{'' if self.name == self.kind else f' kind={self.kind}'}>"
 
 
 def watched(properties: Iterable[Property]) -> frozenset[VariableOf]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from semantics.state.agents import Agents
+from semantics.state.brief import cut
 from semantics.state.cells import MONITOR, Cell, Changes, Part, Question, Row, State, merged
 from semantics.state.eta import Eta, Pending
 from semantics.state.requests import REQUESTS, Received, Request
@@ -70,10 +71,15 @@ class Configuration:
     def __hash__(self) -> int:
         return hash(self.state)
 
-    def __repr__(self) -> str:
+    def __str__(self) -> str:
         from semantics.state.printing import print_configuration  # noqa: PLC0415  # printing knows configurations
 
         return print_configuration(self)
+
+    def __repr__(self) -> str:
+        from semantics.state.printing import print_briefly  # noqa: PLC0415  # the same
+
+        return print_briefly(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +100,9 @@ class Label:
         words = [str(self.about)] if isinstance(self.about, REQUESTS) else [self.agent or "", str(self.about)]
         return f"⟨{self.rule} : {', '.join(word for word in words if word)}⟩"
 
+    def __repr__(self) -> str:
+        return f"<Label {cut(self)}>"
+
 
 @dataclass(frozen=True, slots=True)
 class Transition:
@@ -110,3 +119,6 @@ class Transition:
     target: Configuration
     shown: tuple[str, ...] = ()
     served: Pending | None = field(default=None, compare=False)
+
+    def __repr__(self) -> str:
+        return f"<Transition {cut(self.label)}>"

@@ -7,6 +7,7 @@ from bigraphs import draw_text
 from semantics.behaviours.statements import Statement
 from semantics.behaviours.values import show
 from semantics.state.agents import written
+from semantics.state.brief import cut
 from semantics.state.cells import AGENTS, MONITOR, NAMES, QUEUE, Cell
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, PhysicalModel, Placement
@@ -48,6 +49,19 @@ def print_configuration(c: Configuration) -> str:
     eta = "\n".join(f"  {each.request}" for each in c.eta.all()) or "  ∅"
     tree = indent(draw_text(c.structure.logical.bigraph()), "  ")
     return f"⟨ α\n{alpha}\n| L\n{tree}\n| η\n{eta}\n⟩"
+
+
+LONGEST_PART = 60
+"""Characters of each part of a configuration on one line."""
+
+
+def print_briefly(c: Configuration) -> str:
+    """Print a configuration on one line of bounded length: who is at what, what is believed to be where, what pends."""
+    nodes = c.structure.logical.bigraph().nodes
+    alpha = ", ".join(print_agent(c, a) for a in c.alpha.names())
+    within = ", ".join(f"{node.name} in {nodes[at].name}" for node in nodes for at in node.parents if at >= 0)
+    eta = ", ".join(str(each.request) for each in c.eta.all())
+    return f"⟨{' | '.join(cut(part, LONGEST_PART) or '∅' for part in (alpha, within, eta))}⟩"
 
 
 def print_changes(before: Configuration, after: Configuration) -> tuple[str, ...]:

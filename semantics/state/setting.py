@@ -47,6 +47,12 @@ class Setting(Sorting):
     monitored: bool = False
     clause_lines: tuple[int, ...] = ()
 
+    def __repr__(self) -> str:
+        return (
+            f"<Setting kinds={len(self.signature.kinds)} entities={len(self.kinds)} "
+            f"scheduler={self.scheduler.value} control={self.control.value}>"
+        )
+
     def with_(self, **changes: object) -> "Setting":
         """Return the setting with some of its attributes changed."""
         return replace(self, **changes)  # type: ignore[arg-type]  # names are checked by replace itself

@@ -4,7 +4,13 @@ A phase a module, in this order: signature, world (with files and geometry), env
 bodies (with statements, expressions and patterns), controls, checks. It knows nothing of exploration.
 """
 
-from specs.elaboration.mission import ElaboratedMission, elaborate, load_mission, require_bigactor
+from specs.elaboration.mission import (
+    ElaboratedMission,
+    elaborate,
+    find_mission,
+    load_mission,
+    require_bigactor,
+)
 from specs.elaboration.variation import Variation
 
-__all__ = ["ElaboratedMission", "Variation", "elaborate", "load_mission", "require_bigactor"]
+__all__ = ["ElaboratedMission", "Variation", "elaborate", "find_mission", "load_mission", "require_bigactor"]

@@ -42,7 +42,9 @@ def elaborate_checks(
 ) -> tuple[Property, ...]:
     """Return the properties in the order written, or those of the default, and those that go without saying."""
     written = [item for section in mission.each(s.Check) for item in section.properties]
-    formulas, seen, found = Formulas(names, bodies, program), set[str](), list[Property]()
+    formulas, found = Formulas(names, bodies, program), list[Property]()
+    always = tuple(Property(kind, kind.value) for kind in asked_by(Asked.ALWAYS))
+    seen = {prop.name for prop in always}
     temporal = TemporalFormulas(formulas)
     for item in written:
         line = names.findings.source.line(item.span.start)
@@ -61,5 +63,5 @@ def elaborate_checks(
             )
         seen.add(prop.name)
         found.append(prop)
-    usual = [Property(kind, kind) for kind in asked_by(Asked.BY_DEFAULT)]
-    return (*(found or usual), *(Property(kind, kind) for kind in asked_by(Asked.ALWAYS)))
+    usual = [Property(kind, kind.value) for kind in asked_by(Asked.BY_DEFAULT)]
+    return (*(found or usual), *always)

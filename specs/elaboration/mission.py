@@ -11,6 +11,7 @@ from typing import Final
 from physical import open_file
 from semantics.contingencies import Precautions
 from semantics.properties.property import Property, watched
+from semantics.state.brief import cut
 from semantics.state.configuration import Configuration
 from semantics.state.initial import initial
 from semantics.state.setting import Control, Scheduler, Setting
@@ -32,6 +33,7 @@ from specs.elaboration.rules import elaborate_rules
 from specs.elaboration.signature import elaborate_signature
 from specs.elaboration.variation import AS_WRITTEN, Variation
 from specs.elaboration.world import elaborate_world
+from specs.missions import shipped_missions
 from specs.parser import parse_bytes
 from specs.preprocessing import MAX_BYTES
 
@@ -67,6 +69,12 @@ class ElaboratedMission:
     warnings: tuple[Diagnostic, ...]
     begin: Callable[[Setting], Configuration] = field(repr=False)
     empty: bool
+
+    def __repr__(self) -> str:
+        return (
+            f"<ElaboratedMission {cut(self.name)} agents={len(self.initial.alpha.names())} "
+            f"entities={len(self.setting.kinds)} properties={len(self.properties)}>"
+        )
 
     def under(self, scheduler: Scheduler, control: Control) -> ElaboratedMission:
         """Return the same mission under another scheduler and kind of control; no file is read again."""
@@ -162,22 +170,44 @@ def _stop(findings: Findings) -> None:
         raise findings.error()
 
 
-def load_mission(path: str | Path, variation: Variation = AS_WRITTEN) -> ElaboratedMission:
-    """Read, parse and elaborate a mission file; raises MissionError, for a file that can't be read too."""
-    path = Path(path)
-    name = str(path)
+def load_mission(mission: str | Path, variation: Variation = AS_WRITTEN) -> ElaboratedMission:
+    """Read, parse and elaborate a mission: a file, or one that ships, by its name (`load_mission("oil_spill")`).
+
+    Raises:
+        MissionError: There is no such mission, it cannot be read, or it has mistakes; all of them.
+    """
+    path = find_mission(mission) if isinstance(mission, str) else mission
     try:
         with open_file(path) as file:
             data = file.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        unread = Diagnostic(
-            Code.UNREADABLE_FILE, _START, f"the file cannot be read: {reason}", "check its path"
-        )
-        raise MissionError(Source(name, ""), [unread]) from error
-    source, mission = parse_bytes(name, data)
-    _check_sources(mission, source, variation)
-    return elaborate(mission, source, path.parent, variation)
+        raise _unreadable(str(path), f"the file cannot be read: {reason}", "check its path") from error
+    source, tree = parse_bytes(str(path), data)
+    _check_sources(tree, source, variation)
+    return elaborate(tree, source, path.parent, variation)
+
+
+def find_mission(word: str) -> Path:
+    """Return the path of a mission: a file, or one that ships, given by its name; raises MissionError."""
+    shipped = shipped_missions()
+    try:
+        if not word:
+            raise _unreadable(word, "the path of the mission is empty", "")
+        if word in shipped and not Path(word).is_file():
+            return shipped[word]
+        if Path(word).exists() and not Path(word).is_dir():
+            return Path(word)
+        reason = "this is a folder, not a mission" if Path(word).is_dir() else "there is no such file"
+    except (OSError, ValueError):
+        reason = "this is no path of a file"
+    near = Findings(Source(word, "")).suggest(word, shipped) if "/" not in word else ""
+    otherwise = "give the path of a mission, or the name of one that ships: " + ", ".join(shipped)
+    raise _unreadable(word, reason, near or otherwise)
+
+
+def _unreadable(name: str, message: str, hint: str) -> MissionError:
+    return MissionError(Source(name, ""), [Diagnostic(Code.UNREADABLE_FILE, _START, message, hint)])
 
 
 def _check_sources(mission: s.Mission, source: Source, variation: Variation) -> None:

@@ -79,7 +79,7 @@ def test_no_rule_raises_anything_but_a_fault_and_everything_prints(c):
     except Fault:
         after = []
     for each in (c, *after):
-        assert repr(each).startswith("⟨ α")
+        assert str(each).startswith("⟨ α")
 
 
 WRITES = {

@@ -263,6 +263,36 @@ def test_a_mission_file_that_cannot_be_read_is_a_mistake(tmp_path):
         load_mission(tmp_path)
 
 
+def test_a_mission_that_ships_is_loaded_by_its_name_unless_a_file_has_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert load_mission("oil_spill").setting.kinds["oilSpill0"] == "OilSpill"
+    (tmp_path / "oil_spill").write_text("signature { kind Boat }", encoding="utf-8")
+    assert load_mission("oil_spill").setting.kinds == {}
+    with pytest.raises(MissionError, match="the file cannot be read"):
+        load_mission(Path("handover"))  # a path is a file's
+
+
+@pytest.mark.parametrize(
+    ("name", "message", "hint"),
+    [
+        ("oil_spil", "there is no such file", "did you mean 'oil_spill'?"),
+        (
+            "nothing/of_it",
+            "there is no such file",
+            "give the path of a mission, or the name of one that ships: ",
+        ),
+        ("", "the path of the mission is empty", ""),
+        (".", "this is a folder, not a mission", "give the path of a mission"),
+        ("x" * 5000, "this is no path of a file", "give the path of a mission"),
+    ],
+)
+def test_what_is_no_mission_is_said_with_the_nearest_that_ships(name, message, hint):
+    with pytest.raises(MissionError) as caught:
+        load_mission(name)
+    (found,) = caught.value.diagnostics
+    assert (found.code.number, found.message, found.hint[: len(hint)]) == ("LS007", message, hint)
+
+
 # --- behaviours -----------------------------------------------------------------------------------------------
 
 

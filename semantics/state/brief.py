@@ -1,0 +1,15 @@
+"""Text on one line of bounded length: what `repr` shows of large values."""
+
+from typing import Final
+
+MOST: Final = 120
+
+
+def cut(text: object, most: int = MOST) -> str:
+    r"""Return a text on one line, cut where it is longer than so many characters.
+
+    >>> cut("observe(ALL)", 9), cut("one\ntwo")
+    ('observe(…', 'one two')
+    """
+    line = " ".join(str(text).split())
+    return line if len(line) <= most else f"{line[: most - 1]}…"
