@@ -1,13 +1,23 @@
-"""A self-contained page of the state space; a click on a state shows its bigraph."""
+"""A self-contained page of the state space; a click on a state shows its bigraph.
+
+The page holds states and transitions as data, and its script draws them: a picture of each state would take a
+hundred times as long, and as much room.
+"""
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import json
 from html import escape
-from typing import Final
+from importlib.resources import files as resources
+from typing import Any, Final
 
+from bigraphs.bigraph import Bigraph
+from bigraphs.drawing import KINDS, LINKS
 from bigraphs.exports.dot import describe
-from bigraphs.exports.svg import bigraph_svg, graph_svg
+from bigraphs.exports.svg import RADIUS, places_of
+from bigraphs.labels import link_label
 from bigraphs.transitions import TransitionSystem
 
 MOST_STATES: Final = 2_000
@@ -17,16 +27,56 @@ MOST_STATES: Final = 2_000
 def to_html(system: TransitionSystem, title: str) -> str:
     """Return a page; of a larger system it holds the first states only, and says so."""
     shown = first_states(system, MOST_STATES)
-    facts = {
-        "states": [bigraph_svg(shown.state(state)) for state in range(len(shown))],
-        "labels": [list(shown.labels_of(state)) for state in range(len(shown))],
-        "moves": [[each.source, each.target, describe(shown, each)] for each in shown.transitions()],
-        "paths": [shown.found_from[state] for state in range(len(shown))],
-    }
-    data = json.dumps(facts, ensure_ascii=False).replace("</", "<\\/")
+    data = json.dumps(_facts(shown), ensure_ascii=False, separators=(",", ":")).replace("</", "<\\/")
+    script = _resource("states.js")
     return _PAGE.format(
-        title=escape(title), summary=escape(_summary(system, len(shown))), graph=graph_svg(shown), data=data
+        title=escape(title),
+        summary=escape(_summary(system, len(shown))),
+        style=_resource("states.css"),
+        keys="".join(f'<span class="key {look}">{_KEY}{words}</span>' for look, words in _KEYS),
+        allowed=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
+        script=script,
+        data=data,
     )
+
+
+def _facts(shown: TransitionSystem) -> dict[str, Any]:
+    """Return what the page's script draws; equal nodes, of whichever states, are written once."""
+    nodes: dict[str, int] = {}
+    rules: dict[str, int] = {}
+    bigraphs = [shown.state(state) for state in range(len(shown))]
+    states = [[nodes.setdefault(node, len(nodes)) for node in _nodes(each)] for each in bigraphs]
+    moves = [
+        [each.source, each.target, rules.setdefault(describe(shown, each), len(rules))]
+        for each in shown.transitions()
+    ]
+    controls = sorted(control.name for control in shown.system.signature.controls)
+    return {
+        "states": states,
+        "nodes": [json.loads(node) for node in nodes],
+        "regions": bigraphs[0].regions,
+        "labels": [list(shown.labels_of(state)) for state in range(len(shown))],
+        "moves": moves,
+        "rules": list(rules),
+        "paths": list(shown.found_from),
+        "places": [[round(x), round(y)] for x, y in places_of(shown)],
+        "radius": RADIUS,
+        "expanded": shown.expanded,
+        "kinds": {control: KINDS[rank % len(KINDS)] for rank, control in enumerate(controls)},
+        "colours": LINKS,
+    }
+
+
+def _nodes(bigraph: Bigraph) -> list[str]:
+    """Return each node as JSON: its control, name, parents and links."""
+    return [
+        json.dumps([node.control, node.name, node.parents, [link_label(link) for link in node.ports]])
+        for node in bigraph.nodes
+    ]
+
+
+def _resource(name: str) -> str:
+    return (resources(__package__) / name).read_text(encoding="utf-8")
 
 
 def first_states(system: TransitionSystem, most: int) -> TransitionSystem:
@@ -45,52 +95,32 @@ def _summary(system: TransitionSystem, shown: int) -> str:
     return ", ".join(parts)
 
 
+_KEY: Final = '<svg viewBox="0 0 20 14" aria-hidden="true"><circle cx="10" cy="7" r="6"/></svg>'
+_KEYS: Final = (
+    ("first", "the first state"),
+    ("holds", "a predicate holds"),
+    ("end", "nothing can happen"),
+    ("open", "not explored"),
+    ("on", "chosen: its arrows, and dashed those to it"),
+)
+
 _PAGE: Final = """<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; \
+script-src 'sha256-{allowed}'; base-uri 'none'; form-action 'none'">
 <title>{title}</title>
-<style>
-body {{ margin: 0; font: 14px/1.45 sans-serif; color: #3b4252; display: grid; height: 100vh;
-  grid-template: auto 1fr / minmax(20rem, 3fr) minmax(20rem, 2fr); }}
-header {{ grid-column: 1 / 3; padding: .6rem 1rem; border-bottom: 1px solid #d8dee9; }}
-h1 {{ font-size: 1.1rem; margin: 0; display: inline; }} header span {{ margin-left: 1rem; color: #7b8494; }}
-#graph, #side {{ overflow: auto; padding: 1rem; }} #side {{ border-left: 1px solid #d8dee9; }}
-.s {{ cursor: pointer; }} .s.on circle {{ stroke: #e4572e; stroke-width: 4; }}
-.t.on {{ stroke: #e4572e; stroke-width: 2.5; }} h2 {{ font-size: 1rem; margin: .2rem 0; }}
-button {{ font: inherit; border: 0; background: none; color: #2f6db5; cursor: pointer;
-  padding: 0; text-align: left; }}
-button:hover {{ text-decoration: underline; }} ul {{ padding-left: 1.1rem; margin: .3rem 0; }}
-#picture svg {{ max-width: 100%; height: auto; }}
-.label {{ background: #fdf1e3; border-radius: 6px; padding: 0 .4rem; }}
-</style></head><body>
+<style>{style}</style></head><body>
 <header><h1>{title}</h1><span>{summary}</span></header>
-<div id="graph">{graph}</div>
-<div id="side"><h2 id="name"></h2><div id="labels"></div><div id="picture"></div>
-<h2>what can happen</h2><ul id="moves"></ul><h2>a shortest way here</h2><ul id="path"></ul></div>
+<main id="graph"><svg tabindex="0" role="application" aria-label="the states and transitions: drag, or use the arrow \
+keys, plus, minus and 0"></svg>
+<div id="tools"><button type="button" id="start">state 0</button><button type="button" id="whole">whole</button>
+<button type="button" id="in" aria-label="larger">+</button>
+<button type="button" id="out" aria-label="smaller">−</button>
+<input id="find" type="number" min="0" placeholder="go to state" aria-label="go to state"></div></main>
+<aside id="side" aria-label="One state"><h2 id="name" aria-live="polite"></h2><div id="labels"></div>
+<div id="picture" role="img" aria-label="the bigraph of the state"></div>
+<h2>what can happen</h2><ul id="moves"></ul><h2>a shortest way here</h2><ul id="path"></ul></aside>
+<footer>{keys}</footer>
 <script type="application/json" id="data">{data}</script>
-<script>
-const data = JSON.parse(document.getElementById("data").textContent);
-const element = (id) => document.getElementById(id);
-const button = (text, state) => {{
-  const item = document.createElement("li"), made = document.createElement("button");
-  made.textContent = text; made.onclick = () => show(state); item.append(made); return item;
-}};
-const rule = (from, to) => (data.moves.find((m) => m[0] === from && m[1] === to) || [0, 0, ""])[2];
-function show(state) {{
-  element("name").textContent = "state " + state;
-  element("picture").innerHTML = data.states[state];
-  element("labels").replaceChildren(...data.labels[state].map((label) => {{
-    const made = document.createElement("span"); made.className = "label"; made.textContent = label; return made;
-  }}));
-  element("moves").replaceChildren(
-    ...data.moves.filter((m) => m[0] === state).map((m) => button(m[2] + " \\u2192 " + m[1], m[1])));
-  const path = [];
-  for (let at = state; at !== 0; at = data.paths[at])
-    path.unshift(button(rule(data.paths[at], at) + " \\u2192 " + at, at));
-  element("path").replaceChildren(button("state 0", 0), ...path);
-  for (const each of document.querySelectorAll(".s")) each.classList.toggle("on", +each.dataset.state === state);
-  for (const each of document.querySelectorAll(".t")) each.classList.toggle("on", +each.dataset.from === state);
-}}
-for (const each of document.querySelectorAll(".s")) each.onclick = () => show(+each.dataset.state);
-show(0);
-</script></body></html>
+<script>{script}</script></body></html>
 """

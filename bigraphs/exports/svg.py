@@ -93,7 +93,7 @@ def graph_svg(system: TransitionSystem) -> str:
 
     States stand in rows by their distance from the first one, each near to those that it is reached from.
     """
-    places = _places(system)
+    places = places_of(system)
     width = max(x for x, _ in places) + 2 * RADIUS + 20
     height = max(y for _, y in places) + 2 * RADIUS + 20
     return "".join(
@@ -107,7 +107,8 @@ _MARKER: Final = (
 )
 
 
-def _places(system: TransitionSystem) -> list[tuple[float, float]]:
+def places_of(system: TransitionSystem) -> list[tuple[float, float]]:
+    """Return where each state stands: in rows by distance from the first, near to what it was found from."""
     depth = [0] * len(system)
     rows: list[list[int]] = [[0]]
     for state in range(1, len(system)):

@@ -1,5 +1,7 @@
 """What is exported: exact texts of small systems, and probabilities that Storm computes from them."""
 
+import base64
+import hashlib
 import json
 import re
 import subprocess
@@ -146,12 +148,18 @@ def test_pictures_are_svg_that_parses():
     assert sorted(words) == ["Bank", "Coin#1", "Coin#2", "Coin#3", "Purse"]
 
 
+def data_of(page):
+    return json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1].replace("<\\/", "</"))
+
+
 def test_a_page_holds_everything_and_asks_nobody():
     page = to_html(gambler(), "a <gambler>")
     assert "<title>a &lt;gambler&gt;</title>" in page
-    data = json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1].replace("<\\/", "</"))
+    data = data_of(page)
     assert len(data["states"]) == 4
     assert data["paths"] == [0, 0, 0, 1]
+    broke = [data["nodes"][node][0] for node in data["states"][2]]
+    assert sorted(broke) == ["Bank", "Coin", "Coin", "Coin", "Purse"]
     assert set(re.findall(r"https?://[\w./]+", page)) == {"http://www.w3.org/2000/svg"}
 
 
@@ -159,8 +167,40 @@ def test_of_a_large_system_a_page_shows_the_first_states_and_says_so(monkeypatch
     monkeypatch.setattr("bigraphs.exports.html.MOST_STATES", 3)
     page = to_html(gambler(), "gambler")
     assert "4 states, 4 transitions, complete, the first 3 states are shown" in page
-    data = json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1].replace("<\\/", "</"))
+    data = data_of(page)
     assert [move[:2] for move in data["moves"]] == [[0, 1], [0, 2], [1, 0]]
+
+
+def switches(count):
+    """Return the system of switches that can each be on or off: every combination is a state."""
+    start = " | ".join(f"On{{s{number}}}" for number in range(count))
+    return explore(
+        read_system(
+            f"atomic ctrl On = 1; atomic ctrl Off = 1; big start = {start};\n"
+            "react off = On{x} --> Off{x}; react on = Off{x} --> On{x};\n"
+            "begin brs init start; rules = [ {off, on} ]; end"
+        )
+    )
+
+
+def test_a_page_of_a_thousand_states_writes_equal_nodes_once():
+    page = to_html(switches(10), "switches")
+    data = data_of(page)
+    assert (len(data["states"]), len(data["moves"]), len(data["nodes"])) == (1_024, 10_240, 20)
+    assert len(page) < 300_000
+
+
+def test_the_first_state_stands_in_the_first_row():
+    places = data_of(to_html(gambler(), "gambler"))["places"]
+    assert [y for _, y in places] == [30, 105, 105, 180]
+
+
+def test_the_page_runs_only_its_own_script():
+    page = to_html(gambler(), "gambler")
+    script = re.findall(r"<script>(.*?)</script>", page, re.S)
+    digest = base64.b64encode(hashlib.sha256(script[0].encode()).digest()).decode()
+    assert len(script) == 1
+    assert f"script-src 'sha256-{digest}'" in page
 
 
 def test_the_transition_system_is_a_networkx_graph():
