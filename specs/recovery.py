@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
+from collections.abc import Iterable, Iterator
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cache
@@ -59,6 +60,32 @@ def recover(prepared: Prepared) -> Recovered:
     return Recovered(mission, tuple(mistakes), tuple(reading.unread))
 
 
+@dataclass(frozen=True, slots=True)
+class Expected:
+    """What could follow a text.
+
+    Attributes:
+        words: The words and signs of the language, as they are written.
+        sorts: The grammar's names of all that could follow.
+        before: What is around and before it, from the outermost: words as written, empty ones for whole constructs.
+    """
+
+    words: frozenset[str]
+    sorts: frozenset[str]
+    before: tuple[str, ...]
+
+
+def expected_behind(prepared: Prepared) -> Expected:
+    """Return what could follow a prepared text, which may be the beginning of another."""
+    reading = _Reading(prepared)
+    while not reading.feed(reading.rest()):
+        pass
+    sorts = frozenset(reading.run.accepts())
+    words = frozenset(word for sort in sorts if (word := spellings().get(sort)))
+    before = (str(value) if isinstance(value, Token) else "" for value in reading.stacks.values)
+    return Expected(words, sorts, tuple(before))
+
+
 class _Reading:
     """A parse and its mistakes.
 
@@ -80,22 +107,32 @@ class _Reading:
         self.resumed = -1
 
     def read(self) -> Mission:
-        """Parse the text to its end."""
-        while True:
-            at = len(self.text)
-            try:
-                for token in self.run.lexer_thread.lex(self.run.parser_state):
-                    at = int(token.start_pos or 0)
-                    self.run.feed_token(token)
-                at = len(self.text)
-                mission = self.run.feed_token(Token("$END", ""))
-                if mission is not None:
-                    return mission
-            except Mistake as mistake:
-                self.go_on(mistake.diagnostic, at)
-            except UnexpectedInput as stopped:
-                found = explain_syntax_error(stopped, self.run, self.prepared)
-                self.go_on(found, offset_of(stopped, self.prepared))
+        """Parse the text with its end."""
+        while not (self.feed(self.rest()) and self.feed([Token("$END", "")])):
+            pass
+        mission: Mission = self.stacks.values[-1]
+        return mission
+
+    def rest(self) -> Iterator[Token]:
+        """Yield the words that are not parsed yet; which they are depends on what was parsed."""
+        words: Iterator[Token] = self.run.lexer_thread.lex(self.run.parser_state)
+        return words
+
+    def feed(self, words: Iterable[Token]) -> bool:
+        """Parse words, and tell whether all fit; behind the first that does not it is to be gone on."""
+        at = len(self.text)
+        try:
+            for word in words:
+                at = len(self.text) if word.start_pos is None else word.start_pos
+                self.run.feed_token(word)
+        except Mistake as mistake:
+            self.go_on(mistake.diagnostic, at)
+        except UnexpectedInput as stopped:
+            found = explain_syntax_error(stopped, self.run, self.prepared)
+            self.go_on(found, offset_of(stopped, self.prepared))
+        else:
+            return True
+        return False
 
     def go_on(self, found: Diagnostic, at: int) -> None:
         """Note a mistake, and where the parse stopped; go on behind the item that it is in."""
