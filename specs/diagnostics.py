@@ -51,11 +51,14 @@ class Diagnostic:
 
 
 class MissionError(Exception):
-    """The mistakes in a mission, sorted by position; printed as they are rendered."""
+    """The mistakes in a mission, sorted by position, printed as they are rendered; and what else was noticed."""
 
-    def __init__(self, source: Source, diagnostics: Iterable[Diagnostic]) -> None:
+    def __init__(
+        self, source: Source, diagnostics: Iterable[Diagnostic], warnings: tuple[Diagnostic, ...] = ()
+    ) -> None:
         self.source = source
         self.diagnostics = tuple(sorted(diagnostics, key=_position))
+        self.warnings = warnings
         super().__init__(source, self.diagnostics)
 
     def __str__(self) -> str:

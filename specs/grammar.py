@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from functools import cache
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Any, Final, Protocol
 
 from lark import Lark, Token
 from lark.lexer import PatternRE, PatternStr, TerminalDef
@@ -78,16 +78,24 @@ def grammar() -> Lark:
 
 
 class Run(Protocol):
-    """A parse under way; lark's interactive parser, as far as it is used here."""
+    """A parse under way: lark's interactive parser, as far as it is used, and typed.
 
-    def exhaust_lexer(self) -> list[Token]:
-        """Parse to the end of the text, not included, and return what was read."""
+    Attributes:
+        parser_state: The stacks of states and values.
+        lexer_thread: Where in the text the parse is.
+    """
 
-    def feed_eof(self, last_token: Token | None) -> Mission:
-        """Tell that the text has ended, and return what it says."""
+    parser_state: Any
+    lexer_thread: Any
+
+    def feed_token(self, token: Token) -> Mission | None:
+        """Parse one more word; what the mission says at its end."""
 
     def accepts(self) -> set[str]:
         """Return the grammar's names of what could come next."""
+
+    def copy(self, deepcopy_values: bool = True) -> Run:
+        """Return a parse that goes its own way from here."""
 
 
 def start(text: str) -> Run:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -94,6 +95,12 @@ def word_at(text: str, offset: int) -> Word:
         end = len(text.rstrip())
         return Word("", Span(end, end))
     return Word(found.group(), Span(found.start(), found.end()))
+
+
+def words_from(text: str, offset: int) -> Iterator[Word]:
+    """Yield the words and symbols that begin at `offset` or behind it."""
+    for found in _WORD.finditer(text, offset):
+        yield Word(found.group(), Span(found.start(), found.end()))
 
 
 def word_before(text: str, offset: int) -> Word:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from specs.codes import Code
@@ -24,7 +24,7 @@ _SCAN: Final = re.compile(
     r"""(?P<comment>(?://|\#)[^\n]*)
       | [NSEW]?[0-9.]{1,30}+\s?[°º][^,()\n]*  # an angle, whose marks are no quotes
       | (?P<string>"(?:[^"\\\n]|\\.)*+")
-      | (?P<quote>")
+      | (?P<unclosed>"[^\n]*)
       | (?P<open>[(\[{])
       | (?P<close>[)\]}])
       | \w+ | [^\w\s]""",
@@ -50,11 +50,17 @@ class Comment:
 class Prepared:
     """A text ready for the grammar, and what was seen in it.
 
-    `unmatched` is where the first bracket that fits no other was noticed, and what to say of it.
+    Attributes:
+        text: As it was written, with spaces for all that the grammar is not to see.
+        comments: What was blanked out and may be written again.
+        mistakes: Strings that do not end.
+        unmatched: Where the first bracket that fits no other was noticed, and what to say of it.
+        open_at_end: Where the brackets are that nothing closes.
     """
 
     text: str
     comments: tuple[Comment, ...]
+    mistakes: tuple[Diagnostic, ...]
     unmatched: tuple[int, Diagnostic] | None
     open_at_end: tuple[int, ...]
 
@@ -85,11 +91,11 @@ def prepare(source: Source) -> Prepared:
             Source(source.name, "") if problem.code is Code.FILE_TOO_LARGE else source, [problem]
         )
     try:
-        comments, unmatched, open_at_end = _scan(text)
+        scanned = _scan(text)
     except _Refused as refused:
         raise MissionError(source, [refused.diagnostic]) from None
-    blanked = _without_line_numbers(_blank(text, [comment.span for comment in comments]))
-    return Prepared(blanked, comments, unmatched, open_at_end)
+    unseen = sorted([*(each.span for each in scanned.comments), *(each.span for each in scanned.mistakes)])
+    return replace(scanned, text=_without_line_numbers(_blank(text, unseen)))
 
 
 class _Refused(Exception):
@@ -128,8 +134,9 @@ def _too_long(start: int, end: int) -> Diagnostic:
     )
 
 
-def _scan(text: str) -> tuple[tuple[Comment, ...], tuple[int, Diagnostic] | None, tuple[int, ...]]:
+def _scan(text: str) -> Prepared:
     comments: list[Comment] = []
+    unclosed: list[Diagnostic] = []
     unmatched: tuple[int, Diagnostic] | None = None
     waiting: list[int] = []
     words = 0
@@ -140,14 +147,21 @@ def _scan(text: str) -> tuple[tuple[Comment, ...], tuple[int, Diagnostic] | None
             continue
         words += 1
         _refuse(sort, start, end, words, len(waiting))
-        if sort == "open":
+        if sort == "unclosed":
+            unclosed.append(_unclosed(start, end))
+        elif sort == "open":
             waiting.append(start)
         elif sort == "close":
             if waiting and _PARTNER[text[waiting[-1]]] == found.group():
                 waiting.pop()
             elif unmatched is None:
                 unmatched = start, _mismatch(text, waiting, start)
-    return tuple(comments), unmatched, tuple(waiting)
+    return Prepared(text, tuple(comments), tuple(unclosed), unmatched, tuple(waiting))
+
+
+def _unclosed(start: int, end: int) -> Diagnostic:
+    message = "the string that begins here does not end on its line"
+    return Diagnostic(Code.UNCLOSED_STRING, Span(start, end), message, 'close it with "')
 
 
 def _refuse(sort: str | None, start: int, end: int, words: int, depth: int) -> None:
@@ -161,9 +175,6 @@ def _refuse(sort: str | None, start: int, end: int, words: int, depth: int) -> N
         raise _Refused(Diagnostic(Code.NESTED_TOO_DEEPLY, Span(start, end), message, hint))
     if sort == "string" and end - start > MAX_WORD:
         raise _Refused(_too_long(start, end))
-    if sort == "quote":
-        message = "the string that begins here does not end on its line"
-        raise _Refused(Diagnostic(Code.UNCLOSED_STRING, Span(start, end), message, 'close it with "'))
 
 
 def _mismatch(text: str, waiting: list[int], start: int) -> Diagnostic:

@@ -52,7 +52,7 @@ _MOST: Final = 8
 
 def explain_syntax_error(found: UnexpectedInput, run: Run, prepared: Prepared) -> Diagnostic:
     """Return why a parse stopped: a bracket, the end, a common mistake, or what was expected."""
-    at = situation(prepared, _offset(found, prepared), frozenset(run.accepts()))
+    at = situation(prepared, offset_of(found, prepared), frozenset(run.accepts()))
     if prepared.unmatched and at.found.span.start >= prepared.unmatched[0]:
         return prepared.unmatched[1]
     if not at.found.text:
@@ -75,7 +75,8 @@ def expected(at: Situation) -> str:
     return groups[0] if len(groups) == 1 else f"{', '.join(groups[:-1])} or {groups[-1]}"
 
 
-def _offset(found: UnexpectedInput, prepared: Prepared) -> int:
+def offset_of(found: UnexpectedInput, prepared: Prepared) -> int:
+    """Return where a parse stopped."""
     if isinstance(found, UnexpectedToken):
         return len(prepared.text) if found.token.type == "$END" else int(found.token.start_pos or 0)
     if isinstance(found, UnexpectedCharacters):

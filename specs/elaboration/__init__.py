@@ -5,7 +5,9 @@ bodies (with statements, expressions and patterns), controls, checks. It knows n
 """
 
 from specs.elaboration.mission import (
+    Diagnosis,
     ElaboratedMission,
+    diagnose,
     elaborate,
     find_mission,
     load_mission,
@@ -13,4 +15,13 @@ from specs.elaboration.mission import (
 )
 from specs.elaboration.variation import Variation
 
-__all__ = ["ElaboratedMission", "Variation", "elaborate", "find_mission", "load_mission", "require_bigactor"]
+__all__ = [
+    "Diagnosis",
+    "ElaboratedMission",
+    "Variation",
+    "diagnose",
+    "elaborate",
+    "find_mission",
+    "load_mission",
+    "require_bigactor",
+]

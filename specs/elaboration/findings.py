@@ -72,7 +72,7 @@ class Findings:
         if more:
             rest = Diagnostic(Code.TOO_MANY_MISTAKES, more[0].span, f"{len(more)} more mistakes from here on")
             shown = (*shown, rest)
-        return MissionError(self.source, shown)
+        return MissionError(self.source, shown, self.warnings)
 
 
 def shorten(text: str) -> str:

@@ -31,11 +31,13 @@ from specs.elaboration.names import Names
 from specs.elaboration.realisability import Ground, check_controls
 from specs.elaboration.rules import elaborate_rules
 from specs.elaboration.signature import elaborate_signature
+from specs.elaboration.unread import independent
 from specs.elaboration.variation import AS_WRITTEN, Variation
 from specs.elaboration.world import elaborate_world
 from specs.missions import shipped_missions
-from specs.parser import parse_bytes
-from specs.preprocessing import MAX_BYTES
+from specs.parser import read
+from specs.preprocessing import MAX_BYTES, decode
+from specs.recovery import Recovered
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,6 +153,36 @@ def elaborate(
     )
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class Diagnosis:
+    """What a text means, or what is wrong with it.
+
+    Attributes:
+        mistakes: Why it is refused, by position.
+        warnings: What is allowed but probably not meant, by position.
+        elaborated: What it means; None with a mistake.
+    """
+
+    mistakes: tuple[Diagnostic, ...]
+    warnings: tuple[Diagnostic, ...]
+    elaborated: ElaboratedMission | None
+
+
+def diagnose(
+    found: Recovered, source: Source, directory: Path, variation: Variation = AS_WRITTEN
+) -> Diagnosis:
+    """Return what was read means, or all that is wrong with it: mistakes of syntax, and others in spite of them."""
+    try:
+        elaborated = elaborate(found.mission, source, directory, variation)
+        meant = Diagnosis((), elaborated.warnings, elaborated)
+    except MissionError as error:
+        meant = Diagnosis(error.diagnostics, error.warnings, None)
+    if not found.mistakes:
+        return meant
+    both = MissionError(source, (*found.mistakes, *independent(meant.mistakes, found.unread, source)))
+    return Diagnosis(both.diagnostics, tuple(independent(meant.warnings, found.unread, source)), None)
+
+
 def require_bigactor(mission: ElaboratedMission) -> None:
     """Refuse a mission in which nobody acts: nothing checked is no pass; raises MissionError."""
     if mission.initial.alpha.names():
@@ -183,9 +215,14 @@ def load_mission(mission: str | Path, variation: Variation = AS_WRITTEN) -> Elab
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise _unreadable(str(path), f"the file cannot be read: {reason}", "check its path") from error
-    source, tree = parse_bytes(str(path), data)
-    _check_sources(tree, source, variation)
-    return elaborate(tree, source, path.parent, variation)
+    source = decode(str(path), data)
+    found = read(source)
+    if not found.mistakes:
+        _check_sources(found.mission, source, variation)
+    diagnosis = diagnose(found, source, path.parent, variation)
+    if diagnosis.elaborated is None:
+        raise MissionError(source, diagnosis.mistakes)
+    return diagnosis.elaborated
 
 
 def find_mission(word: str) -> Path:

@@ -27,6 +27,7 @@ from semantics.properties.propositions import And, Inside, Not, Or, VariableIs, 
 from semantics.state.physical_model import Carried, Placed
 from semantics.state.setting import Control, Scheduler
 from semantics.successors import successors
+from specs.codes import Code
 from specs.diagnostics import MissionError, Source
 from specs.elaboration import elaborate, files, load_mission
 from specs.parser import parse
@@ -538,3 +539,38 @@ def test_who_says_a_bare_word_is_told_that_texts_stand_in_quotes():
     text = actor('react { case "go" => skip }', "b", "base0") + "environment { someone says go to b }"
     ((code, message, hint),) = mistakes(f"{SIGNATURE} world {{ base0: Station = point (1, 1) }} {text}")
     assert (code, message, hint) == ("LS201", "unknown entity 'go'", 'a text stands in quotes: "go"')
+
+
+def test_mistakes_of_syntax_and_of_meaning_are_reported_together(tmp_path):
+    path = tmp_path / "two.mission"
+    path.write_text("world {\n  a: A absent\n}\nscheduler fast\n")
+    with pytest.raises(MissionError) as caught:
+        load_mission(path)
+    assert [found.code for found in caught.value.diagnostics] == [Code.UNKNOWN_KIND, Code.UNKNOWN_OPTION]
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("kind UAV driven", "kind UAV drivn"),
+        ("kind OilSpill contains UAV", "kind OilSpill contans UAV"),
+        ("uav0: UAV = point (37.147, -8.582)", "uav0: UAV = point (37.147 -8.582)"),
+        ("uav0: UAV = point", "uav0: UAV point"),
+        ("oilSpill0 drifts among", "oilSpill0 drifts amog"),
+        ("control(MOVE_HOST_TO searchArea0)", "control(MOVE_HOST_TO searchArea0"),
+        ("case obs: Observation", "case obs Observation"),
+        ("BigActor a", "BigActr a"),
+        ("world {", "wrld {"),
+        ("linked control:gcs0\n}", "linked control:gcs0\n"),
+        ('"over the spill"', '"over the spill'),
+        ("oilSpill0: OilSpill =", "oilSpill0 OilSpill ="),
+    ],
+)
+def test_one_mistake_of_syntax_has_no_others_follow(tmp_path, right, wrong):
+    text = (MISSIONS / "oil_spill.mission").read_text(encoding="utf-8")
+    assert right in text
+    path = tmp_path / "one.mission"
+    path.write_text(text.replace(right, wrong))
+    with pytest.raises(MissionError) as caught:
+        load_mission(path)
+    assert len(caught.value.diagnostics) == 1

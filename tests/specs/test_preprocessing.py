@@ -73,6 +73,9 @@ def test_brackets_within_strings_and_comments_do_not_count():
 
 
 def test_an_open_string_is_told_where_it_begins():
-    found = refused('says "a\nb"')
-    assert found.code is Code.UNCLOSED_STRING
-    assert found.span.start == 5
+    prepared = prepare(Source("m", 'says "a\nb"'))
+    assert [(found.code, found.span.start, found.span.end) for found in prepared.mistakes] == [
+        (Code.UNCLOSED_STRING, 5, 7),
+        (Code.UNCLOSED_STRING, 9, 10),
+    ]
+    assert prepared.text == "says   \nb "

@@ -1,0 +1,77 @@
+"""Give something another name, everywhere that it is named, and nothing else another meaning."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from bigactors.lsp.reading import Reading
+from specs.diagnostics import Source
+from specs.grammar import RESERVED
+from specs.syntax import Span
+
+_NAME: Final = re.compile(r"[^\W\d_]\w*")
+_CHANNEL: Final = re.compile(r"\w+(?:[:.\-]\w+)*")
+
+
+class Refused(Exception):
+    """Why something cannot be renamed, to be shown to the user."""
+
+
+def renamable(reading: Reading, offset: int) -> Span:
+    """Return the span of the name at an offset; raises Refused where there is none, or its text is elsewhere."""
+    found = reading.occurrences.at(offset)
+    if found is None:
+        raise Refused("there is no name of this mission here")
+    if found.symbol not in reading.occurrences.declared:
+        raise Refused(f"'{found.symbol.name}' is not declared in this file")
+    if reading.recovered.mistakes:
+        raise Refused(
+            "the file has mistakes of syntax: mend them first, since names may stand in what cannot be read"
+        )
+    return found.span
+
+
+def rename(reading: Reading, offset: int, name: str) -> tuple[Span, ...]:
+    """Return where to write another name; raises Refused where that would change what anything means."""
+    renamable(reading, offset)
+    found = reading.occurrences.at(offset)
+    if found is None:
+        raise AssertionError(offset)
+    shape = _CHANNEL if found.symbol.sort == "channel" else _NAME
+    if not shape.fullmatch(name):
+        raise Refused(f"'{name}' is no name: letters, digits and _, a letter first")
+    if name in RESERVED:
+        raise Refused(f"'{name}' is a word of the language")
+    spans = tuple(each.span for each in reading.occurrences.of(found.symbol))
+    after = Reading(Source(reading.source.name, replaced(reading.text, spans, name)), reading.directory)
+    if after.recovered.mistakes:
+        raise Refused(f"'{name}' cannot stand there: {after.recovered.mistakes[0].message}")
+    if _pattern(reading) != _pattern(after):
+        raise Refused(f"'{name}' has a meaning already where it would stand: choose another name")
+    new = set(_said(after)) - set(_said(reading))
+    if len(after.diagnosis.mistakes) > len(reading.diagnosis.mistakes):
+        raise Refused(f"with that name there is a new mistake: {min(new)}")
+    return spans
+
+
+def _said(reading: Reading) -> list[str]:
+    return [found.message for found in reading.diagnosis.mistakes]
+
+
+def replaced(text: str, spans: tuple[Span, ...], by: str) -> str:
+    """Return a text with something else written in some places."""
+    pieces, last = [], 0
+    for span in spans:
+        pieces += [text[last : span.start], by]
+        last = span.end
+    return "".join([*pieces, text[last:]])
+
+
+def _pattern(reading: Reading) -> list[tuple[int, str]]:
+    """Return for each name of a text the first that means the same, and its sort: that stays when all is renamed."""
+    first: dict[object, int] = {}
+    found: list[tuple[int, str]] = []
+    for number, each in enumerate(reading.occurrences.all):
+        found.append((first.setdefault(each.symbol, number), each.symbol.sort))
+    return found

@@ -1,0 +1,324 @@
+"""Parse on behind a mistake: leave out the item that it is in, and no more.
+
+The language is made of lists: declarations, entries of a section, statements, cases. A parser that stopped goes back
+to the innermost list that it is in, drops the item that it could not read, and goes on where the next one begins or the
+list ends. Where the braces of a declaration do not match, nothing tells which list a word belongs to: then the lists
+that are open are closed, and it goes on with the next declaration.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator
+from copy import copy
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Final
+
+from lark import Token, Tree, UnexpectedInput
+from lark.parsers.lalr_analysis import Shift
+
+from specs.building import Child, Mistake, span_of
+from specs.diagnostics import Diagnostic
+from specs.grammar import SECTIONS, Run, spellings, start
+from specs.parse_error import Word, words_from
+from specs.preprocessing import Prepared
+from specs.syntax import Mission
+from specs.syntax.nodes import Span
+from specs.syntax_errors import explain_syntax_error, offset_of
+
+MOST_MISTAKES: Final = 50
+"""After so many the rest of the file is left out."""
+
+_NAMES: Final = frozenset({"NAME", "CHANNEL", "DROPPING"})
+_SECTION: Final = re.compile(
+    rf"^[ \t]*(?P<word>(?:{'|'.join(sorted(SECTIONS))})\b)(?=\s*[\w{{])", re.MULTILINE
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Recovered:
+    """What could be read of a mission.
+
+    Attributes:
+        mission: The tree of all that could be read.
+        mistakes: Why the rest could not, by position.
+        unread: Where the items are that have the mistakes in them.
+    """
+
+    mission: Mission
+    mistakes: tuple[Diagnostic, ...]
+    unread: tuple[Span, ...]
+
+
+def recover(prepared: Prepared) -> Recovered:
+    """Return what can be read of a prepared text."""
+    reading = _Reading(prepared)
+    mission = reading.read()
+    mistakes = sorted(reading.mistakes, key=lambda item: item.span)
+    return Recovered(mission, tuple(mistakes), tuple(reading.unread))
+
+
+@dataclass(frozen=True, slots=True)
+class Expected:
+    """What could follow a text.
+
+    Attributes:
+        words: The words and signs of the language, as they are written.
+        sorts: The grammar's names of all that could follow.
+        before: What is around and before it, from the outermost: words as written, empty ones for whole constructs.
+    """
+
+    words: frozenset[str]
+    sorts: frozenset[str]
+    before: tuple[str, ...]
+
+
+def expected_behind(prepared: Prepared) -> Expected:
+    """Return what could follow a prepared text, which may be the beginning of another."""
+    reading = _Reading(prepared)
+    while not reading.feed(reading.rest()):
+        pass
+    sorts = frozenset(reading.run.accepts())
+    words = frozenset(word for sort in sorts if (word := spellings().get(sort)))
+    before = (str(value) if isinstance(value, Token) else "" for value in reading.stacks.values)
+    return Expected(words, sorts, tuple(before))
+
+
+class _Reading:
+    """A parse and its mistakes.
+
+    Attributes:
+        sections: Where declarations begin, by words that no other line begins with.
+        missing: How many braces were closed that the text leaves open, or closes later.
+        resumed: Where the parse went on last.
+    """
+
+    def __init__(self, prepared: Prepared) -> None:
+        self.prepared = prepared
+        self.text = prepared.text
+        self.run = start(prepared.text)
+        self.stacks = _Stacks(self.run)
+        self.mistakes = dict.fromkeys(prepared.mistakes)
+        self.unread: list[Span] = []
+        self.sections = [found.start("word") for found in _SECTION.finditer(prepared.text)]
+        self.missing = 0
+        self.resumed = -1
+
+    def read(self) -> Mission:
+        """Parse the text with its end."""
+        while not (self.feed(self.rest()) and self.feed([Token("$END", "")])):
+            pass
+        mission: Mission = self.stacks.values[-1]
+        return mission
+
+    def rest(self) -> Iterator[Token]:
+        """Yield the words that are not parsed yet; which they are depends on what was parsed."""
+        words: Iterator[Token] = self.run.lexer_thread.lex(self.run.parser_state)
+        return words
+
+    def feed(self, words: Iterable[Token]) -> bool:
+        """Parse words, and tell whether all fit; behind the first that does not it is to be gone on."""
+        at = len(self.text)
+        try:
+            for word in words:
+                at = len(self.text) if word.start_pos is None else word.start_pos
+                self.run.feed_token(word)
+        except Mistake as mistake:
+            self.go_on(mistake.diagnostic, at)
+        except UnexpectedInput as stopped:
+            found = explain_syntax_error(stopped, self.run, self.prepared)
+            self.go_on(found, offset_of(stopped, self.prepared))
+        else:
+            return True
+        return False
+
+    def go_on(self, found: Diagnostic, at: int) -> None:
+        """Note a mistake, and where the parse stopped; go on behind the item that it is in."""
+        begin = self.item_start(at)
+        surplus = self.missing and self.text[at : at + 1] == "}" and not self.stacks.open_braces()
+        if len(self.mistakes) + 1 < MOST_MISTAKES:
+            self.resumed = self.next_item(at)
+        else:
+            self.resumed = len(self.text)
+        if self.resumed == len(self.text):
+            self.close_lists(self.resumed)
+        self.run.lexer_thread.state.line_ctr.char_pos = self.resumed
+        known = [*self.unread, *(mistake.span for mistake in self.prepared.mistakes)]
+        if surplus:
+            self.missing -= 1
+        elif not any(begin <= span.start < self.resumed for span in known):  # one mistake of an item
+            self.mistakes.setdefault(found)
+        self.unread.append(Span(begin, self.resumed))
+        if self.prepared.unmatched and found == self.prepared.unmatched[1]:
+            self.prepared = replace(self.prepared, unmatched=None)
+
+    def item_start(self, at: int) -> int:
+        """Complete the item that is being read, if it can end; return where the one with the mistake begins.
+
+        An item whose own text is the mistake is gone from the stacks. What goes wrong in the line of a complete item is
+        part of that: `kind UAV drivn`, `uav0: UAV point (37, -8)`.
+        """
+        before, item = self.stacks.items()
+        after = max(item.end, self.resumed)
+        between = self.text[after:at]
+        if self.stacks.complete_item() and (between.strip() or "\n" in between):
+            return after + len(between) - len(between.lstrip())
+        line = self.text[self.text.rfind("\n", 0, item.start) + 1 : item.start].rstrip()
+        return item.start if line[-1:] in ("", ";", "{") else max(before.start, self.resumed)
+
+    def next_item(self, at: int) -> int:
+        """Go back to a list, and return where its next item begins, or it ends."""
+        depth, balanced = self.stacks.back_to_list(), self.is_balanced(at)
+        for word in words_from(self.text, max(at, self.resumed + 1)):
+            place = word.span.start
+            if self.is_section(place) and (self.stacks.open_braces() or self.stacks.accepts(word.text)):
+                self.close_lists(place)
+                return place
+            if word.text == "{":
+                depth += 1
+            elif word.text == "}" and depth:
+                depth -= 1
+            elif balanced and not depth and self.is_boundary(word):
+                return place
+            elif balanced and word.text == "}" and self.stacks.open_braces():
+                depth = self.stacks.leave_list() - 1
+        return len(self.text)
+
+    def is_boundary(self, word: Word) -> bool:
+        """Tell whether an item of the list begins at a word, the first of its line, or the list ends."""
+        line = self.text[self.text.rfind("\n", 0, word.span.start) + 1 : word.span.start]
+        return (word.text in ";}" or line.rstrip()[-1:] in ("", ";")) and self.stacks.accepts(word.text)
+
+    def close_lists(self, place: int) -> None:
+        """Close every list that is open before a place, up to that of the declarations."""
+        end = len(self.text[:place].rstrip())
+        self.stacks.complete_item()
+        self.stacks.back_to_list()
+        while self.stacks.open_braces():
+            if self.stacks.accepts("}"):
+                self.stacks.feed("}", end)
+                self.missing += 1
+                self.stacks.complete_item()
+            else:
+                self.stacks.leave_list()
+
+    def is_section(self, place: int) -> bool:
+        """Tell whether a declaration begins at an offset."""
+        number = bisect_right(self.sections, place)
+        return number > 0 and self.sections[number - 1] == place
+
+    def is_balanced(self, at: int) -> bool:
+        """Tell whether the braces of the declaration around an offset match."""
+        number = bisect_right(self.sections, at)
+        first = self.sections[number - 1] if number else 0
+        last = self.sections[number] if number < len(self.sections) else len(self.text)
+        depth = 0
+        for word in words_from(self.text[first:last], 0):
+            depth += (word.text == "{") - (word.text == "}")
+            if depth < 0:
+                return False
+        return not depth
+
+
+class _Stacks:
+    """The stacks of lark's parser: states, and what was read between them.
+
+    A list of the language is a state from which `;` or `case` is read: all lists have items of one or the other.
+    """
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        self.states = run.parser_state.state_stack
+        self.values = run.parser_state.value_stack
+        self._building_nothing = copy(run.parser_state.parse_conf)
+        self._building_nothing.callbacks = {}
+
+    def _list(self) -> int:
+        """Return the place of the innermost list among the states, but for lists that have ended."""
+        table = self.run.parser_state.parse_conf.states
+        ended = 0
+        for place in range(len(self.states) - 1, 0, -1):
+            if not ended and any(table[self.states[place]].get(name, _NONE)[0] is Shift for name in _items()):
+                return place
+            ended = max(0, ended - _braces(self.values[place - 1 : place]))
+        return 0
+
+    def open_braces(self) -> int:
+        """Return how many braces are open around the innermost list."""
+        return _braces(self.values[: self._list()])
+
+    def items(self) -> tuple[Span, Span]:
+        """Return the spans of an item and of the one that is being read behind it; between two, that one twice."""
+        place = self._list()
+        before = _last_item(self.values[place - 1]) if place else Span(0, 0)
+        begun = self.values[place:]
+        return before, _last_item(begun[0]).to(_last_item(begun[-1])) if begun else before
+
+    def back_to_list(self) -> int:
+        """Drop what was read of an item; return how many braces are open in that."""
+        place = self._list()
+        dropped = _braces(self.values[place:])
+        del self.states[place + 1 :], self.values[place:]
+        return dropped
+
+    def leave_list(self) -> int:
+        """Drop the list, and the item that it is in; return how many braces are open in that."""
+        del self.states[-1:], self.values[-1:]
+        return self.back_to_list() + 1
+
+    def complete_item(self) -> bool:
+        """End an item that may end here, and tell whether it may."""
+        if not self.accepts(";"):
+            return False
+        self.feed(";", 0)  # its place is never asked for
+        self.back_to_list()
+        return True
+
+    def accepts(self, word: str) -> bool:
+        """Tell whether a word could come next."""
+        name = _terminals().get(word)
+        return any(map(self._accepts, _NAMES if name is None and word[:1].isalpha() else [name or word]))
+
+    def _accepts(self, terminal: str) -> bool:
+        trial = self.run.copy(deepcopy_values=False)
+        trial.parser_state.parse_conf = self._building_nothing
+        try:
+            trial.feed_token(Token(terminal, ""))
+        except UnexpectedInput:
+            return False
+        return True
+
+    def feed(self, sign: str, place: int) -> None:
+        """Read a sign that the text does not have at a place."""
+        token = Token(_terminals()[sign], sign, start_pos=place, end_pos=place)
+        try:
+            self.run.feed_token(token)
+        except Mistake:
+            self.back_to_list()
+
+
+_NONE: Final = (None, None)
+
+
+@cache
+def _items() -> tuple[str, str]:
+    return _terminals()[";"], _terminals()["case"]
+
+
+@cache
+def _terminals() -> dict[str, str]:
+    """Return the grammar's names of words and signs."""
+    return {word: name for name, word in spellings().items() if word}
+
+
+def _braces(values: list[Child]) -> int:
+    return sum((value == "{") - (value == "}") for value in values if isinstance(value, Token))
+
+
+def _last_item(value: Child) -> Span:
+    """Return the span of what was read; of a list, that of its last item."""
+    while isinstance(value, Tree):
+        value = next((item for item in reversed(value.children) if item != ";"), value.children[-1])
+    return span_of(value)
