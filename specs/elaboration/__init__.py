@@ -7,10 +7,19 @@ bodies (with statements, expressions and patterns), controls, checks. It knows n
 from specs.elaboration.mission import (
     ElaboratedMission,
     elaborate,
+    files_named,
     find_mission,
     load_mission,
     require_bigactor,
 )
 from specs.elaboration.variation import Variation
 
-__all__ = ["ElaboratedMission", "Variation", "elaborate", "find_mission", "load_mission", "require_bigactor"]
+__all__ = [
+    "ElaboratedMission",
+    "Variation",
+    "elaborate",
+    "files_named",
+    "find_mission",
+    "load_mission",
+    "require_bigactor",
+]
