@@ -116,11 +116,11 @@ def check_mission(
     how = how or How()
     try:
         mission = checkable(open_mission(name, variation))
-        with watching(mission.name) as watch:
+        with watching(mission.name, limits.interruption) as watch:
             report = check(
                 mission.initial,
                 mission.properties,
-                replace(limits, interruption=watch.interruption),
+                limits,
                 watch,
                 mission.notes,
                 how.engine,

@@ -17,18 +17,18 @@ class Watch:
     """What is told about an exploration now and then, and shows it on a line; it knows whether to end.
 
     Attributes:
-        interruption: Whether the user has pressed Ctrl-C.
+        interruption: Whether the end is wanted, by Ctrl-C or by who has given it.
     """
 
-    def __init__(self, name: str, stream: TextIO) -> None:
+    def __init__(self, name: str, stream: TextIO, interruption: Interruption | None = None) -> None:
         self.name = name
         self.stream = stream
         self.shown = 0
-        self.interruption = Interruption()
+        self.interruption = interruption or Interruption()
 
     @property
     def interrupted(self) -> bool:
-        """Whether Ctrl-C was pressed."""
+        """Whether the end was wanted."""
         return self.interruption.is_due()
 
     def __call__(self, progress: Progress) -> None:
@@ -105,9 +105,9 @@ def rounded_time(seconds: float) -> str:
 
 
 @contextmanager
-def watching(name: str) -> Iterator[Watch]:
+def watching(name: str, interruption: Interruption | None = None) -> Iterator[Watch]:
     """Watch a check: progress on a terminal, quiet in a pipe; Ctrl-C makes the check incomplete."""
-    watch = Watch(name, sys.stderr)
+    watch = Watch(name, sys.stderr, interruption)
     main = threading.current_thread() is threading.main_thread()
     before = signal.signal(signal.SIGINT, watch.interrupt) if main else None
     try:

@@ -1,7 +1,8 @@
 """A pytest plugin: mission files are collected, each property is a test, and its shortest trace is in the failure.
 
 Missions are tests only where that is asked for: those that `mission_files` names in the configuration, and those that
-are arguments of pytest (docs/python.md). A mission is explored once in a process, when the first of its tests runs.
+are arguments of pytest (docs/how-to/python.md). A mission is explored once in a process, when the first of its tests
+runs.
 
 pytest loads this module in every run, so it imports nothing that takes time. PYTEST_DONT_REWRITE: it asserts nothing.
 """

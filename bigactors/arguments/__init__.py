@@ -18,6 +18,7 @@ from bigactors.arguments import (
     fmt,
     give_back,
     keygen,
+    new,
     replay,
     run,
     say,
@@ -34,7 +35,22 @@ __all__ = ["COMMANDS", "FORMATS", "Command", "Parser", "make_parser", "parse_arg
 
 COMMANDS: Final[dict[str, Command]] = {
     each.COMMAND.name: each.COMMAND
-    for each in (check, show, simulate, run, say, give_back, keygen, replay, world, big, explain, fmt, demo)
+    for each in (
+        new,
+        check,
+        show,
+        simulate,
+        run,
+        say,
+        give_back,
+        keygen,
+        replay,
+        world,
+        big,
+        explain,
+        fmt,
+        demo,
+    )
 }
 """The commands by name, in the order of the help."""
 

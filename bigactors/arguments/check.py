@@ -19,6 +19,12 @@ from bigactors.arguments.values import (
 def fill(parser: Parser) -> None:
     """Add the arguments of `bigactors check`."""
     parser.add_argument("files", nargs="+", metavar="FILE", help=MISSION)
+    parser.add_argument(
+        "--watch",
+        action="store_true",
+        help="check now, and again whenever a mission or a file of its world is saved; what has changed is said first; "
+        "Ctrl-C ends it with the exit code of the last check",
+    )
     _report(parser)
     _limits(parser)
     _exploring(parser)
@@ -35,6 +41,7 @@ COMMAND = Command(
     "found so far; a second one ends it at once.\n\n" + EXITS,
     (
         "bigactors check oil_spill.mission",
+        "bigactors check --watch oil_spill.mission",
         "bigactors check --no-traces specs/missions/*.mission",
         "bigactors check --json - oil_spill.mission | jq '.properties[] | [.name, .verdict]'",
         "bigactors check --trace traces --max-time 60 handover.mission",

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 import sys
 from argparse import Namespace
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,11 +15,11 @@ from bigactors.exits import Exit, worst
 from bigactors.files import check_writable, file_stem, make_folder, write_json
 from bigactors.missions import variation_of
 from bigactors.mistakes import Mistake
-from bigactors.outputs import cautions_of, outputs_of, write_outputs
+from bigactors.outputs import Output, cautions_of, outputs_of, write_outputs
 from bigactors.signatures import load_key
 from bigactors.terminal import paint, say, tell
 from bigactors.verdict_files import verdict_json
-from checker import Cluster, Engine, Keeping, Limits, Reduction, report_text
+from checker import Cluster, Engine, Interruption, Keeping, Limits, Reduction, report_text
 from checker.reports.report import MARKS, coverage_text
 from checker.reports.results import caution_text
 from checker.verdicts import Outcome
@@ -40,19 +41,40 @@ WORDS = {
 
 
 def run(options: Namespace) -> Exit:
-    """Check missions; print the reports and write what was asked for."""
+    """Check missions, with `--watch` at each save; print the reports and write what was asked for."""
     limits = limits_of(options)
     if options.trace:
         make_folder(options.trace)
     key = _check_verdict(options)
     outputs = outputs_of(options)
-    alone = any(output.to_standard_output for output in outputs)
-    results: list[Checked | Failed] = []
-    folders: set[str] = set()
     engine = options.engine and Engine(options.engine)
     reductions = tuple(map(Reduction, options.reduce))
     how = How(engine, options.violations, reductions, keeping_of(options), cluster_of(options))
-    for result in check_missions(options.files, limits, variation_of(options), how):
+    variation = variation_of(options)
+
+    def check(interruption: Interruption) -> Iterator[Checked | Failed]:
+        return check_missions(options.files, replace(limits, interruption=interruption), variation, how)
+
+    def report(results: Iterable[Checked | Failed]) -> Exit:
+        return report_all(results, options, outputs, key)
+
+    if not options.watch:
+        return report(check(Interruption()))
+    from bigactors.continuous_check import check_at_each_save  # noqa: PLC0415 - only who watches needs it
+
+    if any(output.to_standard_output for output in outputs):
+        raise Mistake("--watch prints its reports", "give a file in the place of -")
+    return check_at_each_save(options.files, variation, check, report)
+
+
+def report_all(
+    checked: Iterable[Checked | Failed], options: Namespace, outputs: Sequence[Output], key: SigningKey | None
+) -> Exit:
+    """Print the reports as they come, and write what was asked for."""
+    alone = any(output.to_standard_output for output in outputs)
+    results: list[Checked | Failed] = []
+    folders: set[str] = set()
+    for result in checked:
         results.append(result)
         if not alone:
             for line in report_lines(result, traces=not options.no_traces):

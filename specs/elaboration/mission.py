@@ -247,10 +247,15 @@ def _unreadable(name: str, message: str, hint: str) -> MissionError:
     return MissionError(Source(name, ""), [Diagnostic(Code.UNREADABLE_FILE, _START, message, hint)])
 
 
+def files_named(mission: s.Mission) -> tuple[str, ...]:
+    """Return the files that a mission takes its world from, as it names them."""
+    entries = (entry for world in mission.each(s.World) for entry in world.entries)
+    return tuple(entry.file.value for entry in entries if isinstance(entry, s.FromSource))
+
+
 def _check_sources(mission: s.Mission, source: Source, variation: Variation) -> None:
     """Refuse a substitute for a file that the mission does not name."""
-    entries = (entry for world in mission.each(s.World) for entry in world.entries)
-    named = {entry.file.value for entry in entries if isinstance(entry, s.FromSource)}
+    named = set(files_named(mission))
     findings = Findings(source)
     for name in sorted(set(variation.sources) - named):
         known = ", ".join(sorted(named)) or "none"

@@ -149,7 +149,7 @@ def test_warnings_on_a_mission_are_warnings_of_pytest(folder, texts):
     put(folder, weak=text)
     result = ran(folder, "weak.mission", "-W", "default::bigactors.pytest_plugin.MissionWarning")
     result.assert_outcomes(passed=6, warnings=2)
-    result.stdout.fnmatch_lines(["*weak.mission:24: MissionWarning: there is no Nobody *"])
+    result.stdout.fnmatch_lines(["*weak.mission:26: MissionWarning: there is no entity of kind Nobody: *"])
     strict = ran(folder, "weak.mission", "-W", "error::bigactors.pytest_plugin.MissionWarning")
     strict.assert_outcomes(passed=5, failed=1)
     assert "Traceback" not in strict.stdout.str()

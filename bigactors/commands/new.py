@@ -1,0 +1,44 @@
+"""`bigactors new`: a small mission to begin with."""
+
+import re
+from argparse import Namespace
+from importlib.resources import files as resources
+from pathlib import Path
+
+from bigactors.exits import Exit
+from bigactors.files import check_writable
+from bigactors.mistakes import Mistake, unreadable
+from bigactors.terminal import say
+from specs.grammar import RESERVED
+
+
+def run(options: Namespace) -> Exit:
+    """Write a mission, and say what to do with it."""
+    path = Path(options.name.removesuffix(".mission") + ".mission")
+    _write(path, new_mission(path.stem))
+    say(f"{path} is written. Next:")
+    say(
+        f"  bigactors check --watch {path}  its properties hold; break it as it says, save, and see what fails"
+    )
+    say(f"  bigactors show {path}           draws it, as a bigraph and on a map")
+    return Exit.HOLDS
+
+
+def new_mission(name: str) -> str:
+    """Return the mission's text; raises Mistake for what is no name in the language."""
+    if not re.fullmatch(r"[^\W\d_]\w*", name) or name in RESERVED:
+        reason = "is a word of the language" if name in RESERVED else "is no name"
+        raise Mistake(f"'{name:.60}' {reason}", "a mission's name has letters, digits and _, a letter first")
+    text = (resources("bigactors") / "templates" / "new.mission").read_text(encoding="utf-8")
+    return text.replace("\nmission new\n", f"\nmission {name}\n")
+
+
+def _write(path: Path, text: str) -> None:
+    check_writable(str(path))
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise Mistake("it exists already, and is left as it is", "choose another name", str(path)) from None
+    except OSError as error:
+        raise unreadable(str(path), error) from error

@@ -1,0 +1,96 @@
+"""Which files were saved: their content is compared, whether an editor writes them in place or renames another."""
+
+import hashlib
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Event, Thread
+from time import sleep, time_ns
+from typing import Final, TypeAlias
+
+from checker import Interruption
+
+INTERVAL: Final = 0.2
+"""Seconds between two looks at the files."""
+
+SETTLED: Final = 0.1
+"""For how many seconds files stay the same after they were saved: until then an editor may be at work."""
+
+RECENT: Final = 2_000_000_000
+"""Nanoseconds in which a file may be written twice with one time stamp."""
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What a file was when it was looked at.
+
+    Attributes:
+        digest: The digest of its content; None of a file that cannot be read.
+        stamp: Its inode, size and time of change, if they tell whether it has changed since.
+    """
+
+    digest: bytes | None
+    stamp: tuple[int, int, int] | None = None
+
+
+Looks: TypeAlias = Mapping[Path, Seen]
+
+
+def look(paths: Iterable[Path], before: Looks | None = None) -> dict[Path, Seen]:
+    """Return what files are now; only those are read that may have changed since a look before."""
+    return {path: _look(path, (before or {}).get(path)) for path in paths}
+
+
+def _look(path: Path, before: Seen | None) -> Seen:
+    try:
+        status = path.stat()
+        stamp = (status.st_ino, status.st_size, status.st_mtime_ns)
+        if before is not None and before.stamp == stamp:
+            return before
+        with path.open("rb") as file:
+            digest = hashlib.file_digest(file, "sha256").digest()
+    except (OSError, ValueError):
+        return Seen(None)
+    return Seen(digest, stamp if time_ns() - status.st_mtime_ns > RECENT else None)
+
+
+def changed(before: Looks, now: Looks) -> tuple[Path, ...]:
+    """Return the files whose content is another now."""
+    return tuple(
+        path for path in sorted(now) if path not in before or before[path].digest != now[path].digest
+    )
+
+
+def wait_for_save(seen: Looks) -> tuple[Path, ...]:
+    """Wait until some files are others than they were seen, and nothing writes them any more; return those."""
+    while True:
+        now = look(seen, seen)
+        if changed(seen, now):
+            sleep(SETTLED)
+            later = look(seen, now)
+            if not changed(now, later) and (saved := changed(seen, later)):
+                return saved
+        else:
+            sleep(INTERVAL)
+
+
+@contextmanager
+def interrupted_by_save(seen: Looks) -> Iterator[tuple[Interruption, Event]]:
+    """Interrupt what runs within as soon as a file is saved; the event tells whether one was."""
+    interruption, saved, done = Interruption(), Event(), Event()
+
+    def poll() -> None:
+        while not done.wait(INTERVAL):
+            if changed(seen, look(seen, seen)):
+                saved.set()
+                interruption.wish()
+                return
+
+    thread = Thread(target=poll, daemon=True)
+    thread.start()
+    try:
+        yield interruption, saved
+    finally:
+        done.set()
+        thread.join()
