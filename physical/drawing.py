@@ -17,6 +17,7 @@ from physical.map_marks import (
     draw_grid,
     draw_halo,
     draw_icon,
+    draw_land,
     draw_mark,
     draw_polygon,
     draw_polygon_halo,
@@ -68,6 +69,7 @@ def draw_map(  # noqa: PLR0913 - each says one thing of the map
     sheet = scene.sheet
     axes.set(xlim=(0, sheet.width), ylim=(0, sheet.height), aspect="equal")
     draw_grid(axes, *_grid(sheet))
+    draw_land(axes, scene.land)
     _draw_polygons(axes, scene)
     lines = _draw_channels(axes, scene, channel_colours or {}) + _draw_flights(axes, scene)
     _draw_markers(axes, scene)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from physical.map_labels import Box, Spot
-from physical.map_style import FAINT, HALO, INK, MARK, PAPER, QUIET, Outline, text_width
+from physical.map_style import COAST, FAINT, HALO, INK, LAND, MARK, PAPER, QUIET, Outline, text_width
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,6 +18,9 @@ RADIUS: Final = 5.5
 
 MARK_RADIUS: Final = RADIUS + 4.0
 """Of the dashed circle around what is marked."""
+
+NORTH: Final = 18.0
+"""How wide the arrow to the north is, with what is free beside it."""
 
 LEADING: Final = 1.35
 SPACING: Final = 6.0
@@ -197,12 +200,30 @@ def draw_leader(axes: Axes, start: Spot, end: Spot) -> None:
     axes.plot([start[0], end[0]], [start[1], end[1]], color=QUIET, linewidth=0.6, alpha=0.8, zorder=4.4)
 
 
-def draw_scale(axes: Axes, box: Box, length: float, text: str) -> None:
-    """Draw a scale bar at the bottom of a box, its length written above."""
-    (x, _), y = box.centre, box.bottom + 2.0
-    left, right = x - length / 2, x + length / 2
+def draw_scale(axes: Axes, box: Box, length: float, text: str, note: str = "") -> None:
+    """Draw a scale bar in a box, its length above it, a note under it, and to the left an arrow to the north."""
+    from matplotlib.patches import Polygon  # noqa: PLC0415 - the same
+
+    right, y = box.right, box.top - 20.0
+    left, x = right - length, box.left + NORTH / 2 - 2.0
     axes.plot([left, left, right, right], [y + 3, y, y, y + 3], color=INK, linewidth=1.2, zorder=8)
-    axes.text(x, y + 4.5, text, fontsize=7.5, color=INK, ha="center", va="bottom", zorder=8)
+    style: dict[str, Any] = {"fontsize": 7.5, "color": INK, "ha": "center", "va": "bottom", "zorder": 8}
+    axes.text((left + right) / 2, y + 4.5, text, **style)
+    if note:
+        axes.text(right, box.bottom, note, **style | {"fontsize": 6.0, "color": QUIET, "ha": "right"})
+    arrow = [(x, y + 12.0), (x + 3.6, y - 0.5), (x, y + 2.2), (x - 3.6, y - 0.5)]
+    axes.add_patch(Polygon(arrow, facecolor=INK, linewidth=0, zorder=8))
+    axes.text(x, y + 12.0, "N", **style)
+
+
+def draw_land(axes: Axes, polygons: Sequence[Sequence[Sequence[Spot]]]) -> None:
+    """Draw land: polygons, each its border and its lakes."""
+    from matplotlib.patches import PathPatch  # noqa: PLC0415 - the same
+    from matplotlib.path import Path  # noqa: PLC0415 - the same
+
+    for rings in polygons:
+        path = Path.make_compound_path(*(Path([*ring, ring[0]], closed=True) for ring in rings))
+        axes.add_patch(PathPatch(path, facecolor=LAND, edgecolor=COAST, linewidth=0.9, zorder=-1))
 
 
 def draw_grid(axes: Axes, xs: Sequence[tuple[float, str]], ys: Sequence[tuple[float, str]]) -> None:

@@ -7,13 +7,21 @@ from dataclasses import dataclass
 from typing import Final
 
 from physical.frame import Position
+from physical.land import ACCURACY, land_within
 from physical.map_labels import Box, Spot
 from physical.map_style import Outline, kind_colours, kind_shapes
 from physical.map_view import Plane, bounds, focus, plane_of, view_of
 from physical.shape import Geometry
 
+NARROWEST_COAST: Final = 10.0 * ACCURACY
+"""How wide a map is at least, in metres, to show coasts: on a smaller one they would mislead."""
+
 SMALLEST_POLYGON: Final = 7.0
 """Points under which a polygon is drawn as a marker."""
+
+
+Land = tuple[tuple[tuple[Spot, ...], ...], ...]
+"""Polygons: of each its border, then its lakes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +90,7 @@ class Scene:
     absent: tuple[str, ...]
     highlight: Collection[str]
     marked: Collection[str]
+    land: Land = ()
 
     def colour(self, name: str) -> str:
         """Return the colour of an entity's kind."""
@@ -158,7 +167,23 @@ def scene_of(
         tuple(name for name in known if name not in placed and not _rides(known[name], known, placed)),
         highlight,
         marked,
+        _land(sheet),
     )
+
+
+def _land(sheet: Sheet) -> Land:
+    if sheet.view.width < NARROWEST_COAST:
+        return ()
+    around = sheet.view.grown(sheet.view.width / 50)  # hence no coast along the border of the sheet
+    corners = ((around.left, around.bottom), (around.right, around.top))
+    south_west, north_east = map(sheet.plane.degrees, corners)
+    (east, north), plane = sheet.plane.scale, sheet.plane
+
+    def spot(at: Position) -> Spot:
+        return sheet.spot(((at[1] - plane.longitude) * east, (at[0] - plane.latitude) * north))
+
+    found = land_within(south_west, north_east)
+    return tuple(tuple(tuple(map(spot, ring)) for ring in polygon) for polygon in found)
 
 
 def _rides(entity: MapEntity, known: Mapping[str, MapEntity], placed: Mapping[str, Geometry]) -> bool:

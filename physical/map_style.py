@@ -9,8 +9,12 @@ from typing import Final
 
 INK: Final = "#1f2933"
 QUIET: Final = "#66727f"
-FAINT: Final = "#e1e6eb"
-PAPER: Final = "#f5f7f9"
+FAINT: Final = "#dde5ec"
+PAPER: Final = "#f1f6fa"
+"""The sea."""
+
+LAND: Final = "#f3efe4"
+COAST: Final = "#b9ae92"
 HALO: Final = "#e4572e"
 """Behind what is highlighted."""
 

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Final
 
 import shapely
 
+from physical.land import ACCURACY
 from physical.map_labels import BESIDE, Box, Spot, Wanted, around, place_labels
 from physical.map_marks import (
     MARK_RADIUS,
+    NORTH,
     RADIUS,
     SPACING,
     Line,
@@ -33,6 +35,8 @@ if TYPE_CHECKING:
 
 MOST_CARRIED: Final = 8
 """Of what an entity carries, so many are named."""
+
+COAST_NOTE: Final = f"coasts ± {metres_text(ACCURACY)}"
 
 FARTHEST: Final = 60.0
 """Points from the middle of a polygon beyond which its label is not moved to get out of it."""
@@ -59,7 +63,8 @@ def writing_of(scene: Scene, lines: Sequence[Spot]) -> Writing:
         *(around(at, (18.0, 18.0)) for at, _ in pointers.values()),
     )
     length, text = _scale(scene.sheet)
-    scale = _corner(scene.sheet, (max(length, text_width(text, 7.5)), 16.0), markers)
+    size = (NORTH + max(length, text_width(text, 7.5)), 30.0 if scene.land else 22.0)
+    scale = _corner(scene.sheet, size, markers)
     note = _note(scene, [*markers, scale])
     taken = [*markers, scale, *([note[0]] if note else [])]
     polygons = [scene.outlines[name] for name in scene.near() if scene.is_polygon(name)]
@@ -74,7 +79,7 @@ def writing_of(scene: Scene, lines: Sequence[Spot]) -> Writing:
 def write_labels(axes: Axes, scene: Scene, lines: Sequence[Spot]) -> None:
     """Write all names, the scale bar and what is absent, so that nothing is written over anything else."""
     writing = writing_of(scene, lines)
-    draw_scale(axes, writing.scale, *_scale(scene.sheet))
+    draw_scale(axes, writing.scale, *_scale(scene.sheet), COAST_NOTE if scene.land else "")
     if writing.note:
         draw_block(axes, *writing.note)
     for name, box in writing.boxes.items():

@@ -150,7 +150,25 @@ def test_an_entity_in_transit_says_where_it_is_bound_for():
 
 
 def test_an_empty_world_is_an_empty_map():
-    assert drawn([])[2] == {"100 m"}
+    assert drawn([])[2] == {"100 m", "N"}
+
+
+def test_a_map_shows_its_coasts_and_says_how_exact_they_are():
+    assert len(scene(OIL_SPILL).land) == 1
+    assert {"N", "5 km", "coasts ± 1 km"} <= drawn(OIL_SPILL)[2]
+
+
+def test_a_map_of_a_harbour_shows_no_coast_since_it_would_mislead():
+    assert scene(MARINA).land == ()
+    assert not any("coasts" in text for text in drawn(MARINA)[2])
+
+
+def test_a_coast_across_the_antimeridian_lies_where_the_islands_are():
+    taveuni = MapEntity("v", "Vessel", point(-16.85, -179.97))
+    places = [taveuni, MapEntity("w", "Vessel", point(-16.2, 179.2))]
+    here = scene(places)
+    land = shapely.union_all([shapely.Polygon(rings[0]) for rings in here.land])
+    assert land.contains(shapely.Point(here.middle("v")))
 
 
 def test_a_name_is_never_read_as_a_formula():
