@@ -55,7 +55,7 @@ class Block:
 
     @property
     def name(self):
-        return self.notes.get("file", f"{re.sub(r'\W', '_', self.place)}.{self.kind}")
+        return self.notes.get("file", re.sub(r"\W", "_", self.place) + f".{self.kind}")
 
 
 def name_of(page):
