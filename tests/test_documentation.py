@@ -12,12 +12,14 @@ import doctest
 import json
 import os
 import re
-import subprocess
 import sys
 import tomllib
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from signal import SIGKILL
+from subprocess import DEVNULL, PIPE, STDOUT, CompletedProcess, Popen
 
 import pytest
 import yaml
@@ -50,6 +52,9 @@ NOT_RUN = {
 FENCE = re.compile(r"^((?:<!-- [^\n]+ -->\n)*)```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 INDENTED = re.compile(r"(?<=\n\n) {4}(?![-*\d]).+")
 TIME = re.compile(r"\b\d+\.\d+ s\b")
+MARK = r"code=$?; printf '\0%s\0\n' $code; (exit $code)"
+"""Separates the outputs of several commands."""
+
 MOST = 2_000
 """How many configurations of a mission are explored, where no command of the page explores them all."""
 
@@ -99,6 +104,25 @@ def framed(block, folder):
     return "\n".join(piece.rstrip() for piece in (declarations(frame) | declarations(block.text)).values())
 
 
+def split(shown):
+    """Return a command, which may go on behind a backslash, and the output that is shown of it."""
+    return re.match(r"((?:[^\n]*\\\n)*[^\n]*)\n?(.*)", shown, re.DOTALL).groups()
+
+
+def marked(output):
+    """Yield what each of several commands has written, and its exit code."""
+    *parts, _ = output.split("\0\n")
+    for part in parts:
+        written, _, code = part.rpartition("\0")
+        yield written, code
+
+
+def alike(expected, found):
+    """Tell whether an output is as it is shown, whatever the times and wherever `...` stands."""
+    expected, found = (TIME.sub("0.00 s", each.strip()) + "\n" for each in (expected, found))
+    return doctest.OutputChecker().check_output(expected, found, doctest.ELLIPSIS)
+
+
 @dataclass(frozen=True)
 class Session:
     """A folder and an environment in which the blocks of a page run."""
@@ -135,16 +159,13 @@ class Session:
         assert done.returncode == 0, f"{block.place}\n{done.stdout}"
 
     def console(self, block):
-        for shown in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:
-            command, output = re.match(r"((?:[^\n]*\\\n)*[^\n]*)\n?(.*)", shown, re.DOTALL).groups()
-            done = self.process(["bash", "-c", command])
-            if not output:
-                assert done.returncode == 0, f"{block.place}: {command}\n{done.stdout}"
-                continue
-            expected, found = (TIME.sub("0.00 s", each.strip()) + "\n" for each in (output, done.stdout))
-            assert doctest.OutputChecker().check_output(expected, found, doctest.ELLIPSIS), (
-                f"{block.place}: {command}\n{done.stdout}"
-            )
+        commands, outputs = zip(
+            *map(split, re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]), strict=True
+        )
+        done = self.process(["bash", "-c", "\n".join(f"{each}\n{MARK}" for each in commands)])
+        for command, expected, (found, code) in zip(commands, outputs, marked(done.stdout), strict=True):
+            message = f"{block.place}: {command}\n{found}"
+            assert "0" == code if not expected else alike(expected, found), message
 
     def toml(self, block):
         assert tomllib.loads(self.write(block, block.text).read_text(encoding="utf-8"))
@@ -161,17 +182,23 @@ class Session:
     ebnf = text
 
     def process(self, command):
-        return subprocess.run(
+        """Run a command, with what it has started, and nothing of that beyond its end."""
+        with Popen(
             command,
             cwd=self.folder,
             env=self.variables,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
+            stdin=DEVNULL,
+            stdout=PIPE,
+            stderr=STDOUT,
             encoding="utf-8",
-            timeout=LONGEST,
-            check=False,
-        )
+            start_new_session=True,
+        ) as process:
+            try:
+                output, _ = process.communicate(timeout=LONGEST)
+            finally:
+                with suppress(ProcessLookupError):
+                    os.killpg(process.pid, SIGKILL)
+        return CompletedProcess(command, process.returncode, output)
 
 
 KINDS = {"big", "console", "ebnf", "json", "mission", "pycon", "python", "sh", "text", "toml", "yaml"}
