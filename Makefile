@@ -75,8 +75,9 @@ bench-bigraphs: $(STAMP)  ## the bigraph engine beside BigraphER, up to 100,000 
 bench-cluster: $(STAMP)  ## the patrol with Ray workers beside one process (some 5 minutes)
 	$(BIN)/python benchmarks/cluster.py 2x6 2x6+handover
 
-docs: $(STAMP)  ## write the generated pages of docs/
+docs: $(STAMP)  ## write the generated pages of docs/, and all of them as a site, into site/
 	$(BIN)/python -m bigactors.docs
+	$(BIN)/python -m sphinx -W --keep-going --quiet -c docs . site
 
 clean:
-	rm -rf $(VENV) $(WHEEL) .numba-bounds demo live-demo dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(WHEEL) .numba-bounds demo live-demo dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis

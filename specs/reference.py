@@ -23,7 +23,38 @@ A file has at most one megabyte and sixty thousand words; a word has at most ten
 hundred deep.
 
 The grammar of each part is shown in EBNF: words in quotes are literal, `[x]` is optional, `x*` repeats any number of
-times, `x+` at least once. `bigactors fmt` writes a mission in the layout used here.
+times, `x+` at least once. `bigactors fmt` writes a mission in the layout used here. The examples are parts of one
+mission, which [stands whole](#a-whole-mission) at the end of this page.
+"""
+
+WHOLE: Final = """\
+## A whole mission
+
+The examples of this page together, with the file that its world names, `harbour.geojson`:
+
+<!-- file: harbour.geojson -->
+```json
+{
+  "type": "FeatureCollection",
+  "features": [
+    {
+      "type": "Feature",
+      "properties": {"name": "harbour0", "kind": "Location"},
+      "geometry": {
+        "type": "Polygon",
+        "coordinates": [[[-8.54, 37.14], [-8.52, 37.14], [-8.52, 37.12], [-8.54, 37.12], [-8.54, 37.14]]]
+      }
+    },
+    {
+      "type": "Feature",
+      "properties": {"name": "buoy0", "kind": "Drifter"},
+      "geometry": {"type": "Point", "coordinates": [-8.53, 37.13]}
+    }
+  ]
+}
+```
+
+<!-- file: whole.mission -->
 """
 
 WORDS: Final = r"""A name is a letter, followed by letters, digits and underscores. A channel's name may begin with a
@@ -37,21 +68,30 @@ MISTAKES: Final = """\
 [codes.md](codes.md) lists the diagnostics of missions, with meaning and remedy.
 """
 
-# For some headings of the grammar a mission that uses what stands under them.
+# For some headings of the grammar the part of a mission that uses what stands under them.
 EXAMPLES: Final[dict[str, str]] = {
     "Signature": """\
 signature {
-  kind Location contains Location, OilSpill, UAV, Vessel
+  kind Location contains Location, OilSpill, UAV, Vessel, Drifter, Station
   kind OilSpill contains UAV, Drifter
   kind UAV driven
   kind Vessel driven carries Drifter
   kind Drifter
+  kind Station
 }
 """,
     "World": """\
 world {
   searchArea0: Location = box (37.04, -8.59) (36.94, -8.79)  // (latitude, longitude)
-  uav0: UAV = point (37.08, -8.55) altitude 100 m to 300 m linked control:gcs0, wifi
+  base0: Location = circle (37.14, -8.58) radius 900 m
+  northGate0: Location = circle (37.1, -8.6) radius 500 m
+  southGate0: Location = circle (37.06, -8.6) radius 500 m
+  oilSpill0: OilSpill = circle (37, -8.7) radius 400 m
+  uav0: UAV = point (37.14, -8.58) altitude 100 m to 300 m linked control:gcs0, wifi
+  uav1: UAV = point (37.08, -8.55) linked control:gcs0
+  gcs0: Station = point (37.145, -8.58) linked control:gcs0, wifi
+  gcs1: Station = point (37.12, -8.54) linked control:gcs1, wifi
+  vessel0: Vessel = point (37.05, -8.5)
   drifter0: Drifter carried by vessel0
   tanker0: Vessel absent
   from "harbour.geojson"
@@ -59,10 +99,10 @@ world {
 """,
     "Beliefs": """\
 believes {
-  uav0 in searchArea0
-  oilSpill0 in region
-  uav1 linked wifi
-  uav2 unlinked
+  oilSpill0 unknown
+  vessel0 in region
+  gcs1 linked wifi
+  tanker0 unlinked
 }
 """,
     "Reaction rules": """\
@@ -77,13 +117,15 @@ def visit(place) = {
 BigActor a hosted_at uav0 with_behavior {
   visit(searchArea0)
   react {
-    case obs: Observation if oilSpill0 in obs => control(MOVE_HOST_TO oilSpill0)
-    case "home" => visit(base0)
+    case obs: Observation if oilSpill0 in obs =>
+      let found = true
+      control(MOVE_HOST_TO oilSpill0)
+    case "home" => patrol({searchArea0, base0})
   }
 }
 """,
     "Control actions": """\
-BigActor pilot hosted_at uav0 with_behavior {
+BigActor pilot hosted_at uav1 with_behavior {
   control(MOVE_HOST_TO searchArea0 VIA northGate0, southGate0)
   observe(PARENT(HOST))
   react {
@@ -106,9 +148,9 @@ def patrol(places) = {
     observe(CHILDREN(PARENT(HOST)))
     react {
       case obs: Observation =>
-        let seen = obs of Vessel
+        let seen = obs of OilSpill
         if not empty(seen) {
-          send ("seen", first(seen)) to leader
+          send ("seen", first(seen)) to op
         } else {
           display(obs)
         }
@@ -119,11 +161,11 @@ def patrol(places) = {
     "Environment": """\
 environment {
   oilSpill0 drifts among circle (37, -8.7) radius 400 m, circle (37.01, -8.72) radius 400 m
-  boat0 drifts within harbour0
+  buoy0 drifts within harbour0
   wifi drops and returns
   uav0 leaves wifi
   tanker0 appears at point (37, -8.7) linked ais
-  says "handover" to a at most 3 times
+  says "home" to a at most 3 times
   uav0 arrives
 }
 """,
@@ -138,11 +180,11 @@ live {
 check {
   local_consistency
   race_freedom
-  invariant "one at a time": forall x: UAV . x in basin0 -> not pending a
+  invariant "one at a time": forall x: UAV . x in base0 -> not pending op
   reachable "found": uav0 in oilSpill0 and a.found == true
   progress
   ltl "answered" under weak fairness of agents: pending OBS a leads to taken sense a
-  ltl "watched" under strong fairness of commit a and weak fairness of b, environment:
+  ltl "watched" under strong fairness of actuate a and weak fairness of op, environment:
       [] <> actually uav0 in oilSpill0
   ctl "can always go home": AG EF uav0 in base0
 }
@@ -168,10 +210,10 @@ def language_reference() -> str:
         if heading == "Signature":
             parts += ["`signature standard` declares:\n", _fenced(STANDARD, "mission")]
         if heading in EXAMPLES:
-            parts += ["Example:\n", _fenced(EXAMPLES[heading], "mission")]
+            parts += ["Example:\n", "<!-- frame: whole.mission -->", _fenced(EXAMPLES[heading], "mission")]
     reserved = ", ".join(f"`{word}`" for word in sorted(RESERVED))
     parts += ["## Words\n", WORDS, f"{reserved}\n", MISTAKES]
-    return "\n".join(parts)
+    return "\n".join([*parts, WHOLE + _fenced("\n".join(EXAMPLES.values()), "mission")])
 
 
 def grammar_parts() -> Iterator[tuple[str, str]]:

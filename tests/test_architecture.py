@@ -22,7 +22,9 @@ WRITTEN_BY_BENCHMARKS = "benchmarks/results/"
 
 def maps():
     """Return each fenced list of modules, by the last folder that is named before it."""
-    _, *parts = re.split("^```$", (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    _, *parts = re.split(
+        r"^```(?:text)?$", (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8"), flags=re.MULTILINE
+    )
     blocks = zip(parts[1::2], parts[2::2], strict=False)
     return {FOLDER.findall(before)[-1]: re.findall(r"^\w+", block, re.MULTILINE) for before, block in blocks}
 

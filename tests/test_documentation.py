@@ -1,0 +1,260 @@
+"""Every block of every page is run, and does what the page shows.
+
+A page is one session: its blocks run in their order, in a folder of their own, with the package as it is installed.
+Comments above a block say what is special about it:
+
+    <!-- file: patrol.mission -->    the block is the content of this file
+    <!-- frame: oil_spill -->        its declarations take the places of those in this mission, or join them
+    <!-- not run: needs a radio -->  the reason why it is only shown
+"""
+
+import doctest
+import json
+import os
+import re
+import sys
+import tomllib
+from collections import Counter
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from signal import SIGKILL
+from subprocess import DEVNULL, PIPE, STDOUT, CompletedProcess, Popen
+
+import pytest
+import yaml
+
+from bigactors import Limits, check, load_mission
+from bigactors.docs import GENERATED
+from bigraphs.notation import read_system
+from hatch_build import PACKAGE, write_package
+from specs.missions import shipped_missions
+
+ROOT = Path(__file__).parents[1]
+PAGES = [
+    *(ROOT / name for name in ("ARCHITECTURE.md", "CONTRIBUTING.md", "README.md")),
+    *sorted((ROOT / "docs").rglob("*.md")),
+]
+NOT_RUN = {
+    "ARCHITECTURE.md": 7,
+    "README.md": 2,
+    "docs/explanation/live.md": 2,
+    "docs/explanation/performance.md": 1,
+    "docs/how-to/bigraphs.md": 1,
+    "docs/how-to/cluster.md": 2,
+    "docs/how-to/stations.md": 1,
+    "docs/reference/big.md": 1,
+    "docs/reference/json.md": 2,
+    "docs/reference/plugins.md": 4,
+}
+"""How many blocks of a page are only shown; each says why."""
+
+FENCE = re.compile(r"^((?:<!-- [^\n]+ -->\n)*)```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+INDENTED = re.compile(r"(?<=\n\n) {4}(?![-*\d]).+")
+TIME = re.compile(r"\b\d+\.\d+ s\b")
+MARK = r"code=$?; printf '\0%s\0\n' $code; (exit $code)"
+"""Separates the outputs of several commands."""
+
+MOST = 2_000
+"""How many configurations of a mission are explored, where no command of the page explores them all."""
+
+LONGEST = 300
+"""Seconds that a command may take; the slowest flies the live demonstration."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block: where it is, its kind, its text, and what the comments above it say."""
+
+    place: str
+    kind: str
+    text: str
+    notes: dict[str, str]
+
+    @property
+    def name(self):
+        return self.notes.get("file", re.sub(r"\W", "_", self.place) + f".{self.kind}")
+
+
+def name_of(page):
+    return page.relative_to(ROOT).as_posix()
+
+
+def blocks(page):
+    """Yield the blocks of a page."""
+    text = page.read_text(encoding="utf-8")
+    for found in FENCE.finditer(text):
+        notes = dict(re.findall(r"<!-- ([\w ]+): (.+) -->", found[1]))
+        line = text.count("\n", 0, found.start(2)) + 1
+        yield Block(f"{name_of(page)}:{line}", found[2], found[3], notes)
+
+
+def declarations(mission):
+    """Return the declarations of a mission, each under the words that tell it from the others."""
+    pieces = re.split(r"^(?=[A-Za-z])", mission, flags=re.MULTILINE)
+    return {re.match(r"(?:(?:def|rule|BigActor) )?\w*", piece)[0]: piece for piece in pieces}
+
+
+def framed(block, folder):
+    """Return the mission of a block, with what its frame has and the block has not."""
+    if "frame" not in block.notes:
+        return block.text
+    name = block.notes["frame"]
+    frame = shipped_missions().get(name, folder / name).read_text(encoding="utf-8")
+    return "\n".join(piece.rstrip() for piece in (declarations(frame) | declarations(block.text)).values())
+
+
+def split(shown):
+    """Return a command, which may go on behind a backslash, and the output that is shown of it."""
+    return re.match(r"((?:[^\n]*\\\n)*[^\n]*)\n?(.*)", shown, re.DOTALL).groups()
+
+
+def marked(output):
+    """Yield what each of several commands has written, and its exit code."""
+    *parts, _ = output.split("\0\n")
+    for part in parts:
+        written, _, code = part.rpartition("\0")
+        yield written, code
+
+
+def alike(expected, found):
+    """Tell whether an output is as it is shown, whatever the times and wherever `...` stands."""
+    expected, found = (TIME.sub("0.00 s", each.strip()) + "\n" for each in (expected, found))
+    return doctest.OutputChecker().check_output(expected, found, doctest.ELLIPSIS)
+
+
+@dataclass(frozen=True)
+class Session:
+    """A folder and an environment in which the blocks of a page run."""
+
+    folder: Path
+    variables: dict[str, str]
+
+    def run(self, block):
+        getattr(self, block.kind)(block)
+
+    def write(self, block, text):
+        path = self.folder / block.name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    def mission(self, block):
+        mission = load_mission(self.write(block, framed(block, self.folder)))
+        check(mission.initial, mission.properties, limits=Limits(configurations=MOST))
+
+    def big(self, block):
+        self.write(block, block.text)
+        assert list(read_system(block.text).rules())
+
+    def python(self, block):
+        done = self.process([sys.executable, self.write(block, block.text).name])
+        assert done.returncode == 0, f"{block.place}\n{done.stdout}"
+
+    def pycon(self, block):
+        done = self.process([sys.executable, "-m", "doctest", self.write(block, block.text).name])
+        assert done.returncode == 0, f"{block.place}\n{done.stdout}"
+
+    def sh(self, block):
+        done = self.process(["bash", "-euc", block.text])
+        assert done.returncode == 0, f"{block.place}\n{done.stdout}"
+
+    def console(self, block):
+        commands, outputs = zip(
+            *map(split, re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]), strict=True
+        )
+        done = self.process(["bash", "-c", "\n".join(f"{each}\n{MARK}" for each in commands)])
+        for command, expected, (found, code) in zip(commands, outputs, marked(done.stdout), strict=True):
+            message = f"{block.place}: {command}\n{found}"
+            assert "0" == code if not expected else alike(expected, found), message
+
+    def toml(self, block):
+        assert tomllib.loads(self.write(block, block.text).read_text(encoding="utf-8"))
+
+    def json(self, block):
+        assert json.loads(self.write(block, block.text).read_text(encoding="utf-8"))
+
+    def yaml(self, block):
+        assert yaml.safe_load(self.write(block, block.text).read_text(encoding="utf-8"))
+
+    def text(self, block):
+        """See what is generated compared by `tests/bigactors/test_docs.py`."""
+
+    ebnf = text
+
+    def process(self, command):
+        """Run a command, with what it has started, and nothing of that beyond its end."""
+        with Popen(
+            command,
+            cwd=self.folder,
+            env=self.variables,
+            stdin=DEVNULL,
+            stdout=PIPE,
+            stderr=STDOUT,
+            encoding="utf-8",
+            start_new_session=True,
+        ) as process:
+            try:
+                output, _ = process.communicate(timeout=LONGEST)
+            finally:
+                with suppress(ProcessLookupError):
+                    os.killpg(process.pid, SIGKILL)
+        return CompletedProcess(command, process.returncode, output)
+
+
+KINDS = {"big", "console", "ebnf", "json", "mission", "pycon", "python", "sh", "text", "toml", "yaml"}
+
+
+def is_run(block):
+    return "not run" not in block.notes
+
+
+@pytest.fixture(scope="session")
+def installed(tmp_path_factory):
+    """Return the variables with which the package is found as it is installed, and its command."""
+    folder = tmp_path_factory.mktemp("installed")
+    write_package(folder / PACKAGE)
+    commands = folder / "bin"
+    commands.mkdir()
+    for name, arguments in {"bigactors": "-m bigactors ", "python": ""}.items():
+        (commands / name).write_text(
+            f'#!/bin/sh\nexec "{sys.executable}" {arguments}"$@"\n', encoding="utf-8"
+        )
+        (commands / name).chmod(0o755)
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "PYTHON"))}
+    path = f"{commands}{os.pathsep}{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    return kept | {"PATH": path, "PYTHONPATH": str(folder), "PYTHONUTF8": "1", "COLUMNS": "100"}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_the_blocks_of_a_page_do_what_it_shows(page, installed, tmp_path):
+    session = Session(tmp_path, installed)
+    shown = list(filter(is_run, blocks(page)))
+    for block in reversed(shown):
+        if block.notes.keys() & {"file", "frame"} == {"file"}:
+            session.write(block, block.text)  # what is shown above may need it
+    for block in shown:
+        session.run(block)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_a_block_has_a_kind_by_which_it_is_run(page):
+    assert [block.place for block in blocks(page) if block.kind not in KINDS] == []
+    text = FENCE.sub("", page.read_text(encoding="utf-8"))
+    assert "```" not in text
+    assert INDENTED.findall(text) == []
+
+
+def test_a_block_that_only_shows_something_is_generated_or_says_why():
+    silent = [
+        block.place
+        for page in PAGES
+        if not page.read_text(encoding="utf-8").startswith(GENERATED)
+        for block in blocks(page)
+        if block.kind in {"text", "ebnf"} and is_run(block)
+    ]
+    assert silent == []
+
+
+def test_the_blocks_that_are_not_run_are_counted():
+    counted = Counter(name_of(page) for page in PAGES for block in blocks(page) if not is_run(block))
+    assert dict(counted) == NOT_RUN
