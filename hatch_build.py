@@ -9,6 +9,7 @@ the repository, with every import of a room rewritten on the line where it stand
 
 import ast
 import re
+import subprocess
 import sys
 from pathlib import Path
 from shutil import copytree, ignore_patterns
@@ -36,8 +37,10 @@ class CustomBuildHook(BuildHookInterface[Any]):
         if version == "editable":
             return
         self.folder = TemporaryDirectory()
-        write_package(Path(self.folder.name))
-        build_data["force_include"][self.folder.name] = PACKAGE
+        package = Path(self.folder.name) / PACKAGE
+        write_package(package)
+        write_tables(package)
+        build_data["force_include"][str(package)] = PACKAGE
 
     def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:  # noqa: ARG002 - hatchling's
         """Delete what was laid out."""
@@ -54,6 +57,12 @@ def write_package(folder: Path) -> None:
         write_installed(ROOT / room, folder / room)
     for path in sorted(folder.rglob("*.py*")):
         refuse_imports_of_rooms(path, folder)
+
+
+def write_tables(package: Path) -> None:
+    """Let the package write the tables of its parser, which are made at each start where they are missing."""
+    program = f"from {PACKAGE}.specs.grammar import TABLES, grammar; grammar(); TABLES.stat()"
+    subprocess.run([sys.executable, "-B", "-c", program], cwd=package.parent, check=True)
 
 
 def write_installed(source: Path, target: Path) -> None:

@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from bigactors import __version__
+from bigactors.diagnostics import diagnostic_json
 from bigactors.exits import Exit
 from bigactors.files import file_stem
-from bigactors.missions import checkable, diagnostic_json, digest_of, open_mission
+from bigactors.missions import checkable, digest_of, open_mission
 from bigactors.mistakes import Mistake, describe_bug
 from bigactors.progress import watching
 from bigactors.terminal import tell

@@ -7,10 +7,11 @@ from functools import cache, partial
 from pathlib import Path
 
 from bigactors import __version__
+from bigactors.diagnostics import as_mistake
 from bigactors.mistakes import Mistake
 from semantics.state.canonical import canonical
 from semantics.state.setting import Control, Scheduler
-from specs import Diagnostic, MissionError, Source
+from specs import MissionError
 from specs.elaboration import ElaboratedMission, Variation, find_mission, load_mission, require_bigactor
 
 
@@ -56,28 +57,6 @@ def checkable(mission: ElaboratedMission) -> ElaboratedMission:
 def opening(variation: Variation) -> Callable[[str], ElaboratedMission]:
     """Return a cached `open_mission`."""
     return cache(partial(open_mission, variation=variation))
-
-
-def as_mistake(error: MissionError) -> Mistake:
-    """Return the diagnostics of a mission as a mistake."""
-    details = tuple(diagnostic_json(each, error.source) for each in error.diagnostics)
-    return Mistake(
-        error.diagnostics[0].message, place=error.source.name, rendered=str(error), details=details
-    )
-
-
-def diagnostic_json(diagnostic: Diagnostic, source: Source) -> dict[str, object]:
-    """Return a diagnostic as plain data."""
-    start, end = (min(at, len(source.text)) for at in (diagnostic.span.start, diagnostic.span.end))
-    return {
-        "code": diagnostic.code.number,
-        "line": source.line(start),
-        "column": source.column(start),
-        "end_line": source.line(end),
-        "end_column": source.column(end),
-        "message": diagnostic.message,
-        "hint": diagnostic.hint,
-    }
 
 
 def digest_of(mission: ElaboratedMission) -> str:

@@ -9,9 +9,10 @@ from typing import Final
 
 from bigactors import __version__
 from bigactors.checking import Checked, Failed, results_json
+from bigactors.diagnostics import diagnostic_json
 from bigactors.exits import Exit
 from bigactors.files import check_writable, json_text, write_text
-from bigactors.missions import diagnostic_json, locate
+from bigactors.missions import locate
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say_text
 from checker import Report

@@ -9,7 +9,8 @@ from pathlib import Path
 from adapters.live.state import Finding, Outgoing, is_breach
 from adapters.recording.mcap_files import Message, RecordingError
 from adapters.recording.reading import Recording, read_recording
-from bigactors.missions import as_mistake, digest_of
+from bigactors.diagnostics import as_mistake
+from bigactors.missions import digest_of
 from bigactors.mistakes import Mistake, unreadable
 from checker import ReplayError, Trace, replay
 from checker.traces import SCHEMA

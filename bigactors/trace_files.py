@@ -9,7 +9,7 @@ from bigactors.drawings import draw_run
 from bigactors.files import file_stem, make_folder, write_json, write_text
 from bigactors.pages import MOST_PICTURES, Story, trace_page
 from checker import Trace, print_trace, to_json
-from semantics.properties.property import PropertyKind
+from semantics.properties.kinds import PropertyKind
 from semantics.state.printing import print_configuration
 
 

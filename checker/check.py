@@ -26,7 +26,8 @@ from checker.reduction.refusals import Reduction, RefusedError
 from checker.reduction.unfolding import told
 from checker.traces import Trace, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Verdicts, Violation
-from semantics.properties.property import Property, PropertyKind, watching
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property, watching
 from semantics.races.monitor import monitored
 from semantics.state.configuration import Configuration
 

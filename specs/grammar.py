@@ -1,4 +1,4 @@
-"""The grammar of missions for lark, built once and cached; and its reserved words."""
+"""The grammar of missions for lark, and its reserved words."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from lark.lexer import PatternRE, PatternStr, TerminalDef
 
 from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS, Command
 from semantics.behaviours.observations import QueryOperator
-from semantics.properties.property import Asked, asked_by
+from semantics.properties.kinds import Asked, asked_by
 from specs.build_behaviour import BuildBehaviour
 from specs.build_world import BuildWorld
+from specs.parse_tables import parser_with_tables
 from specs.syntax import Mission
 
 
@@ -61,12 +62,22 @@ class Build(BuildWorld, BuildBehaviour):
     """Both halves of the builder."""
 
 
+TABLES: Final = Path(__file__).with_name("mission.tables.json")
+
+
 @cache
 def grammar() -> Lark:
     """Return the parser, which builds the syntax tree as it goes, so that depth costs no recursion."""
     reserved = "|".join(sorted(RESERVED))
+    text = grammar_text().replace("RESERVED", f"(?:{reserved})")
+    made_from = text + Path(__file__).read_text(encoding="utf-8")
+    return parser_with_tables(TABLES, made_from, lambda: make_parser(text), Build())
+
+
+def make_parser(text: str) -> Lark:
+    """Return the parser of a grammar, its tables made anew."""
     return Lark(
-        grammar_text().replace("RESERVED", f"(?:{reserved})"),
+        text,
         parser="lalr",
         lexer="contextual",
         start="mission",

@@ -165,7 +165,7 @@ class Session:
         done = self.process(["bash", "-c", "\n".join(f"{each}\n{MARK}" for each in commands)])
         for command, expected, (found, code) in zip(commands, outputs, marked(done.stdout), strict=True):
             message = f"{block.place}: {command}\n{found}"
-            assert "0" == code if not expected else alike(expected, found), message
+            assert code == "0" if not expected else alike(expected, found), message
 
     def toml(self, block):
         assert tomllib.loads(self.write(block, block.text).read_text(encoding="utf-8"))

@@ -2,9 +2,9 @@
 
 from argparse import Namespace
 
+from bigactors.diagnostics import as_mistake
 from bigactors.exits import Exit, worst
 from bigactors.files import read_bytes, write_text
-from bigactors.missions import as_mistake
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, say_text, tell
 from specs import MissionError, Source, decode, format_mission, parse

@@ -6,7 +6,7 @@ from typing import Any, Final
 from checker.properties.coverage import Coverage, Gap
 from checker.traces import Trace, print_length, print_trace, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
-from semantics.properties.property import PropertyKind
+from semantics.properties.kinds import PropertyKind
 from semantics.state.setting import Control
 from semantics.successors import rules_of
 

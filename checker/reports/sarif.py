@@ -14,7 +14,7 @@ from urllib.parse import quote
 from checker.reports.results import Issue, Level, Result, clean
 from checker.reports.source_lines import step_lines
 from checker.traces import Trace
-from semantics.properties.property import PropertyKind
+from semantics.properties.kinds import PropertyKind
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 

@@ -4,13 +4,18 @@ Matching is by relations: injective on nodes, and the image of one redex region 
 own disjointness is kept by `bigraphs.matching`, for `.big` systems.)
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from semantics.state.logical_model import LogicalModel
-from semantics.state.physical_model import PhysicalModel
 from semantics.state.relations import Linked, Parent, Relation
 from semantics.state.signature import REGION, Name
+
+if TYPE_CHECKING:  # the language's words are known by reactions, and need no geometry
+    from semantics.state.logical_model import LogicalModel
+    from semantics.state.physical_model import PhysicalModel
 
 CONTROL_AUTHORITY = "control"
 """The kind of the channels that say who commands a vehicle: `control:gcs0`."""
@@ -76,7 +81,7 @@ class Pattern:
     links: tuple[tuple[LinkTerm, NodeTerm], ...] = ()
     closed: tuple[NodeTerm, ...] = ()
 
-    def beside(self, nodes: tuple[NodeTerm, ...]) -> "Pattern":
+    def beside(self, nodes: tuple[NodeTerm, ...]) -> Pattern:
         """Return the pattern with more nodes beside: context, of which it says nothing else."""
         return replace(self, nodes=(*self.nodes, *nodes)) if nodes else self
 
@@ -143,7 +148,7 @@ class Match:
             inside = frozenset(self[child] for child, place in pattern.parents if place == node)
             yield self[node], inside
 
-    def rebound(self, changes: Mapping[Term, Name]) -> "Match":
+    def rebound(self, changes: Mapping[Term, Name]) -> Match:
         """Return the match with these variables standing for something else."""
         return make_match({**dict(self.binding), **changes})
 

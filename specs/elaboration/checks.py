@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TypeVar
 
 from semantics.behaviours.program import Program
-from semantics.properties.property import Asked, Property, PropertyKind, asked_by
+from semantics.properties.kinds import Asked, PropertyKind, asked_by
+from semantics.properties.property import Property
 from semantics.state.setting import Control, Scheduler
 from specs import syntax as s
 from specs.codes import Code

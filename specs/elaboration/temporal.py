@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable
 from typing import Final
 
 from semantics.properties import temporal as t
-from semantics.properties.property import Property, PropertyKind
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property
 from semantics.properties.propositions import Always
 from semantics.state.setting import Control
 from semantics.successors import rules_of

@@ -11,7 +11,7 @@ from referencing import Registry, Resource
 from bigactors.checking import FAILURE_SCHEMA, REPORTS_SCHEMA
 from checker.reports.report import SCHEMA as REPORT
 from checker.traces import SCHEMA as TRACE
-from semantics.properties.property import PropertyKind
+from semantics.properties.kinds import PropertyKind
 
 DOCS = Path(__file__).parents[2] / "docs" / "reference"
 

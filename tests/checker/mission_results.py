@@ -4,7 +4,8 @@ from checked_missions import SPARE, load, moves, start
 
 from checker import Bound, Limits, Outcome, Report, Stop, Trace, Verdict, Violation, check
 from checker.reports.results import Issue, Level, Result
-from semantics.properties.property import Property, PropertyKind
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property
 
 ENTERS = moves("gate0", "a", "uav0")
 GAPS = """

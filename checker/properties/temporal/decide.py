@@ -20,7 +20,8 @@ from checker.properties.temporal.vacuity import Judged, is_judged, judge_branchi
 from checker.properties.vacuity import atoms_of
 from checker.traces import Trace, replay, step_of, to_json
 from checker.verdicts import Outcome, Verdict, Violation
-from semantics.properties.property import Property, PropertyKind
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property
 from semantics.properties.propositions import Proposition
 from semantics.properties.temporal import Fairness, Now, Temporal, atoms
 

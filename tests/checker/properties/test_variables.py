@@ -18,7 +18,8 @@ from checker import Engine, Outcome, Reduction, RefusedError, check, explore, re
 from checker.properties.inspections import Reachability
 from semantics.behaviours.program import VariableOf
 from semantics.behaviours.values import Truth
-from semantics.properties.property import Property, PropertyKind, watching
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property, watching
 from semantics.properties.propositions import VariableIs
 from semantics.properties.temporal import Denied, Either, Globally, Now
 from specs import parse_bytes

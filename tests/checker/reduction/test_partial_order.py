@@ -18,7 +18,8 @@ from checker.reduction.footprints import Footprints
 from checker.reduction.slots import NOTHING
 from checker.traces import replay, to_json
 from semantics import Control, Scheduler, strategies
-from semantics.properties.property import Property, PropertyKind
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property
 from semantics.properties.propositions import Ended, HasPending, Inside, LinkedWith, Present, Waiting
 from semantics.races.monitor import monitored
 from semantics.successors import expand

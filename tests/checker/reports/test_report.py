@@ -21,7 +21,8 @@ from checker import (
     report_json,
     report_text,
 )
-from semantics.properties.property import Property, PropertyKind
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property
 from semantics.state.setting import Control
 
 

@@ -11,7 +11,8 @@ from semantics.behaviours.expressions import Fault, Literal
 from semantics.behaviours.program import Program, VariableOf
 from semantics.behaviours.statements import Assign
 from semantics.behaviours.values import Truth
-from semantics.properties.property import Property, PropertyKind, watched, watching
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property, watched, watching
 from semantics.properties.propositions import ORDERS, IsBound, Not, Or, VariableIs, holds
 from semantics.properties.temporal import Either, Eventually, Globally, Now
 from semantics.races.monitor import monitored

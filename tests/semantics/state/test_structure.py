@@ -7,7 +7,8 @@ from small_missions import aboard, figure_2, mission, run
 
 from semantics import strategies
 from semantics.behaviours.program import VariableOf
-from semantics.properties.property import Property, PropertyKind, watching
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property, watching
 from semantics.properties.propositions import (
     Always,
     And,

@@ -10,7 +10,8 @@ from scale import crossed, examples
 from checker import Engine, Limits, Outcome, check, explore
 from checker.properties.temporal.decide import kept_graph
 from semantics import Control, Scheduler, strategies
-from semantics.properties.property import Asked, Property, asked_by
+from semantics.properties.kinds import Asked, asked_by
+from semantics.properties.property import Property
 from semantics.races.monitor import monitored
 from specs.elaboration import Variation, load_mission
 

@@ -1,4 +1,4 @@
-from semantics.properties.property import ABOUT, PropertyKind
+from semantics.properties.kinds import ABOUT, PropertyKind
 
 
 def test_every_kind_of_property_has_its_row():

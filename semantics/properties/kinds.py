@@ -1,0 +1,148 @@
+"""The kinds of properties: one table, which grammar, defaults, reports and refusals are derived from."""
+
+from dataclasses import dataclass
+from enum import Enum, StrEnum, auto
+from typing import Final
+
+
+class Asked(Enum):
+    """How a mission asks for a property."""
+
+    BY_DEFAULT = auto()
+    """By its name; and where a mission asks for nothing, it asks for this."""
+    BY_NAME = auto()
+    ALWAYS = auto()
+    """Not at all: it goes without saying."""
+    OF_CONFIGURATIONS = auto()
+    """With a proposition about configurations."""
+    OF_RUNS = auto()
+    """With a clause of its own about runs."""
+
+
+@dataclass(frozen=True, slots=True)
+class About:
+    """What there is to be known of a kind of properties.
+
+    Attributes:
+        says: What such a property says, in a sentence.
+        asked: How a mission asks for it.
+        examined: What is examined for it, one and several; empty where that is not told.
+        reducible: Whether reductions keep it: they may leave out nothing that decides it (`checker.reduction`).
+        nothing: What it means that nothing was examined, where that is no shortcoming.
+        vacuous: What it means that nothing was examined, where a verdict that holds says nothing then.
+        counted: Whether violations are counted, and not one looked for.
+    """
+
+    says: str
+    asked: Asked
+    examined: tuple[str, str]
+    reducible: bool
+    nothing: str = ""
+    vacuous: str = ""
+    counted: bool = True
+
+
+CONFIGURATIONS: Final = ("configuration", "configurations")
+
+
+class PropertyKind(StrEnum):
+    """The kinds of properties, by their words in the language and in reports."""
+
+    LOCAL_CONSISTENCY = "local_consistency"
+    RACE_FREEDOM = "race_freedom"
+    DEADLOCK_FREEDOM = "deadlock_freedom"
+    ARRIVAL = "arrival"
+    COMPUTATION = "computation"
+    INVARIANT = "invariant"
+    REACHABLE = "reachable"
+    LTL = "ltl"
+    CTL = "ctl"
+    PROGRESS = "progress"
+
+    @property
+    def about(self) -> About:
+        """What there is to be known of it."""
+        return ABOUT[self]
+
+    @property
+    def is_of_runs(self) -> bool:
+        """Whether it is about runs, and not about configurations one by one."""
+        return self.about.asked is Asked.OF_RUNS
+
+    @property
+    def has_proposition(self) -> bool:
+        """Whether a mission asks for it with a proposition about configurations."""
+        return self.about.asked is Asked.OF_CONFIGURATIONS
+
+
+ABOUT: Final = {
+    PropertyKind.LOCAL_CONSISTENCY: About(
+        "Every control next in line can be served on what the world shows.",
+        Asked.BY_DEFAULT,
+        ("control next in line", "controls next in line"),
+        reducible=True,
+        vacuous="no control was ever next in line",
+    ),
+    PropertyKind.RACE_FREEDOM: About(
+        "No bigActor changes what another's control rests on.",
+        Asked.BY_DEFAULT,
+        ("control or pair of controls", "controls and pairs of controls"),
+        reducible=True,
+        vacuous="no control was ever served",
+    ),
+    PropertyKind.DEADLOCK_FREEDOM: About(
+        "Some bigActor can move wherever one has anything left to do.",
+        Asked.BY_DEFAULT,
+        ("configuration at rest", "configurations at rest"),
+        reducible=True,
+        nothing="some bigActor can always move",
+    ),
+    PropertyKind.ARRIVAL: About(
+        "No run waits for ever for the end of a flight.",
+        Asked.BY_NAME,
+        ("end of a flight", "ends of flights"),
+        reducible=True,
+        vacuous="no flight ever ends",
+    ),
+    PropertyKind.COMPUTATION: About(
+        "No bigActor's computation fails or diverges.",
+        Asked.ALWAYS,
+        ("internal step", "internal steps"),
+        reducible=True,
+        nothing="no bigActor computes anything that could fail",
+    ),
+    PropertyKind.INVARIANT: About(
+        "A proposition is true of every configuration.",
+        Asked.OF_CONFIGURATIONS,
+        CONFIGURATIONS,
+        reducible=True,
+    ),
+    PropertyKind.REACHABLE: About(
+        "A proposition is true of some configuration.", Asked.OF_CONFIGURATIONS, ("", ""), reducible=True
+    ),
+    PropertyKind.LTL: About(
+        "A formula of linear time is true of every fair run.",
+        Asked.OF_RUNS,
+        CONFIGURATIONS,
+        reducible=False,
+        counted=False,
+    ),
+    PropertyKind.CTL: About(
+        "A formula of branching time is true of the tree of fair runs.",
+        Asked.OF_RUNS,
+        CONFIGURATIONS,
+        reducible=False,
+        counted=False,
+    ),
+    PropertyKind.PROGRESS: About(
+        "Every pending request is eventually served on every fair run.",
+        Asked.OF_RUNS,
+        ("request", "requests"),
+        reducible=False,
+    ),
+}
+
+
+def asked_by(*ways: Asked) -> tuple[PropertyKind, ...]:
+    """Return the kinds that a mission asks for in some ways, in order."""
+    return tuple(kind for kind in PropertyKind if kind.about.asked in ways)

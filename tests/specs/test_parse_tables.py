@@ -1,0 +1,93 @@
+"""The parser with kept tables is the parser that is made, and no start makes what is kept."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from specs import grammar as language
+from specs.diagnostics import MissionError, Source
+from specs.grammar import Build, grammar, grammar_text, make_parser
+from specs.missions import shipped_missions
+from specs.parse_tables import parser_with_tables
+from specs.parser import parse
+
+ROOT = Path(__file__).parents[2]
+MISTAKEN = sorted((ROOT / "tests" / "corpus").rglob("*.mission"))
+
+
+@pytest.fixture(scope="module")
+def text():
+    return grammar_text().replace("RESERVED", f"(?:{'|'.join(sorted(language.RESERVED))})")
+
+
+@pytest.fixture
+def tables(tmp_path, text):
+    file = tmp_path / "tables.json"
+    parser_with_tables(file, "1", lambda: make_parser(text), Build())
+    return file
+
+
+def never():
+    raise AssertionError("the tables are made again")
+
+
+def said(path):
+    """Return what a mission says, or what is wrong with it."""
+    try:
+        return parse(Source("m", path.read_bytes().decode("utf-8", "replace")))
+    except MissionError as error:
+        return str(error)
+
+
+def test_kept_tables_make_the_same_of_every_mission_and_every_mistake(tables, text, monkeypatch):
+    files = [*shipped_missions().values(), *MISTAKEN]
+    assert len(files) > 100
+    kept, made = parser_with_tables(tables, "1", never, Build()), make_parser(text)
+    monkeypatch.setattr("specs.grammar.grammar", lambda: made)
+    expected = [said(file) for file in files]
+    monkeypatch.setattr("specs.grammar.grammar", lambda: kept)
+    assert [said(file) for file in files] == expected
+
+
+def test_what_could_come_next_is_the_same_with_kept_tables(tables, text):
+    kept, made = (
+        parser.parse_interactive("mission m\nworld { uav0: UAV = ")
+        for parser in (parser_with_tables(tables, "1", never, Build()), make_parser(text))
+    )
+    for run in (kept, made):
+        run.exhaust_lexer()
+    assert kept.accepts() == made.accepts() > {"POINT"}
+
+
+def test_tables_of_another_grammar_are_made_again(tables, text):
+    before = tables.read_bytes()
+    parser_with_tables(tables, "2", lambda: make_parser(text), Build())
+    assert tables.read_bytes() != before
+    parser_with_tables(tables, "2", never, Build())
+
+
+@pytest.mark.parametrize("broken", [b"", b"\xff", b"[]", b'{"identity": 1}', b'{"identity"'])
+def test_a_file_that_holds_no_tables_is_replaced(tables, text, broken):
+    tables.write_bytes(broken)
+    parser_with_tables(tables, "1", lambda: make_parser(text), Build())
+    parser_with_tables(tables, "1", never, Build())
+
+
+def test_tables_that_cannot_be_kept_are_made(tmp_path, text):
+    file = tmp_path / "no folder" / "tables.json"
+    assert parser_with_tables(file, "1", lambda: make_parser(text), Build()).rules
+    assert not file.parent.exists()
+
+
+def test_nothing_else_is_left_in_the_folder(tables):
+    assert [path.name for path in tables.parent.iterdir()] == [tables.name]
+    assert set(json.loads(tables.read_bytes())) == {"identity", "data", "memo"}
+
+
+def test_a_second_start_makes_no_tables():
+    grammar()  # now they are kept
+    program = "import specs.grammar; specs.grammar.make_parser = None; specs.grammar.grammar()"
+    subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT)
