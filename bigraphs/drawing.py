@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -69,6 +70,19 @@ def save_bigraph(
         raise BigraphError(
             "picture", f"cannot write a picture as '{Path(path).name}'", "name it .svg or .png"
         )
+    _save(bigraph, path, kind, highlight, title)
+
+
+def bigraph_svg(bigraph: Bigraph) -> str:
+    """Return a picture as SVG."""
+    written = BytesIO()
+    _save(bigraph, written, "svg", frozenset(), None)
+    return written.getvalue().decode()
+
+
+def _save(
+    bigraph: Bigraph, target: str | Path | BytesIO, kind: str, highlight: frozenset[str], title: str | None
+) -> None:
     import matplotlib as mpl  # noqa: PLC0415 - a picture is worth the wait, an import is not
     from matplotlib.figure import Figure  # noqa: PLC0415 - the same
 
@@ -77,7 +91,7 @@ def save_bigraph(
         figure = axes.figure
         assert isinstance(figure, Figure)  # new axes have a figure of their own
         stamp: dict[str, Any] = {"Date": None} if kind == "svg" else {"Software": None}
-        figure.savefig(path, format=kind, dpi=160, metadata=stamp)
+        figure.savefig(target, format=kind, dpi=160, metadata=stamp)
 
 
 def _new_axes(plan: Layout, title: str | None) -> Axes:
