@@ -11,6 +11,7 @@ from typing import Final
 
 from bigactors.pages.markup import element, text
 from bigactors.pictures import draw_configuration, shown_names
+from bigraphs.drawing import fitting
 from checker import Outcome, Report, Trace, Verdict, Violation
 from checker.reports.lanes import LaneStep, lanes_of_trace
 from checker.reports.report import MARKS, size_text, verdict_text
@@ -38,7 +39,7 @@ def configuration_svg(c: Configuration) -> str | None:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "configuration.svg"
         draw_configuration(c, path)
-        return path.read_text(encoding="utf-8")
+        return fitting(path.read_text(encoding="utf-8"))
 
 
 def trace_html(trace: Trace) -> str:

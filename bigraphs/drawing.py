@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
@@ -74,10 +75,20 @@ def save_bigraph(
 
 
 def bigraph_svg(bigraph: Bigraph) -> str:
-    """Return a picture as SVG."""
+    """Return a picture as SVG that is as wide as a notebook's page at the most."""
     written = BytesIO()
     _save(bigraph, written, "svg", frozenset(), None)
-    return written.getvalue().decode()
+    return fitting(written.getvalue().decode())
+
+
+def fitting(svg: str) -> str:
+    """Return an SVG that shrinks with the page that it is in.
+
+    >>> fitting('<svg width="96pt" height="72pt" viewBox="0 0 96 72">')
+    '<svg style="width:100%;max-width:96pt;height:auto" viewBox="0 0 96 72">'
+    """
+    style = r'<svg\1style="width:100%;max-width:\2pt;height:auto"'
+    return re.sub(r'<svg(\s[^>]*?)width="([\d.]+)pt" height="[\d.]+pt"', style, svg, count=1)
 
 
 def _save(

@@ -52,7 +52,9 @@ def rows(found: Exploration) -> Iterator[Row]:
     graph, configurations = _graph(found), found.configurations
     for source, target, action in zip(graph.sources, graph.targets, graph.actions, strict=True):
         label = graph.labels[action]
-        if found.survey is not None and isinstance(label.about, Received):  # rows do not hold what was received
+        if found.survey is not None and isinstance(
+            label.about, Received
+        ):  # rows do not hold what was received
             label = step_of(configurations[source], label, configurations[target]).label
         yield Row(int(source), int(target), label.rule, label.agent, str(label.about), str(label))
 

@@ -32,7 +32,9 @@ def shown(value):
 def test_a_configuration_is_a_picture_of_bigraph_and_map(mission):
     data = shown(mission.initial)
     assert data["text/plain"] == repr(mission.initial)
-    assert ET.fromstring(data["image/svg+xml"]).tag.endswith("svg")
+    picture = ET.fromstring(data["image/svg+xml"])
+    assert picture.tag.endswith("svg")
+    assert re.fullmatch(r"width:100%;max-width:[\d.]+pt;height:auto", picture.get("style"))
 
 
 def test_a_bigraph_is_a_picture(mission):
