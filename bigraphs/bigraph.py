@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from bigraphs.errors import BigraphError
 from bigraphs.interface import Interface
@@ -19,6 +19,9 @@ from bigraphs.signature import Signature
 
 Place: TypeAlias = int
 Link: TypeAlias = int | str
+
+MOST_DRAWN: Final = 200
+"""The most nodes of a bigraph that notebooks draw by themselves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +92,11 @@ class Bigraph:
         return (
             f"<Bigraph nodes={len(self.nodes)} links={links} regions={self.regions} sites={len(self.sites)}>"
         )
+
+    def _repr_svg_(self) -> str | None:
+        from bigraphs.drawing import bigraph_svg  # noqa: PLC0415 - drawing is built on values
+
+        return bigraph_svg(self) if len(self.nodes) <= MOST_DRAWN else None
 
     def __str__(self) -> str:
         from bigraphs.text import draw_text  # noqa: PLC0415 - drawing is built on values

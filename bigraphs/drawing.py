@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -69,6 +71,29 @@ def save_bigraph(
         raise BigraphError(
             "picture", f"cannot write a picture as '{Path(path).name}'", "name it .svg or .png"
         )
+    _save(bigraph, path, kind, highlight, title)
+
+
+def bigraph_svg(bigraph: Bigraph) -> str:
+    """Return a picture as SVG that is as wide as a notebook's page at the most."""
+    written = BytesIO()
+    _save(bigraph, written, "svg", frozenset(), None)
+    return fitting(written.getvalue().decode())
+
+
+def fitting(svg: str) -> str:
+    """Return an SVG that shrinks with the page that it is in.
+
+    >>> fitting('<svg width="96pt" height="72pt" viewBox="0 0 96 72">')
+    '<svg style="width:100%;max-width:96pt;height:auto" viewBox="0 0 96 72">'
+    """
+    style = r'<svg\1style="width:100%;max-width:\2pt;height:auto"'
+    return re.sub(r'<svg(\s[^>]*?)width="([\d.]+)pt" height="[\d.]+pt"', style, svg, count=1)
+
+
+def _save(
+    bigraph: Bigraph, target: str | Path | BytesIO, kind: str, highlight: frozenset[str], title: str | None
+) -> None:
     import matplotlib as mpl  # noqa: PLC0415 - a picture is worth the wait, an import is not
     from matplotlib.figure import Figure  # noqa: PLC0415 - the same
 
@@ -77,7 +102,7 @@ def save_bigraph(
         figure = axes.figure
         assert isinstance(figure, Figure)  # new axes have a figure of their own
         stamp: dict[str, Any] = {"Date": None} if kind == "svg" else {"Software": None}
-        figure.savefig(path, format=kind, dpi=160, metadata=stamp)
+        figure.savefig(target, format=kind, dpi=160, metadata=stamp)
 
 
 def _new_axes(plan: Layout, title: str | None) -> Axes:

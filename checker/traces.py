@@ -75,6 +75,11 @@ class Trace:
     def __repr__(self) -> str:
         return f"<Trace {print_length(self)}>"
 
+    def _repr_html_(self) -> str:
+        from bigactors.notebook import trace_html  # noqa: PLC0415 - what notebooks show is built on values
+
+        return trace_html(self)
+
     @property
     def configurations(self) -> tuple[Configuration, ...]:
         """c0, c1, ..."""

@@ -74,6 +74,11 @@ class Verdict:
         found = f" violations={len(self.violations)}" if self.violations else ""
         return f"<Verdict {cut(self.property.name)} {self.outcome.value}{found}>"
 
+    def _repr_html_(self) -> str:
+        from bigactors.notebook import verdict_html  # noqa: PLC0415 - what notebooks show is built on values
+
+        return verdict_html(self)
+
 
 class UnknownPropertyError(KeyError):
     """A property that a report has no verdict of."""
@@ -143,6 +148,11 @@ class Report:
         counts = Counter(verdict.outcome.value for verdict in self.verdicts)
         found = " ".join(f"{outcome.value}={counts[outcome.value]}" for outcome in Outcome)
         return f"<Report {found} configurations={self.configurations} complete={self.complete}>"
+
+    def _repr_html_(self) -> str:
+        from bigactors.notebook import report_html  # noqa: PLC0415 - what notebooks show is built on values
+
+        return report_html(self)
 
     @property
     def complete(self) -> bool:

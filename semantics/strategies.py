@@ -28,6 +28,8 @@ from semantics.behaviours.reaction_rules import (
     Reaction,
 )
 from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
+from semantics.properties.kinds import Asked, asked_by
+from semantics.properties.property import Property
 from semantics.random_programs import AGENT_NAMES, random_program
 from semantics.state.agents import Code
 from semantics.state.configuration import Configuration
@@ -389,6 +391,29 @@ def initial_configurations(
     )
     lags = pick(draw, [False, False, True]) if lagging is None else lagging
     return world.initial(setting, agents, draw(beliefs(world)) if lags else None)
+
+
+@dataclass(frozen=True)
+class GeneratedMission:
+    """A mission without a text: what `check` takes.
+
+    Attributes:
+        initial: The first configuration.
+        properties: One of each kind that needs no formula.
+        notes: None.
+    """
+
+    initial: Configuration
+    properties: tuple[Property, ...]
+    notes: tuple[str, ...] = ()
+
+
+def missions(start: st.SearchStrategy[Configuration] | None = None) -> st.SearchStrategy[GeneratedMission]:
+    """Yield missions that ask for every property without a formula; many have no end: check them within limits."""
+    kinds = asked_by(Asked.BY_DEFAULT, Asked.BY_NAME, Asked.ALWAYS)
+    properties = tuple(Property(kind, kind.value) for kind in kinds)
+    first = initial_configurations() if start is None else start
+    return first.map(lambda c: GeneratedMission(c, properties))
 
 
 @st.composite

@@ -213,6 +213,7 @@ def installed(tmp_path_factory):
     """Return the variables with which the package is found as it is installed, and its command."""
     folder = tmp_path_factory.mktemp("installed")
     write_package(folder / PACKAGE)
+    write_metadata(folder / f"{PACKAGE}-0.dist-info")
     commands = folder / "bin"
     commands.mkdir()
     for name, arguments in {"bigactors": "-m bigactors ", "python": ""}.items():
@@ -223,6 +224,15 @@ def installed(tmp_path_factory):
     kept = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "PYTHON"))}
     path = f"{commands}{os.pathsep}{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     return kept | {"PATH": path, "PYTHONPATH": str(folder), "PYTHONUTF8": "1", "COLUMNS": "100"}
+
+
+def write_metadata(folder):
+    """Write what tells other programs of the package: its plugin of pytest."""
+    folder.mkdir()
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    (folder / "METADATA").write_text(f"Name: {PACKAGE}\nVersion: 0\n", encoding="utf-8")
+    plugins = "".join(f"{name} = {module}\n" for name, module in project["entry-points"]["pytest11"].items())
+    (folder / "entry_points.txt").write_text(f"[pytest11]\n{plugins}", encoding="utf-8")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)

@@ -17,6 +17,9 @@ from semantics.state.requests import Request
 from semantics.successors import Expansion
 
 if TYPE_CHECKING:
+    from networkx import MultiDiGraph
+    from pandas import DataFrame
+
     from checker.engines.graph import Bools, Graph, Numbers
 
 
@@ -200,6 +203,26 @@ class Exploration:
     def complete(self) -> bool:
         """Whether everything reachable was visited."""
         return not self.bounds
+
+    def to_networkx(self) -> "MultiDiGraph[int]":
+        """Return the transition system as a graph; raises ValueError where transitions were not kept (`edges=True`).
+
+        A node is the number of a configuration, 0 the initial one, with its `configuration`. An edge has the `rule`,
+        the `agent` (None for the environment), `about` and the `label` of its transition.
+        """
+        from checker.transition_system import to_networkx  # noqa: PLC0415 - graphs are made of explorations
+
+        return to_networkx(self)
+
+    def to_pandas(self) -> "DataFrame":
+        """Return the transition system as a table (extra `notebook`); raises ValueError as `to_networkx` does.
+
+        A row is a transition: the numbers of its `source` and `target`, its `rule`, `agent` (None for the environment),
+        `about` and `label`.
+        """
+        from checker.transition_system import to_pandas  # noqa: PLC0415 - graphs are made of explorations
+
+        return to_pandas(self)
 
     def path(self, number: int) -> tuple[int, ...]:
         """Return the numbers of the configurations on a shortest path to one, both ends included."""

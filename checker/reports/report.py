@@ -18,10 +18,7 @@ MARKS = {Outcome.HOLDS: "✓", Outcome.VIOLATED: "✗", Outcome.INCOMPLETE: "?"}
 
 def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[str]:
     """Yield a report line by line."""
-    size = f"{report.configurations:,} configurations, {_followed(report)} transitions, depth {report.depth}"
-    searched = f", reduced by {' and '.join(report.reduced)}" if report.reduced else ""
-    complete = "complete" if report.complete else "INCOMPLETE"
-    yield f"{name}: {size}, {complete}{searched}, {report.seconds:.2f} s"
+    yield f"{name}: {size_text(report)}, {report.seconds:.2f} s"
     for bound in report.bounds:
         yield f"  {bound.effect}"
     width = max((len(verdict.property.name) for verdict in report.verdicts), default=0)
@@ -31,6 +28,13 @@ def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[s
     yield from (f"  note: {note}" for note in report.notes)
 
 
+def size_text(report: Report) -> str:
+    """Return how much was explored."""
+    size = f"{report.configurations:,} configurations, {_followed(report)} transitions, depth {report.depth}"
+    searched = f", reduced by {' and '.join(report.reduced)}" if report.reduced else ""
+    return f"{size}, {'complete' if report.complete else 'INCOMPLETE'}{searched}"
+
+
 def _followed(report: Report) -> str:
     if not report.reduced:
         return f"{report.transitions:,}"
@@ -38,11 +42,14 @@ def _followed(report: Report) -> str:
 
 
 def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
-    line = f"  {MARKS[verdict.outcome]} {verdict.property.name:<{width}}  {verdict.outcome.value}"
-    remarks = [verdict.note, *verdict.remarks, *_sizes(verdict)]
-    yield line + "".join(f"; {remark}" for remark in remarks if remark)
+    yield f"  {MARKS[verdict.outcome]} {verdict.property.name:<{width}}  {verdict_text(verdict)}"
     for violation in verdict.violations:
         yield from _violation(violation, traces=traces)
+
+
+def verdict_text(verdict: Verdict) -> str:
+    """Return the word of a verdict, and what else is to be said of it."""
+    return "; ".join(filter(None, [verdict.outcome.value, verdict.note, *verdict.remarks, *_sizes(verdict)]))
 
 
 def _sizes(verdict: Verdict) -> Iterator[str]:

@@ -1,0 +1,96 @@
+"""What notebooks show of values: pictures and tables that stand by themselves, readable on light and on dark pages.
+
+Values offer what they look like by `_repr_svg_` and `_repr_html_`, which delegate to here. Colours are in the elements,
+without style sheets and scripts, since notebooks are shown where both are removed.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Final
+
+from bigactors.pages.markup import element, text
+from bigactors.pictures import draw_configuration, shown_names
+from bigraphs.drawing import fitting
+from checker import Outcome, Report, Trace, Verdict, Violation
+from checker.reports.lanes import LaneStep, lanes_of_trace
+from checker.reports.report import MARKS, size_text, verdict_text
+from checker.traces import print_length
+from semantics.state.configuration import Configuration
+
+MOST_ENTITIES: Final = 200
+"""The most entities of a configuration that is drawn by itself."""
+
+MOST_STEPS: Final = 200
+"""The most steps of a trace that are shown."""
+
+COLOURS: Final = {Outcome.HOLDS: "#2e9e5b", Outcome.VIOLATED: "#e0453a", Outcome.INCOMPLETE: "#c58a00"}
+CELL: Final = "text-align:left;vertical-align:top;padding:2px 10px 2px 0"
+QUIET: Final = "opacity:.7"
+SERVES: Final = "#4fa672"
+AROUND: Final = "#d08a3c"
+OWN: Final = "#4f86c6"
+
+
+def configuration_svg(c: Configuration) -> str | None:
+    """Return the picture of a configuration: the bigraph beside the map; None where it is too large for one."""
+    if len(shown_names(c)) > MOST_ENTITIES:
+        return None
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "configuration.svg"
+        draw_configuration(c, path)
+        return fitting(path.read_text(encoding="utf-8"))
+
+
+def trace_html(trace: Trace) -> str:
+    """Return a trace as a table: a column for each agent, and what changed."""
+    lanes = lanes_of_trace(trace)
+    heads = (element("th", text(name), style=CELL) for name in ("", *lanes.names, "changes"))
+    rows = (_row(step, len(lanes.names)) for step in lanes.steps[:MOST_STEPS])
+    left_out = len(lanes.steps) - MOST_STEPS
+    more = [f"{left_out:,} more steps are not shown"] if left_out > 0 else []
+    return element(
+        "div",
+        element("p", text(print_length(trace))),
+        element("table", element("tr", *heads), *rows),
+        *(element("p", text(line), style=QUIET) for line in (*more, *filter(None, [lanes.end]))),
+    )
+
+
+def _row(step: LaneStep, lanes: int) -> str:
+    colour = SERVES if step.serves else AROUND if step.label.agent is None else OWN
+    said = element("b", text(step.label.rule), style=f"color:{colour}") + f" {text(step.about)}"
+    cells = (element("td", said if lane == step.lane else "", style=CELL) for lane in range(lanes))
+    changes = "<br>".join(text(change) for change in step.changes)
+    number = element("td", f"c{step.number}", style=f"{CELL};{QUIET}")
+    return element("tr", number, *cells, element("td", changes, style=CELL))
+
+
+def report_html(report: Report) -> str:
+    """Return a report as a table of verdicts; the trace of a violation unfolds."""
+    notes = (*(bound.effect for bound in report.bounds), *report.notes)
+    return element(
+        "div",
+        element("p", text(size_text(report))),
+        *(element("p", text(note), style=QUIET) for note in notes),
+        element("table", *(row for verdict in report.verdicts for row in _rows(verdict))),
+    )
+
+
+def verdict_html(verdict: Verdict) -> str:
+    """Return a verdict as a report shows it."""
+    return element("table", *_rows(verdict))
+
+
+def _rows(verdict: Verdict) -> Iterator[str]:
+    mark = element("b", MARKS[verdict.outcome], style=f"color:{COLOURS[verdict.outcome]}")
+    words = (mark, element("b", text(verdict.property.name)), text(verdict_text(verdict)))
+    yield element("tr", *(element("td", each, style=CELL) for each in words))
+    for violation in verdict.violations:
+        yield element("tr", element("td"), element("td", _violation(violation), colspan=2, style=CELL))
+
+
+def _violation(violation: Violation) -> str:
+    summary = element("summary", element("b", text(violation.kind)), f": {text(violation.message)}")
+    details = (element("div", text(line), style=QUIET) for line in violation.details)
+    return element("details", summary, *details, trace_html(violation.trace))

@@ -1,0 +1,67 @@
+"""The transition system that was explored, as a graph of networkx and as a table of pandas."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from checker.engines.contract import Exploration
+from checker.engines.graph import Graph, graph_of
+from checker.traces import step_of
+from semantics.state.requests import Received
+
+if TYPE_CHECKING:
+    from networkx import MultiDiGraph
+    from pandas import DataFrame
+
+
+class Row(NamedTuple):
+    """A transition, as a row of the table."""
+
+    source: int
+    target: int
+    rule: str
+    agent: str | None
+    about: str
+    label: str
+
+
+def to_networkx(found: Exploration) -> "MultiDiGraph[int]":
+    """Return configurations by their numbers, and transitions between them."""
+    import networkx as nx  # noqa: PLC0415 - few need it, and it takes time to load
+
+    graph: nx.MultiDiGraph[Any] = nx.MultiDiGraph()
+    graph.add_nodes_from((number, {"configuration": c}) for number, c in enumerate(found.configurations))
+    for row in rows(found):
+        graph.add_edge(
+            row.source, row.target, rule=row.rule, agent=row.agent, about=row.about, label=row.label
+        )
+    return graph
+
+
+def to_pandas(found: Exploration) -> "DataFrame":
+    """Return transitions as rows, in the order of their sources."""
+    try:
+        from pandas import DataFrame  # noqa: PLC0415 - an extra
+    except ImportError as error:
+        raise ImportError("tables need pandas: pip install 'bigactors[notebook]'") from error
+
+    return DataFrame(list(rows(found)), columns=list(Row._fields))
+
+
+def rows(found: Exploration) -> Iterator[Row]:
+    """Yield the transitions; raises ValueError where they were not kept."""
+    graph, configurations = _graph(found), found.configurations
+    for source, target, action in zip(graph.sources, graph.targets, graph.actions, strict=True):
+        label = graph.labels[action]
+        if found.survey is not None and isinstance(
+            label.about, Received
+        ):  # rows do not hold what was received
+            label = step_of(configurations[source], label, configurations[target]).label
+        yield Row(int(source), int(target), label.rule, label.agent, str(label.about), str(label))
+
+
+def _graph(found: Exploration) -> Graph:
+    if found.survey is not None:
+        return found.survey.graph()
+    if found.edges is None:
+        raise ValueError("the transitions were not kept: explore(..., edges=True)")
+    return graph_of(found.edges, found.size)

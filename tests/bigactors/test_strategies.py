@@ -1,0 +1,55 @@
+"""The public strategies: offered in one place, and usable as the how-to says."""
+
+import subprocess
+import sys
+
+import pytest
+from hypothesis import Phase, find, given, settings
+from scale import examples
+
+import semantics.strategies
+from bigactors import Limits, Outcome, check, strategies
+from bigactors.strategies import missions
+
+
+def test_every_public_strategy_is_offered_and_its_own():
+    defined = {
+        name
+        for name, value in vars(semantics.strategies).items()
+        if not name.startswith("_") and getattr(value, "__module__", "") == "semantics.strategies"
+    }
+    assert set(strategies.__all__) == defined - {"T", "pick"}
+    assert all(
+        getattr(strategies, name) is getattr(semantics.strategies, name) for name in strategies.__all__
+    )
+
+
+@given(missions())
+@examples(30)
+def test_a_generated_mission_is_checked(mission):
+    report = check(mission, limits=Limits(configurations=30))
+    assert [each.property for each in report.verdicts] == list(mission.properties)
+
+
+def test_missions_hold_and_are_violated():
+    def is_one(outcome):
+        return lambda each: (
+            outcome in {v.outcome for v in check(each, limits=Limits(configurations=20)).verdicts}
+        )
+
+    first = settings(phases=[Phase.generate], database=None)
+    for outcome in (Outcome.HOLDS, Outcome.VIOLATED):
+        assert find(missions(), is_one(outcome), settings=first).initial.alpha.names()
+
+
+def test_without_hypothesis_the_error_names_the_extra():
+    script = "import sys; sys.modules['hypothesis'] = None; import bigactors.strategies"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert "pip install 'bigactors[strategies]'" in done.stderr
+
+
+@pytest.mark.parametrize("module", ["bigactors", "bigactors.cli"])
+def test_nobody_else_loads_hypothesis(module):
+    script = f"import sys, {module}; print('hypothesis' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
