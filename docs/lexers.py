@@ -12,13 +12,14 @@ from specs.grammar import grammar_text
 
 def lexer(grammar: str, comment: str) -> type[RegexLexer]:
     """Return the lexer of a language."""
+    keywords = sorted(set(re.findall(r'"([A-Za-z_]+)"', grammar)))
 
     class Lexer(RegexLexer):
         tokens: ClassVar = {
             "root": [
                 (comment, Comment),
                 (r'"(\\.|[^"\\])*"', String),
-                (words(sorted(set(re.findall(r'"([A-Za-z_]+)"', grammar))), r"\b", r"\b"), Keyword),
+                (words(keywords, r"\b", r"\b"), Keyword),
                 (r"\d+(\.\d+)?", Number),
                 (r"\w+|\s+", Text),
                 (r".", Operator),
@@ -30,6 +31,6 @@ def lexer(grammar: str, comment: str) -> type[RegexLexer]:
 
 LEXERS = {
     "big": lexer(GRAMMAR, r"#.*"),
-    "ebnf": lexer("", r"//.*"),
+    "ebnf": lexer('"NAME" "STRING" "NUMBER" "CHANNEL"', r"//.*"),
     "mission": lexer(grammar_text(), r"(//|#).*"),
 }

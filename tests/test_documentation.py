@@ -101,7 +101,8 @@ def framed(block, folder):
         return block.text
     name = block.notes["frame"]
     frame = shipped_missions().get(name, folder / name).read_text(encoding="utf-8")
-    return "\n".join(piece.rstrip() for piece in (declarations(frame) | declarations(block.text)).values())
+    whole = declarations(frame) | declarations(block.text)
+    return "\n\n".join(piece.strip() for piece in whole.values() if piece.strip()) + "\n"
 
 
 def split(shown):
