@@ -97,7 +97,7 @@ def test_a_place_that_may_appear_elsewhere_is_no_fixed_place():
 def test_channels_have_the_colours_that_the_bigraph_gives_them():
     c = oil_spill()
     bigraph = c.structure.logical.bigraph()
-    drawn = {str(each.link): LINKS[rank] for rank, each in enumerate(route(bigraph, layout(bigraph)))}
+    drawn = {str(each.link): LINKS[rank] for rank, each in enumerate(route(layout(bigraph)))}
     assert palette_of(c).channels == drawn
 
 
