@@ -1,7 +1,6 @@
 """What curves of links cross, counted on the geometry that is drawn."""
 
 import random
-from itertools import pairwise
 
 import pytest
 
@@ -16,7 +15,9 @@ def crowd(size, seed):
     chance = random.Random(seed)
     stations = [f"gcs{n}" for n in range(max(1, size // 12))]
     places = [f"area{n}" for n in range(size // 9)]
-    movers = [f"{chance.choice(['uav', 'vessel', 'drifter'])}{n}" for n in range(size - len(stations) - len(places))]
+    movers = [
+        f"{chance.choice(['uav', 'vessel', 'drifter'])}{n}" for n in range(size - len(stations) - len(places))
+    ]
     kinds = {"uav": "UAV", "vessel": "Vessel", "drifter": "Drifter", "gcs": "Station", "area": "Location"}
     controls = {name: kinds[name.rstrip("0123456789")] for name in (*stations, *places, *movers)}
     parents = {name: chance.choice([None, None, *places]) for name in (*stations, *movers)}
@@ -65,7 +66,13 @@ def test_few_links_of_100_nodes_cross_a_node_or_a_label(seed):
 
 def test_a_link_goes_around_the_label_of_the_place_that_it_leaves():
     world = from_relations(
-        {"airfield0": "Location", "gcs0": "Station", "uav0": "UAV", "oilSpill0": "OilSpill", "searchArea0": "Location"},
+        {
+            "airfield0": "Location",
+            "gcs0": "Station",
+            "uav0": "UAV",
+            "oilSpill0": "OilSpill",
+            "searchArea0": "Location",
+        },
         {"gcs0": "airfield0", "uav0": "airfield0", "oilSpill0": "searchArea0"},
         {"control:gcs0": ["gcs0", "uav0"]},
     )
