@@ -94,7 +94,7 @@ def save_bigraph(
 
 def names_id(names: Sequence[str]) -> str:
     """Return the id, in an SVG, of the text that stands for several names."""
-    return f"names:{' '.join(names)}"
+    return f"names:{', '.join(names)}"
 
 
 def _new_axes(plan: Layout, title: str | None) -> Axes:

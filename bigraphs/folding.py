@@ -5,7 +5,6 @@ Alike are nodes without contents that have one control, one place and the same l
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import Final
@@ -56,7 +55,9 @@ def folded(bigraph: Bigraph, apart: Collection[str] = frozenset()) -> Folded:
     )
     sites = tuple(tuple(rank.get(parent, parent) for parent in parents) for parents in bigraph.sites)
     members = {
-        rank[group[0]]: tuple(sorted((whole.lines[number][0] for number in group), key=_natural))
+        rank[group[0]]: tuple(
+            sorted((whole.lines[number][0] for number in group), key=lambda label: (len(label), label))
+        )
         for group in groups
     }
     lines = tuple(
@@ -78,11 +79,3 @@ def _alike(bigraph: Bigraph, apart: Collection[str]) -> list[list[int]]:
 
 def _summary(control: str, labels: tuple[str, ...]) -> tuple[str, str]:
     return f"{control} ×{len(labels)}", f"{labels[0]}, {labels[1]}, …"
-
-
-def _natural(label: str) -> list[tuple[bool, int, str]]:
-    """Order `uav2` before `uav10`."""
-    return [
-        (not part.isdecimal(), int(part) if part.isdecimal() else 0, part)
-        for part in re.split(r"(\d+)", label)
-    ]

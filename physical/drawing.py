@@ -27,8 +27,8 @@ from physical.map_marks import (
     draw_polygon_mark,
     samples,
 )
-from physical.map_scene import MapEntity, Scene, Sheet, area_of, arranged, scene_of
-from physical.map_style import kind_colours
+from physical.map_scene import MapEntity, Scene, Sheet, area_of, arranged, scene_of, shows_coasts
+from physical.map_style import PAPER, SEA, kind_colours
 from physical.map_view import bounds, degrees_text, tick_step, ticks
 from physical.map_writing import Writing, write_labels, writing_of
 from physical.shape import Geometry
@@ -74,7 +74,7 @@ def draw_map(  # noqa: PLR0913 - each says one thing of the map
     scene, writing = composed(in_order, _size(axes), colours or {}, (highlight, marked), within)
     sheet = scene.sheet
     axes.set(xlim=(0, sheet.width), ylim=(0, sheet.height), aspect="equal")
-    draw_grid(axes, *_grid(sheet))
+    draw_grid(axes, *_grid(sheet), SEA if shows_coasts(sheet) else PAPER)
     draw_land(axes, scene.land)
     _draw_polygons(axes, scene)
     _draw_channels(axes, scene, channel_colours or {})

@@ -57,7 +57,7 @@ def block_size(lines: Sequence[Line]) -> Spot:
 
 def names_id(names: Sequence[str]) -> str:
     """Return the id, in an SVG, of what stands for several names."""
-    return f"names:{' '.join(names)}"
+    return f"names:{', '.join(names)}"
 
 
 def draw_block(
@@ -237,9 +237,11 @@ def draw_land(axes: Axes, polygons: Sequence[Sequence[Sequence[Spot]]]) -> None:
         axes.add_patch(PathPatch(path, facecolor=LAND, edgecolor=COAST, linewidth=0.9, zorder=-1))
 
 
-def draw_grid(axes: Axes, xs: Sequence[tuple[float, str]], ys: Sequence[tuple[float, str]]) -> None:
-    """Draw meridians and parallels, each a place in points and what is written beside it."""
-    axes.set_facecolor(PAPER)
+def draw_grid(
+    axes: Axes, xs: Sequence[tuple[float, str]], ys: Sequence[tuple[float, str]], paper: str
+) -> None:
+    """Draw meridians and parallels, each a place in points and what is written beside it, on paper of a colour."""
+    axes.set_facecolor(paper)
     axes.set_xticks([x for x, _ in xs], [text for _, text in xs])
     axes.set_yticks([y for y, _ in ys], [text for _, text in ys])
     axes.tick_params(length=0, pad=4, labelsize=7.5, labelcolor=QUIET)

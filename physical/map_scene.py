@@ -207,8 +207,13 @@ def _stands_out(scene: Scene, name: str) -> bool:
     return told or bool(scene.cargo(name))
 
 
+def shows_coasts(sheet: Sheet) -> bool:
+    """Tell whether a sheet is wide enough for coasts."""
+    return sheet.view.width >= NARROWEST_COAST
+
+
 def _land(sheet: Sheet) -> Land:
-    if sheet.view.width < NARROWEST_COAST:
+    if not shows_coasts(sheet):
         return ()
     around = sheet.view.grown(sheet.view.width / 50)  # hence no coast along the border of the sheet
     corners = ((around.left, around.bottom), (around.right, around.top))
