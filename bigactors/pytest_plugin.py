@@ -166,7 +166,9 @@ class PropertyItem(pytest.Item):
     def __init__(self, *, asked: Property, **more: Any) -> None:
         super().__init__(**more)
         self.asked = asked
-        self.funcargs: dict[str, object] = {}  # no fixtures: plugins such as pytest-lsp ask every test for its own
+        self.funcargs: dict[
+            str, object
+        ] = {}  # no fixtures: plugins such as pytest-lsp ask every test for its own
         self.add_marker("mission")
         if any(fnmatchcase(self.nodeid, pattern) for pattern in self.config.getini("mission_violated")):
             reason = "mission_violated"

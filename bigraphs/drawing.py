@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from bigraphs.bigraph import Bigraph, Link
 from bigraphs.errors import BigraphError
-from bigraphs.labels import link_label, node_labels
-from bigraphs.layout import FONT, HEADER, PAD, SMALL, Box, Item, Layout, label_lines, layout
+from bigraphs.folding import Folded
+from bigraphs.labels import link_label
+from bigraphs.layout import FONT, HEADER, PAD, SMALL, Box, Item, Layout, layout
 from bigraphs.link_routing import Point
 from bigraphs.routing import Route, route
 
@@ -47,15 +48,26 @@ def draw_bigraph(
     """Draw into matplotlib axes, new ones if none are given, and return them.
 
     Everything scales with the axes as they are placed now, so labels always fit. `highlight` holds node and link
-    names. A *ghost*, dashed, stands for a node in its further places.
+    names. A *ghost*, dashed, stands for a node in its further places; in a large picture one box stands for nodes that
+    are alike.
     """
-    plan = layout(bigraph)
+    return draw_layout(layout(bigraph, highlight), axes, highlight=highlight, title=title)
+
+
+def draw_layout(
+    plan: Layout,
+    axes: Axes | None = None,
+    *,
+    highlight: frozenset[str] = frozenset(),
+    title: str | None = None,
+) -> Axes:
+    """Draw a layout as `draw_bigraph` does."""
     axes = axes if axes is not None else _new_axes(plan, title)
     axes.set_xlim(-MARGIN, plan.width + MARGIN)
     axes.set_ylim(plan.height + MARGIN, -MARGIN - _head(title))
     axes.set_aspect("equal")
     axes.axis("off")
-    pen = _Pen(axes, bigraph, _scale(axes, plan, title), highlight)
+    pen = _Pen(axes, plan.shown, _scale(axes, plan, title), highlight)
     pen.draw(plan)
     if title:
         pen.text((0.0, -MARGIN - _head(title) / 2), title, FONT + 2, INK, "left", weight="bold")
@@ -97,12 +109,17 @@ def _save(
     import matplotlib as mpl  # noqa: PLC0415 - a picture is worth the wait, an import is not
     from matplotlib.figure import Figure  # noqa: PLC0415 - the same
 
-    with mpl.rc_context({"svg.hashsalt": "bigraphs", "svg.fonttype": "path"}):
+    with mpl.rc_context({"svg.hashsalt": "bigraphs", "svg.fonttype": "none"}):
         axes = draw_bigraph(bigraph, highlight=highlight, title=title)
         figure = axes.figure
         assert isinstance(figure, Figure)  # new axes have a figure of their own
         stamp: dict[str, Any] = {"Date": None} if kind == "svg" else {"Software": None}
         figure.savefig(target, format=kind, dpi=160, metadata=stamp)
+
+
+def names_id(names: Sequence[str]) -> str:
+    """Return the id, in an SVG, of the text that stands for several names."""
+    return f"names:{', '.join(names)}"
 
 
 def _new_axes(plan: Layout, title: str | None) -> Axes:
@@ -130,9 +147,9 @@ def _scale(axes: Axes, plan: Layout, title: str | None) -> float:
 class _Pen:
     """What every stroke needs to know."""
 
-    def __init__(self, axes: Axes, bigraph: Bigraph, scale: float, highlight: frozenset[str]) -> None:
-        self.axes, self.bigraph, self.scale, self.highlight = axes, bigraph, scale, highlight
-        self.labels = node_labels(bigraph)
+    def __init__(self, axes: Axes, shown: Folded, scale: float, highlight: frozenset[str]) -> None:
+        self.axes, self.shown, self.scale, self.highlight = axes, shown, scale, highlight
+        self.bigraph = bigraph = shown.bigraph
         kinds = sorted(control.name for control in bigraph.signature.controls)  # the same in every state
         self.kinds = {kind: KINDS[number % len(KINDS)] for number, kind in enumerate(kinds)}
 
@@ -140,7 +157,7 @@ class _Pen:
         holding = {item for item, box in plan.boxes if item.kind == "node" and box.height > _LEAF}
         for depth, (item, box) in enumerate(plan.boxes):
             self.box(item, box, 1 + depth * 1e-4, item in holding)
-        routes = route(self.bigraph, plan)
+        routes = route(plan)
         colours: Mapping[Link, str] = {each.link: LINKS[n % len(LINKS)] for n, each in enumerate(routes)}
         for each in routes:
             self.link(each, colours[each.link])
@@ -169,22 +186,28 @@ class _Pen:
             self.rounded(
                 box, 6, depth, facecolor="none", edgecolor=border, linestyle=(0, (3, 2)), linewidth=1.0
             )
-            self.text(box.centre, self.labels[item.number], FONT, ink, "center", style="italic", alpha=0.75)
+            self.text(
+                box.centre, self.shown.lines[item.number][0], FONT, ink, "center", style="italic", alpha=0.75
+            )
         else:
             self.node(item.number, box, depth, holding)
 
     def node(self, number: int, box: Box, depth: float, holding: bool) -> None:
         fill, border, ink = self.kinds[self.bigraph.nodes[number].control]
-        lit = self.labels[number] in self.highlight
+        name, kind = self.shown.lines[number]
+        lit = name in self.highlight
         if lit:
             glow = Box(box.x - 2.5, box.y - 2.5, box.width + 5, box.height + 5)
             self.rounded(glow, 9, depth, facecolor=HIGHLIGHT, edgecolor="none", alpha=0.28, linewidth=0)
         edge, width = (HIGHLIGHT, 2.0) if lit else (border, 1.3)
         self.rounded(box, 7, depth, facecolor=fill, edgecolor=edge, linewidth=width)
-        name, kind = label_lines(self.bigraph, self.labels, number)
+        if folded := number in self.shown.members:  # a second box peeps out
+            behind = Box(box.x + 3, box.y + 3, box.width, box.height)
+            self.rounded(behind, 7, depth - 5e-5, facecolor=fill, edgecolor=border, linewidth=1.0)
         x, side = (box.x + PAD, "left") if holding else (box.centre[0], "center")
         y = box.y + (HEADER / 2 + 3 if holding else box.height / 2 - (4.5 if kind else 0))
-        self.text((x, y), name, FONT, ink, side, weight="normal")
+        names = names_id(self.shown.members[number]) if folded else None
+        self.text((x, y), name, FONT, ink, side, weight="bold" if folded else "normal", gid=names)
         if kind:
             self.text((x, y + 11), kind, SMALL, border, side)
 

@@ -7,14 +7,14 @@ places is drawn in the first and has a *ghost*, a small outline with its label, 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 from math import ceil, log
 from typing import Final, TypeAlias
 
 from bigraphs.bigraph import Bigraph, Link, Place, children, points, sites_in
-from bigraphs.labels import node_labels
+from bigraphs.folding import Folded, folded
 
 FONT: Final = 10.0
 SMALL: Final = 7.5
@@ -71,8 +71,12 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """All boxes, parents before what is in them, and a pill for each name on the rim."""
+    """All boxes, parents before what is in them, and a pill for each name on the rim.
 
+    `shown` is the bigraph that they are of, in which nodes may be folded.
+    """
+
+    shown: Folded
     width: float
     height: float
     boxes: tuple[tuple[Item, Box], ...]
@@ -88,16 +92,20 @@ Size: TypeAlias = tuple[float, float]
 Rows: TypeAlias = tuple[tuple[Item, ...], ...]
 
 
-def layout(bigraph: Bigraph) -> Layout:
-    """Return the boxes of a drawing; the same bigraph gives the same layout everywhere."""
+def layout(bigraph: Bigraph, apart: Collection[str] = frozenset()) -> Layout:
+    """Return the boxes of a drawing; the same bigraph gives the same layout everywhere.
+
+    In a large one nodes that are alike are one box; those named in `apart` have boxes of their own.
+    """
+    shown = folded(bigraph, apart)
+    bigraph = shown.bigraph
     tree = _tree(bigraph)
-    labels = node_labels(bigraph)
     sizes: dict[Item, Size] = {}
     rows: dict[Item, Rows] = {}
     headers: dict[Item, float] = {}
     for item in _bottom_up(tree, bigraph.regions):
         rows[item], (width, height) = _packed([(child, sizes[child]) for child in tree[item]])
-        label = label_size(bigraph, labels, item)
+        label = label_size(shown, item)
         headers[item] = _header(item, label)
         sizes[item] = _with_frame(item, (width, height), label)
     tops = [(Item("region", region), sizes[Item("region", region)]) for region in range(bigraph.regions)]
@@ -115,6 +123,7 @@ def layout(bigraph: Bigraph) -> Layout:
     )
     ordered = tuple((item, boxes[item]) for item in _top_down(tree, bigraph.regions))
     return Layout(
+        shown,
         width,
         above + height + inner_rows.height,
         ordered,
@@ -127,25 +136,20 @@ def layout(bigraph: Bigraph) -> Layout:
     )
 
 
-def label_size(bigraph: Bigraph, labels: Sequence[str], item: Item) -> Size:
+def label_size(shown: Folded, item: Item) -> Size:
     """Return the room that the label of a box needs, frame not included."""
     if item.kind == "region":
-        return (text_width(f"region {item.number}", SMALL), HEADER) if bigraph.regions > 1 else (0.0, 0.0)
+        several = shown.bigraph.regions > 1
+        return (text_width(f"region {item.number}", SMALL), HEADER) if several else (0.0, 0.0)
     if item.kind == "site":
         return text_width(f"${item.number}", FONT), LEAF_HEIGHT - 12
-    name, kind = label_lines(bigraph, labels, item.number)
+    name, kind = shown.lines[item.number]
     width = max(text_width(name, FONT), text_width(kind, SMALL))
     return (
         (width, LEAF_HEIGHT if kind else LEAF_HEIGHT - 8)
         if item.kind == "node"
         else (width, LEAF_HEIGHT - 10)
     )
-
-
-def label_lines(bigraph: Bigraph, labels: Sequence[str], number: int) -> tuple[str, str]:
-    """Return the label of a node, and its control where the label does not say it."""
-    node = bigraph.nodes[number]
-    return labels[number], node.control if node.name is not None else ""
 
 
 _NARROW: Final = frozenset("fijlrtI.,:;'|!/-()[] `\\")
@@ -243,7 +247,9 @@ def _with_frame(item: Item, content: Size, label: Size) -> Size:
 def _header(item: Item, label: Size) -> float:
     if item.kind == "region":
         return label[1] or PAD
-    return HEADER + PAD + (label[1] > LEAF_HEIGHT - 8) * 7.0
+    return (
+        HEADER + GAP + (label[1] > LEAF_HEIGHT - 8) * 10.0
+    )  # a lane for links between a label and the boxes
 
 
 def _inside(box: Box, header: float) -> Box:

@@ -3,40 +3,43 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from heapq import heappop, heappush
 from itertools import pairwise
 from math import hypot, inf
 from typing import Final, TypeAlias
 
-from bigraphs.layout import FONT, GAP, HEADER, PAD, Box, Layout
+from bigraphs.layout import GAP, HEADER, PAD, Box, Layout, label_size
 
 Point: TypeAlias = tuple[float, float]
 Curve: TypeAlias = tuple[Point, ...]
 
-BOX_WEIGHT: Final = 9.0
-LABEL_WEIGHT: Final = 4.0
-LARGEST: Final = 80  # boxes; a larger drawing is crossed straight
-ROUND: Final = 34.0
-STUB: Final = 11.0
+WEIGHT: Final = 9.0
+CLEAR: Final = 3.7  # what lanes and round corners take off a way's distance from boxes
+LARGEST: Final = 120  # boxes; a larger drawing is crossed straight
+ROUND: Final = 18.0
+BEND: Final = 8.0
+STRIDE: Final = 200.0
+STUB: Final = GAP / 2
 SAMPLES: Final = 16
 
 
 class Obstacles:
-    """The innermost boxes of a layout, and the labels of the others, with the corners to pass them at."""
+    """What no link should cross, innermost boxes, labels and names on the rim, with the corners to pass them at."""
 
     def __init__(self, layout: Layout) -> None:
-        nodes = [box for item, box in layout.boxes if item.kind != "region"]
-        inner = [box for box in nodes if not any(box is not other and box.contains(other) for other in nodes)]
-        labels = [_label(box) for box in nodes if box not in inner]
-        self.weighted = [(box, BOX_WEIGHT) for box in inner] + [(box, LABEL_WEIGHT) for box in labels]
-        self.corners = [corner for box in inner for corner in _corners(box)] if len(inner) <= LARGEST else []
+        inner = innermost(layout)
+        labels = label_boxes(layout)
+        self.boxes = (*inner, *labels, *(box for _, box in (*layout.outer, *layout.inner)))
+        few = len(inner) <= LARGEST
+        self.corners = [corner for box in self.boxes for corner in _corners(box)] if few else []
         self.known: dict[tuple[Point, Point], float] = {}
+        self.neighbours: dict[Point, list[Point]] = {}
 
     def avoid(self, curve: Curve, lane: int) -> Curve:
         """Return the curve, or a way around what it crosses; lanes keep links side by side."""
         if not self.corners:
             return curve
-        crossed = sum(self.cost(one, other) - _length(one, other) for one, other in pairwise(_sampled(curve)))
-        if crossed < 20.0:
+        if sum(self.within(one, other, -1.0) for one, other in pairwise(_sampled(curve))) < 2.0:
             return curve
         leave, arrive = _stub(curve[0], curve[1]), _stub(curve[-1], curve[-2])
         way = self.way(leave, arrive)
@@ -48,36 +51,66 @@ class Obstacles:
         """Return the length of a line, its parts within obstacles counted more."""
         key = (start, end) if start < end else (end, start)
         if key not in self.known:
-            extra = sum(weight * _overlap(start, end, box) for box, weight in self.weighted)
-            self.known[key] = _length(start, end) + extra
+            self.known[key] = _length(start, end) + WEIGHT * self.within(start, end, CLEAR)
         return self.known[key]
 
+    def within(self, start: Point, end: Point, margin: float) -> float:
+        """Return how much of a line lies in what it should not cross, or so near to it."""
+        left, right = min(start[0], end[0]) - margin, max(start[0], end[0]) + margin
+        above, below = min(start[1], end[1]) - margin, max(start[1], end[1]) + margin
+        return sum(
+            _overlap(start, end, box, margin)
+            for box in self.boxes
+            if box.x < right and left < box.x + box.width and box.y < below and above < box.y + box.height
+        )
+
     def way(self, start: Point, goal: Point) -> list[Point]:
-        """Return the cheapest polyline through corners (Dijkstra's algorithm; each bend costs a little)."""
-        points = [start, *self.corners, goal]
-        best = [inf] * len(points)
-        best[0] = 0.0
-        before = [0] * len(points)
-        open_ = set(range(len(points)))
-        while open_:
-            near = min(open_, key=lambda number: (best[number], number))
-            open_.remove(near)
-            if near == len(points) - 1:
+        """Return the cheapest polyline through corners (A*; each bend costs a little), straight where there is none."""
+        best = {start: 0.0}
+        before: dict[Point, Point] = {}
+        waiting = [(_length(start, goal), start)]
+        done: set[Point] = set()
+        while waiting:
+            _, here = heappop(waiting)
+            if here == goal:
                 break
-            for number in open_:
-                reached = best[near] + 8.0
-                if reached + _length(points[near], points[number]) < best[number]:
-                    reached += self.cost(points[near], points[number])
-                    if reached < best[number]:
-                        best[number], before[number] = reached, near
-        path = [len(points) - 1]
-        while path[-1]:
+            if here in done:
+                continue
+            done.add(here)
+            for there in (*self.near(here), *([goal] if _length(here, goal) < STRIDE else [])):
+                least = best[here] + BEND + _length(here, there)
+                if there in done or least >= best.get(there, inf):
+                    continue
+                reached = best[here] + BEND + self.cost(here, there)
+                if reached < best.get(there, inf):
+                    best[there], before[there] = reached, here
+                    heappush(waiting, (reached + _length(there, goal), there))
+        path = [goal]
+        while path[-1] in before:
             path.append(before[path[-1]])
-        return [points[number] for number in reversed(path)]
+        return path[::-1] if path[-1] == start else [start, goal]
+
+    def near(self, here: Point) -> list[Point]:
+        """Return the corners within a stride."""
+        if here not in self.neighbours:
+            self.neighbours[here] = [each for each in self.corners if 0 < _length(here, each) < STRIDE]
+        return self.neighbours[here]
 
 
-def _label(box: Box) -> Box:
-    return Box(box.x + PAD, box.y + 3, min(box.width - 2 * PAD, 5.5 * FONT), HEADER + 9)
+def innermost(layout: Layout) -> list[Box]:
+    """Return the boxes that hold no others."""
+    nodes = [box for item, box in layout.boxes if item.kind != "region"]
+    return [box for box in nodes if not any(box is not other and box.contains(other) for other in nodes)]
+
+
+def label_boxes(layout: Layout) -> list[Box]:
+    """Return where the labels of boxes that hold others are written."""
+    inner = set(innermost(layout))
+    return [
+        Box(box.x + PAD, box.y + 4, label_size(layout.shown, item)[0], HEADER + 6)
+        for item, box in layout.boxes
+        if item.kind == "node" and box not in inner
+    ]
 
 
 def _corners(box: Box) -> Iterator[Point]:
@@ -91,12 +124,12 @@ def _length(one: Point, other: Point) -> float:
     return hypot(one[0] - other[0], one[1] - other[1])
 
 
-def _overlap(start: Point, end: Point, box: Box) -> float:
-    """Return the length of the part of a line that is in a box (Liang and Barsky)."""
+def _overlap(start: Point, end: Point, box: Box, margin: float) -> float:
+    """Return the length of the part of a line that is in a box, or so near to it (Liang and Barsky)."""
     low, high = 0.0, 1.0
     for at, to, least, most in (
-        (start[0], end[0], box.x + 1, box.x + box.width - 1),
-        (start[1], end[1], box.y + 1, box.y + box.height - 1),
+        (start[0], end[0], box.x - margin, box.x + box.width + margin),
+        (start[1], end[1], box.y - margin, box.y + box.height + margin),
     ):
         step = to - at
         if abs(step) < 1e-9:

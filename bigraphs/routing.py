@@ -34,8 +34,9 @@ class _End:
     target: Point
 
 
-def route(bigraph: Bigraph, layout: Layout) -> tuple[Route, ...]:
+def route(layout: Layout) -> tuple[Route, ...]:
     """Return the curves of every link that has something to join."""
+    bigraph = layout.shown.bigraph
     boxes = {item.number: box for item, box in layout.boxes if item.kind == "node"}
     goals = _goals(bigraph, layout, boxes)
     ends = _ends(bigraph, boxes, goals)

@@ -9,8 +9,10 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
+from physical.map_crowds import HIDING
 from physical.map_labels import Spot
 from physical.map_marks import (
+    Curve,
     arc,
     draw_curve,
     draw_flight,
@@ -18,22 +20,26 @@ from physical.map_marks import (
     draw_halo,
     draw_icon,
     draw_land,
+    draw_leader,
     draw_mark,
     draw_polygon,
     draw_polygon_halo,
     draw_polygon_mark,
     samples,
 )
-from physical.map_scene import MapEntity, Scene, Sheet, area_of, scene_of
-from physical.map_style import kind_colours
+from physical.map_scene import MapEntity, Scene, Sheet, area_of, arranged, scene_of, shows_coasts
+from physical.map_style import PAPER, SEA, kind_colours
 from physical.map_view import bounds, degrees_text, tick_step, ticks
-from physical.map_writing import write_labels
+from physical.map_writing import Writing, write_labels, writing_of
 from physical.shape import Geometry
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 __all__ = ["MapEntity", "Sheet", "draw_map"]
+
+REACHES: Final = (HIDING, 20.0, 35.0, 55.0, 80.0)
+"""Points within which markers of one kind are folded, tried in turn."""
 
 BULGES: Final = (0.12, -0.12, 0.05, -0.05, 0.19, -0.19)
 """How far the lines of channels leave the straight way, a share of its length."""
@@ -65,16 +71,36 @@ def draw_map(  # noqa: PLR0913 - each says one thing of the map
         The sheet: where positions lie on the axes, for whoever draws more on them.
     """
     in_order = sorted(entities, key=lambda entity: entity.name)
-    scene = scene_of(in_order, _size(axes), colours or {}, highlight, marked, within)
+    scene, writing = composed(in_order, _size(axes), colours or {}, (highlight, marked), within)
     sheet = scene.sheet
     axes.set(xlim=(0, sheet.width), ylim=(0, sheet.height), aspect="equal")
-    draw_grid(axes, *_grid(sheet))
+    draw_grid(axes, *_grid(sheet), SEA if shows_coasts(sheet) else PAPER)
     draw_land(axes, scene.land)
     _draw_polygons(axes, scene)
-    lines = _draw_channels(axes, scene, channel_colours or {}) + _draw_flights(axes, scene)
+    _draw_channels(axes, scene, channel_colours or {})
+    for name, curve in _flights(scene):
+        draw_flight(axes, curve, scene.colour(name))
     _draw_markers(axes, scene)
-    write_labels(axes, scene, lines)
+    write_labels(axes, scene, writing)
     return sheet
+
+
+def composed(
+    entities: Sequence[MapEntity],
+    size: Spot,
+    colours: Mapping[str, str],
+    looks: tuple[Collection[str], Collection[str]],
+    within: Sequence[Geometry],
+) -> tuple[Scene, Writing]:
+    """Return the scene in which no more is folded than must be for the names of all markers to stand beside them."""
+    plain = scene_of(entities, size, colours, *looks, within)
+    for reach in REACHES:
+        scene = arranged(plain, reach)
+        curves = [curve for _, curve in (*_channels(scene), *_flights(scene))]
+        writing = writing_of(scene, [spot for curve in curves for spot in samples(curve)])
+        if all(scene.is_polygon(name) for name in writing.unnamed):
+            break
+    return scene, writing
 
 
 def _size(axes: Axes) -> Spot:
@@ -115,18 +141,22 @@ def _draw_polygons(axes: Axes, scene: Scene) -> None:
             draw_polygon_mark(axes, outline)
 
 
-def _draw_channels(axes: Axes, scene: Scene, colours: Mapping[str, str]) -> list[Spot]:
-    """Draw each channel as lines between its members; return spots along them."""
+def _draw_channels(axes: Axes, scene: Scene, colours: Mapping[str, str]) -> None:
+    curves = _channels(scene)
+    own = kind_colours(channel for channel, _ in curves) | dict(colours)
+    for channel, curve in curves:
+        draw_curve(axes, curve, own[channel])
+
+
+def _channels(scene: Scene) -> list[tuple[str, Curve]]:
+    """Return the curves of all channels, lines between their members."""
     channels = sorted({channel for entity in scene.entities.values() for channel in entity.channels})
-    own = kind_colours(channels) | dict(colours)
-    lines: list[Spot] = []
-    for rank, channel in enumerate(channels):
-        for start, end in _lines_of(scene, channel):
-            # Channels between the same two would hide each other.
-            curve = arc(min(start, end), max(start, end), BULGES[rank % len(BULGES)])
-            draw_curve(axes, curve, own[channel])
-            lines += samples(curve)
-    return lines
+    return [
+        # Channels between the same two would hide each other.
+        (channel, arc(min(start, end), max(start, end), BULGES[rank % len(BULGES)]))
+        for rank, channel in enumerate(channels)
+        for start, end in _lines_of(scene, channel)
+    ]
 
 
 def _lines_of(scene: Scene, channel: str) -> list[tuple[Spot, Spot]]:
@@ -151,20 +181,18 @@ def _shortest_tree(spots: Sequence[Spot]) -> list[tuple[Spot, Spot]]:
     return lines
 
 
-def _draw_flights(axes: Axes, scene: Scene) -> list[Spot]:
-    """Draw the ways of what is in transit; return spots along them."""
-    lines: list[Spot] = []
-    for name in scene.near():
-        destination = scene.entities[name].destination
-        if destination is not None:
-            end = bounds(scene.sheet.outline(destination)).centre
-            curve = arc(scene.middle(name), end, -0.1)
-            draw_flight(axes, curve, scene.colour(name))
-            lines += samples(curve)
-    return lines
+def _flights(scene: Scene) -> list[tuple[str, Curve]]:
+    """Return the ways of what is in transit."""
+    return [
+        (name, arc(scene.middle(name), bounds(scene.sheet.outline(destination)).centre, -0.1))
+        for name in scene.near()
+        if (destination := scene.entities[name].destination) is not None
+    ]
 
 
 def _draw_markers(axes: Axes, scene: Scene) -> None:
+    for spot, true in scene.moved():
+        draw_leader(axes, spot, true)
     for name in scene.near():
         if scene.is_polygon(name):
             continue

@@ -1,10 +1,10 @@
 """Land on the earth: coasts and lakes for maps, without a network.
 
 `land.zip` is Natural Earth's land at 1:10 million, in the public domain, good to about a kilometre
-(`tests/data/make_land.py` made it). It has a file for each tile of 10 degrees that has land, and one with an
-overview of the whole earth. In each, whole numbers tell how many polygons there are, how many rings each has and
-how many vertices each of those; then come the steps from vertex to vertex, first all to the east and then all to
-the north: 0, 1, 2, 3 and so on stand for 0, -1, 1, -2, and all low bytes come before all high ones.
+(`tests/data/make_land.py` made it). It has a file for each tile of 10 degrees that has land, and an overview of
+the whole earth. In each, whole numbers tell how many polygons there are, how many rings each has and how many
+vertices each of those; then come the steps from vertex to vertex, first all to the east and then all to the north:
+0, 1, 2, 3 and so on stand for 0, -1, 1, -2, and all low bytes come before all high ones.
 """
 
 from __future__ import annotations

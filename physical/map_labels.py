@@ -13,7 +13,7 @@ Spot = tuple[float, float]
 GAP: Final = 2.0
 """Points kept free between labels."""
 
-RINGS: Final = (3.0, 8.0, 15.0, 24.0, 36.0, 50.0, 68.0, 90.0, 120.0, 160.0)
+RINGS: Final = (3.0, 8.0, 15.0, 24.0, 36.0)
 """Points from the clearance to the label, tried in turn."""
 
 DIRECTIONS: Final = (0, 180, 90, 270, 45, 315, 135, 225, 22, 338, 158, 202, 68, 292, 112, 248)
@@ -95,27 +95,33 @@ class Wanted:
         size: Its width and height.
         clearance: How far to the side of the spot, and above and below it, nothing may be written.
         inside: Middles of the label that are tried first, best first.
+        farthest: How far from the clearance it may stand.
     """
 
     at: Spot
     size: Spot
     clearance: Spot = (0.0, 0.0)
     inside: tuple[Spot, ...] = ()
+    farthest: float = RINGS[-1]
 
 
 def place_labels(
     wanted: Sequence[Wanted], obstacles: Sequence[Box], lines: Sequence[Spot], view: Box
-) -> tuple[Box, ...]:
+) -> tuple[Box | None, ...]:
     """Return a box for each label: in the view, off the obstacles, off each other, near what it names.
 
     Labels are placed in the order given, each where it costs least. `lines` are spots that are better not
-    written over. Where there is no room, labels overlap as little as can be.
+    written over. Where there is no room nearby, there is None.
     """
     taken, cells = list(obstacles), _cells(lines)
+    found: list[Box | None] = []
     for label in wanted:
-        taken.append(_cheapest(label, taken, cells, view))
-        _add(cells, leader(taken[-1], label))
-    return tuple(taken[len(obstacles) :])
+        box = _cheapest(label, taken, cells, view)
+        found.append(box)
+        if box is not None:
+            taken.append(box)
+            _add(cells, leader(box, label))
+    return tuple(found)
 
 
 def leader(box: Box, label: Wanted) -> tuple[Spot, ...]:
@@ -149,8 +155,8 @@ def _within(box: Box, cells: _Cells) -> int:
     return sum(box.holds(spot) for x in xs for y in ys for spot in cells.get((x, y), ()))
 
 
-def _cheapest(label: Wanted, taken: Sequence[Box], cells: _Cells, view: Box) -> Box:
-    best, least = around(label.at, label.size), math.inf
+def _cheapest(label: Wanted, taken: Sequence[Box], cells: _Cells, view: Box) -> Box | None:
+    best, least = None, FORBIDDEN
     for price, box in _candidates(label):
         if price >= least:
             break  # candidates come cheapest first
@@ -166,7 +172,7 @@ def _candidates(label: Wanted) -> Iterator[tuple[float, Box]]:
     for rank, centre in enumerate(label.inside):
         yield rank * 0.5, around(centre, label.size)
     start = len(label.inside) * 0.5
-    for ring in RINGS:
+    for ring in (each for each in RINGS if each <= label.farthest):
         for rank, direction in enumerate(DIRECTIONS):
             price = start + ring + rank * 0.1
             yield price, _beside(label, math.radians(direction), ring)

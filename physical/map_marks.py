@@ -22,6 +22,9 @@ MARK_RADIUS: Final = RADIUS + 4.0
 NORTH: Final = 18.0
 """How wide the arrow to the north is, with what is free beside it."""
 
+Curve = tuple[Spot, Spot, Spot]
+"""A quadratic Bezier curve."""
+
 LEADING: Final = 1.35
 SPACING: Final = 6.0
 """Points between spots along a line."""
@@ -52,8 +55,15 @@ def block_size(lines: Sequence[Line]) -> Spot:
     return (width, sum(line.size * LEADING for line in lines))
 
 
-def draw_block(axes: Axes, box: Box, lines: Sequence[Line], paper: str = PAPER) -> None:
-    """Write the lines of a label into its box, from the top."""
+def names_id(names: Sequence[str]) -> str:
+    """Return the id, in an SVG, of what stands for several names."""
+    return f"names:{', '.join(names)}"
+
+
+def draw_block(
+    axes: Axes, box: Box, lines: Sequence[Line], paper: str = PAPER, names: Sequence[str] = ()
+) -> None:
+    """Write the lines of a label into its box, from the top; `names` are what they stand for."""
     from matplotlib.patheffects import withStroke  # noqa: PLC0415 - only who draws needs matplotlib
 
     top = box.top
@@ -69,6 +79,7 @@ def draw_block(axes: Axes, box: Box, lines: Sequence[Line], paper: str = PAPER) 
             fontweight="bold" if line.bold else "normal",
             color=line.ink,
             parse_math=False,
+            gid=names_id(names) if names else None,
             zorder=9,
             path_effects=[withStroke(linewidth=2.4, foreground=paper)],
         )
@@ -147,13 +158,13 @@ def draw_mark(axes: Axes, at: Spot, radius: float = MARK_RADIUS) -> None:
     axes.add_patch(ring)
 
 
-def arc(start: Spot, end: Spot, bulge: float = 0.12) -> tuple[Spot, Spot, Spot]:
+def arc(start: Spot, end: Spot, bulge: float = 0.12) -> Curve:
     """Return the quadratic Bezier curve between two spots, bulging to the left by a share of its length."""
     (x1, y1), (x2, y2) = start, end
     return (start, ((x1 + x2) / 2 - (y2 - y1) * 2 * bulge, (y1 + y2) / 2 + (x2 - x1) * 2 * bulge), end)
 
 
-def samples(curve: tuple[Spot, Spot, Spot]) -> list[Spot]:
+def samples(curve: Curve) -> list[Spot]:
     """Return spots along a curve, its ends left out."""
     (x1, y1), (x2, y2), (x3, y3) = curve
     parts = min(max(2, round(math.dist(curve[0], curve[2]) / SPACING)), 200)
@@ -161,7 +172,7 @@ def samples(curve: tuple[Spot, Spot, Spot]) -> list[Spot]:
     return [(a * x1 + b * x2 + c * x3, a * y1 + b * y2 + c * y3) for a, b, c in weights]
 
 
-def draw_curve(axes: Axes, curve: tuple[Spot, Spot, Spot], colour: str) -> None:
+def draw_curve(axes: Axes, curve: Curve, colour: str) -> None:
     """Draw a channel between two of its members."""
     from matplotlib.patches import PathPatch  # noqa: PLC0415 - the same
     from matplotlib.path import Path  # noqa: PLC0415 - the same
@@ -170,7 +181,7 @@ def draw_curve(axes: Axes, curve: tuple[Spot, Spot, Spot], colour: str) -> None:
     axes.add_patch(PathPatch(path, facecolor="none", edgecolor=colour, linewidth=1.0, alpha=0.7, zorder=4.5))
 
 
-def draw_flight(axes: Axes, curve: tuple[Spot, Spot, Spot], colour: str) -> None:
+def draw_flight(axes: Axes, curve: Curve, colour: str) -> None:
     """Draw a dashed way with an arrow head at its end."""
     from matplotlib.patches import PathPatch, Polygon  # noqa: PLC0415 - the same
     from matplotlib.path import Path  # noqa: PLC0415 - the same
@@ -226,9 +237,11 @@ def draw_land(axes: Axes, polygons: Sequence[Sequence[Sequence[Spot]]]) -> None:
         axes.add_patch(PathPatch(path, facecolor=LAND, edgecolor=COAST, linewidth=0.9, zorder=-1))
 
 
-def draw_grid(axes: Axes, xs: Sequence[tuple[float, str]], ys: Sequence[tuple[float, str]]) -> None:
-    """Draw meridians and parallels, each a place in points and what is written beside it."""
-    axes.set_facecolor(PAPER)
+def draw_grid(
+    axes: Axes, xs: Sequence[tuple[float, str]], ys: Sequence[tuple[float, str]], paper: str
+) -> None:
+    """Draw meridians and parallels, each a place in points and what is written beside it, on paper of a colour."""
+    axes.set_facecolor(paper)
     axes.set_xticks([x for x, _ in xs], [text for _, text in xs])
     axes.set_yticks([y for y, _ in ys], [text for _, text in ys])
     axes.tick_params(length=0, pad=4, labelsize=7.5, labelcolor=QUIET)

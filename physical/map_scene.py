@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from physical.frame import Position
 from physical.land import ACCURACY, land_within
+from physical.map_crowds import HIDING, fanned, folded
 from physical.map_labels import Box, Spot
 from physical.map_style import Outline, kind_colours, kind_shapes
 from physical.map_view import Plane, bounds, focus, plane_of, view_of
@@ -79,7 +81,12 @@ class Sheet:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """What is drawn where: everything that is present, by name, with its outline on the sheet."""
+    """What is drawn where: everything that is present, by name, with its outline on the sheet.
+
+    Attributes:
+        spots: Where markers stand; those that would hide each other beside where they are.
+        members: The names for which a marker stands, by the name that it has.
+    """
 
     sheet: Sheet
     entities: Mapping[str, MapEntity]
@@ -90,7 +97,9 @@ class Scene:
     absent: tuple[str, ...]
     highlight: Collection[str]
     marked: Collection[str]
-    land: Land = ()
+    land: Land
+    spots: Mapping[str, Spot]
+    members: Mapping[str, tuple[str, ...]]
 
     def colour(self, name: str) -> str:
         """Return the colour of an entity's kind."""
@@ -106,12 +115,20 @@ class Scene:
         return len(self.outlines[name]) > 1 and max(around.width, around.height) >= SMALLEST_POLYGON
 
     def near(self) -> list[str]:
-        """Return the names of what the sheet shows."""
-        return [name for name in self.outlines if name not in self.far]
+        """Return the names of what the sheet shows, one for each marker."""
+        hidden = {name for names in self.members.values() for name in names[1:]}
+        return [name for name in self.outlines if name not in self.far and name not in hidden]
 
     def middle(self, name: str) -> Spot:
-        """Return the middle of the outermost carrier's outline."""
-        return bounds(self.outlines[self.outermost(name)]).centre
+        """Return the middle of the outermost carrier: of its outline, or of the marker that stands for it."""
+        carrier = self.outermost(name)
+        first = next((first for first, names in self.members.items() if carrier in names), carrier)
+        return self.spots.get(first) or bounds(self.outlines[carrier]).centre
+
+    def moved(self) -> list[tuple[Spot, Spot]]:
+        """Return for each marker that stands beside where it is both spots."""
+        true = {name: bounds(self.outlines[name]).centre for name in self.spots if name not in self.members}
+        return [(self.spots[name], at) for name, at in true.items() if math.dist(self.spots[name], at) > 2.0]
 
     def outermost(self, name: str) -> str:
         """Return the carrier that an entity is in the end carried by, or itself."""
@@ -157,7 +174,7 @@ def scene_of(
     outlines = {name: sheet.outline(geometry) for name, geometry in placed.items()}
     far = {name for rank, name in enumerate(placed) if within or rank not in seen}
     kinds = [entity.kind for entity in entities]
-    return Scene(
+    scene = Scene(
         sheet,
         {name: entity for name, entity in known.items() if name in placed or _rides(entity, known, placed)},
         outlines,
@@ -168,11 +185,35 @@ def scene_of(
         highlight,
         marked,
         _land(sheet),
+        {},
+        {},
     )
+    return arranged(scene, HIDING)
+
+
+def arranged(scene: Scene, reach: float) -> Scene:
+    """Return the scene with markers of one kind folded within so many points, and others fanned out where they hide."""
+    scene = replace(scene, spots={}, members={})
+    markers = [name for name in scene.near() if not scene.is_polygon(name)]
+    spots = {name: scene.middle(name) for name in markers}
+    alike = {name: scene.entities[name].kind for name in markers if not _stands_out(scene, name)}
+    left, members = folded(spots, alike, reach)
+    return replace(scene, spots=fanned(left), members=members)
+
+
+def _stands_out(scene: Scene, name: str) -> bool:
+    """Tell whether there is more to be said of an entity than its name."""
+    told = name in scene.highlight or name in scene.marked or scene.entities[name].towards is not None
+    return told or bool(scene.cargo(name))
+
+
+def shows_coasts(sheet: Sheet) -> bool:
+    """Tell whether a sheet is wide enough for coasts."""
+    return sheet.view.width >= NARROWEST_COAST
 
 
 def _land(sheet: Sheet) -> Land:
-    if sheet.view.width < NARROWEST_COAST:
+    if not shows_coasts(sheet):
         return ()
     around = sheet.view.grown(sheet.view.width / 50)  # hence no coast along the border of the sheet
     corners = ((around.left, around.bottom), (around.right, around.top))

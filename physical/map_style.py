@@ -10,8 +10,8 @@ from typing import Final
 INK: Final = "#1f2933"
 QUIET: Final = "#66727f"
 FAINT: Final = "#dde5ec"
-PAPER: Final = "#f1f6fa"
-"""The sea."""
+PAPER: Final = "#f5f7f9"
+SEA: Final = "#f0f6fb"
 
 LAND: Final = "#f3efe4"
 COAST: Final = "#b9ae92"

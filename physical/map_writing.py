@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -38,13 +39,22 @@ MOST_CARRIED: Final = 8
 
 COAST_NOTE: Final = f"coasts ± {metres_text(ACCURACY)}"
 
+FAR_FROM_PLACE: Final = 15.0
+"""Points between a place and its name at most; more would not be seen to belong together."""
+
+FEW: Final = 3
+"""Names that a note lists; more it counts."""
+
 FARTHEST: Final = 60.0
 """Points from the middle of a polygon beyond which its label is not moved to get out of it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Writing:
-    """What is written where: the lines of each label with its box, the scale bar, and the note of what is absent."""
+    """What is written where: the lines of each label with its box, the scale bar, and notes.
+
+    `unnamed` are those near whose places there is no room for their names.
+    """
 
     blocks: Mapping[str, Sequence[Line]]
     wanted: Mapping[str, Wanted]
@@ -52,7 +62,8 @@ class Writing:
     pointers: Mapping[str, tuple[Spot, Spot]]
     markers: tuple[Box, ...]
     scale: Box
-    note: tuple[Box, Sequence[Line]] | None
+    notes: tuple[tuple[Box, Sequence[Line], tuple[str, ...]], ...]
+    unnamed: tuple[str, ...]
 
 
 def writing_of(scene: Scene, lines: Sequence[Spot]) -> Writing:
@@ -65,25 +76,30 @@ def writing_of(scene: Scene, lines: Sequence[Spot]) -> Writing:
     length, text = _scale(scene.sheet)
     size = (NORTH + max(length, text_width(text, 7.5)), 30.0 if scene.land else 22.0)
     scale = _corner(scene.sheet, size, markers)
-    note = _note(scene, [*markers, scale])
-    taken = [*markers, scale, *([note[0]] if note else [])]
+    absent = _note(scene, ["not in P:", *_listed(scene.absent)], scene.absent, [*markers, scale])
+    taken = [*markers, scale, *(box for box, _, _ in absent)]
     polygons = [scene.outlines[name] for name in scene.near() if scene.is_polygon(name)]
     borders = [spot for outline in polygons for spot in _along(outline)]
-    names = sorted(scene.outlines, key=lambda name: (_freedom(scene, name), name))
+    names = sorted([*scene.near(), *scene.far], key=lambda name: (_freedom(scene, name), name))
     blocks = {name: _block(scene, name) for name in names}
     wanted = {name: _wanted(scene, name, block_size(blocks[name]), pointers) for name in names}
     found = place_labels(list(wanted.values()), taken, [*lines, *borders], scene.sheet.box.grown(-3.0))
-    return Writing(blocks, wanted, dict(zip(names, found, strict=True)), pointers, markers, scale, note)
+    boxes = {name: box for name, box in zip(names, found, strict=True) if box is not None}
+    unnamed = tuple(name for name in names if name not in boxes)
+    kinds = Counter(scene.entities[name].kind for name in unnamed)
+    counts = [f"{kind} ×{count}" for kind, count in sorted(kinds.items())]
+    words = ["no room to name:", *_listed(unnamed if len(unnamed) <= FEW else counts)]
+    folded = _note(scene, words, unnamed, [*taken, *boxes.values()])
+    return Writing(blocks, wanted, boxes, pointers, markers, scale, (*absent, *folded), unnamed)
 
 
-def write_labels(axes: Axes, scene: Scene, lines: Sequence[Spot]) -> None:
-    """Write all names, the scale bar and what is absent, so that nothing is written over anything else."""
-    writing = writing_of(scene, lines)
+def write_labels(axes: Axes, scene: Scene, writing: Writing) -> None:
+    """Write all names, the scale bar and the notes, so that nothing is written over anything else."""
     draw_scale(axes, writing.scale, *_scale(scene.sheet), COAST_NOTE if scene.land else "")
-    if writing.note:
-        draw_block(axes, *writing.note)
+    for box, lines_of_note, names in writing.notes:
+        draw_block(axes, box, lines_of_note, names=names)
     for name, box in writing.boxes.items():
-        draw_block(axes, box, writing.blocks[name])
+        draw_block(axes, box, writing.blocks[name], names=scene.members.get(name, ()))
         _lead(axes, scene, name, box, writing.wanted[name])
     for name, (at, behind) in writing.pointers.items():
         draw_pointer(axes, at, behind, scene.colour(name))
@@ -95,12 +111,18 @@ def _scale(sheet: Sheet) -> tuple[float, str]:
     return (metres * sheet.width / sheet.view.width, metres_text(metres))
 
 
-def _note(scene: Scene, taken: Sequence[Box]) -> tuple[Box, Sequence[Line]] | None:
-    if not scene.absent:
-        return None
-    words = ["not in P:", *(f"{name}," for name in scene.absent[:-1]), scene.absent[-1]]
+def _note(
+    scene: Scene, words: Sequence[str], names: tuple[str, ...], taken: Sequence[Box]
+) -> tuple[tuple[Box, Sequence[Line], tuple[str, ...]], ...]:
+    """Return a note about some names, nothing where there are none."""
+    if not names:
+        return ()
     lines = [Line(line, 7.0, ink=QUIET) for line in _wrapped(words, scene.sheet.width / 2)]
-    return (_corner(scene.sheet, block_size(lines), taken), lines)
+    return ((_corner(scene.sheet, block_size(lines), taken), lines, names),)
+
+
+def _listed(words: Sequence[str]) -> list[str]:
+    return [*(f"{word}," for word in words[:-1]), *words[-1:]]
 
 
 def _wrapped(words: Sequence[str], width: float) -> list[str]:
@@ -125,13 +147,17 @@ def _lead(axes: Axes, scene: Scene, name: str, box: Box, want: Wanted) -> None:
 
 
 def _freedom(scene: Scene, name: str) -> float:
-    """Order labels: markers first, then polygons, small before large, since large ones have the most room."""
+    """Order labels: what stands out, then markers, then polygons, small before large, which have the most room."""
+    if name in scene.highlight or name in scene.marked or name in scene.far:
+        return -2.0
     return area_of(scene.outlines[name]) if name not in scene.far and scene.is_polygon(name) else -1.0
 
 
 def _block(scene: Scene, name: str) -> list[Line]:
     """Return the lines of a label: the name, where it is bound for, how far it is, what it carries."""
     entity = scene.entities[name]
+    if name in scene.members:
+        return [Line(f"{entity.kind} ×{len(scene.members[name])}", bold=True)]
     lines = [Line(name, ink=darker(scene.colour(name)) if entity.place else INK)]
     if entity.towards is not None:
         lines.append(Line(f"→ {entity.towards}", 7.0, ink=QUIET))
@@ -158,7 +184,9 @@ def _wanted(scene: Scene, name: str, size: Spot, pointers: Mapping[str, tuple[Sp
     outline = scene.outlines[name]
     box = bounds(outline)
     beside = (min(box.width / 2, FARTHEST), min(box.height / 2, FARTHEST))
-    return Wanted(box.centre, size, beside, _inside(outline, size, scene.sheet.box.grown(-3.0)))
+    return Wanted(
+        box.centre, size, beside, _inside(outline, size, scene.sheet.box.grown(-3.0)), FAR_FROM_PLACE
+    )
 
 
 def _inside(outline: Sequence[Spot], size: Spot, view: Box) -> tuple[Spot, ...]:

@@ -31,6 +31,8 @@
     one("#number").textContent = `c${first + at} of c${first + last}`;
     one("#caption").textContent = frame.dataset.label;
     one("#missing").hidden = frame.dataset.l !== "";
+    one(".models").hidden = frame.dataset.l === "";
+    one("#names").hidden = true;
     if (begun) history.replaceState(null, "", `#c${first + at}`);
     reveal(rows[at], begun);
   }
@@ -67,16 +69,37 @@
     return found ? Number(found[1]) - first : null;
   }
 
+  const texts = rows.map((row) => row.textContent.toLowerCase());
+  function find(direction) {
+    const wanted = one("#find").value.trim().toLowerCase();
+    const matches = [...texts.keys()].filter((number) => wanted && texts[number].includes(wanted));
+    rows.forEach((row, number) => row.classList.toggle("match", matches.includes(number)));
+    const ahead = direction < 0
+      ? matches.findLast((number) => number < at) ?? matches.at(-1)
+      : matches.find((number) => number > at) ?? matches[0];
+    if (direction && ahead !== undefined) { stop(); go(ahead); }
+    const rank = matches.indexOf(at) + 1;
+    one("#found").textContent = !wanted ? "" : rank ? `${rank} of ${matches.length}` : `${matches.length} found`;
+  }
+
   const keys = {
     ArrowRight: () => go(at + 1), ArrowDown: () => go(at + 1), ArrowLeft: () => go(at - 1), ArrowUp: () => go(at - 1),
-    Home: () => go(0), End: () => go(last), " ": play,
+    Home: () => go(0), End: () => go(last), " ": play, "/": () => one("#find").focus(),
   };
   document.addEventListener("keydown", (event) => {
     const held = event.ctrlKey || event.metaKey || event.altKey || event.shiftKey;
-    if (held || !(event.key in keys) || event.target.closest("button, summary, pre")) return;
+    const theirs = event.key === " " ? "button, summary, pre, #find" : "pre, #find";
+    if (held || !(event.key in keys) || event.target.closest(theirs)) return;
     if (event.key !== " ") stop();
     event.preventDefault();
     keys[event.key]();
+  });
+  one("#find").addEventListener("input", () => find(0));
+  one("#find").addEventListener("keydown", (event) => { if (event.key === "Enter") find(event.shiftKey ? -1 : 1); });
+  one(".models").addEventListener("click", (event) => {
+    const several = event.target.closest("[data-names]");
+    one("#names").hidden = several === null;
+    if (several) one("#names").textContent = `${several.querySelector("text").textContent}: ${several.dataset.names}`;
   });
   slider.addEventListener("input", () => { stop(); go(Number(slider.value)); });
   rows.forEach((row, number) => row.addEventListener("click", (event) => {

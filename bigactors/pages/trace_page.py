@@ -18,6 +18,9 @@ from semantics.state.printing import print_agent
 LARGEST: Final = 1.35
 """Pixels for a point of a picture, at the most."""
 
+SMALLEST: Final = {"L": 0.65, "P": 0.9}
+"""Pixels for a point of a picture on a phone, where it can be moved sideways."""
+
 NARROWEST: Final = 7
 """How wide a lane is at the least, in ems; its boxes may reach over the next."""
 
@@ -48,7 +51,7 @@ def trace_page(story: Story) -> str:
         element("style", style),
         element("noscript", element("style", UNSCRIPTED)),
     )
-    main = element("main", _run(lanes, story.first), _stage(frames, story.first))
+    main = element("main", _stage(frames, story.first), _run(lanes, story.first))
     start = {"data_start": story.start, "data_first": story.first, "data_loop": story.trace.loop}
     body = element("body", _header(story), main, element("script", script), **start)
     return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
@@ -148,6 +151,7 @@ def _stage(frames: Sequence[Frame], first: int) -> str:
         "section",
         _controls(len(frames) - 1),
         element("p", "", class_="caption", id="caption", aria_live="polite"),
+        element("p", "", id="names", role="status", hidden=True),
         models,
         element("p", text(hint), class_="quiet", id="missing", hidden=True),
         *(_frame(number, frame) for number, frame in enumerate(frames, first)),
@@ -166,13 +170,15 @@ def _controls(last: int) -> str:
     )
     return element(
         "div",
+        element("button", text("Play"), type="button", id="play", aria_pressed="false", title="play (space)"),
         button("first", "⇤", "first configuration (Home)"),
         button("back", "←", "one step back (left arrow)"),
-        element("button", text("Play"), type="button", id="play", aria_pressed="false", title="play (space)"),
         button("next", "→", "one step on (right arrow)"),
         button("last", "⇥", "last configuration (End)"),
         slider,
         element("output", "", id="number", for_="step"),
+        '<input type="search" id="find" placeholder="find in the steps" aria-label="find in the steps; Enter goes on">',
+        element("output", "", id="found", for_="find", aria_live="polite"),
         class_="controls",
         data_scripted=True,
         hidden=True,
@@ -200,7 +206,7 @@ def _svg(picture: Picture, name: str, width: float, height: float) -> str:
         viewBox=f"{left:g} {top:g} {width:g} {height:g}",
         role="img",
         aria_label=f"{'the bigraph of L' if name == 'L' else 'the map of P'}; in words below",
-        style=f"max-width: {width * LARGEST:.0f}px",
+        style=f"max-width: {width * LARGEST:.0f}px; --least: {width * SMALLEST[name]:.0f}px",
         data_picture=picture.key,
         hidden=True,
     )
@@ -253,7 +259,7 @@ def _legend(frames: Sequence[Frame]) -> str:
         _entry("changed in this step", "glow", HIGHLIGHT),
         _entry("L and P differ", "mark", MARK),
     ]
-    keys = "keys: ← → one step, Home End first and last, space plays"
+    keys = "keys: ← → one step, Home End first and last, space plays, / finds"
     hint = element("li", text(keys), class_="hint")
     return element("ul", *entries, hint, class_="legend")
 

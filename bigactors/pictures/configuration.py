@@ -17,7 +17,7 @@ from bigactors.pictures.scene import (
     shown_names,
 )
 from bigraphs.drawing import MARGIN as BIGRAPH_MARGIN
-from bigraphs.drawing import draw_bigraph
+from bigraphs.drawing import draw_layout
 from bigraphs.layout import Layout, layout
 from physical.drawing import draw_map
 from physical.map_marks import draw_halo, draw_icon, draw_mark
@@ -143,20 +143,23 @@ def _write_line(page: Page, x: float, y: float, line: str) -> None:
 
 def _draw_logical(page: Page, c: Configuration, top: float, look: Look) -> None:
     page.heading(MARGIN, top + 8, "L", "the logical model: what is believed")
-    bigraph = c.structure.logical.bigraph()
-    plan = layout(bigraph)
+    plan = logical_layout(c, look)
     width, height = plan.width + 2 * BIGRAPH_MARGIN, plan.height + 2 * BIGRAPH_MARGIN
     scale = min(PANEL / width, PANEL_HEIGHT / height, LARGEST)
     left = MARGIN + (PANEL - width * scale) / 2
     above = top + 18.0 + (PANEL_HEIGHT - height * scale) / 2
-    draw_logical(c, page.panel(left, above, width * scale, height * scale), plan, scale, look)
+    draw_logical(page.panel(left, above, width * scale, height * scale), plan, scale, look)
 
 
-def draw_logical(c: Configuration, axes: "Axes", plan: Layout, scale: float, look: Look) -> None:
+def logical_layout(c: Configuration, look: Look) -> Layout:
+    """Return the layout of L, in which all that glows or is marked has a box of its own."""
+    return layout(c.structure.logical.bigraph(), look.glowing | look.marked)
+
+
+def draw_logical(axes: "Axes", plan: Layout, scale: float, look: Look) -> None:
     """Draw L into axes that have the size of its plan, so many times magnified."""
-    bigraph = c.structure.logical.bigraph()
-    draw_bigraph(bigraph, axes, highlight=look.glowing)
-    numbers = [number for number, node in enumerate(bigraph.nodes) if node.name in look.marked]
+    draw_layout(plan, axes, highlight=look.glowing)
+    numbers = [number for number, node in enumerate(plan.shown.bigraph.nodes) if node.name in look.marked]
     for number in numbers:
         _outline_node(axes, plan, number, scale)
 

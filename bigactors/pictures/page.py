@@ -1,8 +1,7 @@
 """One page: a figure whose units are points from its upper left corner, written as a file.
 
-Text in an SVG becomes paths: what is written was measured in the font that matplotlib brings along, and in a
-viewer's own font it would overlap. Without dates, and with the ids of shapes salted alike, two runs give the same
-bytes.
+Text in an SVG stays text, as wide as it was measured. Without dates, and with the ids of shapes salted alike, two runs
+give the same bytes.
 """
 
 import re
@@ -11,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from bigactors.pictures.vector import svg_file
 from physical.map_style import INK, QUIET, shortened, text_width
 
 if TYPE_CHECKING:
@@ -79,8 +79,11 @@ class Page:
         form = path.suffix.lower().lstrip(".")
         if form not in FORMATS:
             raise PictureError(f"cannot write a picture as '{path.name}': name it .svg or .png")
-        about = {"Date": None, "Title": title} if form == "svg" else {"Software": None, "Title": title}
-        self.figure.savefig(path, format=form, dpi=RESOLUTION, metadata=about)
+        if form == "svg":
+            path.write_text(svg_file(self.figure, title), encoding="utf-8")
+        else:
+            about = {"Software": None, "Title": title}
+            self.figure.savefig(path, format=form, dpi=RESOLUTION, metadata=about)
 
 
 @contextmanager
@@ -90,9 +93,7 @@ def plain_style() -> Iterator[None]:
 
     with mpl.rc_context():
         mpl.rcdefaults()
-        mpl.rcParams.update(
-            {"svg.hashsalt": "bigactors", "svg.fonttype": "path", "font.family": "DejaVu Sans"}
-        )
+        mpl.rcParams.update({"svg.hashsalt": "bigactors", "font.family": "DejaVu Sans"})
         yield
 
 

@@ -4,12 +4,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from bigactors.pictures.configuration import Look, draw_logical, look_of
+from bigactors.pictures.configuration import Look, draw_logical, logical_layout, look_of
 from bigactors.pictures.page import Page, plain_style
 from bigactors.pictures.scene import map_entities
 from bigactors.pictures.vector import svg_of
 from bigraphs.drawing import MARGIN as BIGRAPH_MARGIN
-from bigraphs.layout import layout
 from physical.drawing import MapEntity, draw_map
 from physical.shape import Geometry
 from semantics.state.configuration import Configuration
@@ -56,13 +55,13 @@ class Panels:
         shown = (bigraph, look.glowing, look.marked)
         if shown not in self.pictures:
             key = f"L{len(self.pictures)}"
-            plan = layout(bigraph)
+            plan = logical_layout(c, look)
             width = (plan.width + 2 * BIGRAPH_MARGIN) * MAGNIFIED
             height = (plan.height + 2 * BIGRAPH_MARGIN) * MAGNIFIED
             with plain_style():
                 page = Page(width, height)
                 axes = page.panel(0.0, 0.0, width, height)
-                draw_logical(c, axes, plan, MAGNIFIED, look)
+                draw_logical(axes, plan, MAGNIFIED, look)
                 self.pictures[shown] = Picture(key, width, height, svg_of(page.figure, key))
         return self.pictures[shown]
 

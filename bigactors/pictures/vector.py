@@ -1,7 +1,8 @@
-"""SVG that can stand in a page: matplotlib's output reduced to self-contained shapes and text.
+"""SVG of matplotlib's, reduced to self-contained shapes and text, for a page or a file.
 
-Only known elements and attributes are kept, and references only within the picture. Its ids are unique, so that one
-page can hold several pictures. Text stays text with its measured width, in any font of the reader.
+Only known elements and attributes are kept, and references only within the picture and to pictures beside it. Its ids
+are unique, so that one page can hold several pictures. Text stays text with its measured width, in any font of the
+reader; what stands for several names tells them.
 """
 
 import re
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ELEMENTS: Final = frozenset(
-    {"g", "path", "text", "tspan", "use", "defs", "clipPath", "rect", "circle", "ellipse", "line"}
+    {"g", "a", "path", "text", "tspan", "use", "defs", "clipPath", "rect", "circle", "ellipse", "line"}
 )
 ATTRIBUTES: Final = frozenset(
     {
@@ -40,8 +41,30 @@ ATTRIBUTES: Final = frozenset(
     }
 )
 LINK: Final = "{http://www.w3.org/1999/xlink}href"
+NAMES: Final = "names:"
+"""How the id of a group begins that stands for several names."""
+
+FILE: Final = re.compile(r"[\w-]+\.svg")
+"""What a link may lead to: a picture beside this one."""
+
+STYLE: Final = (
+    'text{font-family:"DejaVu Sans",Verdana,Geneva,sans-serif;white-space:pre;paint-order:stroke;stroke:#fff;'
+    "stroke-opacity:.8;stroke-width:2.2px;stroke-linejoin:round}path{stroke-linejoin:round}"
+)
+"""What a picture by itself looks like: its font, and a halo around text."""
+
 LONG: Final = re.compile(r"-?\d+\.\d{3,}")
 FONT: Final = re.compile(r"font: (?:(?P<style>\w+) )?(?:(?P<weight>\d+|bold) )?(?P<size>[\d.]+)px")
+
+
+def svg_file(figure: "Figure", title: str) -> str:
+    """Return a figure as the text of an SVG file; its units are points."""
+    width, height = (72 * inches for inches in figure.get_size_inches())
+    about = f"<title>{escape(clean(title))}</title><style>{STYLE}</style>"
+    paper = f'<rect width="{width:g}" height="{height:g}" fill="#fff"/>'
+    size = f'width="{width:g}" height="{height:g}" viewBox="0 0 {width:g} {height:g}"'
+    root = f'<svg xmlns="http://www.w3.org/2000/svg" {size} role="img">'
+    return f"{root}{about}{paper}{svg_of(figure, 'p')}</svg>\n"
 
 
 def svg_of(figure: "Figure", key: str) -> str:
@@ -52,6 +75,8 @@ def svg_of(figure: "Figure", key: str) -> str:
     for text in figure.findobj(Text):
         text.set_path_effects([])  # the page's style sheet draws what makes text stand out
         text.set_text(clean(text.get_text()))
+        if names := text.get_gid():
+            text.set_gid(clean(names))
     written = StringIO()
     with mpl.rc_context({"svg.fonttype": "none"}):
         figure.savefig(written, format="svg", metadata={"Date": None, "Creator": None})
@@ -66,9 +91,11 @@ def _element(element: ET.Element, key: str) -> Iterator[str]:
     inner = escape((element.text or "").strip(), quote=False) if tag in ("text", "tspan") else ""
     inner += "".join(piece for child in element for piece in _element(child, key))
     kept = dict(_attributes(element, tag, key))
+    if "data-names" in kept:
+        inner = f"<title>{escape(kept['data-names'])}</title>{inner}"
     if tag in ("g", "defs") and not inner:
         return
-    if tag == "g" and not kept:
+    if tag in ("g", "a") and not kept:
         yield inner
         return
     words = "".join(f' {name}="{escape(value)}"' for name, value in kept.items())
@@ -78,11 +105,13 @@ def _element(element: ET.Element, key: str) -> Iterator[str]:
 def _attributes(element: ET.Element, tag: str, key: str) -> Iterator[tuple[str, str]]:
     for name, value in element.attrib.items():
         plain = "href" if name == LINK else name
+        if tag == "g" and plain == "id" and value.startswith(NAMES):
+            yield "data-names", value.removeprefix(NAMES)
         if plain not in ATTRIBUTES or (plain == "id" and tag == "g") or value.startswith("rotate(-0 "):
             continue
-        if plain == "href" and not value.startswith("#"):
+        if plain == "href" and not (FILE.fullmatch(value) if tag == "a" else value.startswith("#")):
             continue
-        yield plain, _value(plain, value, key)
+        yield plain, value if tag == "a" else _value(plain, value, key)
     if tag == "text" and element.text:
         yield from _measured(element)
 

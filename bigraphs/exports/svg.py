@@ -10,8 +10,8 @@ from typing import Final
 from bigraphs.bigraph import Bigraph
 from bigraphs.drawing import INK, KINDS, LINKS, MARGIN
 from bigraphs.exports.dot import describe
-from bigraphs.labels import node_labels
-from bigraphs.layout import FONT, HEADER, PAD, SMALL, Box, Item, label_lines, layout
+from bigraphs.folding import Folded
+from bigraphs.layout import FONT, HEADER, PAD, SMALL, Box, Item, layout
 from bigraphs.routing import Route, route
 from bigraphs.transitions import TransitionSystem
 
@@ -21,12 +21,12 @@ _NOTHING: Final = ("#fbfcfe", "#aab4c4", "#8a93a3")
 
 def bigraph_svg(bigraph: Bigraph) -> str:
     """Return a picture of a bigraph: nested boxes, and curves for links."""
-    plan, labels = layout(bigraph), node_labels(bigraph)
+    plan = layout(bigraph)
     width, height = plan.width + 2 * MARGIN, plan.height + 2 * MARGIN
     parts = [_head(width, height, -MARGIN, -MARGIN)]
     for item, box in plan.boxes:
-        parts += _item(bigraph, labels, item, box)
-    for number, each in enumerate(route(bigraph, plan)):
+        parts += _item(plan.shown, item, box)
+    for number, each in enumerate(route(plan)):
         parts += _link(each, LINKS[number % len(LINKS)])
     for name, box in (*plan.outer, *plan.inner):
         parts.append(_rectangle(box, 8, "white", "#8a93a3"))
@@ -39,7 +39,7 @@ def _head(width: float, height: float, x: float, y: float) -> str:
     return f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="sans-serif">'
 
 
-def _item(bigraph: Bigraph, labels: tuple[str, ...], item: Item, box: Box) -> Iterator[str]:
+def _item(shown: Folded, item: Item, box: Box) -> Iterator[str]:
     if item.kind in ("region", "site"):
         yield _rectangle(
             box, 8, _NOTHING[0] if item.kind == "region" else "#eceff4", _NOTHING[1], dashed=True
@@ -47,15 +47,17 @@ def _item(bigraph: Bigraph, labels: tuple[str, ...], item: Item, box: Box) -> It
         if item.kind == "site":
             yield _text(box.centre, f"${item.number}", FONT, INK, "middle")
         return
-    kinds = sorted(control.name for control in bigraph.signature.controls)
-    kind = bigraph.nodes[item.number].control
+    kinds = sorted(control.name for control in shown.bigraph.signature.controls)
+    kind = shown.bigraph.nodes[item.number].control
     fill, border, ink = KINDS[kinds.index(kind) % len(KINDS)]
     if item.kind == "ghost":
         yield _rectangle(box, 6, "none", border, dashed=True)
-        yield _text(box.centre, labels[item.number], FONT, ink, "middle")
+        yield _text(box.centre, shown.lines[item.number][0], FONT, ink, "middle")
         return
+    if item.number in shown.members:
+        yield _rectangle(Box(box.x + 3, box.y + 3, box.width, box.height), 7, fill, border)
     yield _rectangle(box, 7, fill, border)
-    name, below = label_lines(bigraph, labels, item.number)
+    name, below = shown.lines[item.number]
     holds = box.height > 2 * HEADER
     x, side = (box.x + PAD, "start") if holds else (box.centre[0], "middle")
     y = box.y + (HEADER / 2 + 3 if holds else box.height / 2 - (4.5 if below else 0))

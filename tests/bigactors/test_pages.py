@@ -149,7 +149,7 @@ def test_a_run_that_repeats_leads_back(trace):
 
 def test_a_trace_without_steps_is_a_page(trace):
     read = Reader(trace_page(Story("t", "", False, Trace(trace.initial))))
-    assert [each["max"] for each in read.all("input")] == ["0"]
+    assert [each["max"] for each in read.all("input", type="range")] == ["0"]
 
 
 def test_all_maps_of_a_run_have_one_view(trace):
@@ -229,8 +229,17 @@ def test_a_page_can_be_used_without_a_pointer_or_sight(any_page):
     assert all(
         each.get("role") == "img" and each["aria-label"] for each in read.all("svg") if "data-picture" in each
     )
-    assert [each["aria-label"] for each in read.all("input")] == ["configuration"]
+    assert [each["aria-label"] for each in read.all("input")] == [
+        "configuration",
+        "find in the steps; Enter goes on",
+    ]
     assert {each.get("scope") for each in read.all("th")} == {"row", "col"}
+
+
+def test_the_first_stop_of_the_tab_key_is_play(any_page):
+    stops = ("a", "button", "input", "summary", "select", "textarea")
+    first = next(attributes for tag, attributes in Reader(any_page).elements if tag in stops)
+    assert first["id"] == "play"
 
 
 def test_only_known_shapes_pass_into_a_picture():

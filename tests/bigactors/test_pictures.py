@@ -1,7 +1,9 @@
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import matplotlib as mpl
 import pytest
@@ -97,7 +99,7 @@ def test_a_place_that_may_appear_elsewhere_is_no_fixed_place():
 def test_channels_have_the_colours_that_the_bigraph_gives_them():
     c = oil_spill()
     bigraph = c.structure.logical.bigraph()
-    drawn = {str(each.link): LINKS[rank] for rank, each in enumerate(route(bigraph, layout(bigraph)))}
+    drawn = {str(each.link): LINKS[rank] for rank, each in enumerate(route(layout(bigraph)))}
     assert palette_of(c).channels == drawn
 
 
@@ -135,6 +137,30 @@ def test_a_picture_is_the_same_twice(tmp_path, suffix):
     one, other = ((tmp_path / f"{name}.{suffix}").read_bytes() for name in ("a", "b"))
     assert one == other
     assert len(one) > 10_000
+
+
+def test_text_in_an_svg_is_text_that_can_be_searched(tmp_path):
+    draw_configuration(oil_spill(), tmp_path / "c.svg", title="a <oil> spill")
+    picture = ElementTree.parse(tmp_path / "c.svg").getroot()
+    texts = [each.text for each in picture.iter("{http://www.w3.org/2000/svg}text")]
+    assert {"searchArea0", "uav0", "coasts ± 1 km", "control:gcs0"} <= set(texts)
+    assert texts.count("a <oil> spill") == 1
+    assert len((tmp_path / "c.svg").read_bytes()) < 40_000
+
+
+def test_what_is_folded_tells_its_names_in_an_svg(tmp_path):
+    draw_configuration(crowd(100), tmp_path / "c.svg")
+    names = re.findall(r'<g data-names="([^"]*)"><title>\1</title><text', (tmp_path / "c.svg").read_text())
+    assert names == [", ".join(f"uav{n}" for n in range(100))] * 2  # in L and on the map
+    assert len((tmp_path / "c.svg").read_bytes()) < 40_000
+
+
+def crowd(count):
+    """Return UAVs in one place."""
+    names = [f"uav{n}" for n in range(count)]
+    setting = Setting(SIGNATURE, {"searchArea0": "Location"} | dict.fromkeys(names, "UAV"), Program())
+    there = Placed(point(37.0, -8.7))
+    return initial(setting, {"searchArea0": PLACEMENTS["searchArea0"]} | dict.fromkeys(names, there), {}, {})
 
 
 def test_a_users_own_style_leaves_no_trace(tmp_path):
