@@ -1,5 +1,7 @@
 """The interface of engines: an exploration's task, the reductions it may use, and its result."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -10,7 +12,6 @@ from typing import TYPE_CHECKING, Protocol
 from checker.engines.edges import Edges
 from checker.engines.estimate import Estimate
 from checker.limits import Bound, Limits
-from checker.reduction.reducer import Reduced
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration
 from semantics.state.requests import Request
@@ -18,6 +19,7 @@ from semantics.successors import Expansion
 
 if TYPE_CHECKING:
     from checker.engines.graph import Bools, Graph, Numbers
+    from checker.reduction.reducer import Reduced
 
 
 class MachineError(Exception):
@@ -104,16 +106,16 @@ class Cluster:
 class Surveyed(Protocol):
     """What temporal properties ask of an exploration whose configurations are not at hand one by one."""
 
-    def graph(self) -> "Graph":
+    def graph(self) -> Graph:
         """Return every transition of the configurations that were expanded."""
 
-    def valuation(self, asked: Iterable[Proposition]) -> "Mapping[Proposition, Bools]":
+    def valuation(self, asked: Iterable[Proposition]) -> Mapping[Proposition, Bools]:
         """Return where each proposition is true."""
 
     def is_still(self, asked: Iterable[Proposition]) -> bool:
         """Tell whether nothing that propositions without connectives ask of configurations ever changes."""
 
-    def pending(self) -> "Mapping[Request, Numbers]":
+    def pending(self) -> Mapping[Request, Numbers]:
         """Return for each request the configurations in which it is pending, in their order."""
 
 
