@@ -46,7 +46,9 @@ LIBRARIES = {
     "nicegui": ("adapters/",),
     "cryptography": ("bigactors/signatures.py",),
     "hypothesis": ("semantics/strategies.py",),
-    "lazy_loader": tuple(f"{room}/__init__.py" for room in (*MAY_IMPORT, "bigraphs/notation")),
+    "lazy_loader": tuple(
+        f"{room}/__init__.py" for room in (*MAY_IMPORT, "bigraphs/notation", "checker/reduction")
+    ),
     "matplotlib": ("bigraphs/drawing.py", "physical/drawing.py", "physical/map_", "bigactors/pictures/"),
 }
 
