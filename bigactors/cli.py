@@ -8,7 +8,7 @@ from bigactors.arguments import parse_arguments
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake, describe_bug
 from bigactors.signals import ending_as_ctrl_c
-from bigactors.terminal import safe_output, tell
+from bigactors.terminal import COLOUR, safe_output, tell
 
 
 def main(line: Sequence[str] | None = None) -> int:
@@ -24,6 +24,7 @@ def run(line: Sequence[str]) -> int:
     """Run one command line, and report what goes wrong."""
     try:
         options = parse_arguments(line)
+        COLOUR.set(options.color)
         return int(import_module(f"bigactors.commands.{options.command.replace('-', '_')}").run(options))
     except SystemExit as end:  # after --help and --version
         return int(end.code or 0)

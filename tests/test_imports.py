@@ -46,6 +46,8 @@ LIBRARIES = {
     "nicegui": ("adapters/",),
     "cryptography": ("bigactors/signatures.py",),
     "hypothesis": ("semantics/strategies.py",),
+    "wcwidth": ("bigactors/terminal.py", "checker/reports/lanes.py"),
+    "argcomplete": ("bigactors/completion.py",),
     "lazy_loader": tuple(
         f"{room}/__init__.py" for room in (*MAY_IMPORT, "bigraphs/notation", "checker/reduction")
     ),

@@ -73,7 +73,7 @@ def parser_of(name: str, make: Callable[..., Parser] = Parser) -> Parser:
 def parse_arguments(line: Sequence[str]) -> argparse.Namespace:
     """Return the options of a command line; raises Mistake, and SystemExit after --help and --version."""
     if line and line[0] in NAMES:  # the others' parsers are not made
-        return _parsed(parser_of(line[0]), line[1:], argparse.Namespace(command=line[0]))
+        return _parsed(parser_of(line[0]), line[1:], argparse.Namespace(command=line[0], color="auto"))
     whole, _ = make_parser()
     if not line:
         whole.print_help()
@@ -81,7 +81,7 @@ def parse_arguments(line: Sequence[str]) -> argparse.Namespace:
     if not line[0].startswith("-"):
         hint = suggestion(line[0], NAMES) or f"the commands are {', '.join(NAMES)}"
         raise Mistake(f"unknown command '{line[0]:.60}'", hint)
-    return _parsed(whole, line, argparse.Namespace())
+    return _parsed(whole, line, argparse.Namespace(color="auto"))
 
 
 def _parsed(parser: Parser, line: Sequence[str], options: argparse.Namespace) -> argparse.Namespace:

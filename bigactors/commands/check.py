@@ -20,6 +20,7 @@ from checker import Cluster, Engine, Keeping, Limits, Reduction, report_text
 from checker.reports.report import MARKS, coverage_text
 from checker.reports.results import caution_text
 from checker.verdicts import Outcome
+from physical.messages import counted
 from semantics.successors import rules_of
 
 if TYPE_CHECKING:
@@ -156,9 +157,8 @@ def summary(results: list[Checked | Failed]) -> Iterator[str]:
     for result in results:
         sign, word = WORDS[result.exit]
         if isinstance(result, Checked):
-            counts = (
-                f"{result.report.configurations:,} configurations, {result.report.transitions:,} transitions"
-            )
+            report = result.report
+            counts = f"{counted(report.configurations, 'configuration')}, {counted(report.transitions, 'transition')}"
         else:
             counts = result.message.splitlines()[0][:100]
         yield f"  {sign} {result.name:<{width}}  {word:<10}  {counts}"
