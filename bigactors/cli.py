@@ -1,5 +1,6 @@
 """The command `bigactors`: parse the line, run the command, exit with its code."""
 
+import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -13,6 +14,10 @@ from bigactors.terminal import COLOUR, safe_output, tell
 
 def main(line: Sequence[str] | None = None) -> int:
     """Run one command line (default: this process's) and return its exit code."""
+    if "_ARGCOMPLETE" in os.environ:  # a shell asks what could come next
+        from bigactors.completion import complete  # noqa: PLC0415 - it makes the parsers of all commands
+
+        complete()
     try:
         with safe_output(), ending_as_ctrl_c():
             return run(sys.argv[1:] if line is None else line)

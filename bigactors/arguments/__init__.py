@@ -33,6 +33,7 @@ NAMES: Final = (
     "explain",
     "fmt",
     "demo",
+    "completion",
 )
 """The commands, in the order of the help."""
 

@@ -57,7 +57,7 @@ class Parser(argparse.ArgumentParser):
             choices=("auto", "always", "never"),
             metavar="WHEN",
             default=argparse.SUPPRESS,
-            help="auto (default): colour a terminal unless NO_COLOR is set, and a pipe if FORCE_COLOR is; always; never",
+            help="always, never or auto (default): a terminal unless NO_COLOR is set, a pipe if FORCE_COLOR is",
         )
         self.color = False  # since Python 3.14 help is coloured, and the pages of docs/ would be
 
