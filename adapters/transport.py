@@ -14,6 +14,7 @@ from typing import Any, Final, Protocol
 
 from adapters.addresses import Address
 from physical import PhysicalError
+from physical.messages import install_extra
 
 CHUNK: Final = 65_536
 AGAIN: Final = 1.0
@@ -220,7 +221,7 @@ async def _connect(address: Address) -> tuple[asyncio.StreamReader, asyncio.Stre
     try:
         from serial_asyncio_fast import open_serial_connection  # noqa: PLC0415 - an extra: few have serial lines
     except ImportError as missing:
-        hint = "install the extra: pip install 'bigactors[live]'"
+        hint = install_extra("live")
         raise PhysicalError("live-extra", "serial lines need pyserial-asyncio-fast", hint) from missing
     opened: tuple[asyncio.StreamReader, asyncio.StreamWriter] = await open_serial_connection(
         url=address.path, baudrate=address.baud

@@ -13,6 +13,7 @@ from typing import Any, Final
 
 from adapters.addresses import LOOPBACK
 from physical import PhysicalError, legible
+from physical.messages import install_extra
 
 MAX_BODY: Final = 1_000_000
 """Bytes of a request or answer."""
@@ -165,6 +166,6 @@ def _aiohttp() -> Any:
         import aiohttp  # noqa: PLC0415 - an extra
         import aiohttp.web  # noqa: PLC0415 - an extra
     except ImportError as missing:
-        hint = "install the extra: pip install 'bigactors[live]'"
+        hint = install_extra("live")
         raise PhysicalError("live-extra", "HTTP needs aiohttp, which is not installed", hint) from missing
     return aiohttp

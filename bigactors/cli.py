@@ -1,5 +1,6 @@
 """The command `bigactors`: parse the line, run the command, exit with its code."""
 
+import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -8,11 +9,15 @@ from bigactors.arguments import parse_arguments
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake, describe_bug
 from bigactors.signals import ending_as_ctrl_c
-from bigactors.terminal import safe_output, tell
+from bigactors.terminal import COLOUR, safe_output, tell
 
 
 def main(line: Sequence[str] | None = None) -> int:
     """Run one command line (default: this process's) and return its exit code."""
+    if "_ARGCOMPLETE" in os.environ:  # a shell asks what could come next
+        from bigactors.completion import complete  # noqa: PLC0415 - it makes the parsers of all commands
+
+        complete()
     try:
         with safe_output(), ending_as_ctrl_c():
             return run(sys.argv[1:] if line is None else line)
@@ -24,6 +29,7 @@ def run(line: Sequence[str]) -> int:
     """Run one command line, and report what goes wrong."""
     try:
         options = parse_arguments(line)
+        COLOUR.set(options.color)
         return int(import_module(f"bigactors.commands.{options.command.replace('-', '_')}").run(options))
     except SystemExit as end:  # after --help and --version
         return int(end.code or 0)

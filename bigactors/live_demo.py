@@ -30,6 +30,7 @@ from bigactors.terminal import say, tell
 from bigactors.watchers import TOLD, Terminal
 from checker import Trace
 from physical import PhysicalProperty, circle, write_geojson
+from physical.messages import counted
 from specs.missions import shipped_missions
 
 MISSION: Final = "spill_watch"
@@ -132,7 +133,9 @@ def _replay(folder: Path, ending: Ending) -> bool:
     flight_of = prepare(_options(folder, str(folder / "verdict.json"))).mission
     trace = trace_of(recording, flight_of)
     equal = trace.configurations[-1] == ending.state.configuration
-    tell(f"{len(trace)} steps replayed: {'the same configuration' if equal else 'ANOTHER configuration'}")
+    tell(
+        f"{counted(len(trace), 'step')} replayed: {'the same configuration' if equal else 'ANOTHER configuration'}"
+    )
     _draw(trace, folder)
     tell(f"recording, log and pictures are in {folder}/")
     return equal

@@ -16,10 +16,7 @@ from bigactors.missions import locate
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say_text
 from checker import Report
-from checker.reports.annotations import annotations
-from checker.reports.junit import junit_text
 from checker.reports.results import Issue, Level, Result
-from checker.reports.sarif import sarif_json
 from specs import parse_bytes
 from specs.elaboration import ElaboratedMission
 from specs.syntax import Check
@@ -85,14 +82,20 @@ def _json(results: Sequence[Checked | Failed], code: Exit) -> str:
 
 
 def _junit(results: Sequence[Checked | Failed], _: Exit) -> str:
+    from checker.reports.junit import junit_text  # noqa: PLC0415 - each format is loaded where it is asked for
+
     return junit_text(map(result_of, results))
 
 
 def _sarif(results: Sequence[Checked | Failed], _: Exit) -> str:
+    from checker.reports.sarif import sarif_json  # noqa: PLC0415
+
     return json_text(sarif_json(map(result_of, results), __version__))
 
 
 def _github(results: Sequence[Checked | Failed], _: Exit) -> str:
+    from checker.reports.annotations import annotations  # noqa: PLC0415
+
     return "".join(f"{line}\n" for line in annotations(map(result_of, results)))
 
 

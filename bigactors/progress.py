@@ -9,8 +9,9 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import TextIO
 
-from bigactors.terminal import is_terminal, paint, write
+from bigactors.terminal import broken, is_terminal, paint, write
 from checker import Interruption, Progress
+from physical.messages import counted
 
 
 class Watch:
@@ -39,7 +40,7 @@ class Watch:
     def rewrite(self, text: str) -> None:
         """Replace the last text."""
         width = shutil.get_terminal_size().columns - 1
-        text = text[:width]
+        text = broken(text, width).split("\n")[0][:width]
         write(self.stream, "\r" + paint(text.ljust(min(self.shown, width)), "faint", self.stream), flush=True)
         self.shown = len(text)
 
@@ -62,7 +63,7 @@ def describe(name: str, progress: Progress) -> str:
     'm: 12,000 configurations, depth 7, frontier 450, 5,300/s, no estimate while layers grow'
     """
     return (
-        f"{name}: {progress.configurations:,} configurations, depth {progress.depth}, "
+        f"{name}: {counted(progress.configurations, 'configuration')}, depth {progress.depth}, "
         f"frontier {progress.frontier:,}, {progress.rate:,.0f}/s, "
         f"{describe_rest(progress)}"
     )

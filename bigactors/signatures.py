@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 from adapters.written_files import open_private, others_may_read
 from bigactors.files import read_bytes
 from bigactors.mistakes import Mistake, unreadable
+from physical.messages import install_extra
 
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric import ed25519
@@ -137,5 +138,5 @@ def _crypto() -> Any:
         from cryptography.hazmat.primitives import serialization  # noqa: PLC0415
         from cryptography.hazmat.primitives.asymmetric import ed25519  # noqa: PLC0415
     except ImportError as error:
-        raise Mistake("signatures need cryptography", "pip install 'bigactors[live]'") from error
+        raise Mistake("signatures need cryptography", install_extra("live")) from error
     return SimpleNamespace(exceptions=exceptions, serialization=serialization, ed25519=ed25519)

@@ -1,15 +1,24 @@
-"""Printing to the terminal: safe in any encoding, quiet after a closed pipe, coloured on a terminal only."""
+"""Printing to the terminal: safe in any encoding, quiet after a closed pipe; coloured, and broken between words."""
 
 import codecs
 import errno
 import os
+import re
+import shutil
 import stat
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TextIO
+from contextvars import ContextVar
+from typing import Final, TextIO
 
 from bigactors.mistakes import Mistake
+
+COLOUR: ContextVar[str] = ContextVar("COLOUR", default="auto")
+"""When there are colours: what `--color` says."""
+
+DRAWN: Final = re.compile(r"\s*\d* \| |.*[│├└─]")
+"""A line that stands under another one: of an excerpt of a file, or of a drawing."""
 
 COLOURS = {"red": "31", "green": "32", "yellow": "33", "faint": "2"}
 
@@ -44,7 +53,7 @@ def safe_output() -> Iterator[None]:
 
 def say(line: str = "") -> None:
     """Print a line of the answer."""
-    write(sys.stdout, f"{line}\n")
+    write(sys.stdout, f"{fitted(line, sys.stdout)}\n")
 
 
 def say_text(text: str, *, flush: bool = False) -> None:
@@ -61,7 +70,35 @@ def tell(text: str, mark: str = "") -> None:
     shown = "".join(
         sign if sign.isprintable() or sign in "\n\t" else "\N{REPLACEMENT CHARACTER}" for sign in text
     )
-    write(sys.stderr, f"{paint(mark, 'red', sys.stderr)} {shown}\n" if mark else f"{shown}\n", flush=True)
+    marked = f"{paint(mark, 'red', sys.stderr)} {shown}" if mark else shown
+    write(sys.stderr, f"{fitted(marked, sys.stderr)}\n", flush=True)
+
+
+def fitted(text: str, stream: TextIO) -> str:
+    """Return a text whose lines are broken between words, if it goes to a terminal that is narrower."""
+    if not is_terminal(stream):
+        return text
+    columns = shutil.get_terminal_size().columns
+    return "\n".join(broken(line, columns) for line in text.split("\n"))
+
+
+def broken(line: str, columns: int) -> str:
+    """Return a line broken between words, in lines of so many columns; what follows is indented further.
+
+    >>> print(broken("  hint: say what --max-memory is to be", 20))
+      hint: say what
+        --max-memory is
+        to be
+    """
+    if (line.isascii() and len(line) <= columns) or DRAWN.match(line):
+        return line
+    from wcwidth import wrap  # noqa: PLC0415 - most lines are short
+
+    indent = len(line) - len(line.lstrip(" "))
+    further = " " * min(indent + 2, columns // 2) if indent else ""
+    return "\n".join(
+        wrap(line, columns, subsequent_indent=further, break_long_words=False, break_on_hyphens=False)
+    )
 
 
 def paint(text: str, colour: str, stream: TextIO) -> str:
@@ -70,8 +107,12 @@ def paint(text: str, colour: str, stream: TextIO) -> str:
 
 
 def shows_colours(stream: TextIO) -> bool:
-    """Tell whether a stream is a terminal whose user has not asked for no colours (no-color.org)."""
-    return is_terminal(stream) and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+    """Tell whether a stream is coloured: as `--color` says, as NO_COLOR or FORCE_COLOR says, or if it is a terminal."""
+    if COLOUR.get() != "auto":
+        return COLOUR.get() == "always"
+    if os.environ.get("NO_COLOR"):
+        return False
+    return bool(os.environ.get("FORCE_COLOR")) or (is_terminal(stream) and os.environ.get("TERM") != "dumb")
 
 
 def is_terminal(stream: TextIO) -> bool:

@@ -1,6 +1,8 @@
 """Check a mission: explore it, decide each property, and find shortest traces."""
 
-from collections.abc import Callable, Iterable
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol, assert_never
 
@@ -21,7 +23,6 @@ from checker.properties.inspections import (
 from checker.properties.ownership import owned
 from checker.properties.races import ControlRaces, StaleObservationRaces
 from checker.properties.visited import Visited
-from checker.reduction.reducer import Reduced
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.reduction.unfolding import told
 from checker.traces import Trace, trace_to
@@ -33,6 +34,8 @@ from semantics.state.configuration import Configuration
 
 if TYPE_CHECKING:
     from checker.properties.temporal.decide import Decider
+    from checker.reduction.reducer import Reduced
+    from semantics.properties.propositions import Proposition
 
 BY_LOOKING: dict[PropertyKind, Callable[[int], Inspection]] = {
     PropertyKind.LOCAL_CONSISTENCY: LocalConsistency,
@@ -100,7 +103,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     initial, asked, notes = _asked(start, properties, notes)
     initial, limits = watching(initial, asked), limits or Limits()
     formulas, reductions = [each.formula for each in asked if each.kind.has_proposition], tuple(reduce)
-    reducer = Reduced(initial, reductions, formulas) if reductions else None
+    reducer = _reduced(initial, reductions, formulas) if reductions else None
     if reducer is not None and engine is Engine.RAY:
         raise RefusedError(reducer.names[0], "the ray explorer does not reduce; leave --engine out")
     symmetric = reducer is not None and reducer.symmetry is not None
@@ -135,6 +138,14 @@ def _asked(
     if properties is None:
         raise TypeError("a configuration asks nothing: give the properties too, or a mission")
     return start, tuple(properties), notes
+
+
+def _reduced(
+    initial: Configuration, reductions: Iterable[Reduction], formulas: Sequence[Proposition] = ()
+) -> Reduced:
+    from checker.reduction.reducer import Reduced  # noqa: PLC0415 - few explorations are reduced
+
+    return Reduced(initial, reductions, formulas)
 
 
 class _Check:
@@ -198,7 +209,7 @@ class _Check:
         options, start, reduce = self.options, monitored(self.initial), None
         limits = replace(options.limits, spent=options.limits.spent + self.found.seconds)
         if options.reduce is not None and options.reduce.putting_off:  # symmetry would lose whose a memory is
-            reduce = Reduced(start, [Reduction.POR])
+            reduce = _reduced(start, [Reduction.POR])
         remembered = explore_by(start, (self.stale,), replace(options, limits=limits, reduce=reduce))
         remembered.bounds = [bound.met_in(Part.SEARCHING) for bound in remembered.bounds]
         return remembered

@@ -8,6 +8,7 @@ from typing import Any
 from checker.engines.contract import Exploration
 from checker.properties.inspections import is_unfair
 from checker.reduction.unfolding import run_to
+from physical.messages import counted
 from semantics.observed_steps import Sight, steps_seen
 from semantics.races.monitor import monitored
 from semantics.state.brief import cut
@@ -161,7 +162,7 @@ def _steps_of(count: int) -> str:
 
 def print_length(trace: Trace) -> str:
     """Print what a trace is, and how long."""
-    steps = "1 step" if len(trace) == 1 else f"{len(trace):,} steps"
+    steps = counted(len(trace), "step")
     if trace.loop is None:
         return f"{trace.called}, {steps}"
     run = f"a shortest run of {steps}" if trace.shortest else f"a run of {steps}, not proved shortest"

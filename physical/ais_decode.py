@@ -9,6 +9,7 @@ from functools import cache
 from typing import Protocol, cast
 
 from physical.ais_reports import AisError, PositionReport, Report, StaticReport
+from physical.messages import install_extra
 from physical.nmea import Part, Reason
 
 POSITIONS = frozenset({1, 2, 3, 4, 9, 11, 17, 18, 19, 21, 27})
@@ -66,7 +67,7 @@ def _pyais_decode() -> Callable[..., _Message]:
     try:
         from pyais import decode as pyais_decode  # noqa: PLC0415 - an extra: nobody pays for it who reads no AIS
     except ImportError as missing:
-        hint = "install the extra: pip install 'bigactors[ais]'"
+        hint = install_extra("ais")
         raise AisError("ais-extra", "reading AIS needs pyais, which is not installed", hint) from missing
     return cast("Callable[..., _Message]", pyais_decode)
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import shapely
-from pyproj import Geod, Proj
+
+if TYPE_CHECKING:
+    from pyproj import Geod, Proj
 
 E7: Final = 10_000_000
 """Units in a degree: coordinates are whole numbers of 1e-7 degree (about 1 cm)."""
@@ -35,13 +37,15 @@ PositionE7 = tuple[int, int]
 @lru_cache(maxsize=1)
 def geod() -> Geod:
     """Return the WGS 84 ellipsoid."""
+    from pyproj import Geod  # noqa: PLC0415 - many worlds are points and boxes, and ask for no metres
+
     return Geod(ellps="WGS84")
 
 
 @lru_cache(maxsize=1)
 def equal_area() -> Proj:
     """Return the cylindrical equal-area projection, in which planar areas are the ellipsoid's."""
-    return Proj(proj="cea", ellps="WGS84")
+    return _projection(proj="cea")
 
 
 def normal_longitude(longitude: int) -> int:
@@ -105,4 +109,10 @@ def _part(shape: shapely.Geometry) -> float:
 def local_frame(centre: PositionE7) -> Frame:
     """Return the metric frame around a position."""
     latitude, longitude = centre
-    return Frame(centre, Proj(proj="aeqd", ellps="WGS84", lat_0=latitude / E7, lon_0=longitude / E7))
+    return Frame(centre, _projection(proj="aeqd", lat_0=latitude / E7, lon_0=longitude / E7))
+
+
+def _projection(**settings: Any) -> Proj:
+    from pyproj import Proj  # noqa: PLC0415 - as in `geod`
+
+    return Proj(ellps="WGS84", **settings)

@@ -48,7 +48,11 @@ LIBRARIES = {
     "nicegui": ("adapters/",),
     "cryptography": ("bigactors/signatures.py",),
     "hypothesis": ("semantics/strategies.py",),
-    "lazy_loader": tuple(f"{room}/__init__.py" for room in (*MAY_IMPORT, "bigraphs/notation")),
+    "wcwidth": ("bigactors/terminal.py", "checker/reports/lanes.py"),
+    "argcomplete": ("bigactors/completion.py",),
+    "lazy_loader": tuple(
+        f"{room}/__init__.py" for room in (*MAY_IMPORT, "bigraphs/notation", "checker/reduction")
+    ),
     "matplotlib": ("bigraphs/drawing.py", "physical/drawing.py", "physical/map_", "bigactors/pictures/"),
 }
 

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from adapters.mavlink.message import Message
 from physical import PhysicalError
+from physical.messages import install_extra
 
 MAX_CHUNK: Final = 65_536
 """Bytes parsed at once; a socket never gives more."""
@@ -104,6 +105,6 @@ def _dialect() -> Any:
     try:
         from pymavlink.dialects.v20 import ardupilotmega  # noqa: PLC0415 - an extra, imported only when used
     except ImportError as missing:
-        hint = "install the extra: pip install 'bigactors[live]'"
+        hint = install_extra("live")
         raise CodecError("live-extra", "MAVLink needs pymavlink, which is not installed", hint) from missing
     return ardupilotmega

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from io import BytesIO
 from typing import Final
 
+from physical.messages import install_extra
+
 MOST_WINDOW: Final = 1 << 24
 """Bytes that a decompressor may look back over, which it keeps in memory."""
 
@@ -24,7 +26,7 @@ def opened(compression: str, data: bytes, size: int) -> bytes:
         return find(data, size + 1)
     except ImportError as error:
         raise ValueError(
-            "compressed recordings need the extra 'live': pip install 'bigactors[live]'"
+            f"the library of this compression is not installed: {install_extra('live')}"
         ) from error
     except (RuntimeError, EOFError, MemoryError) as error:
         raise ValueError(f"its {compression} is damaged: {error!s:.100}") from error

@@ -15,6 +15,7 @@ from typing import Any, BinaryIO, Final
 from adapters.recording.decompression import opened
 from adapters.written_files import open_private, writing
 from physical import PhysicalError, open_file, read_json
+from physical.messages import install_extra
 
 MAGIC: Final = b"\x89MCAP0\r\n"
 FOOTER, CHANNEL, MESSAGE, CHUNK = 0x02, 0x04, 0x05, 0x06
@@ -201,4 +202,4 @@ def _writer() -> Any:
 
 
 def _missing() -> RecordingError:
-    return RecordingError("recordings need the extra 'live': pip install 'bigactors[live]'")
+    return RecordingError(f"recordings need mcap, which is not installed: {install_extra('live')}")

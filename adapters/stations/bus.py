@@ -15,6 +15,7 @@ from typing import Any, Final
 from adapters.stations.messages import MOST_BYTES
 from adapters.stations.peers import Peers
 from physical import PhysicalError
+from physical.messages import install_extra
 
 MOST_WAITING: Final = 1_000
 """How many messages may wait; more are dropped, and requested again."""
@@ -212,7 +213,7 @@ def _library() -> Any:
     try:
         import zenoh  # noqa: PLC0415 - an extra
     except ImportError as missing:
-        hint = "install the extra: pip install 'bigactors[stations]'"
+        hint = install_extra("stations")
         raise PhysicalError(
             "stations-extra", "stations need Zenoh, which is not installed", hint
         ) from missing

@@ -1,58 +1,48 @@
 """The command line's grammar: commands, arguments, options, and their help.
 
 It imports nothing that takes time to load, so that help is there at once. A command is a module here with its
-arguments, one of the same name in `bigactors.commands` that runs it, and its place in `COMMANDS`.
+arguments, one of the same name in `bigactors.commands` that runs it, and its place in `NAMES`.
 """
 
 import argparse
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
+from importlib import import_module
 from typing import Final
 
 from bigactors import __version__
-from bigactors.arguments import (
-    big,
-    check,
-    demo,
-    explain,
-    fmt,
-    give_back,
-    keygen,
-    new,
-    replay,
-    run,
-    say,
-    show,
-    simulate,
-    world,
-)
 from bigactors.arguments.common import EXITS
 from bigactors.arguments.parser import Command, Parser
 from bigactors.arguments.values import FORMATS
 from bigactors.mistakes import Mistake, suggestion
 
-__all__ = ["COMMANDS", "FORMATS", "Command", "Parser", "make_parser", "parse_arguments"]
+__all__ = ["FORMATS", "NAMES", "Command", "Parser", "make_parser", "parse_arguments", "parser_of"]
 
-COMMANDS: Final[dict[str, Command]] = {
-    each.COMMAND.name: each.COMMAND
-    for each in (
-        new,
-        check,
-        show,
-        simulate,
-        run,
-        say,
-        give_back,
-        keygen,
-        replay,
-        world,
-        big,
-        explain,
-        fmt,
-        demo,
-    )
-}
-"""The commands by name, in the order of the help."""
+NAMES: Final = (
+    "new",
+    "check",
+    "show",
+    "simulate",
+    "run",
+    "say",
+    "give-back",
+    "keygen",
+    "replay",
+    "world",
+    "big",
+    "explain",
+    "fmt",
+    "demo",
+    "completion",
+)
+"""The commands, in the order of the help."""
+
+
+def command_of(name: str) -> Command:
+    """Return a command; its module is loaded when it is asked for."""
+    command: Command = import_module(f"bigactors.arguments.{name.replace('-', '_')}").COMMAND
+    return command
 
 
 def make_parser() -> tuple[Parser, dict[str, Parser]]:
@@ -65,29 +55,41 @@ def make_parser() -> tuple[Parser, dict[str, Parser]]:
         epilog="bigactors COMMAND --help describes a command, with examples.\n\n" + EXITS,
     )
     whole.add_argument("--version", action="version", version=f"bigactors {__version__}")
-    commands = whole.add_subparsers(dest="command", metavar="COMMAND", title="commands", parser_class=Parser)
-    made: dict[str, Parser] = {}
-    for each in COMMANDS.values():
-        shown = "examples:\n" + "\n".join(f"  {example}" for example in each.examples)
-        made[each.name] = commands.add_parser(
-            each.name, help=each.summary, description=each.description, epilog=shown
-        )
-        each.fill(made[each.name])
+    commands = whole.add_subparsers(dest="command", metavar="COMMAND", title="commands")
+    made = {
+        name: parser_of(name, partial(commands.add_parser, name, help=command_of(name).summary))
+        for name in NAMES
+    }
     return whole, made
+
+
+def parser_of(name: str, make: Callable[..., Parser] = Parser) -> Parser:
+    """Return the parser of a command's line."""
+    command = command_of(name)
+    shown = "examples:\n" + "\n".join(f"  {example}" for example in command.examples)
+    parser = make(prog=f"bigactors {name}", description=command.description, epilog=shown)
+    command.fill(parser)
+    return parser
 
 
 def parse_arguments(line: Sequence[str]) -> argparse.Namespace:
     """Return the options of a command line; raises Mistake, and SystemExit after --help and --version."""
-    whole, commands = make_parser()
+    if line and line[0] in NAMES:  # the others' parsers are not made
+        return _parsed(parser_of(line[0]), line[1:], argparse.Namespace(command=line[0], color="auto"))
+    whole, _ = make_parser()
     if not line:
         whole.print_help()
         raise SystemExit(2)
-    if not line[0].startswith("-") and line[0] not in commands:
-        hint = suggestion(line[0], commands) or f"the commands are {', '.join(commands)}"
+    if not line[0].startswith("-"):
+        hint = suggestion(line[0], NAMES) or f"the commands are {', '.join(NAMES)}"
         raise Mistake(f"unknown command '{line[0]:.60}'", hint)
-    options, unknown = whole.parse_known_args(_joined(line))
+    return _parsed(whole, line, argparse.Namespace(color="auto"))
+
+
+def _parsed(parser: Parser, line: Sequence[str], options: argparse.Namespace) -> argparse.Namespace:
+    _, unknown = parser.parse_known_args(_joined(line), options)
     if unknown:
-        raise _unknown(unknown[0], commands.get(options.command, whole))
+        raise _unknown(unknown[0], parser)
     return options
 
 

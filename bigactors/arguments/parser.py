@@ -1,11 +1,46 @@
 """The argument parser: argparse with the error messages of bigactors."""
 
 import argparse
-from collections.abc import Callable
+import textwrap
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NoReturn
 
 from bigactors.mistakes import Mistake
+
+
+class Help(argparse.RawDescriptionHelpFormatter):
+    """Breaks lines between words: an option stays whole; indented lines of a description stay lines."""
+
+    def _split_lines(self, text: str, width: int) -> list[str]:
+        return _wrapped(" ".join(text.split()), width)
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:  # noqa: ARG002 - as argparse calls it
+        return "\n".join(part for line in _lines(text) for part in _wrapped(line, width) or [""])
+
+
+def _lines(text: str) -> Iterator[str]:
+    """Yield paragraphs as a line each, and indented and empty lines as they are."""
+    for paragraph in text.split("\n\n"):
+        waiting: list[str] = []
+        for line in paragraph.split("\n"):
+            if line.startswith(" ") and waiting:
+                yield " ".join(waiting)
+                waiting = []
+            if line.startswith(" "):
+                yield line
+            else:
+                waiting.append(line)
+        if waiting:
+            yield " ".join(waiting)
+        yield ""
+
+
+def _wrapped(line: str, width: int) -> list[str]:
+    further = "     " if line.startswith(" ") else ""
+    return textwrap.wrap(
+        line, width, subsequent_indent=further, break_long_words=False, break_on_hyphens=False
+    )
 
 
 class Parser(argparse.ArgumentParser):
@@ -14,8 +49,15 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, **settings: object) -> None:
         super().__init__(
             allow_abbrev=False,
-            formatter_class=argparse.RawDescriptionHelpFormatter,
+            formatter_class=Help,
             **settings,  # type: ignore[arg-type]  # they are argparse's own
+        )
+        self.add_argument(
+            "--color",
+            choices=("auto", "always", "never"),
+            metavar="WHEN",
+            default=argparse.SUPPRESS,
+            help="always, never or auto (default): a terminal unless NO_COLOR is set, a pipe if FORCE_COLOR is",
         )
         self.color = False  # since Python 3.14 help is coloured, and the pages of docs/ would be
 

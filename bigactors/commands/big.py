@@ -21,6 +21,7 @@ from bigraphs.notation import load_system, read_system, write_big
 from bigraphs.simulation import Bounds, Stage, simulate
 from bigraphs.system import System, SystemKind
 from bigraphs.transitions import TransitionSystem
+from physical.messages import counted
 
 
 def run(options: Namespace) -> Exit:
@@ -79,8 +80,8 @@ def summary(file: str, found: TransitionSystem) -> str:
     """Say in one line how large a system is, and whether that is all of it."""
     end = "complete" if found.complete else f"incomplete: {found.reason}"
     return (
-        f"{Path(file).name}: {len(found):,} states, {len(found.starts):,} transitions, "
-        f"{found.occurrences:,} occurrences, {end}, {found.seconds:.2f} s"
+        f"{Path(file).name}: {counted(len(found), 'state')}, {counted(len(found.starts), 'transition')}, "
+        f"{counted(found.occurrences, 'occurrence')}, {end}, {found.seconds:.2f} s"
     )
 
 
@@ -147,7 +148,7 @@ def validate(options: Namespace) -> Exit:
     """Say what is in a file, if it makes sense."""
     system = read_file(options)
     machine = Machine(system)
-    say(f"{Path(options.file).name}: a {system.kind.value} of {len(machine.reactions)} rules")
+    say(f"{Path(options.file).name}: a {system.kind.value} of {counted(len(machine.reactions), 'rule')}")
     say(f"  initial state: {write_big(system.initial)}")
     for each in system.classes:
         how = "at once" if each.instantaneous else "one at a time"

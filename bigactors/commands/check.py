@@ -23,6 +23,7 @@ from checker import Cluster, Engine, Interruption, Keeping, Limits, Reduction, r
 from checker.reports.report import MARKS, coverage_text
 from checker.reports.results import caution_text
 from checker.verdicts import Outcome
+from physical.messages import counted
 from semantics.successors import rules_of
 
 if TYPE_CHECKING:
@@ -180,9 +181,8 @@ def summary(results: list[Checked | Failed]) -> Iterator[str]:
     for result in results:
         sign, word = WORDS[result.exit]
         if isinstance(result, Checked):
-            counts = (
-                f"{result.report.configurations:,} configurations, {result.report.transitions:,} transitions"
-            )
+            report = result.report
+            counts = f"{counted(report.configurations, 'configuration')}, {counted(report.transitions, 'transition')}"
         else:
             counts = result.message.splitlines()[0][:100]
         yield f"  {sign} {result.name:<{width}}  {word:<10}  {counts}"
@@ -210,7 +210,10 @@ def _check_verdict(options: Namespace) -> SigningKey | None:
     if len(options.files) > 1:
         raise Mistake("--verdict writes the verdict of one mission", "check the missions one by one")
     check_writable(options.verdict)
-    return None if options.sign is None else load_key(options.sign)
+    if options.sign is None:
+        return None
+
+    return load_key(options.sign)
 
 
 def keep_verdict(checked: Checked, options: Namespace, key: SigningKey | None) -> None:

@@ -4,7 +4,7 @@ from argparse import Namespace
 
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
-from bigactors.terminal import say, say_text
+from bigactors.terminal import say
 from specs import Code, explain, find_code
 
 
@@ -18,5 +18,5 @@ def run(options: Namespace) -> Exit:
     found = find_code(options.code)
     if found is None:
         raise Mistake(f"there is no code '{options.code:.40}'", "bigactors explain lists them all")
-    say_text(explain(found))
+    say(explain(found).rstrip())
     return Exit.HOLDS

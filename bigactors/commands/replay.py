@@ -20,6 +20,7 @@ from bigactors.terminal import is_terminal, paint, say, tell
 from bigactors.waypoint_export import write_route
 from bigraphs import draw_text
 from checker import ReplayError, Trace, print_loop, print_trace, replay
+from physical.messages import counted
 from semantics.races.monitor import monitored
 from semantics.state.abstraction import as_it_is
 from semantics.state.printing import print_configuration
@@ -81,7 +82,8 @@ def show_foreign(options: Namespace) -> Exit:
         tell(finding.message, "not as the mission says:")
     say(f"c{len(shown.trace)} shows")
     say(indent(draw_text(as_it_is(shown.trace.configurations[-1]).structure.logical.bigraph()), "  "))
-    say(f"{options.trace}: {shown.positions:,} positions, {len(shown.trace)} changes of the bigraph")
+    changes = counted(len(shown.trace), "change")
+    say(f"{options.trace}: {counted(shown.positions, 'position')}, {changes} of the bigraph")
     return Exit.HOLDS
 
 

@@ -17,7 +17,7 @@ from checker.reports.lanes import lanes_of_trace, lanes_text
 from semantics.state.printing import print_configuration
 
 PAGES = (".html", ".htm")
-NARROW, WIDE = 80, 200
+NARROW, WIDE = 40, 200
 """The least and the most columns of a terminal that lanes are laid out for."""
 
 

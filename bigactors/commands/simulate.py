@@ -10,6 +10,7 @@ from bigactors.files import json_text, write_json
 from bigactors.missions import digest_of, open_mission, variation_of
 from bigactors.terminal import say, say_text, tell
 from checker import Step, Trace, to_json
+from physical.messages import counted
 from semantics.state.configuration import Configuration
 from semantics.state.printing import print_changes, print_configuration
 from semantics.successors import Expansion, expand
@@ -64,7 +65,7 @@ def simulate(initial: Configuration, seed: int, steps: int) -> Simulation:
 
 def _end(expansion: Expansion, steps: int) -> str:
     if expansion.transitions:
-        return f"stopped after {steps:,} steps"
+        return f"stopped after {counted(steps, 'step')}"
     reasons = "".join(f"; {fault.agent}: {fault}" for fault in expansion.faults)
     return f"nothing more is enabled{reasons}"
 

@@ -5,6 +5,7 @@ from typing import Final
 
 from bigactors.pictures import Panels, Picture
 from checker import Trace
+from physical.messages import counted
 from semantics.state.configuration import Configuration
 
 MOST_PICTURES: Final = 100
@@ -74,7 +75,7 @@ def frames_of(story: Story) -> tuple[Frame, ...]:
     """Return the configurations of a trace with their pictures."""
     configurations = story.trace.configurations
     panels = Panels.of(configurations)
-    begin = f"after {story.first:,} steps that are left out" if story.first else "the first configuration"
+    begin = f"after {counted(story.first, 'step')} left out" if story.first else "the first configuration"
     labels = [begin, *(str(step.label) for step in story.trace.steps)]
     first_drawn = max(0, len(configurations) - max(1, min(story.drawn, MOST_PICTURES)))
     found = []

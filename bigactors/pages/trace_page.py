@@ -13,6 +13,7 @@ from bigraphs import draw_text
 from bigraphs.drawing import HIGHLIGHT
 from checker.reports.lanes import Lanes, LaneStep, lanes_of_trace
 from physical.map_style import MARK
+from physical.messages import counted
 from semantics.state.printing import print_agent
 
 LARGEST: Final = 1.35
@@ -68,7 +69,7 @@ def _header(story: Story) -> str:
         element("h1", text(story.title)),
         element("p", text(story.about), class_="violated" if story.violated else None) if story.about else "",
         *(element("p", text(line)) for line in story.details),
-        element("p", text(f"{steps:,} {'step' if steps == 1 else 'steps'}. {story.note}"), class_="quiet"),
+        element("p", text(f"{counted(steps, 'step')}. {story.note}"), class_="quiet"),
     )
 
 

@@ -1,7 +1,9 @@
 """Choose the engine of an exploration."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
 from checker.engines.contract import (
     Cluster,
@@ -14,8 +16,10 @@ from checker.engines.contract import (
 )
 from checker.engines.reference import explore_one_by_one
 from checker.limits import Limits
-from checker.reduction.reducer import Reduced
 from semantics.state.configuration import Configuration
+
+if TYPE_CHECKING:
+    from checker.reduction.reducer import Reduced
 
 
 def explore(  # noqa: PLR0913 - each is optional, and named where it is used

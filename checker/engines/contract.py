@@ -1,5 +1,7 @@
 """The interface of engines: an exploration's task, the reductions it may use, and its result."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -10,7 +12,6 @@ from typing import TYPE_CHECKING, Protocol
 from checker.engines.edges import Edges
 from checker.engines.estimate import Estimate
 from checker.limits import Bound, Limits
-from checker.reduction.reducer import Reduced
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration
 from semantics.state.requests import Request
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from checker.engines.graph import Bools, Graph, Numbers
+    from checker.reduction.reducer import Reduced
 
 
 class MachineError(Exception):
@@ -107,16 +109,16 @@ class Cluster:
 class Surveyed(Protocol):
     """What temporal properties ask of an exploration whose configurations are not at hand one by one."""
 
-    def graph(self) -> "Graph":
+    def graph(self) -> Graph:
         """Return every transition of the configurations that were expanded."""
 
-    def valuation(self, asked: Iterable[Proposition]) -> "Mapping[Proposition, Bools]":
+    def valuation(self, asked: Iterable[Proposition]) -> Mapping[Proposition, Bools]:
         """Return where each proposition is true."""
 
     def is_still(self, asked: Iterable[Proposition]) -> bool:
         """Tell whether nothing that propositions without connectives ask of configurations ever changes."""
 
-    def pending(self) -> "Mapping[Request, Numbers]":
+    def pending(self) -> Mapping[Request, Numbers]:
         """Return for each request the configurations in which it is pending, in their order."""
 
 
@@ -204,7 +206,7 @@ class Exploration:
         """Whether everything reachable was visited."""
         return not self.bounds
 
-    def to_networkx(self) -> "MultiDiGraph[int]":
+    def to_networkx(self) -> MultiDiGraph[int]:
         """Return the transition system as a graph; raises ValueError where transitions were not kept (`edges=True`).
 
         A node is the number of a configuration, 0 the initial one, with its `configuration`. An edge has the `rule`,
@@ -214,7 +216,7 @@ class Exploration:
 
         return to_networkx(self)
 
-    def to_pandas(self) -> "DataFrame":
+    def to_pandas(self) -> DataFrame:
         """Return the transition system as a table (extra `notebook`); raises ValueError as `to_networkx` does.
 
         A row is a transition: the numbers of its `source` and `target`, its `rule`, `agent` (None for the environment),

@@ -3,16 +3,21 @@
 It visits each configuration once, in the order of its distance from the first, so a path to it is a shortest one.
 """
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from checker.engines.contract import Exploration, Inspect, Options, Progress, sample
 from checker.engines.edges import Edges
 from checker.engines.estimate import estimate
 from checker.limits import Bound, BoundMet, Part, Stop, bounded, is_full, look
-from checker.reduction.reducer import Reduced
 from semantics.state.configuration import Configuration, Transition
 from semantics.successors import Expansion, expand
+
+if TYPE_CHECKING:
+    from checker.reduction.reducer import Reduced
 
 
 def explore_one_by_one(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:

@@ -3,8 +3,6 @@
 Both depend on what the text of a mission allows, never on observed runs. docs/explanation/reduction.md has the reasons.
 """
 
-from checker.reduction.ample import Ample, Proviso
-from checker.reduction.reducer import Reduced
-from checker.reduction.refusals import Reduction, RefusedError
+import lazy_loader
 
-__all__ = ["Ample", "Proviso", "Reduced", "Reduction", "RefusedError"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,12 +1,17 @@
 """Unfolding: what was visited under a reduction is told of the mission itself, in a run of its rules."""
 
+from __future__ import annotations
+
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from checker.engines.contract import Exploration
-from checker.reduction.reducer import Reduced
-from checker.reduction.renaming import Renaming
 from semantics.state.configuration import Configuration, Transition
 from semantics.successors import expand
+
+if TYPE_CHECKING:
+    from checker.reduction.reducer import Reduced
+    from checker.reduction.renaming import Renaming
 
 
 def run_to(found: Exploration, number: int, by: Transition | None = None) -> tuple[Transition, ...]:
@@ -43,6 +48,8 @@ def _unfold(
 
 
 def _sorting(reducer: Reduced, c: Configuration) -> Renaming:
+    from checker.reduction.renaming import Renaming  # noqa: PLC0415 - only reduced explorations are unfolded
+
     return Renaming() if reducer.symmetry is None else reducer.symmetry.sorting(c)[0]
 
 

@@ -6,6 +6,7 @@ from difflib import SequenceMatcher
 from typing import Final
 
 from checker.traces import Step, Trace
+from physical.messages import counted
 from semantics.state.differences import Difference, differences
 
 MOST_ALIGNED: Final = 1_000
@@ -70,9 +71,9 @@ def _aligned(one: list[tuple[str, int]], other: list[tuple[str, int]], after: in
 def comparison_text(one: Trace, other: Trace, names: tuple[str, str]) -> Iterator[str]:
     """Yield line by line how two traces differ; `<` marks what only the first has, `>` what only the other."""
     found = compare(one, other)
-    steps = f"{found.shared:,} {'step' if found.shared == 1 else 'steps'}"
-    yield f"< {names[0]}: {len(one):,} steps"
-    yield f"> {names[1]}: {len(other):,} steps"
+    steps = counted(found.shared, "step")
+    yield f"< {names[0]}: {counted(len(one), 'step')}"
+    yield f"> {names[1]}: {counted(len(other), 'step')}"
     if not found.pairs:
         yield f"they are the same: {steps}"
         return

@@ -1,10 +1,11 @@
 """Lanes: a trace with a column for each actor, and the changes of each step."""
 
-import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
+
+from wcwidth import ljust, wrap
 
 from checker.traces import Trace
 from semantics.state.configuration import Configuration, Label
@@ -114,8 +115,8 @@ def _lines(step: LaneStep) -> Iterator[str]:
 
 def _wrapped(line: str, width: int) -> list[str]:
     indent = " " * (len(line) - len(line.lstrip()) + 2)
-    return textwrap.wrap(line, width, subsequent_indent=indent, drop_whitespace=True) or [""]
+    return wrap(line, width, subsequent_indent=indent, break_on_hyphens=False) or [""]
 
 
 def _row(number: str, cells: list[str], width: int) -> str:
-    return f"{number:<{NUMBERS}}{''.join(f'{cell:<{width}}' for cell in cells)}".rstrip()
+    return f"{number:<{NUMBERS}}{''.join(ljust(cell, width) for cell in cells)}".rstrip()

@@ -6,6 +6,7 @@ from typing import Any, Final
 from checker.properties.coverage import Coverage, Gap
 from checker.traces import Trace, print_length, print_trace, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
+from physical.messages import counted
 from semantics.properties.kinds import PropertyKind
 from semantics.state.setting import Control
 from semantics.successors import rules_of
@@ -30,15 +31,15 @@ def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[s
 
 def size_text(report: Report) -> str:
     """Return how much was explored."""
-    size = f"{report.configurations:,} configurations, {_followed(report)} transitions, depth {report.depth}"
+    size = f"{counted(report.configurations, 'configuration')}, {_followed(report)}, depth {report.depth}"
     searched = f", reduced by {' and '.join(report.reduced)}" if report.reduced else ""
     return f"{size}, {'complete' if report.complete else 'INCOMPLETE'}{searched}"
 
 
 def _followed(report: Report) -> str:
     if not report.reduced:
-        return f"{report.transitions:,}"
-    return f"{report.transitions:,} of {report.allowed:,}"
+        return counted(report.transitions, "transition")
+    return f"{report.transitions:,} of {counted(report.allowed, 'transition')}"
 
 
 def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
@@ -57,7 +58,7 @@ def _sizes(verdict: Verdict) -> Iterator[str]:
         if verdict.violations and verdict.property.kind.about.counted:
             yield _found(verdict)
     elif verdict.witness is not None and verdict.examined:
-        yield f"{_examined(verdict)}, a witness of {_steps(len(verdict.witness))}"
+        yield f"{_examined(verdict)}, a witness of {counted(len(verdict.witness), 'step')}"
     elif verdict.outcome is Outcome.INCOMPLETE:
         yield (
             "not found so far"
@@ -74,7 +75,7 @@ def _found(verdict: Verdict) -> str:
     shown = len(verdict.violations)
     if verdict.count == 1:
         return "found once"
-    times = f"found {verdict.count:,} times"
+    times = f"found {counted(verdict.count, 'time')}"
     if verdict.different <= 1:
         return times
     if verdict.different == shown:
@@ -84,11 +85,7 @@ def _found(verdict: Verdict) -> str:
 
 def _examined(verdict: Verdict) -> str:
     one, many = verdict.property.kind.about.examined
-    return f"examined {verdict.examined:,} {one if verdict.examined == 1 else many}".rstrip()
-
-
-def _steps(count: int) -> str:
-    return "1 step" if count == 1 else f"{count:,} steps"
+    return f"examined {counted(verdict.examined, one, many)}".rstrip()
 
 
 def _violation(violation: Violation, *, traces: bool) -> Iterator[str]:

@@ -10,9 +10,6 @@ from pathlib import Path
 from typing import Final
 
 from physical import GeoJSONError, Geometry, PhysicalError, PhysicalProperty, contains, open_file, read_places
-from physical.ais_recording import read_recording
-from physical.ais_reports import AisError
-from physical.ais_world import world_at
 from physical.geojson import MAX_BYTES as MAX_GEOJSON
 from physical.mmsi import KINDS
 from physical.place_files import PLACES
@@ -121,6 +118,10 @@ def _places(suffix: str, path: Path) -> tuple[PhysicalProperty, ...]:
 
 
 def _ais(entry: s.FromSource, path: Path, area: Geometry | None) -> tuple[PhysicalProperty, ...]:
+    from physical.ais_recording import read_recording  # noqa: PLC0415 - few worlds are recordings
+    from physical.ais_reports import AisError  # noqa: PLC0415
+    from physical.ais_world import world_at  # noqa: PLC0415
+
     kinds = {keep.recorded.text for keep in entry.keep} or None
     time = None if entry.time is None else _seconds(entry.time.value)
     try:

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from bigactors import __version__
-from bigactors.arguments import COMMANDS
+from bigactors.arguments import NAMES
 from bigactors.cli import main
 from bigactors.commands import explain as command
 
@@ -28,7 +28,7 @@ def test_without_a_command_the_help_is_shown_and_nothing_is_a_success(bigactors)
     assert "commands:" in out
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", NAMES)
 def test_the_help_of_each_command_shows_examples(bigactors, command):
     code, out, err = bigactors(command, "--help")
     assert (code, err) == (0, "")

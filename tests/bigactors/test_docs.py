@@ -1,5 +1,5 @@
 from bigactors import docs
-from bigactors.arguments import COMMANDS
+from bigactors.arguments import NAMES
 from semantics.extension import EXTENSION
 from semantics.rules import RULES, TIMED_RULES
 
@@ -29,5 +29,5 @@ def test_every_command_is_on_the_page_whatever_the_terminal(monkeypatch):
     wide = docs.pages()["reference/cli.md"]
     monkeypatch.setenv("COLUMNS", "40")
     assert docs.pages()["reference/cli.md"] == wide
-    for command in COMMANDS:
+    for command in NAMES:
         assert f"\n## bigactors {command}\n" in wide

@@ -32,6 +32,7 @@ from checker.engines.contract import (
     MachineError,
     Options,
 )
+from physical.messages import install_extra
 from semantics.state.configuration import Configuration
 
 PATIENCE = 120.0
@@ -194,7 +195,9 @@ def load_ray() -> Any:
     try:
         import ray  # noqa: PLC0415  # an extra, and slow to load
     except ImportError as error:
-        raise ClusterError("--engine ray needs Ray: pip install 'bigactors[cluster]'") from error
+        raise ClusterError(
+            f"--engine ray needs Ray, which is not installed: {install_extra('cluster')}"
+        ) from error
     return ray
 
 

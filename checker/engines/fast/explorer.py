@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, overload
 from checker.engines.contract import Exploration, Inspect, Options, Progress
 from checker.engines.estimate import estimate
 from checker.engines.fast.checkpoint import Journey, resume, save
-from checker.engines.fast.crosscheck import crosscheck
 from checker.engines.fast.graph import GraphSurvey
 from checker.engines.fast.inspecting import inspect_fast
 from checker.engines.fast.learner import Learner
@@ -153,7 +152,10 @@ class _Explorer:
     def look_at(self, survey: GraphSurvey, inspect: tuple[Inspect, ...]) -> None:
         """Look at what was explored, as long as there is time: what was not looked at to the end has found nothing."""
         try:
-            crosscheck(self.space, self.keeping.doubted, self.reduce)
+            if self.keeping.doubted:
+                from checker.engines.fast.crosscheck import crosscheck  # noqa: PLC0415  # for --paranoid only
+
+                crosscheck(self.space, self.keeping.doubted, self.reduce)
             inspect_fast(survey, inspect)
         except BoundMet as met:
             self.bounds.append(met.bound.met_in(Part.LOOKING))

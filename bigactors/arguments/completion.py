@@ -1,0 +1,24 @@
+"""The arguments of `bigactors completion`."""
+
+from bigactors.arguments.parser import Command, Parser
+
+SHELLS = ("bash", "zsh", "fish")
+
+
+def fill(parser: Parser) -> None:
+    """Add the arguments of `bigactors completion`."""
+    parser.add_argument("shell", choices=SHELLS, help="the shell that reads it")
+
+
+COMMAND = Command(
+    "completion",
+    "print what completes command lines in bash, zsh or fish",
+    "Print a script that completes commands, options, missions that ship and names in missions. A shell reads it at\n"
+    "its start: the examples are lines for ~/.bashrc, ~/.zshrc (after compinit) and ~/.config/fish/config.fish.",
+    (
+        'eval "$(bigactors completion bash)"',
+        'eval "$(bigactors completion zsh)"',
+        "bigactors completion fish | source",
+    ),
+    fill,
+)

@@ -1,0 +1,149 @@
+"""Completion of command lines in shells, by argcomplete: commands, options, missions, and the names in them."""
+
+import argparse
+import os
+import re
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import Any, Final
+
+from bigactors.arguments import make_parser
+from bigactors.arguments.values import FORMATS, REDUCTIONS
+
+MOST_BYTES: Final = 1_000_000
+"""How much of a mission is looked through for names."""
+
+Completer = Callable[..., Iterable[str]]
+
+
+def complete() -> None:
+    """Answer a shell that asks what could come next, and end the process."""
+    import argcomplete  # noqa: PLC0415 - only a shell asks
+
+    whole, commands = make_parser()
+    for name, parser in commands.items():
+        for action in actions_of(parser):
+            completer = completer_of(name, action)
+            if completer is not None:
+                action.completer = completer  # type: ignore[attr-defined]  # where argcomplete looks for it
+    argcomplete.autocomplete(whole)
+
+
+def actions_of(parser: argparse.ArgumentParser) -> Iterator[argparse.Action]:
+    """Yield the arguments of a parser, and of the parsers of its tasks."""
+    for action in parser._actions:  # noqa: SLF001 - argparse has no other list of them
+        yield action
+        if isinstance(action.choices, dict):
+            for task in action.choices.values():
+                yield from actions_of(task)
+
+
+def completer_of(command: str, action: argparse.Action) -> Completer | None:
+    """Return what completes an argument's values; files are completed where nothing does."""
+    if action.metavar == "FILE" and not action.option_strings:
+        return POSITIONAL.get(command)
+    return BY_METAVAR.get(str(action.metavar))
+
+
+def script(shell: str) -> str:
+    """Return what a shell reads at its start to complete command lines of bigactors."""
+    from argcomplete.shell_integration import shellcode  # noqa: PLC0415
+
+    return shellcode(["bigactors"], shell=shell)
+
+
+# --- what could come next -------------------------------------------------------------------------------------
+
+
+def files(prefix: str, *suffixes: str) -> Iterator[str]:
+    """Yield the files with one of the suffixes, and the folders, that begin so."""
+    folder, _, begin = prefix.rpartition("/")
+    try:
+        entries = sorted(os.scandir(f"{folder}/" if "/" in prefix else "."), key=lambda entry: entry.name)
+    except OSError:
+        return
+    for entry in entries:
+        if entry.name.startswith(begin) and (begin or not entry.name.startswith(".")):
+            path = f"{folder}/{entry.name}" if "/" in prefix else entry.name
+            if entry.is_dir():
+                yield f"{path}/"
+            elif entry.name.endswith(suffixes):
+                yield path
+
+
+def mission_files(prefix: str, **_: Any) -> Iterator[str]:
+    """Yield mission files."""
+    return files(prefix, ".mission")
+
+
+def missions(prefix: str, **_: Any) -> Iterator[str]:
+    """Yield mission files, and the missions that ship."""
+    from specs.missions import shipped_missions  # noqa: PLC0415
+
+    yield from mission_files(prefix)
+    if "/" not in prefix:
+        yield from shipped_missions()
+
+
+def systems(prefix: str, **_: Any) -> Iterator[str]:
+    """Yield files of bigraphs, and the examples that ship."""
+    from bigraphs.examples import example_names  # noqa: PLC0415
+
+    yield from files(prefix, ".big", ".bgm")
+    yield from example_names()
+
+
+def codes(**_: Any) -> list[str]:
+    """Return the codes of diagnostics."""
+    from specs.codes import Code  # noqa: PLC0415
+
+    return sorted(code.number for code in Code)
+
+
+def named_by(pattern: str) -> Completer:
+    """Return a completer of what a pattern finds in the mission on the line, or in those here."""
+
+    def complete_names(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
+        texts = (text_of(path) for path in missions_on(parsed_args))
+        return sorted({name for text in texts for name in re.findall(pattern, text, re.MULTILINE)})
+
+    return complete_names
+
+
+def missions_on(line: argparse.Namespace) -> list[Path]:
+    """Return the mission that a line names, or without one the missions in this folder."""
+    from specs.missions import shipped_missions  # noqa: PLC0415
+
+    word = getattr(line, "file", None) or getattr(line, "mission", None)
+    if word is None:
+        return sorted(Path().glob("*.mission"))
+    return [path if (path := Path(word)).is_file() else shipped_missions().get(word, path)]
+
+
+def text_of(path: Path) -> str:
+    """Return the beginning of a mission's text, empty where it cannot be read."""
+    try:
+        with path.open(encoding="utf-8", errors="replace") as file:
+            return file.read(MOST_BYTES)
+    except OSError:
+        return ""
+
+
+ENTITY: Final = r"^\s*(\w+)\s*:\s*\w+\s*(?:=|carried|absent)"
+POSITIONAL: Final[dict[str, Completer]] = {
+    "check": missions,
+    "show": missions,
+    "simulate": missions,
+    "run": missions,
+    "fmt": mission_files,
+    "big": systems,
+}
+BY_METAVAR: Final[dict[str, Completer]] = {
+    "AGENT": named_by(r"^\s*BigActor\s+(\w+)"),
+    "CODE": codes,
+    "FORMAT:FILE": lambda **_: [f"{name}:" for name in FORMATS],
+    "NAMES": lambda **_: [*REDUCTIONS, ",".join(REDUCTIONS)],
+    "NAME=FILE": named_by(r'\bfrom\s+"([^"\n]+)"'),
+    "PLACE": named_by(ENTITY),
+    "VEHICLE": named_by(ENTITY),
+}

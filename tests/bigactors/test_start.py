@@ -1,0 +1,103 @@
+"""What a command loads before it answers: the time that it takes to start, as something that can be counted."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+KNOWN = {
+    *(
+        "aiohttp",
+        "cryptography",
+        "hypothesis",
+        "lark",
+        "lazy_loader",
+        "llvmlite",
+        "matplotlib",
+        "mcap",
+        "networkx",
+        "numba",
+    ),
+    *("numpy", "pyais", "pymavlink", "pyproj", "ray", "scipy", "shapely", "zenoh"),
+}
+SCRIPT = """
+import contextlib, io, json, sys
+before = set(sys.modules)
+from bigactors.cli import main
+with contextlib.redirect_stdout(io.StringIO()):
+    code = main(sys.argv[1:])
+print(json.dumps([code, sorted(set(sys.modules) - before)]))
+"""
+MISSION = """
+signature { kind Location contains UAV  kind UAV driven }
+world { a: Location = box (0, 0) (1, 1)  u: UAV = point (0.5, 0.5) }
+BigActor pilot hosted_at u with_behavior { observe(ALL) }
+"""
+
+
+@pytest.fixture
+def start(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "m.mission").write_text(MISSION)
+
+    def start(*line):
+        done = subprocess.run(
+            [sys.executable, "-c", SCRIPT, *line], capture_output=True, text=True, check=True
+        )
+        code, modules = json.loads(done.stdout)
+        assert code == 0, done.stderr
+        return set(modules)
+
+    return start
+
+
+def libraries(modules):
+    """Return the libraries among them that the project names itself."""
+    return {name.split(".")[0] for name in modules} & KNOWN
+
+
+@pytest.mark.parametrize("line", [["--help"], ["check", "--help"], ["--version"]])
+def test_help_loads_nothing(start, line):
+    assert libraries(start(*line)) == set()
+
+
+def test_explain_loads_the_codes_alone(start):
+    loaded = start("explain", "LS201")
+    assert libraries(loaded) == {"lazy_loader"}
+    assert not loaded & {"specs.syntax", "specs.grammar", "semantics.state.configuration"}
+
+
+def test_fmt_loads_the_parser_and_no_meaning(start):
+    loaded = start("fmt", "--stdout", "m.mission")
+    assert libraries(loaded) == {"lazy_loader", "lark"}
+    assert not loaded & {"specs.elaboration", "semantics.state.configuration", "physical.shape", "checker"}
+
+
+def test_a_check_of_a_small_mission_loads_no_compiler(start):
+    loaded = start("check", "m.mission")
+    assert libraries(loaded) == {"lazy_loader", "lark", "numpy", "pyproj", "shapely"}
+    assert not loaded & {
+        "adapters",
+        "bigactors.signatures",
+        "checker.engines.fast",
+        "checker.engines.cluster.ray_crew",
+        "checker.properties.temporal",
+        "checker.reduction.reducer",
+        "checker.reports.sarif",
+        "physical.ais_reports",
+        "xml",
+    }
+
+
+def test_compiled_loops_load_no_more_than_numba(start):
+    loaded = start("check", "--engine", "fast", "m.mission")
+    small = {"lazy_loader", "lark", "numpy", "pyproj", "shapely"}
+    assert libraries(loaded) == small | {"llvmlite", "numba", "scipy"}
+    assert not loaded & {
+        "checker.reduction.reducer",
+        "checker.engines.fast.crosscheck",
+        "checker.engines.fast.ample",
+    }
