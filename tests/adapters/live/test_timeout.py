@@ -81,7 +81,9 @@ def test_each_turn_of_a_loop_waits_anew():
 
 def test_a_recorded_wait_replays_without_a_clock(tmp_path):
     path, run = tmp_path / "run.mcap", Run(plan_of(TOUR + WAIT))
-    recorder = Recorder(path, {"mission": "tour.mission", "text": TOUR + WAIT, "digest": "", "version": "0"}, 0.0)
+    recorder = Recorder(
+        path, {"mission": "tour.mission", "text": TOUR + WAIT, "digest": "", "version": "0"}, 0.0
+    )
     for now in (0.0, 10.0):
         recorder.turn(run.turn(now), now, lambda _finding: ())
     recorder.close("done", 10.0)
