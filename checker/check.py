@@ -171,7 +171,7 @@ class _Check:
         self.owned = asked and owned(initial)
         self.searching = asked and not self.owned
         self.remembered: Exploration | None = None
-        self.temporal = tuple(each for each in self.properties if each.kind.is_of_runs)
+        self.temporal = tuple(each for each in self.properties if each.is_of_runs)
         self.decider: Decider | None = None
 
     def run(self, notes: tuple[str, ...], whole: Limits) -> Report:
@@ -239,7 +239,9 @@ class _Check:
             case PropertyKind.INVARIANT:
                 return self.decide_invariant(asked)
             case PropertyKind.DEADLOCK_FREEDOM:
-                return self.decide_deadlock(asked)
+                literal = self.decide_deadlock(asked)
+                fair = asked.fairness and literal.outcome is Outcome.VIOLATED
+                return self.decide_temporal(asked) if fair else literal
             case PropertyKind.ARRIVAL:
                 note = "flights declared to arrive are fair" if self.found.rules["commit"] else ""
                 return self.verdict(asked, self.collected(asked.kind), note)
@@ -262,7 +264,7 @@ class _Check:
 
         try:
             if self.decider is None:
-                self.decider = Decider(self.found, self.temporal)
+                self.decider = Decider(self.found, self.temporal, self.most)
             return self.decider.decide(asked)
         except BoundMet as met:
             return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {met.bound} was met")
@@ -282,7 +284,7 @@ class _Check:
             collected.examined,
             witness,
             note,
-            len(collected.different),
+            collected.different,
             self.vacuous(asked, outcome, collected.examined),
         )
 
@@ -321,7 +323,7 @@ class _Check:
         violations = self.violations(self.races.collected, self.found)
         if self.remembered is None:
             outcome = Outcome.VIOLATED if violations else Outcome.INCOMPLETE
-            count, different = self.races.collected.count, len(self.races.collected.different)
+            count, different = self.races.collected.count, self.races.collected.different
             note = "not searched to the end"
             return Verdict(asked, outcome, violations, count, note=note, different=different)
         control, stale = self.races.collected, self.stale.collected
@@ -329,7 +331,7 @@ class _Check:
         outcome = self.outcome(bool(violations), self.found, self.remembered)
         witness = None if violations else self.witness(stale, self.remembered)
         shown = _shown(violations, self.most)
-        different = len(control.different) + len(stale.different)
+        different = control.different + stale.different
         count, examined = control.count + stale.count, control.examined + stale.examined
         searched = f"{len(self.remembered.configurations):,}"
         reduced = ", reduced by por" if self.remembered.reducer else ""
@@ -350,7 +352,12 @@ class _Check:
     def violations(self, collected: Collected, found: Exploration) -> tuple[Violation, ...]:
         return tuple(
             Violation(
-                each.kind, told(each.message), trace, tuple(map(told, each.details)), told(each.subject)
+                each.kind,
+                told(each.message),
+                trace,
+                tuple(map(told, each.details)),
+                told(each.subject),
+                collected.alike(each),
             )
             for each in collected.chosen()
             for trace, told in [(trace_to(found, each.at, each.by), _teller(found, each.at))]

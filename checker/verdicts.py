@@ -32,6 +32,7 @@ class Violation:
         trace: A shortest run that ends in it.
         details: More lines.
         subject: What it is about, such as a request; empty where the property itself says that.
+        alike: How many others there are of that kind that come from the same places in the mission's text.
     """
 
     kind: str
@@ -39,6 +40,12 @@ class Violation:
     trace: Trace
     details: tuple[str, ...] = ()
     subject: str = ""
+    alike: int = 0
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """The details, and how many others are alike."""
+        return (*self.details, *([f"and {self.alike:,} alike"] if self.alike else []))
 
     def __repr__(self) -> str:
         return f"<Violation {cut(self.kind)} steps={len(self.trace)}: {cut(self.message)}>"
@@ -51,7 +58,7 @@ class Verdict:
     Attributes:
         property: The property.
         outcome: Whether it holds.
-        violations: One for each kind and subject, the shortest trace first, as far as they are shown.
+        violations: One of those that are alike, the shortest trace first, as far as they are shown.
         count: How often a violation was met, in whichever configuration.
         examined: How many things the property was about were found good; 0 makes a verdict vacuous.
         witness: A trace to one of them, where something holds; None also where none was looked for.

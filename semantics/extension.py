@@ -5,10 +5,10 @@ Written like the seven rules.
 
 from collections.abc import Iterator
 
-from semantics.behaviours.computation import bind_parameters, enter_case
+from semantics.behaviours.computation import bind_parameters, enter_case, first_fitting
 from semantics.behaviours.expressions import Fault, evaluated, name_in
 from semantics.behaviours.patterns import looks_into
-from semantics.behaviours.statements import Migrate, React, Send, Spawn
+from semantics.behaviours.statements import Case, Migrate, React, Send, Spawn
 from semantics.behaviours.stepping import (
     continuing,
     joining,
@@ -21,12 +21,12 @@ from semantics.behaviours.stepping import (
 )
 from semantics.behaviours.values import Value, show
 from semantics.environment import Clause, Says
-from semantics.races.provenance import NOTHING, deciding, held, told_because
+from semantics.races.provenance import NOTHING, Provenance, deciding, held, told_because
 from semantics.races.relevance import told_ever
 from semantics.rules import Rule
 from semantics.state.cells import Changes
 from semantics.state.configuration import Configuration, Label, Transition
-from semantics.state.requests import MGR, SND
+from semantics.state.requests import MGR, READY, SND
 from semantics.state.signature import Name
 
 MOST_AGENTS = 64
@@ -96,12 +96,51 @@ def rcv_msg(c: Configuration, a: Name) -> Iterator[Transition]:
         process = process_of(c, a)
         passed = deciding(rests_on if looked_into else told_because(rests_on))
         here = process.leave() | passed
-        process.passing(passed)  # what follows waits for the message
-        if not enter_case(process, statement.cases, message, rests_on, here):  # premise: a case for it
+        goes_on = statement.after is not None
+        process.passing(NOTHING if goes_on else passed)  # what follows waits for the message
+        if not enter_case(
+            process, statement.cases, message, rests_on, here, goes_on=goes_on
+        ):  # premise: a case for it
             continue
         taken = c.with_(c.alpha.taking(a, position))
         target = taken.with_(continuing(taken, process))
         yield Transition(Label("rcv_msg", a, f"react({show(message, frozenset())})"), target)
+
+
+def timeout(c: Configuration, a: Name) -> Iterator[Transition]:
+    """Stop waiting: nothing that a case takes has come. What has come stays where it is.
+
+    a is at a react with a branch after d
+    no case takes a READY(a, q, L_q) ∈ η, in line, or an m ∈ mailbox(a)
+    ───────────────────────────────────────────────────────────────  ⟨timeout : a, after d⟩
+    ⟨α | S | η⟩  →  ⟨α[a ↦ a′] | S | η⟩
+    """
+    statement = next_statement(c, a)
+    if not isinstance(statement, React) or statement.after is None:  # premise: a is at a react with after d
+        return
+    refused = _refused(c, a, statement.cases)
+    if refused is None:  # premise: no case takes anything
+        return
+    process = process_of(c, a)
+    process.enter(statement.after.body, process.leave() | refused)
+    yield Transition(Label("timeout", a, str(statement.after)), c.with_(continuing(c, process)))
+
+
+def _refused(c: Configuration, a: Name, cases: tuple[Case, ...]) -> Provenance | None:
+    """Return the guards that refuse all that an agent may receive; None where a case takes some of it, or fails."""
+    watch, tests = c.alpha.watch(a), NOTHING
+    mailbox = c.alpha.mailbox(a)
+    posted = zip(mailbox, watch.mailbox if watch else (NOTHING,) * len(mailbox), strict=True)
+    ready = ((p.request.observation, p.rests_on) for p in c.eta.ready(a) if isinstance(p.request, READY))
+    for value, rests_on in (*ready, *posted):
+        try:
+            rank, tried = first_fitting(process_of(c, a), cases, value, rests_on)
+        except Fault:  # told of where it is received
+            return None
+        if rank is not None:
+            return None
+        tests |= tried
+    return tests
 
 
 def req_mgr(c: Configuration, a: Name) -> Iterator[Transition]:
@@ -200,5 +239,5 @@ def say(c: Configuration, clause: Clause) -> Iterator[Transition]:
     yield Transition(label, c.with_(c.alpha.posting(clause.agent, clause.message), counted))
 
 
-EXTENSION: tuple[Rule, ...] = (req_snd, snd, rcv_msg, req_mgr, migrate, spawn)
+EXTENSION: tuple[Rule, ...] = (req_snd, snd, rcv_msg, timeout, req_mgr, migrate, spawn)
 """The rules of an agent that the extension adds; `say` stands apart, as `env` does."""

@@ -22,6 +22,7 @@ from semantics.behaviours.patterns import Anything, Elements, Exactly
 from semantics.behaviours.patterns import Pattern as CasePattern
 from semantics.behaviours.program import Behaviour, Program
 from semantics.behaviours.statements import (
+    After,
     Assign,
     Block,
     Call,
@@ -155,7 +156,8 @@ class _Writer:
         return ControlBy(command.name, (*before, to, *via))
 
     def write_react(self, scope: Variables, depth: int) -> Statement:
-        return React(self.cases(scope, depth))
+        cases = self.cases(scope, depth)
+        return React(cases, After(5.0, self.block(scope, depth)) if self.pick([False, False, True]) else None)
 
     def write_send(self, scope: Variables, _: int) -> Statement:
         return Send(self.expression(scope), Literal(self.pick(AGENT_NAMES)))

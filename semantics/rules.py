@@ -91,8 +91,9 @@ def rcv_obs(c: Configuration, a: Name) -> Iterator[Transition]:
         process = process_of(c, a)
         here = process.leave()
         seen = pending.request.observation
-        if not enter_case(process, statement.cases, seen, pending.rests_on, here):  # premise: a case for it
-            continue
+        goes_on = statement.after is not None
+        if not enter_case(process, statement.cases, seen, pending.rests_on, here, goes_on=goes_on):
+            continue  # premise: a case for it
         target = c.with_(continuing(c, process), c.eta.removing(pending))
         yield Transition(Label("rcv_obs", a, Received(seen)), target)
 

@@ -14,6 +14,7 @@ from specs.building import (
     Mistake,
     Part,
     cover,
+    decimal,
     name,
     names,
     nodes,
@@ -52,7 +53,23 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
         return s.Control(c[2], span=cover(c))
 
     def react(self, c: Children) -> s.React:
-        return s.React(nodes(c), span=cover(c))
+        cases = tuple(each for each in c if isinstance(each, s.Case))
+        branches = [each for each in c if isinstance(each, s.After)]
+        if len(branches) > 1:
+            _refuse_after(
+                branches[1],
+                "a second 'after' branch",
+                "leave it out: a react waits as long as the first says",
+            )
+        if branches and c[-2] is not branches[0]:
+            _refuse_after(branches[0], "an 'after' branch before a case", "write it behind all cases")
+        return s.React(cases, branches[0] if branches else None, span=cover(c))
+
+    def after(self, c: Children) -> s.After:
+        return s.After(c[1], nodes(c[3:]), span=cover(c))
+
+    def duration(self, c: Children) -> s.Duration:
+        return s.Duration(decimal(None, c[0]), str(c[1]), span=cover(c))
 
     def send(self, c: Children) -> s.Send:
         if c[3] is not None:
@@ -221,6 +238,10 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
     def group(self, c: Children) -> s.Expression:
         expression: s.Expression = c[1]
         return expression
+
+
+def _refuse_after(branch: s.After, message: str, hint: str) -> None:
+    raise Mistake(Diagnostic(Code.MISPLACED_AFTER, branch.span, message, hint))
 
 
 def _literal(c: Children) -> s.TextLiteral | s.IntegerLiteral | s.TruthLiteral:

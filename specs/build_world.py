@@ -187,6 +187,9 @@ class BuildWorld(Transformer[Token, s.Mission]):
     def standard_property(self, c: Children) -> s.StandardProperty:
         return s.StandardProperty(str(c[0]), span=cover(c))
 
+    def fair_deadlock_freedom(self, c: Children) -> s.FairDeadlockFreedom:
+        return s.FairDeadlockFreedom(c[2].value, c[1], span=cover(c))
+
     def invariant(self, c: Children) -> s.Invariant:
         return s.Invariant(c[1], c[3], span=cover(c))
 
@@ -221,9 +224,6 @@ class BuildWorld(Transformer[Token, s.Mission]):
         request = None if c[0] is None else str(c[0])
         agent = name(c[1]) if c[1].type == "NAME" else None
         return s.TimeLimit(request, agent, c[3], option("fallback", c[5], FALLBACKS), span=cover(c))
-
-    def duration(self, c: Children) -> s.Duration:
-        return s.Duration(decimal(None, c[0]), str(c[1]), span=cover(c))
 
     # --- formulas
 

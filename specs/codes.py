@@ -112,9 +112,9 @@ class Code(Enum):
     )
     MISSING_ARROW = (
         "LS107",
-        "case without '=>'",
+        "branch without '=>'",
         """A case is written `case pattern => statements`, with a guard `case pattern if condition =>
-        statements`.""",
+        statements`, and the branch behind all cases of a `react` `after 10 min => statements`.""",
     )
     SINGLE_EQUALS = (
         "LS108",
@@ -170,8 +170,9 @@ class Code(Enum):
     )
     MISSING_UNIT = (
         "LS118",
-        "length without a unit",
-        """Lengths are in metres or kilometres: `400 m`, `1.5 km`.""",
+        "number without a unit",
+        """Lengths are in metres or kilometres: `400 m`, `1.5 km`. Durations are in seconds, minutes or hours: `90 s`,
+        `10 min`, `1.5 h`.""",
     )
     MISPLACED_STATEMENT = (
         "LS119",
@@ -221,6 +222,11 @@ class Code(Enum):
         "LS127",
         "'VIA' where nothing travels",
         f"""Only what travels has a way: {_WAYS}. VIA stands once, behind the destination.""",
+    )
+    MISPLACED_AFTER = (
+        "LS128",
+        "misplaced 'after' branch",
+        """A `react` has at most one `after` branch, behind all its cases: `after 10 min => statements`.""",
     )
     # --- LS2: names and kinds
     UNKNOWN_NAME = (
@@ -470,7 +476,8 @@ class Code(Enum):
     BAD_TIME_LIMIT = (
         "LS612",
         "time limit out of bounds",
-        """A time limit of the `live` section is more than zero, and at most a week.""",
+        """The time that a `react` waits before its `after` branch, and a time limit of the `live` section, are more
+        than zero, and at most a week.""",
     )
 
     EMPTY_MISSION = (

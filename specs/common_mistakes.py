@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable
 from typing import Final
 
 from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS, VIA, WAY
+from semantics.behaviours.statements import UNITS
 from specs.building import ANGLES
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
@@ -24,6 +25,10 @@ _GEOMETRIES: Final = frozenset({"point", "box", "polygon", "circle"})
 _QUOTES: Final = "'`\u2018\u2019\u201c\u201d\u201e\u00ab\u00bb"
 _ANGLE_MARKS: Final = tuple("°º'′’\"″”")
 _COMPARISONS: Final = frozenset({"==", "!=", "<", "<=", ">", ">=", "in", "not"})
+_UNITS: Final = (
+    (("m", "km"), "write 400 m or 1.5 km"),
+    (tuple(reversed(UNITS)), "write 90 s, 10 min or 1.5 h"),
+)
 _SYMBOL: Final = re.compile(r"[\w\s\"()\[\]{},;:.=<>!&|+\-]")
 _CLOSE: Final = 0.7
 
@@ -99,7 +104,7 @@ def misspelt_word(at: Situation) -> Diagnostic | None:
 def misspelt_word_before(at: Situation) -> Diagnostic | None:
     """`raect { ... }`: a name could stand there, but what follows fits no name."""
     if at.accepted == {"=", "("}:
-        return _misspelt(at.before, STATEMENTS)
+        return _misspelt(at.before, STATEMENTS | {"case", "after"})
     if at.accepted == {")"} and at.found.text == "(":
         return _misspelt(at.before, QUERY_WORDS)
     if at.accepted == {"("}:
@@ -146,9 +151,9 @@ def misplaced_via(at: Situation) -> Diagnostic | None:
 def missing_arrow(at: Situation) -> Diagnostic | None:
     """`case obs: Observation display(obs)`."""
     if "=>" in at.accepted:
-        return at.mistake(
-            Code.MISSING_ARROW, f"expected '=>' before {at.found.shown}", "write case pattern => statements"
-        )
+        waits = at.before.text in UNITS
+        hint = "write after 10 min => statements" if waits else "write case pattern => statements"
+        return at.mistake(Code.MISSING_ARROW, f"expected '=>' before {at.found.shown}", hint)
     return None
 
 
@@ -162,11 +167,11 @@ def chained_comparison(at: Situation) -> Diagnostic | None:
 
 
 def missing_unit(at: Situation) -> Diagnostic | None:
-    """`radius 400`."""
-    if {"m", "km"} <= at.accepted:
-        return at.mistake(
-            Code.MISSING_UNIT, f"expected 'm' or 'km', found {at.found.shown}", "write 400 m or 1.5 km"
-        )
+    """`radius 400`, or `after 10`."""
+    for units, hint in _UNITS:
+        if set(units) <= at.accepted:
+            message = f"expected {', '.join(map(repr, units[:-1]))} or '{units[-1]}', found {at.found.shown}"
+            return at.mistake(Code.MISSING_UNIT, message, hint)
     return None
 
 

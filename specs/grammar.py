@@ -54,7 +54,7 @@ RESERVED: Final = (
     | OPERATION_WORDS
     | QUERY_WORDS
     | COMMAND_WORDS
-    | frozenset(["case", "else", "hosted_at", "with_behavior", "to", "at", "says", "someone"])
+    | frozenset(["case", "after", "else", "hosted_at", "with_behavior", "to", "at", "says", "someone"])
 )
 
 

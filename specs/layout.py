@@ -131,6 +131,14 @@ def _case(layout: Layout, node: s.Case) -> None:
     _arrow(layout, node.span, f"case {write(node.pattern)}{guard} =>", node.body)
 
 
+def _after(layout: Layout, node: s.After) -> None:
+    _arrow(layout, node.span, f"after {duration(node.duration)} =>", node.body)
+
+
+def _react(layout: Layout, node: s.React) -> None:
+    layout.block(node.span, ["react"], (*node.cases, *([node.after] if node.after else [])))
+
+
 def _alternative(layout: Layout, node: s.Alternative) -> None:
     _arrow(layout, node.span, "case =>", node.body)
 
@@ -179,12 +187,14 @@ def _head(node: s.Node) -> str:
 _BLOCKS: Final[dict[type[s.Node], Callable[..., None]]] = {
     s.If: _if,
     s.Case: _case,
+    s.React: _react,
+    s.After: _after,
     s.Alternative: _alternative,
     **{
         sort: _block(_head, "body")
         for sort in (s.BigActor, s.Definition, s.While, s.For, s.ChooseFrom, s.Loop)
     },
-    **{sort: _block(_head, "cases") for sort in (s.React, s.Match)},
+    s.Match: _block(_head, "cases"),
     s.Choose: _block(_head, "alternatives"),
     s.Signature: _signature,
     s.World: _block(_head, "entries"),
@@ -276,7 +286,12 @@ def _returning(node: s.Drops | s.Leaves) -> str:
 def _time_limit(node: s.TimeLimit) -> str:
     kind = f"{node.request} " if node.request else ""
     who = write(node.agent) if node.agent else "anyone"
-    return f"{kind}{who} within {decimal(node.limit.value)} {node.limit.unit}: {node.fallback}"
+    return f"{kind}{who} within {duration(node.limit)}: {node.fallback}"
+
+
+def duration(node: s.Duration) -> str:
+    """Return the text of a duration."""
+    return f"{decimal(node.value)} {node.unit}"
 
 
 def _spawn(node: s.Spawn) -> list[str]:
@@ -294,6 +309,10 @@ def write_call(node: s.Call) -> str:
 def _temporal(node: s.TemporalProperty) -> list[str]:
     head = [node.logic, write(node.label), *_under(node.fairness)]
     return [*head[:-1], f"{head[-1]}:", write(node.formula)]
+
+
+def _named(word: str, node: s.FairDeadlockFreedom | s.Progress) -> list[str]:
+    return [f"{word} {write(node.label)}" if node.label else word, *_under(node.fairness)]
 
 
 def _under(fairness: Sequence[s.Fairness]) -> list[str]:
@@ -330,10 +349,8 @@ _PIECES: Final[dict[type[s.Node], Callable[..., list[str]]]] = {
     s.Invariant: lambda node: [f"invariant {write(node.label)}:", write(node.formula)],
     s.Reachable: lambda node: [f"reachable {write(node.label)}:", write(node.formula)],
     s.TemporalProperty: _temporal,
-    s.Progress: lambda node: [
-        f"progress {write(node.label)}" if node.label else "progress",
-        *_under(node.fairness),
-    ],
+    s.FairDeadlockFreedom: lambda node: _named("deadlock_freedom", node),
+    s.Progress: lambda node: _named("progress", node),
     s.Observe: lambda node: [f"observe({write(node.query)})"],
     s.Control: lambda node: [f"control({write(node.action)})"],
     s.Send: lambda node: [f"send {write(node.message)} to {write(node.recipient)}"],

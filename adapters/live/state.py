@@ -96,6 +96,7 @@ class LiveState:
         lost: Vehicles whose link is lost.
         taken: Vehicles that were taken over, and how: they get no commands until an operator gives them back.
         idle: Agents without own steps: they wait for an observation, a message, or for ever.
+        due: When each agent at a `react` with an `after` branch stops waiting.
         quiet: The configuration in which nothing more could be served, None if that is not known.
         heads: The head of each agent's line.
         paces: The pace of each agent.
@@ -118,6 +119,7 @@ class LiveState:
     lost: frozenset[Name] = frozenset()
     taken: Mapping[Name, str] = field(default_factory=dict)
     idle: frozenset[Name] = frozenset()
+    due: Mapping[Name, float] = field(default_factory=dict)
     quiet: Configuration | None = None
     heads: Mapping[Name, Waiting] = field(default_factory=dict)
     paces: Mapping[Name, Pace] = field(default_factory=dict)
@@ -139,7 +141,8 @@ class LiveState:
         """Return the state with all ages and waiting times shifted by a time without listening."""
         seen = {name: replace(each, until=each.until + seconds) for name, each in self.seen.items()}
         heads = {name: replace(each, since=each.since + seconds) for name, each in self.heads.items()}
-        return self.with_(seen=seen, expires=self.expires + seconds, heads=heads)
+        due = {agent: at + seconds for agent, at in self.due.items()}
+        return self.with_(seen=seen, expires=self.expires + seconds, heads=heads, due=due)
 
 
 # --- what comes in ------------------------------------------------------------------------------------

@@ -13,8 +13,11 @@ from adapters.live.sightings import Fences, placement_seen
 from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Outgoing, Pace, Plan, Turn
 from adapters.plugin import Command, HandOver, Hold, Return
 from semantics.behaviours.expressions import Fault
+from semantics.behaviours.statements import React
+from semantics.behaviours.stepping import next_statement
 from semantics.contingencies import Fallback
 from semantics.control import Realisation, obstacle, realisations
+from semantics.extension import timeout
 from semantics.observed_steps import Sight
 from semantics.state.configuration import Transition
 from semantics.state.eta import Pending
@@ -52,6 +55,7 @@ class Turning:
         self.lost = set(state.lost)
         self.taken = dict(state.taken)
         self.idle = set(state.idle)
+        self.due = dict(state.due)
         self.heads = dict(state.heads)
         self.paces = dict(state.paces)
         self.suspended = state.suspended
@@ -85,6 +89,7 @@ class Turning:
             frozenset(self.lost),
             self.taken,
             frozenset(self.idle),
+            self.due,
             self.quiet,
             self.heads,
             self.paces,
@@ -135,6 +140,8 @@ class Turning:
         agent, request = transition.label.agent, transition.label.about
         if agent is not None:
             self.idle.discard(agent)
+        if agent is not None and transition.served is None:
+            self.due.pop(agent, None)
         if agent is not None and transition.served is not None and not isinstance(request, SND):
             self.heads.pop(agent, None)
         if isinstance(request, SND):
@@ -175,6 +182,11 @@ class Turning:
 
     def go_on(self, most: int) -> None:
         """Let every agent take a step in turn and serve one request, until nothing more can be done now."""
+        for a, due in self.due.items():
+            if due > self.now:
+                self.wake(due)
+            else:
+                self.idle.discard(a)
         left = most
         while left > 0:
             taken = self._own_steps(left)
@@ -204,7 +216,7 @@ class Turning:
             self.wake(self.now + max(PATIENCE, (1 - pace.tokens) / STEPS_PER_SECOND))
             return False
         try:
-            found = own_steps(self.c, a)
+            found = own_steps(self.c, a) or self._timeout(a)
         except Fault as fault:
             self.failed.add(a)
             self.find("failed", a, f"the computation of {a} fails: {fault}")
@@ -215,6 +227,21 @@ class Turning:
         self.paces[a] = Pace(pace.tokens - 1, self.now)
         self.take(found[(self.before.number + len(self.steps)) % len(found)], found)
         return True
+
+    def _timeout(self, a: Name) -> tuple[Transition, ...]:
+        """Return the timeout of an agent that has waited long enough; note until when another waits."""
+        found = tuple(timeout(self.c, a))
+        if not found:
+            self.due.pop(a, None)
+            return ()
+        react = next_statement(self.c, a)
+        assert isinstance(react, React)
+        assert react.after is not None
+        due = self.due.setdefault(a, self.now + react.after.seconds)
+        if self.now < due:
+            self.wake(due)
+            return ()
+        return found
 
     def serve(self) -> bool:
         """Serve the first request that can be served, oldest first."""

@@ -90,7 +90,10 @@ class _Explorer:
             self.missing(number)
         else:
             self.found.allowed += len(expansion.transitions)
-            for transition in self.chosen(number, configuration, expansion):
+            chosen = self.chosen(number, configuration, expansion)
+            if len(chosen) < len(expansion.transitions):
+                self.missing(number)
+            for transition in chosen:
                 self.follow(number, transition)
         if self.found.edges is not None:
             self.found.edges.close()

@@ -181,6 +181,8 @@ class Reached:
         """Return the gap of a branch: of a case at its line, of a test's outcome at the test's."""
         if isinstance(statement, React | Match | Choose):
             sort = "alternative" if isinstance(statement, Choose) else "case"
+            if isinstance(statement, React) and rank == len(statement.cases):
+                sort = "'after' branch"
             return Gap(self.program.branch_line(number, rank), "branch", f"this {sort} is never taken")
         message = {
             (If, 0): "this condition is never true",

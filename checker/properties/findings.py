@@ -1,6 +1,6 @@
 """Findings: the results of inspecting configurations, collected by kind and subject."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -18,12 +18,14 @@ class Seen(NamedTuple):
         by: The transition that it is about, if it is about one.
         message: What is wrong, in words.
         details: More lines; asked for only where they are told.
+        alike: What it has in common with what is alike; asked for only where something is wrong. None: nothing is.
     """
 
     wrong: Key | None = None
     by: Transition | None = None
     message: str = ""
     details: Callable[[], tuple[str, ...]] = tuple
+    alike: Callable[[], Hashable] = lambda: None
 
 
 MOST_VIOLATIONS = 5
@@ -41,6 +43,7 @@ class Finding:
         by: The transition that it is about, which belongs to the trace; None where it is about the configuration.
         details: More lines.
         subject: What it is about: a request, the requests that race, ...; empty where the property says that itself.
+        alike: What it has in common with those of its kind that are alike; None where none is.
     """
 
     kind: str
@@ -49,6 +52,17 @@ class Finding:
     by: Transition | None = None
     details: tuple[str, ...] = ()
     subject: str = ""
+    alike: Hashable = None
+
+    @property
+    def key(self) -> Key:
+        """Its kind and subject."""
+        return (self.kind, self.subject)
+
+    @property
+    def group(self) -> Hashable:
+        """What it has in common with those that are alike: its key if none is."""
+        return self.key if self.alike is None else (self.kind, self.alike)
 
 
 @dataclass(slots=True)
@@ -57,8 +71,10 @@ class Collected:
 
     Attributes:
         most: How many different ones are kept of each kind.
-        first: The first finding of each kind and subject, which has a shortest trace; of each kind `most` at the most.
-        different: Every kind and subject that was met.
+        first: The first of those that are alike, which has a shortest trace; of each kind `most` at the most.
+        met: Every kind and subject that was met.
+        groups: The same in groups of those that are alike.
+        apart: Whether each kind and subject is kept in `first`, however alike they are.
         count: How many findings there were in all.
         examined: How many things were looked at.
         example: Where one of them was looked at and found good: the last configuration, and what was done there.
@@ -67,21 +83,38 @@ class Collected:
 
     most: int = MOST_VIOLATIONS
     first: dict[Key, Finding] = field(default_factory=dict)
-    different: set[Key] = field(default_factory=set)
+    met: set[Key] = field(default_factory=set)
+    groups: dict[Hashable, set[Key]] = field(default_factory=dict)
+    apart: bool = False
     count: int = 0
     examined: int = 0
     example: int | None = None
     example_by: Transition | None = None
 
+    @property
+    def different(self) -> int:
+        """How many kinds and subjects were met."""
+        return len(self.met)
+
+    def alike(self, finding: Finding) -> int:
+        """Return how many others were met that are alike."""
+        return len(self.groups[finding.group]) - 1
+
     def add(self, finding: Finding) -> None:
-        """Count a finding, and keep it if it is the first of its kind and subject."""
+        """Count a finding, and keep it if it is the first of those that are alike."""
         self.count += 1
-        key = (finding.kind, finding.subject)
-        if key in self.different:
+        if finding.key in self.met:
             return
-        self.different.add(key)
+        self.met.add(finding.key)
+        group = self.groups.setdefault(finding.group, set())
+        group.add(finding.key)
+        if len(group) == 1 or self.apart:
+            self.keep(finding)
+
+    def keep(self, finding: Finding) -> None:
+        """Keep a finding unless there are enough of its kind."""
         if sum(kind == finding.kind for kind, _ in self.first) < self.most:
-            self.first[key] = finding
+            self.first[finding.key] = finding
 
     def note(self, number: int, seen: Seen) -> None:
         """Count what was seen in a configuration."""
@@ -89,7 +122,8 @@ class Collected:
             self.looked(number, seen.by)
         else:
             kind, subject = seen.wrong
-            self.add(Finding(kind, seen.message, number, seen.by, seen.details(), subject))
+            details, alike = ((), None) if seen.wrong in self.met else (seen.details(), seen.alike())
+            self.add(Finding(kind, seen.message, number, seen.by, details, subject, alike))
 
     def looked(self, number: int, by: Transition | None = None) -> None:
         """Count something that was looked at; the first is kept as an example."""

@@ -6,6 +6,8 @@ from itertools import chain
 from operator import itemgetter
 from typing import ClassVar, NamedTuple
 
+from checker.properties.causes import causes
+from checker.properties.control_sites import common_sites
 from checker.properties.findings import MOST_VIOLATIONS, Collected, Key, Seen
 from checker.properties.vacuity import Valuations
 from semantics.behaviours.expressions import Fault
@@ -68,7 +70,7 @@ class Inspection:
         """Look at a configuration."""
         whole = Excerpt(c, c.alpha.names(), expansion)
         still = self.still(whole)
-        for seen in chain(self.seen(whole), () if still is None else self.judged(still)):
+        for seen in chain(self.seen(whole), () if still is None else self.judged(still, c)):
             self.collected.note(number, seen)
 
     def concerns(self, _: Setting) -> bool:
@@ -83,7 +85,7 @@ class Inspection:
         """Return in words what some agents wait for, None where one of them must move."""
         return None
 
-    def judged(self, _: Iterable[Wait]) -> Iterator[Seen]:
+    def judged(self, _: Iterable[Wait], __: Configuration | None = None, /) -> Iterator[Seen]:
         """Yield what is seen where no agent must move, by what all of them wait for."""
         yield from ()
 
@@ -104,7 +106,13 @@ class LocalConsistency(Inspection):
 
 def _hindered(c: Configuration, request: CTR | FLY, by: Obstacle) -> Seen:
     message = f"{request} is {by.value}: {WORDS[by]}"
-    return Seen((by.value, str(request)), None, message, partial(disagreements, c, request))
+    return Seen(
+        (by.value, str(request)),
+        None,
+        message,
+        partial(disagreements, c, request),
+        lambda: common_sites(c, request),
+    )
 
 
 def disagreements(c: Configuration, request: CTR | FLY) -> tuple[str, ...]:
@@ -140,11 +148,12 @@ class DeadlockFreedom(Inspection):
         failed = ((2 * LAST, f"{fault.agent} failed") for fault in of.steps.faults)
         return (*stuck_requests(of), *waiting_agents(of), *failed)
 
-    def judged(self, still: Iterable[Wait]) -> Iterator[Seen]:
+    def judged(self, still: Iterable[Wait], c: Configuration | None = None, /) -> Iterator[Seen]:
         """Yield a deadlock where anything is left to be done."""
         who = "; ".join(words for _, words in sorted(still, key=itemgetter(0)))
         message = f"nothing but the environment can move, and {who}"
-        yield Seen(("deadlock", who), None, message) if who else Seen()
+        left = tuple(sorted(who.split("; ")))
+        yield Seen(("deadlock", who), None, message, partial(_causes, c), lambda: left) if who else Seen()
 
 
 class Arrival(Inspection):
@@ -166,7 +175,7 @@ class Arrival(Inspection):
         fair = any(not is_unfair(of.c, step) for step in of.steps.by_agents)
         return None if fair else tuple((0, str(step.label)) for step in of.steps.by_agents)
 
-    def judged(self, still: Iterable[Wait]) -> Iterator[Seen]:
+    def judged(self, still: Iterable[Wait], _: Configuration | None = None, /) -> Iterator[Seen]:
         """Yield that flights need never end, if any is waited for."""
         waits = ", ".join(sorted({words for _, words in still}))
         if waits:
@@ -198,9 +207,16 @@ def stuck_requests(of: Excerpt) -> Iterator[Wait]:
 
 def waiting_agents(of: Excerpt) -> Iterator[Wait]:
     """Yield in words the agents that wait and are not at rest."""
-    for a in of.agents:
-        if is_waiting(of.c, a) and not is_at_rest(of.c, a):
-            yield LAST, f"{a} waits at a react"
+    yield from ((LAST, f"{a} waits at a react") for a in of.agents if is_stuck(of.c, a))
+
+
+def _causes(c: Configuration | None) -> tuple[str, ...]:
+    return () if c is None else tuple(causes(c, (a for a in c.alpha.names() if is_stuck(c, a))))
+
+
+def is_stuck(c: Configuration, a: Name) -> bool:
+    """Tell whether an agent waits and is not at rest."""
+    return is_waiting(c, a) and not is_at_rest(c, a)
 
 
 def is_waiting(c: Configuration, a: Name) -> bool:

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Set
 from itertools import combinations
 
+from checker.properties.control_sites import common_sites
 from checker.properties.findings import Seen
 from checker.properties.inspections import Excerpt, Inspection
 from semantics.control import applicable
@@ -28,13 +29,17 @@ class ControlRaces(Inspection):
     def between(self, of: Excerpt, pair: Set[Name] | None = None) -> Iterator[Seen]:
         """Yield every pair of controls, or those of one or two agents."""
         for one, other, problem in compared(of.c, enabled_controls(of.steps.enabled), pair):
-            yield Seen(by=one[0]) if problem is None else _race(problem, one[0], other[0])
+            yield Seen(by=one[0]) if problem is None else _race(of.c, problem, one[0], other[0])
 
 
-def _race(problem: tuple[str, str], one: Transition, other: Transition) -> Seen:
+def _race(c: Configuration, problem: tuple[str, str], one: Transition, other: Transition) -> Seen:
     message, about = problem
     return Seen(
-        ("control race", about), None, message, lambda: (f"enabled here: {one.label} and {other.label}",)
+        ("control race", about),
+        None,
+        message,
+        lambda: (f"enabled here: {one.label} and {other.label}",),
+        lambda: common_sites(c, _request(one), _request(other)),
     )
 
 
@@ -104,8 +109,9 @@ def serving(c: Configuration, request: Request) -> Iterator[Transition]:
                 yield transition
 
 
-def _request(transition: Transition) -> Request:
+def _request(transition: Transition) -> CTR | FLY:
     assert transition.served is not None
+    assert isinstance(transition.served.request, CTR | FLY)
     return transition.served.request
 
 
@@ -120,17 +126,18 @@ class StaleObservationRaces(Inspection):
         for step in of.steps.by_agents:
             if step.label.rule in CONTROLS and step.served is not None:
                 stale = is_stale(of.c, step.served)
-                yield _resting_on(stale[0], step.served.request, step) if stale else Seen(by=step)
+                yield _resting_on(of.c, stale[0], step) if stale else Seen(by=step)
 
 
-def _resting_on(stale: Dependency, request: Request, by: Transition) -> Seen:
+def _resting_on(c: Configuration, stale: Dependency, by: Transition) -> Seen:
+    request = _request(by)
     asked = " ".join(stale.asked or ())
     changed = "that answer" if stale.stale else "a relation that it uses"
     message = (
         f"{request} rests on '{asked}' of observe({stale.query}), "
         f"and another agent has changed {changed} since it was sensed"
     )
-    return Seen(("stale-observation race", str(request)), by, message)
+    return Seen(("stale-observation race", str(request)), by, message, alike=lambda: common_sites(c, request))
 
 
 def is_stale(c: Configuration, pending: Pending) -> tuple[Dependency, ...]:

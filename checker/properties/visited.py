@@ -10,7 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
-from semantics.behaviours.computation import Passage, Process, compute, enter_case
+from semantics.behaviours.computation import Passage, Process, compute, first_fitting
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.statements import React, at_internal
 from semantics.behaviours.stepping import scope_of
@@ -24,7 +24,7 @@ from semantics.state.setting import Setting
 from semantics.state.signature import Name
 from semantics.successors import Expansion
 
-COMPUTING = frozenset({"fun", "rcv_obs", "rcv_msg"})
+COMPUTING = frozenset({"fun", "rcv_obs", "rcv_msg", "timeout"})
 """The rules in which an agent passes over statements, or takes a case."""
 
 
@@ -121,18 +121,29 @@ def passages(setting: Setting, moment: Moment) -> Iterator[Passage]:
         return
     statement = setting.program.statements[moment.code[0]]
     if isinstance(statement, React):
-        for value in moment.heard:
-            process = _process(setting, moment)
-            process.leave()
-            with suppress(Fault):
-                enter_case(process, statement.cases, value, NOTHING, NOTHING)
-            yield from process.passed
+        yield from ((moment.code[0], rank) for rank in _ranks(setting, moment, statement))
     elif at_internal(statement):
         process = _process(setting, moment)
         with suppress(Fault):  # what was passed before it was passed all the same
             for _ in compute(process):
                 pass
         yield from process.passed
+
+
+def _ranks(setting: Setting, moment: Moment, react: React) -> Iterator[int]:
+    """Yield the ranks of the cases that take something; that of the `after` branch if none takes anything."""
+    waits = react.after is not None
+    for value in moment.heard:
+        try:
+            rank, _ = first_fitting(_process(setting, moment), react.cases, value, NOTHING)
+        except Fault:
+            waits = False
+            continue
+        if rank is not None:
+            waits = False
+            yield rank
+    if waits:
+        yield len(react.cases)
 
 
 def _process(setting: Setting, moment: Moment) -> Process:

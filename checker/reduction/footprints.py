@@ -113,10 +113,16 @@ class Footprints:
         return self.slots.footprint(merges=[("ready", agent), *(faults if unordered else ())])
 
     def wary(self, agent: Name, react: int) -> Footprint:
-        """Bound what may hinder a `react` later: a guard that fails on one message hides those after it."""
+        """Bound what may hinder a `react` later.
+
+        A guard that fails on one message hides those after it; whatever comes may end the wait for a timeout.
+        """
         statement = self.bounds.setting.program.statements[react]
-        guarded = isinstance(statement, React) and any(case.guard is not None for case in statement.cases)
-        return self.slots.footprint([("fault", agent, react)]) if guarded else NOTHING
+        assert isinstance(statement, React)
+        guarded = any(case.guard is not None for case in statement.cases)
+        faults: list[Slot] = [("fault", agent, react)] if guarded else []
+        comes: list[Slot] = [("mail", agent, react), ("ready", agent)] if statement.after else []
+        return self.slots.footprint([*faults, *comes])
 
     def spawn(self) -> Footprint:
         """Bound `spawn`, but for what the new agent does."""

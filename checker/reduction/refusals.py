@@ -33,8 +33,10 @@ class RefusedError(ValueError):
 
 def refusal(asked: Property) -> str | None:
     """Return why a property is not decided under reductions, None where it is."""
-    if asked.kind.about.reducible:
+    if asked.kind.about.reducible and not asked.is_of_runs:
         return None
+    if asked.kind.about.reducible:
+        return "it is not known to be kept under fairness"
     return f"it is not known to be kept for properties of the kind '{asked.kind}'"
 
 

@@ -80,7 +80,7 @@ def _found(verdict: Verdict) -> str:
         return times
     if verdict.different == shown:
         return f"{times}, {shown} different"
-    return f"{times}, {verdict.different:,} different, of which {shown} are shown"
+    return f"{times}, {verdict.different:,} different, of which {shown} {'is' if shown == 1 else 'are'} shown"
 
 
 def _examined(verdict: Verdict) -> str:
@@ -90,7 +90,7 @@ def _examined(verdict: Verdict) -> str:
 
 def _violation(violation: Violation, *, traces: bool) -> Iterator[str]:
     yield f"      {violation.kind}: {violation.message}"
-    yield from (f"        {detail}" for detail in violation.details)
+    yield from (f"        {detail}" for detail in violation.told)
     yield f"      {print_length(violation.trace)}{':' if traces else ''}"
     if traces:
         yield from (f"        {line}" for line in print_trace(violation.trace))
@@ -136,6 +136,7 @@ def _property_json(name: str, digest: str, verdict: Verdict) -> dict[str, Any]:
                 "subject": v.subject,
                 "message": v.message,
                 "details": list(v.details),
+                "alike": v.alike,
                 "shortest": v.trace.shortest,
                 "trace": trace(v.trace),
             }

@@ -137,7 +137,7 @@ class Result:
             violation_line(violation) or self.line_of(verdict),
             asked=self.line_of(verdict),
             identity=(asked.kind, asked.name, violation.kind, *filter(None, [violation.subject])),
-            details=violation.details,
+            details=violation.told,
             trace=violation.trace,
         )
 

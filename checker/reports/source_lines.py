@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Iterator
 
-from checker.properties.inspections import is_at_rest, is_waiting
+from checker.properties.inspections import is_stuck
 from checker.traces import Trace
 from checker.verdicts import Violation
 from semantics.state.configuration import Configuration, Label
@@ -66,7 +66,7 @@ def _line_of(c: Configuration, a: Name) -> int:
 def _troubled(violation: Violation, c: Configuration) -> Iterator[Name]:
     """Yield the agents that a violation without requests is about, in the order of its message."""
     if violation.kind == "deadlock":
-        yield from (a for a in c.alpha.names() if is_waiting(c, a) and not is_at_rest(c, a))
+        yield from (a for a in c.alpha.names() if is_stuck(c, a))
     if violation.kind in ("fails", "diverges", "deadlock"):
         yield from (fault.agent for fault in expand(c).faults if _is_about(violation, fault.agent, fault))
 

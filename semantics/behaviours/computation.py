@@ -262,31 +262,50 @@ def _step_for(process: Process, variable: str, rest: str, body: Block) -> None:
 
 
 def enter_case(
-    process: Process, cases: tuple[Case, ...], value: Value, rests_on: Provenance, here: Provenance
+    process: Process,
+    cases: tuple[Case, ...],
+    value: Value,
+    rests_on: Provenance,
+    here: Provenance,
+    *,
+    goes_on: bool = False,
 ) -> bool:
     """Enter the body of the first case whose pattern and guard take a value; False where none does.
 
-    The body rests on the guards that were tried; what the pattern binds, on what the value rests on.
+    The body rests on the guards that were tried; what the pattern binds, on what the value rests on. What follows rests
+    on the guards too, unless it `goes_on` without them.
     """
-    before = here
+    rank, tests = first_fitting(process, cases, value, rests_on)
+    if rank is None:
+        return False
+    process.scope.binding(bind(cases[rank].pattern, value) or {}, rests_on)
+    if not goes_on and not any(
+        each.guard is None and bind(each.pattern, value) is not None for each in cases
+    ):
+        process.passing(tests - here)
+    process.enter(cases[rank].body, here | tests)
+    process.took(rank)
+    return True
+
+
+def first_fitting(
+    process: Process, cases: tuple[Case, ...], value: Value, rests_on: Provenance
+) -> tuple[int | None, Provenance]:
+    """Return the rank of the first case whose pattern and guard take a value, and the guards that were tried."""
+    tests = NOTHING
     for rank, case in enumerate(cases):
         binding = bind(case.pattern, value)
         if binding is None:
             continue
-        trial = process.fork()
-        trial.scope.binding(binding, rests_on)
         if case.guard is not None:
+            trial = process.fork()
+            trial.scope.binding(binding, rests_on)
             verdict, guard = trial.evaluate(case.guard)
-            here |= deciding(guard)
+            tests |= deciding(guard)
             if not truth(verdict):
                 continue
-        process.scope.binding(binding, rests_on)
-        if not any(each.guard is None and bind(each.pattern, value) is not None for each in cases):
-            process.passing(here - before)
-        process.enter(case.body, here)
-        process.took(rank)
-        return True
-    return False
+        return rank, tests
+    return None, tests
 
 
 def bind_parameters(

@@ -81,6 +81,7 @@ class Program:
         lines: The line of the mission's text that each statement stands in (from 1), as far as there is one.
         branch_lines: The same of cases and alternatives, by statement and rank.
         declared: The line in which each rule and behaviour is declared, by sort (`rule`, `behaviour`) and name.
+        bodies: What each bigActor of the text begins with.
         watched: The variables that properties name: they are kept to the end of the run.
     """
 
@@ -90,6 +91,7 @@ class Program:
     lines: tuple[int, ...] = ()
     branch_lines: Mapping[tuple[int, int], int] = field(default_factory=dict)
     declared: Mapping[tuple[str, str], int] = field(default_factory=dict)
+    bodies: Mapping[Name, Block] = field(default_factory=dict)
     watched: frozenset[VariableOf] = frozenset()
 
     def __getstate__(self) -> dict[str, Any]:
@@ -178,8 +180,8 @@ def _reads(  # noqa: PLR0912  # one case for each kind of statement
             return NONE.union(*map(live, alternatives))
         case Match(value, cases):
             return free(value) | of_cases(cases)
-        case React(cases):
-            return of_cases(cases)
+        case React(cases, after):
+            return of_cases(cases) | (NONE if after is None else live(after.body))
         case _:
             return NONE
 
@@ -208,8 +210,8 @@ def leads_to(program: Program, statement: Statement) -> Iterator[int]:
             yield each
         case Choose(alternatives):
             yield from (number for block in alternatives for number in block)
-        case React(cases) | Match(_, cases):
-            yield from (number for case in cases for number in case.body)
+        case React() | Match():
+            yield from (number for block in branches(statement) for number in block)
         case Call(behaviour):
             yield from program.behaviours[behaviour].body
 

@@ -38,10 +38,34 @@ class Case:
 
 
 @dataclass(frozen=True, slots=True)
+class After:
+    """`after 10 min => body`: how long a `react` waits, and what is done then.
+
+    >>> print(After(600.0), After(90.0), After(0.5))
+    after 10 min after 90 s after 0.5 s
+    """
+
+    seconds: float  # no int: that would be the number of a statement
+    body: Block = ()
+
+    def __str__(self) -> str:
+        unit, seconds = next(each for each in UNITS.items() if self.seconds % each[1] == 0 or each[0] == "s")
+        return f"after {self.seconds / seconds:g} {unit}"
+
+
+UNITS = {"h": 3600, "min": 60, "s": 1}
+"""The units of durations, in seconds, the longest first."""
+
+
+@dataclass(frozen=True, slots=True)
 class React:
-    """`react { cases }`: for one observation or message the first case that fits takes it."""
+    """`react { cases after d => body }`: for one observation or message the first case that fits takes it.
+
+    Where none takes anything that is there, the `after` branch may be taken.
+    """
 
     cases: tuple[Case, ...]
+    after: After | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +205,9 @@ def branches(statement: Statement) -> tuple[Block, ...]:
     match statement:
         case If(_, then, otherwise):
             return (then, otherwise)
-        case React(cases) | Match(_, cases):
+        case React(cases, after):
+            return (*(case.body for case in cases), *(() if after is None else (after.body,)))
+        case Match(_, cases):
             return tuple(case.body for case in cases)
         case Choose(alternatives):
             return alternatives

@@ -24,7 +24,7 @@ class Property:
         formula: Of an invariant, or of what is to be reachable.
         line: Where it stands in the mission's text, from 1; 0 where it was not written.
         temporal: The formula of `ltl` and `ctl`.
-        fairness: Which runs count, for `ltl`, `ctl` and `progress`: all where it is empty.
+        fairness: Which runs count, for `ltl`, `ctl`, `progress` and `deadlock_freedom`: all where it is empty.
     """
 
     kind: PropertyKind
@@ -36,6 +36,11 @@ class Property:
 
     def __repr__(self) -> str:
         return f"<Property {cut(self.name)}{'' if self.name == self.kind else f' kind={self.kind}'}>"
+
+    @property
+    def is_of_runs(self) -> bool:
+        """Whether it is about runs: its kind is, or which runs count matters."""
+        return self.kind.is_of_runs or bool(self.fairness)
 
 
 def watched(properties: Iterable[Property]) -> frozenset[VariableOf]:

@@ -138,7 +138,8 @@ def elaborate_bodies(
         for key, span in names.spans.items()
         if key[0] in ("rule", "behaviour")
     }
-    return bodies, Program(statements, behaviours, reactions, lines, program.branch_lines, declared)
+    begun = {name: body.block for name, body in bodies.agents.items()}
+    return bodies, Program(statements, behaviours, reactions, lines, program.branch_lines, declared, begun)
 
 
 def _parameters(definition: s.Definition, names: Names) -> dict[str, str]:

@@ -51,7 +51,7 @@ def elaborate_checks(
         line = names.findings.source.line(item.span.start)
         if isinstance(item, s.StandardProperty):
             prop = Property(PropertyKind(item.name), item.name, line=line)
-        elif isinstance(item, s.TemporalProperty | s.Progress):
+        elif isinstance(item, s.TemporalProperty | s.Progress | s.FairDeadlockFreedom):
             prop = temporal.property(item, line)
         else:
             invariant = isinstance(item, s.Invariant)

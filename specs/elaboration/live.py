@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from semantics.contingencies import Fallback, Precautions, TimeLimit
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.names import Names
-
-LONGEST: Final = 7 * 24 * 3600.0
+from specs.elaboration.statements import check_duration
 
 
 def elaborate_live(mission: s.Mission, names: Names) -> Precautions:
@@ -27,11 +24,7 @@ def elaborate_live(mission: s.Mission, names: Names) -> Precautions:
 def _limit(node: s.TimeLimit, names: Names) -> TimeLimit:
     if node.agent is not None:
         names.agent(node.agent)
-    if not 0 < node.limit.seconds <= LONGEST:
-        message = f"a time limit of {node.limit.value:g} {node.limit.unit}"
-        names.findings.add(
-            Code.BAD_TIME_LIMIT, node.limit, message, "give it more than 0 s, and at most 168 h"
-        )
+    check_duration(node.limit, names.findings)
     agent = None if node.agent is None else node.agent.text
     return TimeLimit(node.request, agent, node.limit.seconds, Fallback(node.fallback))
 

@@ -30,6 +30,9 @@ from specs.elaboration.rules import elaborate_rule, word_of
 from specs.elaboration.scopes import Scope, Variables
 from specs.writing import write
 
+LONGEST: Final = 7 * 24 * 3600.0
+"""Seconds that a duration has at most."""
+
 _FILLED_LATER: Final = k.Tested()
 """Keeps the place of a statement until its blocks are numbered."""
 
@@ -220,7 +223,13 @@ class _Statements:
         return name, tuple(map(Variable, bound.values()))
 
     def react(self, node: s.React, place: _Place, number: int) -> k.Statement:
-        return k.React(self.cases(node.cases, place, number, react=True))
+        cases = self.cases(node.cases, place, number, react=True)
+        if node.after is None:
+            return k.React(cases)
+        check_duration(node.after.duration, self.names.findings)
+        self.program.branch(number, len(cases), node.after)
+        body = self.block(node.after.body, place.scope.inner(), tail=place.tail)
+        return k.React(cases, k.After(float(node.after.duration.seconds), body))
 
     def send(self, node: s.Send, place: _Place, _: int) -> k.Statement:
         message = self.expression(node.message, place)
@@ -335,6 +344,13 @@ class _Statements:
             body = self.block(case.body, inner, tail=place.tail)
             found.append(k.Case(pattern, guard, (*tested, *body)))
         return tuple(found)
+
+
+def check_duration(written: s.Duration, findings: Findings) -> None:
+    """Report a duration that is no time to wait."""
+    if not 0 < written.seconds <= LONGEST:
+        message = f"a time limit of {written.value:g} {written.unit}"
+        findings.add(Code.BAD_TIME_LIMIT, written, message, "give it more than 0 s, and at most 168 h")
 
 
 def _check_way(action: s.Command, arguments: tuple[Expression, ...], findings: Findings) -> None:

@@ -65,12 +65,13 @@ class TemporalFormulas:
         self.logic = "ltl"
         self.of_runs: set[int] = set()
 
-    def property(self, item: s.TemporalProperty | s.Progress, line: int) -> Property:
+    def property(self, item: s.TemporalProperty | s.Progress | s.FairDeadlockFreedom, line: int) -> Property:
         """Return a property of runs."""
         fairness = tuple(each for declared in item.fairness for each in self.fairness(declared))
-        if isinstance(item, s.Progress):
-            name = item.label.value if item.label else "progress"
-            return Property(PropertyKind.PROGRESS, name, line=line, fairness=fairness)
+        if not isinstance(item, s.TemporalProperty):
+            progress = isinstance(item, s.Progress)
+            kind = PropertyKind.PROGRESS if progress else PropertyKind.DEADLOCK_FREEDOM
+            return Property(kind, item.label.value if item.label else kind, line=line, fairness=fairness)
         self.logic = item.logic
         return Property(
             PropertyKind(item.logic),

@@ -58,6 +58,7 @@ from specs.syntax.formulas import (
     Connective,
     Enabled,
     Ended,
+    FairDeadlockFreedom,
     Fairness,
     Formula,
     HasValue,
@@ -81,7 +82,7 @@ from specs.syntax.formulas import (
     TemporalProperty,
     Waiting,
 )
-from specs.syntax.live import Duration, Live, OnBroken, Precaution, TimeLimit
+from specs.syntax.live import Live, OnBroken, Precaution, TimeLimit
 from specs.syntax.nodes import (
     NOWHERE,
     Name,
@@ -101,6 +102,7 @@ from specs.syntax.patterns import (
     Wildcard,
 )
 from specs.syntax.statements import (
+    After,
     Alternative,
     Assign,
     Call,
@@ -109,6 +111,7 @@ from specs.syntax.statements import (
     ChooseFrom,
     Control,
     Display,
+    Duration,
     For,
     If,
     Let,
@@ -152,6 +155,7 @@ __all__ = [
     "NOWHERE",
     "SIGNS",
     "Action",
+    "After",
     "AllNodes",
     "Alternative",
     "AltitudeBand",
@@ -193,6 +197,7 @@ __all__ = [
     "Environment",
     "EnvironmentClause",
     "Expression",
+    "FairDeadlockFreedom",
     "Fairness",
     "For",
     "Formula",

@@ -7,7 +7,7 @@ from typing import TypeAlias, TypeVar
 
 from specs.syntax.actions import RuleBody
 from specs.syntax.expressions import Expression, TextLiteral
-from specs.syntax.formulas import Formula, Progress, TemporalProperty
+from specs.syntax.formulas import FairDeadlockFreedom, Formula, Progress, TemporalProperty
 from specs.syntax.live import Live
 from specs.syntax.nodes import Name, Node
 from specs.syntax.statements import Statement
@@ -189,7 +189,9 @@ class Reachable(Node):
     formula: Formula
 
 
-Property: TypeAlias = StandardProperty | Invariant | Reachable | TemporalProperty | Progress
+Property: TypeAlias = (
+    StandardProperty | FairDeadlockFreedom | Invariant | Reachable | TemporalProperty | Progress
+)
 
 
 @dataclass(frozen=True, slots=True)

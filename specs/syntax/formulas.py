@@ -269,6 +269,18 @@ class TemporalProperty(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class FairDeadlockFreedom(Node):
+    """`deadlock_freedom under weak fairness of env`, `deadlock_freedom "but for the link" under weak fairness of env`.
+
+    No fair run stays for ever where nothing but the environment can move and something is left to be done. So it is no
+    deadlock where a promised change of the world leads on, such as the return of a link that `drops and returns`.
+    """
+
+    fairness: tuple[Fairness, ...]
+    label: TextLiteral | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Progress(Node):
     """`progress`, `progress under strong fairness of actuate`.
 

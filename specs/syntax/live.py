@@ -6,19 +6,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from specs.syntax.nodes import Name, Node
-
-
-@dataclass(frozen=True, slots=True)
-class Duration(Node):
-    """`90 s`, `10 min`, `1.5 h`: seconds, minutes or hours."""
-
-    value: float
-    unit: str
-
-    @property
-    def seconds(self) -> float:
-        """The duration in seconds."""
-        return self.value * {"s": 1, "min": 60, "h": 3600}[self.unit]
+from specs.syntax.statements import Duration
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from semantics.behaviours.statements import UNITS
 from specs.syntax.actions import Action
 from specs.syntax.expressions import Expression, Query
 from specs.syntax.nodes import Name, Node
@@ -35,10 +36,39 @@ class Control(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Duration(Node):
+    """`90 s`, `10 min`, `1.5 h`: seconds, minutes or hours."""
+
+    value: float
+    unit: str
+
+    @property
+    def seconds(self) -> float:
+        """The duration in seconds."""
+        return self.value * UNITS[self.unit]
+
+
+@dataclass(frozen=True, slots=True)
+class After(Node):
+    """`after 10 min => statements`: what an agent does that has waited so long at a `react`.
+
+    It stands behind the cases. `timeout` happens where nothing is there that a case takes; what has come stays. In a
+    live run it happens after that time. A check knows no time: there it may happen at any moment while the agent waits.
+    """
+
+    duration: Duration
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class React(Node):
-    """`react { case ... }`: wait for an observation or a message that a case matches."""
+    """`react { case ... after 10 min => ... }`: wait for an observation or a message that a case matches.
+
+    The `after` branch is optional.
+    """
 
     cases: tuple[Case, ...]
+    after: After | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,7 @@ def test_a_mission_that_holds_is_a_success_with_its_counts(bigactors):
     assert out.startswith("holds.mission: 10 configurations, 10 transitions, depth 8, complete, ")
     assert "\n  ✓ found              holds; examined 1, a witness of 8 steps\n" in out
     assert "\n  rules: actuate 3, fun 1, rcv_obs 1, req_ctr 2, req_obs 2, sense 1\n" in out
-    assert "\n  rules never used: req_snd, snd, rcv_msg, req_mgr, migrate, spawn\n" in out
+    assert "\n  rules never used: req_snd, snd, rcv_msg, timeout, req_mgr, migrate, spawn\n" in out
 
 
 @pytest.mark.usefixtures("missions")

@@ -56,7 +56,7 @@ MIGRATIONS = (
     "for x in o of UAV { migrate(x) }",
     "for x in o of Station { migrate(x) }",
 )
-WAYS = ("bare", "bare", "tested", "looked", "told", "heard", "reports", "trusts", "migrates")
+WAYS = ("bare", "bare", "tested", "looked", "told", "heard", "reports", "trusts", "migrates", "impatient")
 """How a control comes about."""
 
 
@@ -74,6 +74,12 @@ def bodies(draw, host, other, ways):
         elif way == "trusts":
             lines.append(
                 f'react {{ case ("seen", x) if x => {control} case x: Observation => skip case m => skip }}'
+            )
+        elif way == "impatient":
+            test, other_control = draw(st.sampled_from(TESTS)), draw(st.sampled_from(CONTROLS[host]))
+            lines.append(f"observe({draw(st.sampled_from(QUERIES))})")
+            lines.append(
+                f'react {{ case o: Observation if {test} => {control} case "go" => skip after 5 s => {other_control} }}'
             )
         elif way == "migrates":
             goes = draw(st.sampled_from(MIGRATIONS))

@@ -30,6 +30,7 @@ SHIPPED: dict[str, Expected] = {
     "broken_unmatched": Expected(24, 46, violated={"local_consistency": {"unmatched": 3}}),
     "broken_unrealisable": Expected(60, 136, violated={"local_consistency": {"unrealisable": 4}}),
     "distributed_handover": Expected(102, 157, witnesses={"once around": 45}),
+    "go_ahead": Expected(82, 202, witnesses={"surveyed": 9}),
     "handover": Expected(23, 34, witnesses={"handed over": 6}),
     "harbour_watch": Expected(12, 11, witnesses={"the fairway was clear": 11}),
     "look_before_entry": Expected(26, 27, witnesses={"the second enters too": 23}),

@@ -8,9 +8,10 @@ from semantics.behaviours.expressions import Apply, Fault, Literal, Self, Variab
 from semantics.behaviours.observations import Observation
 from semantics.behaviours.patterns import Anything, Elements, Exactly
 from semantics.behaviours.program import Behaviour, Program
-from semantics.behaviours.statements import Case, Display, Migrate, Observe, React, Send, Spawn
+from semantics.behaviours.statements import After, Case, Display, Loop, Migrate, Observe, React, Send, Spawn
 from semantics.environment import Drops, Says
-from semantics.extension import migrate, rcv_msg, req_mgr, req_snd, say, snd, spawn
+from semantics.extension import migrate, rcv_msg, req_mgr, req_snd, say, snd, spawn, timeout
+from semantics.races.monitor import monitored
 from semantics.state.initial import Beliefs
 from semantics.state.relations import Parent
 from semantics.state.setting import Scheduler
@@ -168,6 +169,78 @@ def test_several_messages_that_fit_give_several_successors():
         '⟨rcv_msg : b, react("x")⟩',
         '⟨rcv_msg : b, react("y")⟩',
     ]
+
+
+# --- no longer than needed ---------------------------------------------------------------------------------------
+
+
+def waiting(*cases, ready=(), after=(2,), **more):
+    """Return a mission with b at a react with an `after` branch that displays 1; a sends what it is asked to."""
+    code = (GO, React(cases, After(600.0, after)), Display(Literal(1)), Observe(around()), GUARD)
+    return pair(*code, a=(0,), b=(*ready, 1), channels=ON_W, **more)
+
+
+STOP = Case(Exactly("stop"), None, ())
+IN_SIGHT = Apply("in", (Literal("u0"), Variable("o")))
+
+
+def test_timeout_takes_the_branch_and_leaves_what_has_come():
+    c = run(waiting(STOP), "req_snd", "snd")
+    (t,) = timeout(c, "b")
+    assert str(t.label) == "⟨timeout : b, after 10 min⟩"
+    assert t.target.alpha.code("b") == (2,)
+    assert t.target.alpha.mailbox("b") == ("go",)
+    assert t.target.eta.all() == ()
+
+
+def test_timeout_requires_the_agent_to_be_at_a_react_with_an_after_branch():
+    assert list(timeout(pair(GO), "a")) == []
+    assert list(timeout(pair(hears(), a=(0,)), "a")) == []
+
+
+def test_timeout_requires_that_no_case_takes_a_message():
+    c = run(waiting(Case(Exactly("go"), None, ())), "req_snd", "snd")
+    assert enabled(c) == ["rcv_msg"]
+
+
+def test_timeout_requires_that_no_case_takes_an_observation():
+    seen = waiting(Case(Anything("o", "observation"), None, ()), ready=(3,))
+    c = run(seen, "req_obs")
+    assert "timeout" in enabled(c)
+    assert list(timeout(run(c, "sense"), "b")) == []
+
+
+def test_an_observation_that_a_guard_refuses_ends_no_wait():
+    refused = Case(Anything("o", "observation"), Apply("not", (IN_SIGHT,)), (4,))
+    c = run(waiting(refused, ready=(3,)), "req_obs", "sense")
+    assert len(list(timeout(c, "b"))) == 1
+
+
+def test_where_a_guard_fails_there_is_no_timeout():
+    failing = Case(Anything("m", "message"), Apply("<", (Variable("m"), Literal(1))), (4,))
+    c = run(waiting(failing), "req_snd", "snd")
+    assert list(timeout(c, "b")) == []
+
+
+def test_what_a_timeout_leads_to_rests_on_the_guards_that_refused_and_on_nothing_else():
+    refused = Case(Anything("o", "observation"), Apply("not", (IN_SIGHT,)), (4,))
+    for ready, tests in (((3,), [("in", "u0")]), ((), [])):
+        c = monitored(waiting(refused, ready=ready))
+        c = run(c, "req_obs", "sense") if ready else c
+        (t,) = timeout(c, "b")
+        assert [[each.asked for each in part] for part in t.target.alpha.watch("b").code] == [tests]
+
+
+def test_a_react_without_cases_only_waits():
+    c = pair(Loop((1,)), React((), After(1.0)), a=(1,))
+    assert run(c, "timeout").alpha.code("a") == ()
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"), [(90, "90 s"), (600, "10 min"), (5400, "90 min"), (7200, "2 h"), (0.5, "0.5 s")]
+)
+def test_a_duration_is_told_in_the_longest_unit_that_divides_it(seconds, words):
+    assert str(After(float(seconds))) == f"after {words}"
 
 
 # --- migration --------------------------------------------------------------------------------------------------

@@ -21,7 +21,7 @@ def test_every_code_is_explained_in_sentences():
 def test_a_code_is_found_by_its_number_in_either_case():
     assert find_code(" ls107 ") is Code.MISSING_ARROW
     assert find_code("LS999") is None
-    assert explain(Code.MISSING_ARROW).startswith("LS107: case without '=>' (syntax)\n\nA case is written")
+    assert explain(Code.MISSING_ARROW).startswith("LS107: branch without '=>' (syntax)\n\nA case is written")
 
 
 def test_the_table_has_a_row_for_each_code():

@@ -114,13 +114,14 @@ simple = st.one_of(
     calls,
     st.builds(s.Skip),
 )
+durations = st.builds(s.Duration, st.sampled_from([0.0, 1.5, 90.0]), st.sampled_from(["s", "min", "h"]))
 
 
 def bigger_statements(smaller):
     block = tuples(smaller)
     cases = tuples(st.builds(s.Case, patterns, maybe(expressions), block))
     return st.one_of(
-        st.builds(s.React, cases),
+        st.builds(s.React, cases, maybe(st.builds(s.After, durations, block))),
         st.builds(s.Match, expressions, cases),
         st.builds(s.If, expressions, block, block),
         st.builds(s.Loop, block),
@@ -200,7 +201,6 @@ properties = st.one_of(
     st.builds(s.Reachable, strings, formulas),
 )
 fallbacks = st.sampled_from(["hold", "return", "continue"])
-durations = st.builds(s.Duration, st.sampled_from([0.0, 1.5, 90.0]), st.sampled_from(["s", "min", "h"]))
 requests = st.sampled_from(["OBS", "CTR", "FLY", "SND", "MGR"])
 precautions = st.one_of(
     st.builds(s.OnBroken, fallbacks),

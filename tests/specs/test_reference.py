@@ -37,6 +37,7 @@ SPECIAL = {
     s.Parameter: "rule r({}) {{ a -> b }}",
     s.RuleBody: "rule r {}",
     s.Case: "def f() = {{ react {{ {} }} }}",
+    s.After: "def f() = {{ react {{ {} }} }}",
     s.Steps: 'check {{ ltl "q": taken {} }}',
     s.Fairness: "check {{ progress under {} }}",
     s.Alternative: "def f() = {{ choose {{ {} }} }}",

@@ -35,12 +35,13 @@ def merge_collected(into: Collected, parts: Sequence[Collected], places: Places)
     into.count = sum(part.count for part in parts)
     into.examined = sum(part.examined for part in parts)
     for finding in sorted(_found(parts, places), key=lambda each: each.at):
-        key = (finding.kind, finding.subject)
-        kept = sum(kind == finding.kind for kind, _ in into.first)
-        if key not in into.first and kept < into.most:
-            into.first[key] = finding
+        if finding.group not in into.groups:
+            into.groups[finding.group] = set()
+            into.keep(finding)
     for part in parts:
-        into.different |= part.different
+        into.met |= part.met
+        for group, keys in part.groups.items():
+            into.groups.setdefault(group, set()).update(keys)
     examples = [
         (places.number(worker, part.example), part.example_by)
         for worker, part in enumerate(parts)

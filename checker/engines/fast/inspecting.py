@@ -75,6 +75,7 @@ def _collect(
     @cache
     def again(number: int) -> Collected:
         fresh = make()
+        fresh.collected.apart = True
         c = survey.space.configuration(number)
         fresh(number, c, expand(c))
         return fresh.collected

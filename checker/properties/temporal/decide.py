@@ -2,14 +2,19 @@
 
 from collections.abc import Iterable, Iterator
 
+import numpy as np
+
 from checker.engines.contract import Exploration
 from checker.engines.graph import Graph, graph_of
 from checker.limits import BoundMet
 from checker.properties import vacuity
+from checker.properties.findings import MOST_VIOLATIONS, Finding
+from checker.properties.inspections import DeadlockFreedom
 from checker.properties.subformulas import STILL
 from checker.properties.temporal.automaton import TooLargeError
 from checker.properties.temporal.branching import Branching
 from checker.properties.temporal.components import Conditions
+from checker.properties.temporal.deadlock import Deadlocks
 from checker.properties.temporal.evaluation import is_true_on
 from checker.properties.temporal.fairness import EACH_RULE_AND_REQUEST, classes, conditions_of, optional
 from checker.properties.temporal.lassos import Lasso
@@ -24,6 +29,7 @@ from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
 from semantics.properties.propositions import Proposition
 from semantics.properties.temporal import Fairness, Now, Temporal, atoms
+from semantics.successors import expand
 
 
 def kept_graph(found: Exploration) -> Graph:
@@ -68,8 +74,11 @@ def where_pending(found: Exploration) -> Pending:
 class Decider:
     """Decides the temporal properties of one exploration; what they share is computed once."""
 
-    def __init__(self, found: Exploration, properties: Iterable[Property]) -> None:
+    def __init__(
+        self, found: Exploration, properties: Iterable[Property], most: int = MOST_VIOLATIONS
+    ) -> None:
         self.found = found
+        self.most = most
         self.setting = found.configurations[0].setting
         kept = kept_graph(found)
         self.graph: Graph = kept.total(optional(kept.labels, self.setting.arriving))
@@ -88,6 +97,8 @@ class Decider:
                 return self.branching(asked)
             case PropertyKind.PROGRESS:
                 return self.progress(asked)
+            case PropertyKind.DEADLOCK_FREEDOM:
+                return self.deadlock(asked)
             case _:
                 raise AssertionError(f"{asked.kind} is not about runs")
 
@@ -198,6 +209,41 @@ class Decider:
             details.append("nothing that would serve it is enabled from then on")
         message, trace = f"{request} is never served", self.trace(starved.run)
         return Violation(f"unserved {sort}", message, trace, tuple(details), str(request))
+
+    # --- deadlock under fairness
+
+    def deadlock(self, asked: Property) -> Verdict:
+        """Return the verdict on whether fair runs stay for ever where something is left to be done."""
+        deadlocks = Deadlocks(self.graph, self.conditions(asked.fairness), self.stuck)
+        found = deadlocks.found()
+        violations = []
+        for each in found[: self.most]:
+            message = f"{each.finding.message}, and no promised step leads on"
+            trace = self.trace(deadlocks.run(each))
+            violations.append(
+                Violation("deadlock", message, trace, each.finding.details, each.finding.subject)
+            )
+        ends = sum((each.components >= 0 for each in found), np.zeros(self.graph.size, dtype=np.bool_))
+        fine = deadlocks.still() & ~ends
+        outcome = Outcome.VIOLATED if violations else self.unless_violated()
+        led_on = deadlocks.led_on(fine) if outcome is Outcome.HOLDS else None
+        return Verdict(
+            asked,
+            outcome,
+            tuple(sorted(violations, key=lambda violation: len(violation.trace))),
+            int(ends.sum()),
+            int(fine.sum()),
+            witness=None if led_on is None else self.trace(led_on),
+            note=self.note(asked.fairness),
+            different=len(found),
+            remarks=tuple(self.empty(asked.fairness)),
+        )
+
+    def stuck(self, number: int) -> Finding | None:
+        """Return what is left to be done in a configuration where no agent can move, None where nothing is."""
+        inspection, c = DeadlockFreedom(), self.found.configurations[number]
+        inspection(number, c, expand(c))
+        return next(iter(inspection.collected.first.values()), None)
 
     # --- what they share
 

@@ -10,8 +10,8 @@ from checker.limits import look
 from checker.properties.temporal.components import Conditions, fair_components
 from checker.properties.temporal.digraph import shortest
 from checker.properties.temporal.fairness import arrives
-from checker.properties.temporal.lassos import Lasso, component_of, fair_cycle, tightened
-from checker.properties.temporal.shortest import shortest_run
+from checker.properties.temporal.lassos import Lasso
+from checker.properties.temporal.shortest import run_into
 from semantics.properties.temporal import SERVES
 from semantics.state.configuration import Configuration, Label
 from semantics.state.requests import FLY, READY, Request
@@ -115,13 +115,7 @@ class Progress:
 
     def _starved(self, request: Request, entry: int) -> Starved:
         serving = self.serving(request)
-        components = self.waiting(request)
-        part = component_of(self.graph, components, entry, self.fairness, by=~serving)
-        loop = fair_cycle(part, entry)
-        stem = shortest(self.graph, 0, self.graph.targets == entry) if entry else ()
-        assert stem is not None  # everything that was explored is reached
-        known = tightened(Lasso(stem, loop))
-        run = shortest_run(self.graph, components, self.fairness, known, by=~serving)
+        run = run_into(self.graph, self.waiting(request), self.fairness, entry, by=~serving)
         enabled = self.graph.enabled(serving)
         places = [int(self.graph.sources[edge]) for edge in run.loop]
         return Starved(request, run, bool(enabled[places].any()), self._behind(request, places))

@@ -9,7 +9,7 @@ from checker.properties.temporal.components import Conditions, fair_components
 from checker.properties.temporal.cycles import shortest_cycle
 from checker.properties.temporal.digraph import distances, shortest
 from checker.properties.temporal.effort import Effort, Exhausted
-from checker.properties.temporal.lassos import Lasso
+from checker.properties.temporal.lassos import Lasso, component_of, fair_cycle, tightened
 from checker.properties.temporal.tight_automaton import tight
 from checker.properties.temporal.truth import Truth
 from semantics.properties.temporal import Temporal
@@ -43,6 +43,17 @@ def _shorter_false(
         return None
     node, cycle = found
     return Lasso(product.way_to(node), tuple(int(product.edges[edge]) for edge in cycle))
+
+
+def run_into(
+    graph: Graph, components: Numbers, conditions: Conditions, entry: int, by: Bools | None = None
+) -> Lasso:
+    """Return a run that stays in one of some fair components, as short as can be found; `entry` is in the nearest."""
+    part = component_of(graph, components, entry, conditions, by=by)
+    stem = shortest(graph, 0, graph.targets == entry) if entry else ()
+    assert stem is not None  # everything that was explored is reached
+    known = tightened(Lasso(stem, fair_cycle(part, entry)))
+    return shortest_run(graph, components, conditions, known, by=by)
 
 
 def shortest_run(  # noqa: PLR0913  # each says one thing of the search

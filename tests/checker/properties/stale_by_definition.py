@@ -29,7 +29,7 @@ QUERIES = (
 NAMES = ("uav0", "uav0", "uav1", "uav1", "vessel0", "gate0", "", "")
 """Whom a line asks for; empty where it asks how many there are."""
 
-TELLING = ("tested", "told", "reported", "reported")
+TELLING = ("tested", "told", "reported", "reported", "impatient")
 WAYS = (*TELLING, "bare", "woken", "heard", "trusted", "trusted", "relayed", "relayed")
 """How an agent comes to a control, or lets another know; the first tells most."""
 
@@ -55,6 +55,8 @@ class Line:
                 return self.looking(
                     f"case o: Observation if {test} => {self.control} case o: Observation => skip"
                 )
+            case "impatient":
+                return self.looking(f"case o: Observation if {test} => skip after 5 s => {self.control}")
             case "told":
                 send = f'send(("go", {number}), {self.to})'
                 return self.looking(f"case o: Observation if {test} => {send} case o: Observation => skip")
@@ -207,7 +209,10 @@ class Judge:
     changes: list[Change] = field(default_factory=list)
     asked: dict[str, list[tuple[int, frozenset[Test]]]] = field(default_factory=dict)
     """What waits to be sensed, and under which tests it was asked for."""
-    seen: dict[str, Test | None] = field(default_factory=dict)
+    ready: dict[str, list[Test]] = field(default_factory=dict)
+    """What was sensed and not received yet; nobody has asked anything of it."""
+    seen: dict[str, Test] = field(default_factory=dict)
+    """What was received last, and what its line asks of it."""
     passed: dict[str, frozenset[Test]] = field(default_factory=dict)
     """What had to be so for an agent to come to the line where it is."""
     inside: dict[str, tuple[int, frozenset[Test]]] = field(default_factory=dict)
@@ -263,7 +268,7 @@ class Judge:
             return
         if rule == "sense":
             number, _ = self.asked[agent].pop(0)
-            self.seen[agent] = self.test(before, agent, self.line(number))
+            self.ready.setdefault(agent, []).append(self.test(before, agent, self.line(number)))
             return
         if rule == "snd":
             return
@@ -274,8 +279,13 @@ class Judge:
         line = self.line(number)
         if rule == "req_obs":
             self.asked.setdefault(agent, []).append((number, here))
-        elif rule == "rcv_obs" and line.way in ("tested", "told"):
-            self.inside[agent] = (number, here | {self.seen[agent]})
+        elif rule == "rcv_obs":
+            self.seen[agent] = replace(self.ready[agent].pop(0), name=line.name)
+            tests = {self.seen[agent]} if line.way in ("tested", "told") else set()
+            self.inside[agent] = (number, here | tests)
+        elif rule == "timeout":
+            refused = {replace(each, name=line.name) for each in self.ready.get(agent, [])[:1]}
+            self.inside[agent] = (number, here | refused)
         elif rule == "rcv_msg":
             self.receive(agent, number, line, str(t.label))
         elif rule == "req_ctr":
@@ -293,9 +303,7 @@ class Judge:
     def send(self, agent: str, number: int, line: Line, here: frozenset[Test]) -> None:
         tests = {each.handed(self.time, line.to, by_value=False) for each in here}
         if line.way == "reported":
-            test = self.seen[agent]
-            assert test is not None
-            tests.add(test.handed(self.time, line.to, by_value=True))
+            tests.add(self.seen[agent].handed(self.time, line.to, by_value=True))
         if line.way == "relayed":
             values = (each for each in self.received[agent] if each.by_value[-1])
             tests |= {each.handed(self.time, line.to, by_value=True) for each in values}

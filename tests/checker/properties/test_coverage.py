@@ -52,6 +52,41 @@ def test_what_every_run_reaches_has_no_gap():
     assert (found.lines, found.unreached, found.gaps) == ((FIRST + 1, FIRST + 2), (), ())
 
 
+WAITS = """observe(PARENT(HOST))
+react {
+  case obs if north0 in obs => control(MOVE_HOST_TO gate0)
+  after 5 s => skip
+}"""
+
+
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_an_after_branch_is_covered_where_the_wait_may_end(engine):
+    found = covered(agent(WAITS), engine=engine)
+    assert (found.branches, found.gaps) == (Tally(2, 2), ())
+
+
+IN_TIME = """BigActor a hosted_at uav0 with_behavior {
+  observe(PARENT(HOST))
+  control(MOVE_HOST_TO gate0)
+  react { case "done" => skip }
+  react {
+    case o: Observation => skip
+    after 5 s => skip
+  }
+}
+BigActor b hosted_at vessel0 with_behavior {
+  let there = false
+  while not there { observe(CHILDREN(gate0)) react { case o: Observation => there = uav0 in o } }
+  send "done" to a
+}
+"""
+
+
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_an_after_branch_that_is_never_taken_is_told_at_its_line(engine):
+    assert gaps(IN_TIME, engine=engine) == [(7, "this 'after' branch is never taken")]
+
+
 def test_a_case_that_is_never_taken_is_told_at_its_line_and_what_lies_within_is_not_told_again():
     assert gaps(agent(LOOKS)) == [(4, "this case is never taken"), (6, "this case is never taken")]
     found = covered(agent(LOOKS))

@@ -14,6 +14,7 @@ from checked_missions import (
     violation,
 )
 
+from checker import Engine, check
 from checker.properties.inspections import LocalConsistency
 from checker.verdicts import Outcome
 from semantics.properties.propositions import holds
@@ -100,6 +101,33 @@ def test_only_the_control_next_in_line_is_asked_for():
     """
     assert consistency(text).outcome is Outcome.HOLDS
     assert consistency(text + "scheduler unordered").outcome is Outcome.VIOLATED
+
+
+ENTERS = """
+def enter(place) = { observe(PARENT(HOST)) react { case o => control(MOVE_HOST_TO place) } }
+BigActor a hosted_at uav0 with_behavior { choose p in {gate0, north0, south0} { enter(p) } }
+BigActor b hosted_at uav1 with_behavior { choose p in {gate0, south0} { enter(p) } }
+environment { uav0 drifts among point (36.98, -8.70), point (37.02, -8.70) }
+"""
+
+
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_findings_about_the_same_control_of_the_text_are_shown_as_one(engine):
+    mission = load(ENTERS + "check { local_consistency }")
+    found = verdict_of(check(mission.initial, mission.properties, engine=engine), "local_consistency")
+    assert [(each.subject, each.alike, each.told[-1]) for each in found.violations] == [
+        ("CTR(a, MOVE_HOST_TO gate0)", 2, "and 2 alike")
+    ]
+    assert (found.different, found.count) == (3, 78)
+
+
+def test_findings_about_different_controls_of_the_text_are_shown_each():
+    twice = "enter(gate0) control(MOVE_HOST_TO south0)"
+    found = consistency(ENTERS.replace("choose p in {gate0, north0, south0} { enter(p) }", twice))
+    assert [(each.subject, each.alike) for each in found.violations] == [
+        ("CTR(a, MOVE_HOST_TO gate0)", 0),
+        ("CTR(a, MOVE_HOST_TO south0)", 0),
+    ]
 
 
 def test_whose_turn_it_is_makes_no_difference_to_consistency():
@@ -198,6 +226,71 @@ def test_what_nothing_but_the_environment_could_help_is_a_deadlock(text, words):
     found = deadlock(text)
     assert list(kinds(found)) == ["deadlock"]
     assert found.violations[0].message == f"nothing but the environment can move, and {words}"
+
+
+def details(text, number=0):
+    return deadlock(text).violations[number].details
+
+
+def agents(**bodies):
+    """Return bigActors a, b, ... at the hosts and with the bodies that are given."""
+    return "\n".join(
+        f"BigActor {a} hosted_at {host} with_behavior {{ {body} }}" for a, (host, body) in bodies.items()
+    )
+
+
+SENDS = 'send("go", b)'
+
+
+@pytest.mark.parametrize(
+    ("text", "causes"),
+    [
+        (
+            agents(a=("uav0", SENDS), b=("gcs1", 'react { case "go" => skip }')),
+            ('SND(a, b, "go"): their hosts, uav0 and gcs1, share no link', 'b waits for "go" from a'),
+        ),
+        (
+            agents(a=("uav0", SENDS), b=("uav1", "")) + "environment { mesh drops }",
+            ('SND(a, b, "go"): their hosts, uav0 and uav1, share no link: mesh is down',),
+        ),
+        (
+            agents(a=("uav0", SENDS), b=("uav1", "")) + "environment { uav1 vanishes }",
+            ('SND(a, b, "go"): their hosts, uav0 and uav1, share no link: uav1 is not there',),
+        ),
+        (
+            agents(a=("uav0", SENDS), b=("uav1", "")) + "believes { uav1 unlinked }",
+            ('SND(a, b, "go"): their hosts, uav0 and uav1, share no link in L: P has both on mesh',),
+        ),
+        (
+            agents(a=("gcs0", "migrate(uav1)")),
+            ("MGR(a, uav1): the two, gcs0 and uav1, share no link",),
+        ),
+        (
+            agents(a=("gcs0", "control(HAND uav1 TO gcs2) observe(ALL)")),
+            (
+                "CTR(a, HAND uav1 TO gcs2): it is unmatched",
+                "OBS(a, ALL): it waits behind CTR(a, HAND uav1 TO gcs2)",
+            ),
+        ),
+        (
+            agents(a=("gcs0", 'react { case ("seen", x) => skip }'), b=("gcs1", "send(2, a)")),
+            ('a waits for ("seen", x), which nobody is left to send; no case takes 2',),
+        ),
+        (
+            agents(a=("gcs0", "react { case o: Observation => skip }")),
+            ("a waits for an observation, which it has not asked for",),
+        ),
+        (
+            agents(
+                a=("gcs0", 'react { case "b" => send("a", b) }'),
+                b=("gcs1", 'react { case "a" => send("b", a) }'),
+            ),
+            ('a waits for "b" from b', 'b waits for "a" from a'),
+        ),
+    ],
+)
+def test_a_deadlock_is_told_with_its_causes(text, causes):
+    assert details(text) == causes
 
 
 def test_the_environment_moving_for_ever_is_no_help():

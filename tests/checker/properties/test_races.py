@@ -11,7 +11,7 @@ from mission_texts import missions
 from scale import examples
 from stale_by_definition import Judge, companies, text_of
 
-from checker import Limits, explore
+from checker import Engine, Limits, check, explore
 from checker.properties.findings import Collected
 from checker.properties.races import ControlRaces, StaleObservationRaces, is_stale
 from checker.verdicts import Outcome
@@ -912,6 +912,71 @@ def test_what_the_monitor_forgets_would_have_made_no_race(text):
     found = first_races(c)
     event("races" if found else "none")
     assert remembering_everything(c) in (None, found)
+
+
+# --- waits that end -------------------------------------------------------------------------------------------
+
+
+def impatient(cases, control="control(MOVE_HOST_TO gate0)", looks="observe(CHILDREN(gate0))"):
+    return f"BigActor a hosted_at uav0 with_behavior {{ {looks} react {{ {cases} after 5 s => {control} }} }}\n{ENTERS}"
+
+
+def test_a_timeout_after_a_guard_has_refused_what_was_seen_rests_on_that_guard():
+    assert stale(impatient("case o: Observation if uav1 in o => skip")) == {"a"}
+
+
+def test_a_timeout_where_nothing_was_tested_rests_on_nothing():
+    assert stale(impatient('case "go" => skip')) == set()
+    assert stale(impatient("")) == set()
+
+
+def test_what_follows_a_wait_that_ends_rests_on_none_of_its_guards():
+    waits = "case o: Observation if not (uav1 in o) => skip"
+    follows = impatient(waits, "skip").replace("skip } }", "skip } control(MOVE_HOST_TO gate0) }")
+    assert stale(follows) == set()
+    assert stale(follows.replace(" after 5 s => skip", "")) == {"a"}
+
+
+# --- those that are alike -------------------------------------------------------------------------------------
+
+TWINS = """
+def enter(place) = {
+  observe(CHILDREN(place))
+  react {
+    case o: Observation if size(o) == 1 => control(MOVE_HOST_TO place)
+    case o: Observation => skip
+  }
+}
+BigActor a hosted_at uav0 with_behavior { choose p in {gate0, south0} { enter(p) } }
+BigActor b hosted_at uav1 with_behavior { choose p in {gate0, north0} { enter(p) } }
+"""
+
+
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_races_about_the_same_place_of_the_text_are_one_and_the_others_counted(engine):
+    mission = load(TWINS + "check { race_freedom }")
+    found = check(mission.initial, mission.properties, engine=engine).verdicts[0]
+    (one,) = found.violations
+    assert (one.kind, one.alike, found.different) == (STALE, 1, 2)
+    assert len(one.trace) == 14
+
+
+PUSHES = """
+BigActor a hosted_at gcs0 with_behavior { choose p in {gate0, south0} { control(MOVE uav0 TO p) } }
+BigActor b hosted_at gcs0 with_behavior {
+  choose p in {gate0, south0} {
+    control(MOVE uav0 TO p)
+  }
+}
+"""
+
+
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_control_races_of_the_same_two_places_of_the_text_are_one(engine):
+    mission = load(PUSHES + "check { race_freedom }")
+    found = check(mission.initial, mission.properties, engine=engine).verdicts[0]
+    (one,) = found.violations
+    assert (one.kind, one.alike, found.different) == ("control race", 1, 2)
 
 
 # --- by definition --------------------------------------------------------------------------------------------

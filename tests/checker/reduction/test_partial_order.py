@@ -360,6 +360,44 @@ BigActor b hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) }
 """
 
 
+ENDING_WAITS = """
+BigActor a hosted_at gcs0 with_behavior {
+  observe(ALL)
+  react {
+    case o: Observation => skip
+    after 5 s => observe(ALL) react { case "never" => skip }
+  }
+}
+BigActor b hosted_at gcs1 with_behavior { send("go", c) }
+BigActor c hosted_at gcs2 with_behavior {
+  react {
+    case "go" => skip
+    after 5 s => react { case "never" => skip }
+  }
+}
+"""
+
+
+@pytest.mark.parametrize("scheduler", ["program_order", "unordered"])
+def test_what_ends_a_wait_is_followed_before_and_after_its_timeout(scheduler):
+    full, reduced = compared(start(f"{ENDING_WAITS}scheduler {scheduler}"))
+    assert reduced < full
+
+
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_a_loop_in_which_a_step_is_put_off_is_no_counterexample(engine):
+    text = (
+        (MISSIONS / "go_ahead.mission")
+        .read_text(encoding="utf-8")
+        .replace("strong fairness", "weak fairness")
+    )
+    mission = load(text, world="")
+    found = check(mission.initial, mission.properties, engine=engine, reduce=POR)
+    assert [each.outcome for each in found.verdicts if each.property.name == "comes home"] == [
+        Outcome.INCOMPLETE
+    ]
+
+
 def test_an_agent_that_is_never_done_does_not_put_off_another_for_ever():
     initial = start(BUSY)
     away = Inside("uav0", "gate0", actually=True)

@@ -159,7 +159,7 @@ def test_each_request_that_cannot_be_served_is_a_violation_of_its_own():
 
 def test_only_so_many_violations_are_shown_and_the_others_counted():
     mission = load(THREE_STALE)
-    for most, said in ((1, "3 different, of which 1 are shown"), (2, "3 different, of which 2 are shown")):
+    for most, said in ((1, "3 different, of which 1 is shown"), (2, "3 different, of which 2 are shown")):
         report = check(mission.initial, mission.properties, violations=most)
         assert len(report.verdicts[0].violations) == most
         assert said in next(line for line in report_text("m", report) if "✗" in line)
@@ -250,6 +250,7 @@ def test_the_data_say_what_the_report_says():
             "req_snd",
             "snd",
             "rcv_msg",
+            "timeout",
             "req_mgr",
             "migrate",
             "spawn",

@@ -1,0 +1,92 @@
+"""`react { ... after d => ... }` in live runs: it waits by the clock."""
+
+from live_missions import TOUR, WEST, Run, mission, plan_of, seen
+
+from adapters.live.state import Saying
+from adapters.recording.reading import read_recording
+from adapters.recording.writing import Recorder
+from checker import replay
+from checker.traces import SCHEMA
+
+WAIT = """
+BigActor a hosted_at uav0 with_behavior {
+  react {
+    case "go" => control(MOVE_HOST_TO east0)
+    after 10 s => display("nobody came")
+  }
+}
+environment { someone says "go" to a  someone says "stop" to a }
+"""
+
+
+def shown(run):
+    return [text for step in run.steps for text in step.transition.shown]
+
+
+def test_an_agent_waits_as_long_as_it_says_and_no_longer():
+    run = Run(plan_of(TOUR + WAIT))
+    run.turn(0.0)
+    assert run.again == 10.0
+    run.turn(9.9)
+    assert run.rules == []
+    assert run.again == 10.0
+    run.turn(10.0)
+    assert run.labels == ["⟨timeout : a, after 10 s⟩", "⟨fun : a⟩"]
+    assert shown(run) == ["nobody came"]
+    assert run.again is None
+    assert run.state.due == {}
+
+
+def test_a_message_that_comes_in_time_ends_the_wait():
+    run = Run(plan_of(TOUR + WAIT))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(9.9, sayings=(Saying("a", "go"),))
+    assert run.rules == ["say", "rcv_msg", "req_ctr", "command"]
+    run.turn(10.0)
+    assert "timeout" not in run.rules
+
+
+def test_a_message_that_comes_with_the_end_of_the_wait_is_taken():
+    run = Run(plan_of(TOUR + WAIT))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(10.0, sayings=(Saying("a", "go"),))
+    assert "timeout" not in run.rules
+
+
+def test_a_message_that_no_case_takes_prolongs_no_wait():
+    run = Run(plan_of(TOUR + WAIT))
+    run.turn(0.0)
+    run.turn(5.0, sayings=(Saying("a", "stop"),))
+    assert run.again == 10.0
+    run.turn(10.0)
+    assert run.rules == ["say", "timeout", "fun"]
+
+
+def test_time_without_listening_does_not_count():
+    run = Run(plan_of(TOUR + WAIT))
+    run.turn(0.0)
+    run.turn(12.0, missed=5.0)
+    assert run.rules == []
+    assert run.again == 15.0
+
+
+def test_each_turn_of_a_loop_waits_anew():
+    run = Run(plan_of(TOUR + WAIT.replace("react", "loop { react", 1).replace("\n  }\n}", "\n  } }\n}", 1)))
+    run.turn(0.0)
+    run.turn(10.0)
+    assert run.again == 20.0
+    run.turn(20.0)
+    assert shown(run) == ["nobody came", "nobody came"]
+
+
+def test_a_recorded_wait_replays_without_a_clock(tmp_path):
+    path, run = tmp_path / "run.mcap", Run(plan_of(TOUR + WAIT))
+    recorder = Recorder(
+        path, {"mission": "tour.mission", "text": TOUR + WAIT, "digest": "", "version": "0"}, 0.0
+    )
+    for now in (0.0, 10.0):
+        recorder.turn(run.turn(now), now, lambda _finding: ())
+    recorder.close("done", 10.0)
+    trace = replay(mission(TOUR + WAIT).initial, read_recording(path).trace(SCHEMA))
+    assert [step.label.rule for step in trace.steps] == ["timeout", "fun"]
+    assert trace.configurations[-1] == run.state.configuration
