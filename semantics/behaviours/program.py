@@ -81,6 +81,7 @@ class Program:
         lines: The line of the mission's text that each statement stands in (from 1), as far as there is one.
         branch_lines: The same of cases and alternatives, by statement and rank.
         declared: The line in which each rule and behaviour is declared, by sort (`rule`, `behaviour`) and name.
+        copies: Of the statements of a family's members after the first, which one of the first's each repeats.
         watched: The variables that properties name: they are kept to the end of the run.
     """
 
@@ -90,6 +91,7 @@ class Program:
     lines: tuple[int, ...] = ()
     branch_lines: Mapping[tuple[int, int], int] = field(default_factory=dict)
     declared: Mapping[tuple[str, str], int] = field(default_factory=dict)
+    copies: Mapping[int, int] = field(default_factory=dict)
     watched: frozenset[VariableOf] = frozenset()
 
     def __getstate__(self) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from semantics.behaviours.program import VariableOf
 from semantics.properties.propositions import Always, Proposition
 from semantics.properties.temporal import Fairness, Temporal
 from semantics.state.configuration import Configuration
+from semantics.state.signature import Name
 
 TRUE: Final = Always(True)
 
@@ -156,6 +157,10 @@ def asked_by(*ways: Asked) -> tuple[PropertyKind, ...]:
     return tuple(kind for kind in PropertyKind if kind.about.asked in ways)
 
 
+Ranges = tuple[tuple[Name, ...], ...]
+"""What quantifiers go through; names are sorted."""
+
+
 @dataclass(frozen=True, slots=True)
 class Property:
     """What is to be checked.
@@ -167,6 +172,7 @@ class Property:
         line: Where it stands in the mission's text, from 1; 0 where it was not written.
         temporal: The formula of `ltl` and `ctl`.
         fairness: Which runs count, for `ltl`, `ctl` and `progress`: all where it is empty.
+        ranges: What the quantifiers of its formula go through.
     """
 
     kind: PropertyKind
@@ -175,6 +181,7 @@ class Property:
     line: int = 0
     temporal: Temporal | None = None
     fairness: tuple[Fairness, ...] = ()
+    ranges: Ranges = ()
 
 
 def watched(properties: Iterable[Property]) -> frozenset[VariableOf]:
