@@ -152,9 +152,9 @@ class _Resolver:
                 inner = dict(scope)
                 self.bind(variable, inner, node.span)
                 self.block(body, inner, node.span)
-            case s.Quantified(_, variable, kind, body):
+            case s.Quantified(_, variable, among, body):
                 inner = dict(scope)
-                self.sorted_name(kind, "kind")
+                self.note(among, self.meaning(among, {}))
                 self.bind(variable, inner, node.span)
                 self.visit(body, inner)
             case _:
@@ -251,7 +251,7 @@ class _Resolver:
         """Make one of all variables of a bigActor that `a.x` in a property means, and of that."""
         bodies = _running(mission)
         for node in s.walk(mission):
-            if isinstance(node, s.Stored | s.HasValue):
+            if isinstance(node, s.Stored | s.HasValue) and isinstance(node.agent, s.Name):
                 spans = bodies.get(node.agent.text, ())
                 meant = {
                     each.symbol

@@ -9,7 +9,7 @@ from semantics.state.signature import Kind, Signature
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import shorten
-from specs.elaboration.names import Names
+from specs.elaboration.names import AGENTS, Names
 from specs.elaboration.proposed_signature import proposed
 from specs.standard_signature import standard_kinds
 
@@ -71,17 +71,20 @@ def _extended(kind: Kind, by: Kind) -> Kind:
 def _undeclared(mission: s.Mission, kinds: Kinds) -> Uses:
     """Return where each undeclared kind is used, in the order of the text; rules' bodies are looked at later."""
     found = Uses()
+    others = {AGENTS, *(family.name.text for family in mission.each(s.Family))}
     used = (name for node in s.walk(mission) for name in _kinds_in(node))
     for name in sorted(used, key=lambda name: name.span):
-        if name.text not in kinds:
+        if name.text not in kinds and name.text not in others:
             found.setdefault(name.text, []).append(name)
     return found
 
 
 def _kinds_in(node: s.Node) -> tuple[s.Name, ...]:
     match node:
-        case s.Entity() | s.Parameter() | s.OfKind() | s.Quantified() | s.Keep():
+        case s.Entity() | s.Parameter() | s.OfKind() | s.Keep():
             return (node.kind,)
+        case s.Quantified():
+            return (node.range,)
         case s.Kind():
             return (*node.contains, *node.carries)
         case _:
