@@ -14,11 +14,11 @@ COMMAND = Command(
     "completion",
     "print what completes command lines in bash, zsh or fish",
     "Print a script that completes commands, options, missions that ship and names in missions. A shell reads it at\n"
-    "its start: the examples are lines for ~/.bashrc, ~/.zshrc (after compinit) and ~/.config/fish/config.fish.",
+    "its start: the examples are lines for ~/.config/fish/config.fish, ~/.bashrc and ~/.zshrc (after compinit).",
     (
+        "bigactors completion fish | source",
         'eval "$(bigactors completion bash)"',
         'eval "$(bigactors completion zsh)"',
-        "bigactors completion fish | source",
     ),
     fill,
 )

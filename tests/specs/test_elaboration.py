@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from physical import box, centroid, circle, point, translate_to
+from physical import ais_recording, box, centroid, circle, point, translate_to
 from physical.ais_reports import AisError
 from semantics.behaviours import statements as k
 from semantics.behaviours.expressions import Fault, Host, Literal, QueryOf, Variable
@@ -29,7 +29,7 @@ from semantics.state.setting import Control, Scheduler
 from semantics.successors import successors
 from specs.codes import Code
 from specs.diagnostics import MissionError, Source
-from specs.elaboration import elaborate, files, load_mission
+from specs.elaboration import elaborate, load_mission
 from specs.parser import parse
 
 MISSIONS = Path(__file__).parents[2] / "specs" / "missions"
@@ -527,7 +527,7 @@ def missing(_):
 
 
 def test_a_missing_extra_names_it(monkeypatch, tmp_path):
-    monkeypatch.setattr(files, "read_recording", missing)
+    monkeypatch.setattr(ais_recording, "read_recording", missing)
     (tmp_path / "x.nmea").write_bytes((MISSIONS / "harbour_watch.nmea").read_bytes())
     (code, message, hint), *_ = mistakes('world { from "x.nmea" }', tmp_path)
     assert code == "LS308"
