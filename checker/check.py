@@ -302,7 +302,7 @@ class _Check:
         verdict = self.verdict(asked, looked.collected)
         if verdict.outcome is not Outcome.HOLDS or not isinstance(looked, Invariant):
             return verdict
-        return replace(verdict, remarks=looked.valuations.remarks(self.initial.setting.kinds))
+        return replace(verdict, remarks=looked.valuations.remarks(asked.ranges))
 
     def decide_reachable(self, asked: Property) -> Verdict:
         collected = self.formulas[asked].collected

@@ -41,6 +41,10 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
         body = (c[5],) if isinstance(c[5], s.Call) else c[5].value
         return s.BigActor(optional(c[1], name), name(c[3]), body, span=cover(c))
 
+    def family(self, c: Children) -> s.Family:
+        body = (c[12],) if isinstance(c[12], s.Call) else c[12].value
+        return s.Family(name(c[1]), name(c[3]), name(c[6]), c[8], name(c[10]), body, span=cover(c))
+
     def block(self, c: Children) -> Part:
         return Part(cover(c), nodes(c))
 
@@ -208,6 +212,10 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
     def reference(self, c: Children) -> s.Name:
         return name(c[0])
 
+    def member(self, c: Children) -> s.Member:
+        index: s.Expression = _index(c[2]) if isinstance(c[2], Token) else c[2]
+        return s.Member(name(c[0]), index, span=cover(c))
+
     def string(self, c: Children) -> s.TextLiteral:
         return text(c[0])
 
@@ -242,6 +250,11 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
 
 def _refuse_after(branch: s.After, message: str, hint: str) -> None:
     raise Mistake(Diagnostic(Code.MISPLACED_AFTER, branch.span, message, hint))
+
+
+def _index(token: Token) -> s.Name | s.IntegerLiteral:
+    """Return which member is meant where nothing is computed."""
+    return name(token) if token.type == "NAME" else s.IntegerLiteral(whole(token), span=span_of(token))
 
 
 def _literal(c: Children) -> s.TextLiteral | s.IntegerLiteral | s.TruthLiteral:

@@ -11,6 +11,7 @@ from specs.building import (
     Children,
     Mistake,
     Part,
+    agent,
     check_hemispheres,
     cover,
     decimal,
@@ -162,7 +163,7 @@ class BuildWorld(Transformer[Token, s.Mission]):
 
     def says(self, c: Children) -> s.Says:
         times = 1 if c[7] is None else c[7].value
-        return s.Says(c[2], optional(c[4], name), times, span=cover(c))
+        return s.Says(c[2], optional(c[4], agent), times, span=cover(c))
 
     def times(self, c: Children) -> Part:
         return Part(cover(c), 1 if c[0].type == "ONCE" else whole(c[0]))
@@ -210,7 +211,7 @@ class BuildWorld(Transformer[Token, s.Mission]):
         return s.Fairness(str(c[0]), nodes(c), span=cover(c))
 
     def steps(self, c: Children) -> s.Steps:
-        return s.Steps(tuple(name(token) for token in c if token is not None), span=cover(c))
+        return s.Steps(tuple(agent(word) for word in c if word is not None), span=cover(c))
 
     # --- live runs
 
@@ -222,8 +223,8 @@ class BuildWorld(Transformer[Token, s.Mission]):
 
     def time_limit(self, c: Children) -> s.TimeLimit:
         request = None if c[0] is None else str(c[0])
-        agent = name(c[1]) if c[1].type == "NAME" else None
-        return s.TimeLimit(request, agent, c[3], option("fallback", c[5], FALLBACKS), span=cover(c))
+        who = None if c[1] == "anyone" else agent(c[1])
+        return s.TimeLimit(request, who, c[3], option("fallback", c[5], FALLBACKS), span=cover(c))
 
     # --- formulas
 
@@ -235,7 +236,8 @@ class BuildWorld(Transformer[Token, s.Mission]):
         return s.Negation(c[1], span=cover(c))
 
     def quantified(self, c: Children) -> s.Quantified:
-        return s.Quantified(str(c[0]), name(c[1]), name(c[3]), c[5], span=cover(c))
+        behaviour, host = optional(c[5], name), optional(c[7], name)
+        return s.Quantified(str(c[0]), name(c[1]), name(c[3]), c[9], behaviour, host, span=cover(c))
 
     def path_prefix(self, c: Children) -> s.PathPrefix:
         words = " ".join(map(str, c[:-1]))
@@ -272,32 +274,32 @@ class BuildWorld(Transformer[Token, s.Mission]):
         return s.LinkedTo(name(c[1]), name(c[3]), c[0] is not None, span=cover(c))
 
     def present(self, c: Children) -> s.Present:
-        return s.Present(name(c[1]), span=cover(c))
+        return s.Present(agent(c[1]), span=cover(c))
 
     def known(self, c: Children) -> s.Known:
         return s.Known(name(c[1]), span=cover(c))
 
     def pending(self, c: Children) -> s.Pending:
-        return s.Pending(name(c[2]), None if c[1] is None else str(c[1]), span=cover(c))
+        return s.Pending(agent(c[2]), None if c[1] is None else str(c[1]), span=cover(c))
 
     def ended(self, c: Children) -> s.Ended:
-        return s.Ended(name(c[1]), span=cover(c))
+        return s.Ended(agent(c[1]), span=cover(c))
 
     def waiting(self, c: Children) -> s.Waiting:
-        return s.Waiting(name(c[1]), span=cover(c))
+        return s.Waiting(agent(c[1]), span=cover(c))
 
     def hosted_at(self, c: Children) -> s.HostedAt:
-        return s.HostedAt(name(c[0]), name(c[2]), span=cover(c))
+        return s.HostedAt(agent(c[0]), name(c[2]), span=cover(c))
 
     def same_name(self, c: Children) -> s.Formula:
-        return _equal(c[1], s.SameName(name(c[0]), name(c[2]), span=cover(c)))
+        return _equal(c[1], s.SameName(agent(c[0]), agent(c[2]), span=cover(c)))
 
     def stored(self, c: Children) -> s.Formula:
         operator = "==" if c[3] == "!=" else str(c[3])
-        return _equal(c[3], s.Stored(name(c[0]), name(c[2]), c[4], operator, span=cover(c)))
+        return _equal(c[3], s.Stored(agent(c[0]), name(c[2]), c[4], operator, span=cover(c)))
 
     def has_value(self, c: Children) -> s.HasValue:
-        return s.HasValue(name(c[1]), name(c[3]), span=cover(c))
+        return s.HasValue(agent(c[1]), name(c[3]), span=cover(c))
 
 
 def option(owner: str, token: Token, options: tuple[str, ...]) -> str:

@@ -19,7 +19,7 @@ from bigraphs.notation.paper import parse_rule
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
 from specs.preprocessing import MAX_WORD
-from specs.syntax import Name, Node, RuleBody, Span, TextLiteral
+from specs.syntax import Member, Name, Node, RuleBody, Span, TextLiteral
 
 MOST: Final = 1_000_000_000  # whole numbers are smaller in value
 _ESCAPES: Final = {'"': '"', "\\": "\\", "n": "\n", "t": "\t"}
@@ -87,6 +87,11 @@ def name(token: Token) -> Name:
 def names(children: Children) -> tuple[Name, ...]:
     """Return the names among the children."""
     return tuple(name(child) for child in children if isinstance(child, Token) and child.type in _NAMES)
+
+
+def agent(child: Child) -> Name | Member:
+    """Return a bigActor: a name, or a member of a family, which is built already."""
+    return child if isinstance(child, Member) else name(child)
 
 
 def optional(token: Token | None, make: Callable[[Token], N]) -> N | None:

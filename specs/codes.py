@@ -354,6 +354,13 @@ class Code(Enum):
         """A node or a bigActor is expected, and this is a number, a truth value, a tuple, a route or a text that is
         no name; or something to go through is expected, and this is a tuple.""",
     )
+    BAD_FAMILY = (
+        "LS408",
+        "family that cannot be written out",
+        """A family has a member for each entity of a kind, or of a set or a route of entities that names each once:
+        `BigActor patrol[i] for u in UAV ...`, `for u in [uav1, uav0]`. Written out, the members of all families may
+        have at most a hundred thousand words together.""",
+    )
     # --- LS5: reaction rules
     RULE_SYNTAX = (
         "LS501",
@@ -496,8 +503,9 @@ class Code(Enum):
     NOTHING_QUANTIFIED = (
         "LS701",
         "quantifier over nothing",
-        """A property quantifies over a kind that has no entity: `forall` is always true, `exists` never. Declare one
-        (it may be `absent` at first), or quantify over another kind.""",
+        """A property quantifies over a kind that has no entity, or over bigActors that there are none of: `forall` is
+        always true, `exists` never. Or a family goes through such a kind, and has no member. Declare one (an entity
+        may be `absent` at first), or quantify over others.""",
     )
 
     FAR_FROM_THE_REST = (

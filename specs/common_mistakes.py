@@ -190,7 +190,7 @@ def reserved_word(at: Situation) -> Diagnostic | None:
 
 def missing_host(at: Situation) -> Diagnostic | None:
     """`BigActor a { ... }`."""
-    if at.accepted == {"hosted_at"}:
+    if at.accepted in ({"hosted_at"}, {"hosted_at", "["}):
         message = f"expected 'hosted_at' and a host, found {at.found.shown}"
         return at.mistake(
             Code.MISSING_HOST, message, "write BigActor name hosted_at host with_behavior { ... }"

@@ -169,6 +169,9 @@ def _head(node: s.Node) -> str:
         case s.BigActor(name, host, _):
             named = f" {write(name)}" if name else ""
             return f"BigActor{named} hosted_at {write(host)} with_behavior"
+        case s.Family(name, index, variable, among, host, _):
+            each = f"{write(name)}[{write(index)}] for {write(variable)} in {write(among)}"
+            return f"BigActor {each} hosted_at {write(host)} with_behavior"
         case s.Definition(name, parameters, _):
             return f"def {write(name)}({listed(parameters)}) ="
         case s.While(condition, _):
@@ -192,7 +195,7 @@ _BLOCKS: Final[dict[type[s.Node], Callable[..., None]]] = {
     s.Alternative: _alternative,
     **{
         sort: _block(_head, "body")
-        for sort in (s.BigActor, s.Definition, s.While, s.For, s.ChooseFrom, s.Loop)
+        for sort in (s.BigActor, s.Family, s.Definition, s.While, s.For, s.ChooseFrom, s.Loop)
     },
     s.Match: _block(_head, "cases"),
     s.Choose: _block(_head, "alternatives"),

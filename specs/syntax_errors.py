@@ -63,6 +63,7 @@ def explain_syntax_error(found: UnexpectedInput, run: Run, prepared: Prepared) -
 def expected(at: Situation) -> str:
     """Return what could stand there in the user's words: `a statement or '}'`."""
     words, sorts, groups = set(at.accepted) - {";"}, set(at.sorts), []
+    words -= {"["} if len(words) > 1 else set()  # a name could be that of a family: nobody misses that
     for first, title, members, also in _GROUPS:
         if first in at.accepted:
             groups.append(title)

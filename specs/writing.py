@@ -117,6 +117,11 @@ def _(node: s.RouteLiteral) -> str:
 
 
 @write.register
+def _(node: s.Member) -> str:
+    return f"{write(node.family)}[{write(node.index)}]"
+
+
+@write.register
 def _(node: s.UnaryOperation) -> str:
     if node.operator == "not":
         return f"not {inner(node.operand, 3)}"
@@ -231,7 +236,10 @@ def _(node: s.Connective) -> str:
 
 @write.register
 def _(node: s.Quantified) -> str:
-    return f"{node.quantifier} {write(node.variable)}: {write(node.kind)} . {write(node.body)}"
+    behaviour = f" with_behavior {write(node.behaviour)}" if node.behaviour else ""
+    host = f" hosted_at {write(node.host)}" if node.host else ""
+    among = f"{write(node.range)}{behaviour}{host}"
+    return f"{node.quantifier} {write(node.variable)}: {among} . {write(node.body)}"
 
 
 @write.register

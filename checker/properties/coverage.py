@@ -106,8 +106,9 @@ def reached(initial: Configuration, visited: Visited) -> "Reached":
     passed = computed | visited.passed
     stood = {code[0] for codes in visited.codes.values() for code in codes if code}
     stepped = {number for number, branch in passed if branch == STEPPED}
-    taken = frozenset(passage for passage in passed if passage[1] != STEPPED)
-    return Reached(setting.program, _with_loops(setting.program, stood | stepped), taken)
+    numbers, first = _with_loops(setting.program, stood | stepped), setting.program.copies
+    taken = frozenset((first.get(number, number), rank) for number, rank in passed if rank != STEPPED)
+    return Reached(setting.program, frozenset(first.get(number, number) for number in numbers), taken)
 
 
 def _with_loops(program: Program, reached: Set[int]) -> frozenset[int]:
@@ -121,28 +122,29 @@ def _with_loops(program: Program, reached: Set[int]) -> frozenset[int]:
 
 
 class Reached:
-    """A program, and the numbers and branches of its statements that were reached."""
+    """A program, and the numbers and branches of its statements that were reached; a family's text counts once."""
 
     def __init__(self, program: Program, numbers: frozenset[int], taken: frozenset[Passage]) -> None:
         self.program, self.numbers, self.taken = program, numbers, taken
-        statements = program.statements
-        self.written = frozenset(n for n, s in enumerate(statements) if not isinstance(s, Tested | ForEach))
-        self.branches = [(n, rank) for n, s in enumerate(statements) for rank in range(len(branches(s)))]
+        statements = [(n, s) for n, s in enumerate(program.statements) if n not in program.copies]
+        self.written = frozenset(n for n, s in statements if not isinstance(s, Tested | ForEach))
+        self.branches = [(n, rank) for n, s in statements for rank in range(len(branches(s)))]
         self.rules = frozenset(name for sort, name in program.declared if sort == "rule")
-        at = (statements[number] for number in numbers)
+        at = (program.statements[number] for number in numbers)
         self.used = frozenset(each.name for each in at if isinstance(each, ControlBy))
 
     def lines(self) -> list[tuple[int, bool]]:
         """Return the lines of statements and of cases with whether they were reached."""
         program = self.program
         stated = [(program.line(number), number in self.numbers) for number in sorted(self.written)]
-        begun = [(line, branch in self.taken) for branch, line in sorted(program.branch_lines.items())]
+        lines = sorted(program.branch_lines.items())
+        begun = [(line, branch in self.taken) for branch, line in lines if branch[0] not in program.copies]
         return stated + begun
 
     def gaps(self, starts: Iterable[Block]) -> Iterator[Gap]:
         """Yield the gaps of agents' bodies and of behaviours."""
         for start in starts:
-            yield from self.within(start)
+            yield from self.within(tuple(number for number in start if number not in self.program.copies))
         for name, behaviour in sorted(self.program.behaviours.items()):
             if behaviour.body and behaviour.body[0] not in self.numbers:
                 line = self.program.declared.get(("behaviour", name), self.program.line(behaviour.body[0]))

@@ -2,17 +2,19 @@
 
 A part is *never needed* if the formula holds whatever stands in its place: if it still holds with false there where it
 stands positively, with true where negatively (Kupferman and Vardi, Vacuity detection in temporal model checking, 1999).
-A quantifier is elaborated into one operand for each entity of a kind; what is said of its body is said once, and not of
-each instance.
+A quantifier is elaborated into one operand for each name of its range; what is said of its body is said once, and not
+of each instance.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, Final
 
-from semantics.properties.propositions import Always, And, Not, Or, Proposition
+from semantics.behaviours.program import VariableOf
+from semantics.properties.property import Ranges
+from semantics.properties.propositions import Always, And, Exists, Not, Or, Proposition
 from semantics.properties.temporal import Both, Denied, Either, Now, Temporal, parts
-from semantics.state.signature import Name
+from semantics.state.agents import written
 
 Path = tuple[int, ...]
 """Where a part stands in a formula: which operand of which operand."""
@@ -39,11 +41,11 @@ class Part:
     paths: tuple[Path, ...] = ((),)
     positive: bool = True
 
-    def parts(self, kinds: Mapping[Name, str]) -> Iterator["Part"]:
+    def parts(self, ranges: Ranges) -> Iterator["Part"]:
         """Yield the parts that it has itself."""
-        operands = operands_of(self.formula, kinds)
+        operands = tuple(map(_said, operands_of(self.formula, ranges)))
         positive = self.positive is not isinstance(_bare(self.formula), Not | Denied)
-        if _are_instances(operands, kinds):
+        if _are_instances(operands, ranges):
             everywhere = tuple((*path, *at) for path in self.paths for at, _ in operands)
             yield Part(operands[0][1], everywhere, positive)
             return
@@ -51,28 +53,28 @@ class Part:
             yield Part(operand, tuple((*path, *at) for path in self.paths), positive)
 
 
-def operands_of(formula: Formula, kinds: Mapping[Name, str]) -> tuple[Operand, ...]:
+def operands_of(formula: Formula, ranges: Ranges) -> tuple[Operand, ...]:
     """Return what a formula is made of, each with where it stands in it; of a chain of `and` or `or` all operands."""
     match formula:
         case Now(proposition):
-            return tuple(((0, *at), operand) for at, operand in operands_of(proposition, kinds))
+            return tuple(((0, *at), operand) for at, operand in operands_of(proposition, ranges))
         case Not(inner):
             return (((0,), inner),)
         case And(formulas) | Or(formulas):
             return tuple(((rank,), operand) for rank, operand in enumerate(formulas))
         case Both() | Either():
-            return _chain(formula, kinds)
+            return _chain(formula, ranges)
     whole = parts(formula) if isinstance(formula, Temporal) else ()
     return tuple(((rank,), operand) for rank, operand in enumerate(whole))
 
 
-def _chain(formula: Both | Either, kinds: Mapping[Name, str]) -> tuple[Operand, ...]:
+def _chain(formula: Both | Either, ranges: Ranges) -> tuple[Operand, ...]:
     """Return the operands of a connective and of those like it within: all, or as many as make it a quantifier's.
 
     A quantifier is elaborated in pairs of pairs, so the largest are taken apart first.
     """
     operands: tuple[Operand, ...] = (((0,), formula.left), ((1,), formula.right))
-    while not _are_instances(operands, kinds):
+    while not _are_instances(operands, ranges):
         inner = [_size(each) for _, each in operands if isinstance(each, type(formula))]
         if not inner:
             break
@@ -92,8 +94,29 @@ def _size(formula: Formula) -> int:
     return 1 + sum(map(_size, parts(formula))) if isinstance(formula, Temporal) else 1
 
 
-def _are_instances(operands: tuple[Operand, ...], kinds: Mapping[Name, str]) -> bool:
-    return is_quantified(tuple(operand for _, operand in operands), kinds)
+def _are_instances(operands: tuple[Operand, ...], ranges: Ranges) -> bool:
+    return is_quantified(tuple(operand for _, operand in map(_said, operands)), ranges)
+
+
+def _said(operand: Operand) -> Operand:
+    """Return what a quantifier says of a name, without what it implies: that it is there."""
+    path, formula = operand
+    match formula:
+        case Or((Not(condition), said)) | And((condition, said)):
+            pass
+        case Either(Denied(condition), said) | Both(condition, said):
+            pass
+        case _:
+            return operand
+    return ((*path, 1), said) if _is_implied(condition) else operand
+
+
+def _is_implied(condition: Formula) -> bool:
+    return isinstance(bare := _bare(condition), Exists) and bare.implied
+
+
+def _unsigned(formula: Formula) -> Formula:
+    return formula.formula if isinstance(formula, Not | Denied) else formula
 
 
 def _bare(formula: Formula) -> Formula:
@@ -151,41 +174,39 @@ def never_needed(around: Part, part: Part) -> str:
 
 
 def unneeded(
-    formula: Formula, kinds: Mapping[Name, str], holds: Callable[[Formula], bool]
+    formula: Formula, ranges: Ranges, holds: Callable[[Formula], bool]
 ) -> Iterator[tuple[Part, Part]]:
     """Yield the outermost parts that are never needed of a formula that holds, each with the one around it.
 
     Args:
         formula: The formula.
-        kinds: The kind of each entity, to know the instances of a quantifier's body.
+        ranges: What its quantifiers go through, to know the instances of a body.
         holds: Tells of a formula with something replaced whether it holds.
     """
-    yield from _unneeded(formula, Part(formula), kinds, holds)
+    yield from _unneeded(formula, Part(formula), ranges, holds)
 
 
 def _unneeded(
-    formula: Formula, around: Part, kinds: Mapping[Name, str], holds: Callable[[Formula], bool]
+    formula: Formula, around: Part, ranges: Ranges, holds: Callable[[Formula], bool]
 ) -> Iterator[tuple[Part, Part]]:
-    found = tuple(around.parts(kinds))
+    found = tuple(around.parts(ranges))
     alone = len(found) == 1 and len(found[0].paths) == len(around.paths)
     for part in found:
-        if isinstance(_bare(part.formula), Always):
+        if isinstance(_bare(part.formula), Always) or _is_implied(_unsigned(part.formula)):
             continue
         # What stands alone is needed as what is around it is.
         if not alone and holds(strengthened(formula, part)):
             yield around, part
         else:
-            yield from _unneeded(formula, part, kinds, holds)
+            yield from _unneeded(formula, part, ranges, holds)
 
 
-def is_quantified(operands: Sequence[Any], kinds: Mapping[Name, str]) -> bool:
-    """Tell whether operands of a connective differ in one name only, which goes through all entities of a kind."""
+def is_quantified(operands: Sequence[Any], ranges: Ranges) -> bool:
+    """Tell whether operands of a connective differ in one name only, which goes through one of some ranges."""
     if len(operands) < 2:
         return False
     names = _varying([list(_words(part)) for part in operands])
-    if names is None or not isinstance(names[0], str) or names[0] not in kinds:
-        return False
-    return set(names) == {name for name, kind in kinds.items() if kind == kinds[names[0]]}
+    return names is not None and tuple(sorted(map(str, names))) in ranges
 
 
 def _varying(operands: list[list[Any]]) -> list[Any] | None:
@@ -204,6 +225,9 @@ def _words(formula: Any) -> Iterator[Any]:
     """Yield what a formula is made of, from left to right; `true` and `false` alike, as comparing names gives them."""
     if isinstance(formula, Always):
         yield "always"
+    elif isinstance(formula, VariableOf):  # each member of a family has variables of its own
+        yield formula.agent
+        yield written(formula.variables[0])
     elif isinstance(formula, tuple):
         yield len(formula)
         for each in formula:

@@ -12,11 +12,11 @@ from typing import Any, Final
 
 from checker.limits import look
 from checker.properties.subformulas import STILL, Part, few, never_needed, unneeded
+from semantics.properties.property import Ranges
 from semantics.properties.propositions import Always, And, Atom, Not, Or, Proposition, holds
 from semantics.state import cells
 from semantics.state.cells import Cell, Cells, Changes, Question, State, Written, is_, merged
 from semantics.state.configuration import Configuration
-from semantics.state.signature import Name
 
 MOST_ATOMS: Final = 64
 """The most different atoms of a formula whose valuations are gathered."""
@@ -83,13 +83,13 @@ class Valuations:
             for rank, atom in enumerate(self.atoms)
         }
 
-    def remarks(self, kinds: Mapping[Name, str]) -> tuple[str, ...]:
+    def remarks(self, ranges: Ranges) -> tuple[str, ...]:
         """Return what makes the invariant vacuous, if it holds: at most a few sentences."""
         if self.still is not None and self.begun:
             return (STILL,)
         if not self.atoms:
             return ()
-        return few(tuple(remarks_on(self.formula, self.columns, len(self.met), kinds)))
+        return few(tuple(remarks_on(self.formula, self.columns, len(self.met), ranges)))
 
 
 def is_still(configurations: Iterable[Configuration], atoms: tuple[Atom, ...]) -> bool:
@@ -182,9 +182,7 @@ def truth(formula: Proposition, columns: Columns, every: int) -> int:
             return columns[formula]
 
 
-def remarks_on(
-    formula: Proposition, columns: Columns, count: int, kinds: Mapping[Name, str]
-) -> Iterator[str]:
+def remarks_on(formula: Proposition, columns: Columns, count: int, ranges: Ranges) -> Iterator[str]:
     """Yield in words the outermost parts of an invariant that are never needed, on so many valuations."""
     every = (1 << count) - 1
 
@@ -192,7 +190,7 @@ def remarks_on(
         return truth(formula, columns, every) == every
 
     if is_true(formula):
-        yield from (_remark(*each, columns, every) for each in unneeded(formula, kinds, is_true))
+        yield from (_remark(*each, columns, every) for each in unneeded(formula, ranges, is_true))
 
 
 def _remark(around: Part, part: Part, columns: Columns, every: int) -> str:

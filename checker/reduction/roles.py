@@ -37,7 +37,7 @@ from semantics.behaviours.statements import (
     Spawn,
     Statement,
 )
-from semantics.behaviours.values import Route, Truth, within
+from semantics.behaviours.values import Route, Truth, Value, within
 from semantics.environment import Says
 from semantics.state.requests import MGR, SND
 from semantics.state.signature import REGION, Name
@@ -115,10 +115,17 @@ class Roles:
                 return self.roles[agent].named.get(name, frozenset())
             case SetOf(items) | RouteOf(items):
                 return _either(self.names(agent, item) for item in items)
+            case Apply("[]", (Literal(frozenset(members)), node)):
+                return self._members(members, self.names(agent, node))
             case Apply("parent", (node, _)):
                 return self._places(self.names(agent, node))
             case _:
                 return None
+
+    def _members(self, members: Iterable[Value], nodes: Names | None) -> Names:
+        """Return the members of a family that may be meant by some nodes."""
+        pairs = (each for each in members if isinstance(each, tuple))
+        return frozenset(str(agent) for node, agent in pairs if nodes is None or node in nodes)
 
     def _places(self, nodes: Names | None) -> Names:
         """Return the places in which an observation may have seen some nodes."""

@@ -9,6 +9,7 @@ from semantics.behaviours.stepping import waits
 from semantics.properties.propositions import (
     And,
     Ended,
+    Exists,
     HasPending,
     HostedAt,
     Inside,
@@ -80,16 +81,22 @@ class Eyes:
                 yield Seen(placement_cell(node), is_something)
             case Known(node):
                 yield Seen(parent_cell(node), is_something)
-            case Ended(agent):
-                yield from (Seen(AGENTS, has, (agent,)), Seen(code_cell(agent), is_over))
-            case Waiting(agent):
-                yield from (Seen(AGENTS, has, (agent,)), Seen(code_cell(agent), waits, (self.program,)))
-            case HostedAt(agent):
-                yield from (Seen(AGENTS, has, (agent,)), Seen(host_cell(agent)))
-            case HasPending(agent):
-                yield from (Seen(AGENTS, has, (agent,)), Seen(line_cell(agent)), Seen(sends_cell(agent)))
+            case Exists() | Ended() | Waiting() | HostedAt() | HasPending():
+                yield Seen(AGENTS, has, (formula.agent,))
+                yield from self._of_agent(formula)
             case VariableIs(variable) | IsBound(variable):
                 yield Seen(store_cell(variable.agent), is_true_of, (formula,))
+
+    def _of_agent(self, atom: Exists | Ended | Waiting | HostedAt | HasPending) -> Iterator[Seen]:
+        match atom:
+            case Ended(agent):
+                yield Seen(code_cell(agent), is_over)
+            case Waiting(agent):
+                yield Seen(code_cell(agent), waits, (self.program,))
+            case HostedAt(agent):
+                yield Seen(host_cell(agent))
+            case HasPending(agent):
+                yield from (Seen(line_cell(agent)), Seen(sends_cell(agent)))
 
     def _places(self, node: Name, actually: bool) -> Iterator[Seen]:
         if node not in self.bounds.names or node == REGION:

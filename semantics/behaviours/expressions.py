@@ -346,6 +346,16 @@ def _element(_: Scope, value: Value, index: Value) -> Value:
     return items[_number(index)]
 
 
+def _member(_: Scope, family: Value, entity: Value) -> Value:
+    for each in within(family):
+        if isinstance(each, tuple) and each[0] == entity:
+            return each[1]
+    known = ", ".join(sorted(str(each[1]) for each in within(family) if isinstance(each, tuple))[:5])
+    raise Fault(
+        f"there is no member for {show(entity, frozenset())}: the family's members are {known or 'none'}"
+    )
+
+
 def _compare(holds: Callable[[int, int], bool]) -> Callable[..., Value]:
     return lambda _, a, b: Truth.of(holds(_number(a), _number(b)))
 
@@ -459,6 +469,7 @@ OPERATORS: Mapping[str, Operator] = {
     "first": Operator(
         1, "the first member of a route, or of a set in the order of names", _first, members_asked
     ),
+    "[]": Operator(2, "the member of a family for an entity", _member),
     "element": Operator(2, "one element of a tuple or a route, counted from 0", _element),
 }
 

@@ -82,6 +82,7 @@ class Program:
         branch_lines: The same of cases and alternatives, by statement and rank.
         declared: The line in which each rule and behaviour is declared, by sort (`rule`, `behaviour`) and name.
         bodies: What each bigActor of the text begins with.
+        copies: Of the statements of a family's members after the first, which one of the first's each repeats.
         watched: The variables that properties name: they are kept to the end of the run.
     """
 
@@ -92,6 +93,7 @@ class Program:
     branch_lines: Mapping[tuple[int, int], int] = field(default_factory=dict)
     declared: Mapping[tuple[str, str], int] = field(default_factory=dict)
     bodies: Mapping[Name, Block] = field(default_factory=dict)
+    copies: Mapping[int, int] = field(default_factory=dict)
     watched: frozenset[VariableOf] = frozenset()
 
     def __getstate__(self) -> dict[str, Any]:

@@ -10,8 +10,13 @@ from semantics.properties.propositions import Always, Proposition
 from semantics.properties.temporal import Fairness, Temporal
 from semantics.state.brief import cut
 from semantics.state.configuration import Configuration
+from semantics.state.signature import Name
 
 TRUE: Final = Always(True)
+
+
+Ranges = tuple[tuple[Name, ...], ...]
+"""What quantifiers go through; names are sorted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +30,7 @@ class Property:
         line: Where it stands in the mission's text, from 1; 0 where it was not written.
         temporal: The formula of `ltl` and `ctl`.
         fairness: Which runs count, for `ltl`, `ctl`, `progress` and `deadlock_freedom`: all where it is empty.
+        ranges: What the quantifiers of its formula go through.
     """
 
     kind: PropertyKind
@@ -33,6 +39,7 @@ class Property:
     line: int = 0
     temporal: Temporal | None = None
     fairness: tuple[Fairness, ...] = ()
+    ranges: Ranges = ()
 
     def __repr__(self) -> str:
         return f"<Property {cut(self.name)}{'' if self.name == self.kind else f' kind={self.kind}'}>"

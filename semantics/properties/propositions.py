@@ -51,6 +51,22 @@ class Present:
 
 
 @dataclass(frozen=True, slots=True)
+class Exists:
+    """`present a`: there is a bigActor a, from the first or since it was spawned.
+
+    Attributes:
+        agent: Which.
+        implied: Whether a quantifier says it, of a bigActor that may not be there yet, and not the mission.
+    """
+
+    agent: Name
+    implied: bool = False
+
+    def __str__(self) -> str:
+        return f"present {self.agent}"
+
+
+@dataclass(frozen=True, slots=True)
 class Known:
     """`known x`: x is a node of L."""
 
@@ -180,6 +196,7 @@ Atom = (
     Inside
     | LinkedWith
     | Present
+    | Exists
     | Known
     | HasPending
     | Ended
@@ -293,6 +310,7 @@ _TRUTH: dict[type, Callable[[Any, Configuration], bool]] = {
     VariableIs: _about_variable,
     IsBound: _about_variable,
     Present: lambda atom, c: atom.entity in c.structure.physical,
+    Exists: lambda atom, c: _is_agent(c, atom.agent),
     Known: lambda atom, c: atom.node in c.structure.logical,
     Ended: lambda atom, c: _is_agent(c, atom.agent) and c.test(code_cell(atom.agent), is_over),
     Waiting: lambda atom, c: (

@@ -180,6 +180,8 @@ def _whom(statement: Statement) -> Names:
     match statement:
         case Send(_, Literal(str(name))) | Spawn(name):
             return frozenset({name})
+        case Send(_, Apply("[]", (Literal(frozenset(members)), _))):
+            return frozenset(str(each[1]) for each in members if isinstance(each, tuple))
         case Send():
             return frozenset({ANY})
         case _:

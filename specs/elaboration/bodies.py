@@ -12,6 +12,7 @@ from semantics.behaviours.program import Behaviour, Program
 from semantics.behaviours.statements import Loop
 from specs import syntax as s
 from specs.codes import Code
+from specs.elaboration.actors import Actor
 from specs.elaboration.names import Names
 from specs.elaboration.rule_schemas import Checked, Maker, Schema
 from specs.elaboration.statements import Body, Numbering, SpawnSite
@@ -67,7 +68,7 @@ class Bodies:
         return tuple({id(body): body for start in starts for body in self.reached(start)}.values())
 
 
-def declare_behaviours(mission: s.Mission, names: Names) -> None:
+def declare_behaviours(mission: s.Mission, names: Names, actors: Iterable[Actor]) -> None:
     """Declare rules, behaviours and bigActors, so that they may name each other."""
     for rule in mission.each(s.Rule):
         if names.declare("rule", rule.name.text, rule.name):
@@ -75,19 +76,10 @@ def declare_behaviours(mission: s.Mission, names: Names) -> None:
     for definition in mission.each(s.Definition):
         if names.declare("behaviour", definition.name.text, definition.name):
             names.behaviours[definition.name.text] = definition
-    for name, actor in named_agents(mission):
-        if names.declare("agent", name, actor.name or actor):
-            names.agents[name] = actor.host
-    _declare_spawned(mission, names)
-
-
-def named_agents(mission: s.Mission) -> Iterator[tuple[str, s.BigActor]]:
-    """Yield the bigActors with their names: those without one are bigActor0, bigActor1 and so on."""
-    actors = mission.each(s.BigActor)
-    taken = {actor.name.text for actor in actors if actor.name is not None}
-    free = (name for number in range(len(actors) + len(taken)) if (name := f"bigActor{number}") not in taken)
     for actor in actors:
-        yield (actor.name.text if actor.name is not None else next(free)), actor
+        if names.declare("agent", actor.name, actor.where):
+            names.agents[actor.name] = actor.host
+    _declare_spawned(mission, names)
 
 
 def _declare_spawned(mission: s.Mission, names: Names) -> None:
@@ -105,21 +97,25 @@ def _declare_spawned(mission: s.Mission, names: Names) -> None:
 
 
 def elaborate_bodies(
-    mission: s.Mission, names: Names, schemas: Mapping[str, Schema]
+    mission: s.Mission, names: Names, actors: Iterable[Actor], schemas: Mapping[str, Schema]
 ) -> tuple[Bodies, Program]:
     """Return all bodies and the program that they are numbered in."""
     bodies = Bodies(schemas=dict(schemas))
     program = Numbering(names, bodies.schemas)
-    for name, actor in named_agents(mission):
-        body = Body(name, is_agent=True)
-        bodies.agents.setdefault(name, body)
-        program.body(body, actor.body, {})
+    first: dict[str, int] = {}
+    copies: dict[int, int] = {}
+    for actor in actors:
+        body, start = Body(actor.name, is_agent=True), len(program.statements)
+        bodies.agents.setdefault(actor.name, body)
+        program.body(body, actor.body, {}, actor.constants)
+        before = start - first.setdefault(actor.family or actor.name, start)
+        copies |= {number: number - before for number in range(start, len(program.statements)) if before}
     for definition in mission.each(s.Definition):
         body, name = Body(definition.name.text, is_agent=False), definition.name.text
         parameters = _parameters(definition, names)
         bodies.behaviours.setdefault(name, body)
         bodies.parameters.setdefault(name, tuple(parameters.values()))
-        program.body(body, definition.body, parameters)
+        program.body(body, definition.body, parameters, {})
     _check_recursion(bodies, names)
     for number in _outermost(bodies):
         loop = program.statements[number]
@@ -139,7 +135,8 @@ def elaborate_bodies(
         if key[0] in ("rule", "behaviour")
     }
     begun = {name: body.block for name, body in bodies.agents.items()}
-    return bodies, Program(statements, behaviours, reactions, lines, program.branch_lines, declared, begun)
+    whole = Program(statements, behaviours, reactions, lines, program.branch_lines, declared, begun, copies)
+    return bodies, whole
 
 
 def _parameters(definition: s.Definition, names: Names) -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TypeVar
 
 from semantics.behaviours.program import Program
@@ -49,6 +50,7 @@ def elaborate_checks(
     temporal = TemporalFormulas(formulas)
     for item in written:
         line = names.findings.source.line(item.span.start)
+        formulas.ranges.clear()
         if isinstance(item, s.StandardProperty):
             prop = Property(PropertyKind(item.name), item.name, line=line)
         elif isinstance(item, s.TemporalProperty | s.Progress | s.FairDeadlockFreedom):
@@ -63,6 +65,6 @@ def elaborate_checks(
                 Code.REPEATED_SETTING, item, f"a property '{prop.name}' is asked for twice", "rename one"
             )
         seen.add(prop.name)
-        found.append(prop)
+        found.append(replace(prop, ranges=tuple(sorted(formulas.ranges))))
     usual = [Property(kind, kind.value) for kind in asked_by(Asked.BY_DEFAULT)]
     return (*(found or usual), *always)

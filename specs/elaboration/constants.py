@@ -11,8 +11,8 @@ from specs.elaboration.findings import shorten
 from specs.elaboration.names import Names
 
 
-def elaborate_constant(node: s.Expression, names: Names, bound: Mapping[str, str] | None = None) -> Value:
-    """Return the value of a constant; reports what is none. `bound` are quantified names."""
+def elaborate_constant(node: s.Expression, names: Names, bound: Mapping[str, Value] | None = None) -> Value:
+    """Return the value of a constant; reports what is none. `bound` are names that stand for another value."""
     match node:
         case s.TextLiteral(text):
             return text
@@ -34,6 +34,8 @@ def elaborate_constant(node: s.Expression, names: Names, bound: Mapping[str, str
             if name not in names.agents:
                 names.entity(node, otherwise=f'a text stands in quotes: "{shorten(name)}"')
             return name
+        case s.Member():
+            return names.member(node.family, elaborate_constant(node.index, names, bound), node.index) or ""
         case _:
             hint = "write a text, a number, a name, true, false, or a tuple, set or route of these"
             names.findings.add(Code.NOT_CONSTANT, node, "this is not a fixed value", hint)

@@ -160,8 +160,8 @@ def _says(phase: _Clauses, clause: s.Says) -> Clause | None:
     message = elaborate_constant(clause.message, phase.names)
     agents = phase.names.agents
     if clause.recipient is not None:
-        known = phase.names.agent(clause.recipient)
-        agent = clause.recipient.text
+        named = phase.names.agent(clause.recipient)
+        known, agent = named is not None, named or ""
     else:
         known, agent = len(agents) == 1, min(agents, default="")
         if not known:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from contextlib import suppress
 from typing import Final
 
 from semantics.behaviours.expressions import (
@@ -9,6 +11,7 @@ from semantics.behaviours.expressions import (
     Apply,
     Either,
     Expression,
+    Fault,
     Host,
     Literal,
     QueryOf,
@@ -17,7 +20,10 @@ from semantics.behaviours.expressions import (
     SetOf,
     TupleOf,
     Variable,
+    evaluate,
+    leaves,
 )
+from semantics.behaviours.expressions import Scope as EvaluationScope
 from semantics.behaviours.observations import QueryOperator
 from semantics.behaviours.values import Truth
 from specs import syntax as s
@@ -31,6 +37,12 @@ FUNCTIONS: Final = tuple(
 )
 """What can be called in an expression."""
 
+_COLLECTIONS: Final[Mapping[type, type[TupleOf | SetOf | RouteOf]]] = {
+    s.TupleLiteral: TupleOf,
+    s.SetLiteral: SetOf,
+    s.RouteLiteral: RouteOf,
+}
+
 _ANY: Final = Literal("")
 """Stands for an expression with a mistake; the mission is refused."""
 
@@ -40,6 +52,8 @@ def elaborate_expression(node: s.Expression, scope: Scope, names: Names) -> Expr
     match node:
         case s.Name():
             return _name(node, scope, names)
+        case s.Member():
+            return _member(node, scope, names)
         case s.TextLiteral(value) | s.IntegerLiteral(value):
             return Literal(value)
         case s.TruthLiteral(value):
@@ -48,12 +62,8 @@ def elaborate_expression(node: s.Expression, scope: Scope, names: Names) -> Expr
             return Host()
         case s.SelfReference():
             return Self()
-        case s.TupleLiteral(items):
-            return TupleOf(_all(items, scope, names))
-        case s.SetLiteral(items):
-            return SetOf(_all(items, scope, names))
-        case s.RouteLiteral(items):
-            return RouteOf(_all(items, scope, names))
+        case s.TupleLiteral(items) | s.SetLiteral(items) | s.RouteLiteral(items):
+            return _COLLECTIONS[type(node)](_all(items, scope, names))
         case s.UnaryOperation():
             return _unary(node, scope, names)
         case s.BinaryOperation():
@@ -117,15 +127,40 @@ def _name(node: s.Name, scope: Scope, names: Names) -> Expression:
     variable = scope.find(node.text)
     if variable is not None:
         return Variable(variable)
+    if node.text in scope.constants:
+        return Literal(scope.constants[node.text])
     if node.text in names.kinds or node.text in names.agents:
         return Literal(node.text)
     sort = names.sort_of(node.text)
     if sort is None:
         names.findings.unknown(node, [*scope.names(), *names.kinds, *names.agents])
     else:
-        hint = f'as a text it is written "{node.text}"'
+        family = names.families.get(node.text, {})
+        hint = (
+            f"name a member: {next(iter(family.values()))}"
+            if family
+            else f'as a text it is written "{node.text}"'
+        )
         names.findings.add(Code.WRONG_SORT, node, f"'{node.text}' is a {sort}, which is no value", hint)
     return _ANY
+
+
+def _member(node: s.Member, scope: Scope, names: Names) -> Expression:
+    """Return the name of a member, or what looks it up by its entity where a run decides which one is meant."""
+    index = elaborate_expression(node.index, scope, names)
+    if index is _ANY:
+        return _ANY
+    if isinstance(index, Literal):
+        return Literal(names.member(node.family, index.value, node.index) or "")
+    members = names.family(node.family) or {}
+    if all(
+        isinstance(leaf, Literal) for leaf in leaves(index)
+    ):  # such as i + 1, and in range where it is reached
+        with suppress(Fault):
+            number = evaluate(index, EvaluationScope("", "", {}, {}, names.kinds, {}))
+            if isinstance(number, int) and 0 <= number < len(members):
+                return Literal(tuple(members.values())[number])
+    return Apply("[]", (Literal(frozenset(members.items())), index))
 
 
 # --- what must be a node or a bigActor ------------------------------------------------------------------------
@@ -144,7 +179,19 @@ def elaborate_agent(node: s.Expression, scope: Scope, names: Names) -> Expressio
 def _named(node: s.Expression, scope: Scope, names: Names, wanted: str) -> Expression:
     """Elaborate what is to name a node or a bigActor; a constant that doesn't is reported."""
     known = names.kinds if wanted == "node" else names.agents
-    other = s.SelfReference if wanted == "node" else s.HostReference
+    other = s.SelfReference | s.Member if wanted == "node" else s.HostReference
+    if isinstance(node, s.Name) and node.text in scope.fixed:
+        value = scope.fixed[node.text]
+        if value not in known:
+            what = "a number" if isinstance(value, int) else "an entity"
+            hint = "write its name, or a variable that holds it"
+            names.findings.add(
+                Code.WRONG_VALUE,
+                node,
+                f"a {wanted} is expected here, and '{node.text}' is {what}",
+                hint,
+            )
+        return Literal(value)
     if isinstance(node, s.Name) and scope.find(node.text) is None:
         sort = names.sort_of(node.text)
         if sort is None:

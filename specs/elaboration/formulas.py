@@ -13,6 +13,7 @@ from semantics.properties.propositions import (
     Always,
     And,
     Ended,
+    Exists,
     HasPending,
     HostedAt,
     Inside,
@@ -29,12 +30,17 @@ from semantics.properties.propositions import (
 from semantics.state.signature import REGION
 from specs import syntax as s
 from specs.codes import Code
+from specs.elaboration.among import Among
 from specs.elaboration.bodies import Bodies
 from specs.elaboration.constants import elaborate_constant
 from specs.elaboration.names import Names
 from specs.elaboration.value_types import ANY, WORDS, types_of
+from specs.writing import write
 
 MOST_ATOMS: Final = 50_000
+
+NOBODY: Final = REGION
+"""What a quantified name stands for where there is nothing to quantify over."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +85,8 @@ class Formulas:
         self.bodies = bodies
         self.types = types_of(program)
         self.atoms = 0
+        self.among = Among(names, bodies)
+        self.ranges = set[tuple[str, ...]]()
 
     def elaborate(self, formula: s.Formula, *, invariant: bool) -> Proposition:
         """Return a formula as a proposition; reports what is wrong with it, and where the bound is passed."""
@@ -132,29 +140,39 @@ class Formulas:
         return make((*_parts(left, make), *_parts(right, make)))
 
     def _quantified(self, node: s.Quantified, around: Context) -> Proposition:
-        found = []
-        for each in self.instances(node, around, self.proposition):
-            found.append(self.proposition(node.body, each))  # noqa: PERF401 - a frame less
-        return And(tuple(found)) if node.quantifier == "forall" else Or(tuple(found))
+        every, found = node.quantifier == "forall", []
+        for each, if_so in self.instances(node, around, self.proposition):
+            body = self.proposition(node.body, each)
+            found.append(body if if_so is None else Or((Not(if_so), body)) if every else And((if_so, body)))
+        return And(tuple(found)) if every else Or(tuple(found))
 
     def instances(
         self, node: s.Quantified, around: Context, elaborate: Callable[[s.Formula, Context], object]
-    ) -> list[Context]:
-        """Return the context of each instance of what is quantified."""
-        if not self.names.kind(node.kind):
+    ) -> list[tuple[Context, Proposition | None]]:
+        """Return the context of each instance of what is quantified, and what has to be true for it to count."""
+        mistakes = len(self.names.findings)
+        instances = self.among.instances(node, around.names)
+        if len(self.names.findings) > mistakes:
             return []
-        members = [name for name, kind in sorted(self.names.kinds.items()) if kind == node.kind.text]
-        if not members:
-            always = "true whatever happens" if node.quantifier == "forall" else "never true"
-            self.names.findings.warn(
-                Code.NOTHING_QUANTIFIED,
-                node.kind,
-                f"there is no entity of kind {node.kind.text}: '{node.quantifier} {node.variable.text}: "
-                f"{node.kind.text}' is {always}",
-                "declare one, absent if it is to appear later, or quantify over another kind",
-            )
-            elaborate(node.body, around.naming(node.variable.text, REGION))  # for the mistakes in it
-        return [around.naming(node.variable.text, name) for name in members]
+        if not instances:
+            self._warn_of_nothing(node)
+            elaborate(node.body, around.naming(node.variable.text, NOBODY))  # for the mistakes in it
+        self.ranges.add(tuple(name for name, _ in instances))
+        self.count(sum(condition is not None for _, condition in instances))
+        return [(around.naming(node.variable.text, name), condition) for name, condition in instances]
+
+    def _warn_of_nothing(self, node: s.Quantified) -> None:
+        always = "true whatever happens" if node.quantifier == "forall" else "never true"
+        among = write(replace(node, body=s.TruthLiteral(True))).removesuffix(" . true")
+        kind = node.range.text in self.names.signature.kinds
+        self.names.findings.warn(
+            Code.NOTHING_QUANTIFIED,
+            node.range,
+            f"there is no {f'entity of kind {node.range.text}' if kind else 'such bigActor'}: '{among}' is {always}",
+            "declare one, absent if it is to appear later, or quantify over another kind"
+            if kind
+            else "declare one, or quantify over others",
+        )
 
     # --- atoms
 
@@ -169,35 +187,59 @@ class Formulas:
             case s.LinkedTo(entity, other, actually):
                 return LinkedWith(self._entity(entity, bound), self._node_or_channel(other, bound), actually)
             case s.Present(entity):
-                return Present(self._entity(entity, bound))
+                agent = isinstance(entity, s.Member) or self._stands_for(entity, bound) in self.names.agents
+                return Exists(self.agent(entity, bound)) if agent else Present(self._entity(entity, bound))
             case s.Known(entity):
                 return Known(self._entity(entity, bound))
             case s.HostedAt(agent, host):
-                return HostedAt(self._agent(agent), self._entity(host, bound))
+                return HostedAt(self.agent(agent, bound), self._entity(host, bound))
             case s.Pending(agent, request):
-                return HasPending(self._agent(agent), request)
+                return HasPending(self.agent(agent, bound), request)
             case s.Ended(agent):
-                return Ended(self._agent(agent))
+                return Ended(self.agent(agent, bound))
             case s.Waiting(agent):
-                return Waiting(self._agent(agent))
+                return Waiting(self.agent(agent, bound))
             case s.SameName():
                 return self._same(node, bound)
             case s.Stored():
                 return self._stored(node, around)
             case s.HasValue(agent, variable):
-                return IsBound(self._variable(agent, variable))
+                return IsBound(self._variable(agent, variable, bound))
         message = "this is about runs, and here single configurations are looked at"
         self.names.findings.add(Code.WRONG_LOGIC, node, message, "write it in ltl or ctl")
         return Always(True)
 
-    def _entity(self, name: s.Name, bound: Mapping[str, str]) -> str:
-        if name.text not in bound:
-            self.names.entity(name)
+    def _stands_for(self, name: s.Name, bound: Mapping[str, str]) -> str:
         return bound.get(name.text, name.text)
 
-    def _agent(self, name: s.Name) -> str:
-        self.names.agent(name)
-        return name.text
+    def _entity(self, name: s.Agent, bound: Mapping[str, str]) -> str:
+        if isinstance(name, s.Member):
+            hint = "of its host is said: a hosted_at X"
+            self.names.findings.add(
+                Code.WRONG_SORT, name, f"'{write(name)}' is a bigActor, and not an entity", hint
+            )
+            return NOBODY
+        if name.text not in bound:
+            self.names.entity(name)
+        elif bound[name.text] in self.names.agents:
+            hint = f"of its host is said: {name.text} hosted_at X"
+            message = f"'{name.text}' stands for a bigActor, and not for an entity"
+            self.names.findings.add(Code.WRONG_SORT, name, message, hint)
+        return self._stands_for(name, bound)
+
+    def agent(self, name: s.Agent, bound: Mapping[str, str]) -> str:
+        """Return the bigActor that a name stands for; reports one that is none. `bound` are quantified names."""
+        if not isinstance(name, s.Name) or name.text not in bound:
+            return self.names.agent(name, bound) or NOBODY
+        if bound[name.text] in self.names.kinds:
+            hint = f"quantify over bigActors: {name.text}: agents, or name a family's member: patrol[{name.text}]"
+            message = f"'{name.text}' stands for an entity, and not for a bigActor"
+            self.names.findings.add(Code.WRONG_SORT, name, message, hint)
+        return bound[name.text]
+
+    def _either(self, name: s.Agent, bound: Mapping[str, str]) -> str:
+        agent = isinstance(name, s.Member) or self._stands_for(name, bound) in self.names.agents
+        return self.agent(name, bound) if agent else self._entity(name, bound)
 
     def _node_or_channel(self, name: s.Name, bound: Mapping[str, str]) -> str:
         if name.text in bound or name.text in self.names.channels:
@@ -205,15 +247,15 @@ class Formulas:
         return self._entity(name, bound)
 
     def _same(self, node: s.SameName, bound: Mapping[str, str]) -> Proposition:
-        if node.left.text not in bound and node.right.text not in bound:
+        if not any(isinstance(part, s.Name) and part.text in bound for part in s.walk(node)):
             hint = "quantify one of them; a bigActor's variable is written a.x"
-            message = f"'{node.left.text}' and '{node.right.text}' are two fixed names"
+            message = f"'{write(node.left)}' and '{write(node.right)}' are two fixed names"
             self.names.findings.add(Code.NOT_QUANTIFIED, node, message, hint)
-        return Always(self._entity(node.left, bound) == self._entity(node.right, bound))
+        return Always(self._either(node.left, bound) == self._either(node.right, bound))
 
     def _stored(self, node: s.Stored, around: Context) -> Proposition:
         mistakes = len(self.names.findings)
-        variable = self._variable(node.agent, node.variable)
+        variable = self._variable(node.agent, node.variable, around.names)
         value = elaborate_constant(node.value, self.names, around.names)
         if len(self.names.findings) == mistakes:
             self._check_comparable(node, variable, value)
@@ -233,8 +275,8 @@ class Formulas:
             hint = f"whether it has a value at all is asked with: bound {variable}"
             self.names.findings.add(Code.NOT_COMPARABLE, node, message, hint)
 
-    def _variable(self, agent: s.Name, variable: s.Name) -> VariableOf:
-        whose, shown = self._agent(agent), variable.text
+    def _variable(self, agent: s.Agent, variable: s.Name, bound: Mapping[str, str]) -> VariableOf:
+        whose, shown = self.agent(agent, bound), variable.text
         known = list(self._variables(whose))
         unique = tuple(sorted({each for name, each in known if name == shown}))
         if not unique and whose in self.names.agents:

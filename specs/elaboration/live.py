@@ -22,17 +22,15 @@ def elaborate_live(mission: s.Mission, names: Names) -> Precautions:
 
 
 def _limit(node: s.TimeLimit, names: Names) -> TimeLimit:
-    if node.agent is not None:
-        names.agent(node.agent)
+    agent = None if node.agent is None else names.agent(node.agent)
     check_duration(node.limit, names.findings)
-    agent = None if node.agent is None else node.agent.text
     return TimeLimit(node.request, agent, node.limit.seconds, Fallback(node.fallback))
 
 
 def _different(limits: list[s.TimeLimit], names: Names) -> list[s.TimeLimit]:
-    seen: set[tuple[str | None, str | None, float]] = set()
+    seen: set[tuple[str | None, s.Agent | None, float]] = set()
     for node in limits:
-        key = (node.request, None if node.agent is None else node.agent.text, node.limit.seconds)
+        key = (node.request, node.agent, node.limit.seconds)
         if key in seen:
             message = "this time limit is said twice"
             names.findings.add(Code.REPEATED_SETTING, node, message, "leave one of the two out")

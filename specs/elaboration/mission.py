@@ -19,8 +19,9 @@ from semantics.state.signature import Name
 from specs import syntax as s
 from specs.codes import Code
 from specs.diagnostics import Diagnostic, MissionError, Source
+from specs.elaboration.actors import first_actors
 from specs.elaboration.beliefs import check_forest, elaborate_beliefs, settled
-from specs.elaboration.bodies import declare_behaviours, elaborate_bodies, named_agents
+from specs.elaboration.bodies import declare_behaviours, elaborate_bodies
 from specs.elaboration.checks import elaborate_checks, elaborate_control, elaborate_scheduler
 from specs.elaboration.environment import appearing_channels, elaborate_environment
 from specs.elaboration.files import Library
@@ -100,17 +101,18 @@ def elaborate(
     elaborate_signature(mission, names)
     world = elaborate_world(mission, names, Library(directory, variation.sources))
     appearing_channels(mission, names)
-    declare_behaviours(mission, names)
+    actors = first_actors(mission, names)
+    declare_behaviours(mission, names, actors)
     mobility = elaborate_mobility(mission, names, world)
     check_nesting(names, world, mobility)
     clauses, clause_spans, arriving = elaborate_environment(mission, names, world, mobility)
     warn_of_outliers(names, world, zip(clauses, clause_spans, strict=True))
     beliefs = elaborate_beliefs(mission, names)
-    bodies, program = elaborate_bodies(mission, names, elaborate_rules(mission, names))
+    bodies, program = elaborate_bodies(mission, names, actors, elaborate_rules(mission, names))
     agents = {}
-    for name, actor in named_agents(mission):
+    for actor in actors:
         names.entity(actor.host)
-        agents[name] = (actor.host.text, bodies.agents[name].block)
+        agents[actor.name] = (actor.host.text, bodies.agents[actor.name].block)
     fixed = fixed_entities(names, mobility)
     check_controls(bodies, Ground(names, world, mobility, fixed))
     scheduler, control = elaborate_scheduler(mission, names), elaborate_control(mission, names)

@@ -6,21 +6,26 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
+from semantics.behaviours.values import Value, show
 from semantics.state.signature import REGION, Signature
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import Findings, a, shorten
 
-SORTS: Final = ("entity", "agent", "kind", "channel", "rule", "behaviour")
+SORTS: Final = ("entity", "agent", "family", "kind", "channel", "rule", "behaviour")
+AGENTS: Final = "agents"
+"""What properties call all bigActors, unless a kind or a family has this name."""
+
 WORDS: Final = {
     "agent": "bigActor",
+    "family": "family of bigActors",
     "entity": "entity",
     "kind": "kind",
     "channel": "channel",
     "rule": "rule",
     "behaviour": "behaviour",
 }
-EXCLUSIVE: Final = ("entity", "agent", "kind", "channel")
+EXCLUSIVE: Final = ("entity", "agent", "family", "kind", "channel")
 """Sorts whose names differ from each other."""
 
 
@@ -38,6 +43,7 @@ class Names:
         agents: All bigActors, spawned ones too, with their hosts (None for spawned ones).
         channels: All channels.
         lacking: Kinds that were reported as undeclared.
+        families: For each family its members by their entities, in turn.
     """
 
     findings: Findings
@@ -47,6 +53,7 @@ class Names:
     rules: dict[str, s.Rule] = field(default_factory=dict)
     behaviours: dict[str, s.Definition] = field(default_factory=dict)
     agents: dict[str, s.Name | None] = field(default_factory=dict)
+    families: dict[str, dict[str, str]] = field(default_factory=dict)
     channels: set[str] = field(default_factory=set)
     lacking: set[str] = field(default_factory=set)
 
@@ -101,12 +108,40 @@ class Names:
             self.findings.unknown(name, kinds, sort="kind", code=Code.UNKNOWN_KIND, otherwise=declare)
         return False
 
-    def agent(self, name: s.Name) -> bool:
-        """Tell whether there is such a bigActor, and report one that there isn't."""
-        if name.text in self.agents:
-            return True
-        self._missing(name, "agent", self.agents)
-        return False
+    def agent(self, node: s.Agent, bound: Mapping[str, str] | None = None) -> str | None:
+        """Return the name of a bigActor; reports one that there isn't. `bound` are quantified names."""
+        match node:
+            case s.Member(family, s.Name(index)):
+                return self.member(family, (bound or {}).get(index, index), node.index)
+            case s.Member(family, s.IntegerLiteral(number)):
+                return self.member(family, number, node.index)
+            case s.Name(name):
+                if name in self.agents:
+                    return name
+                self._missing(node, "agent", self.agents)
+        return None
+
+    def member(self, family: s.Name, index: Value, where: s.Node) -> str | None:
+        """Return the member of a family that is called by its entity or its number; reports one that there isn't."""
+        members = self.family(family)
+        if members is None:
+            return None
+        called = tuple(members.values())
+        if isinstance(index, int) and index < len(called):
+            return called[index]
+        if isinstance(index, str) and index in members:
+            return members[index]
+        hint = f"its members are {', '.join(called[:5])}{', ...' if len(called) > 5 else ''}"
+        message = f"'{family.text}' has no member for {show(index, frozenset(self.kinds))}"
+        self.findings.add(Code.UNKNOWN_NAME, where, message, hint if called else "")
+        return None
+
+    def family(self, name: s.Name) -> Mapping[str, str] | None:
+        """Return the members of a family by their entities; reports a name that is none."""
+        found = self.families.get(name.text)
+        if found is None:
+            self._missing(name, "family", self.families)
+        return found
 
     def channel(self, name: s.Name) -> bool:
         """Tell whether there is such a channel, and report one that there isn't."""
@@ -129,6 +164,8 @@ class Names:
         )
 
     def _instead(self, name: str, other: str, sort: str) -> str:
+        if other == "family" and sort == "agent":
+            return f"name a member: {next(iter(self.families[name].values()), f'{name}[...]')}"
         host = self.agents.get(name) if other == "agent" and sort == "entity" else None
         return f"its host is '{host.text}'" if host is not None else ""
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from semantics.behaviours.patterns import Anything, Elements, Exactly, Pattern
+from semantics.behaviours.values import Value
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.constants import elaborate_constant
@@ -14,7 +15,9 @@ Bind = Callable[[s.Name], str]
 """Gives a variable of a pattern its unique name."""
 
 
-def elaborate_pattern(node: s.Pattern, names: Names, bind: Bind, *, react: bool) -> Pattern:
+def elaborate_pattern(
+    node: s.Pattern, names: Names, bind: Bind, constants: Mapping[str, Value], *, react: bool
+) -> Pattern:
     """Return a pattern; in a `react`, a variable that is the whole of it takes an observation."""
     match node:
         case s.ObservationPattern(variable):
@@ -28,11 +31,11 @@ def elaborate_pattern(node: s.Pattern, names: Names, bind: Bind, *, react: bool)
         case s.LiteralPattern(value):
             return Exactly(elaborate_constant(value, names))
         case s.ConstantPattern(name):
-            return Exactly(elaborate_constant(name, names))
+            return Exactly(elaborate_constant(name, names, constants))
         case s.TuplePattern(items):
             found = []
             for item in items:  # a loop, since a comprehension would cost a frame at each depth
-                found.append(elaborate_pattern(item, names, bind, react=False))  # noqa: PERF401
+                found.append(elaborate_pattern(item, names, bind, constants, react=False))  # noqa: PERF401
             return Elements(tuple(found))
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+
+from semantics.behaviours.values import Value
 
 
 @dataclass(slots=True)
@@ -32,14 +34,21 @@ class Variables:
 
 @dataclass(slots=True)
 class Scope:
-    """What is bound in a block, and in the blocks around it."""
+    """What is bound in a block, and in the blocks around it.
+
+    Attributes:
+        around: The scope of the block around.
+        bound: The unique names of variables.
+        constants: What stands for the same in the whole body; a variable of that name hides it.
+    """
 
     around: Scope | None = None
     bound: dict[str, str] = field(default_factory=dict)
+    constants: Mapping[str, Value] = field(default_factory=dict)
 
     def inner(self) -> Scope:
         """Return the scope of a block inside."""
-        return Scope(self)
+        return Scope(self, constants=self.constants)
 
     def find(self, name: str) -> str | None:
         """Return the unique name of a variable."""
@@ -50,8 +59,14 @@ class Scope:
             scope = scope.around
         return None
 
+    @property
+    def fixed(self) -> dict[str, Value]:
+        """The constants that no variable hides."""
+        return {name: value for name, value in self.constants.items() if self.find(name) is None}
+
     def names(self) -> Iterator[str]:
-        """Yield what is bound, innermost first."""
+        """Yield the constants and what is bound."""
+        yield from self.constants
         scope: Scope | None = self
         while scope is not None:
             yield from scope.bound

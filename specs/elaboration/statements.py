@@ -10,8 +10,9 @@ from typing import Any, Final
 
 from semantics.behaviours import statements as k
 from semantics.behaviours.commands import COMMANDS, HOST, MOST_VIA
-from semantics.behaviours.expressions import Expression, Variable
+from semantics.behaviours.expressions import Expression, Literal, Variable
 from semantics.behaviours.reaction_rules import PlaceTerm
+from semantics.behaviours.values import Value
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.expressions import (
@@ -71,7 +72,10 @@ class ControlSite:
 
 @dataclass(slots=True)
 class Body:
-    """What a bigActor or a behaviour does: its block, and the places in it that later checks look at."""
+    """What a bigActor or a behaviour does: its block, and the places in it that later checks look at.
+
+    `runs` is the behaviour that it is declared with, if there is nothing else in it.
+    """
 
     name: str
     is_agent: bool
@@ -81,6 +85,7 @@ class Body:
     controls: list[ControlSite] = field(default_factory=list)
     migrations: list[Expression] = field(default_factory=list)
     loops: list[int] = field(default_factory=list)
+    runs: str | None = None
     variables: dict[str, list[str]] = field(default_factory=dict)
 
 
@@ -114,13 +119,21 @@ class Numbering:
         """Note where a branch of a statement begins."""
         self.branch_lines[number, rank] = self.line(node)
 
-    def body(self, body: Body, written: tuple[s.Statement, ...], parameters: Mapping[str, str]) -> None:
+    def body(
+        self,
+        body: Body,
+        written: tuple[s.Statement, ...],
+        parameters: Mapping[str, str],
+        constants: Mapping[str, Value],
+    ) -> None:
         """Number the statements of a body."""
         for name, unique in parameters.items():
             body.variables.setdefault(name, []).append(unique)
-        body.block = _Statements(self, body).block(
-            written, Scope(None, dict(parameters)), tail=True, top=True
-        )
+        match written:
+            case (s.Call(called),):
+                body.runs = called.text
+        scope = Scope(None, dict(parameters), constants)
+        body.block = _Statements(self, body).block(written, scope, tail=True, top=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,15 +225,19 @@ class _Statements:
                 for word in (word_of(node), node.name or "")
             )
         )
-        bound = {
-            word: unique for word in words if (unique := place.scope.find(word)) is not None and word != HOST
+        fixed = place.scope.fixed
+        bound: dict[str, Expression] = {word: Literal(fixed[word]) for word in words if word in fixed}
+        bound |= {
+            word: Variable(unique)
+            for word in words
+            if (unique := place.scope.find(word)) is not None and word != HOST
         }
         parameters = tuple(Parameter(f"{word}#", None) for word in bound)
         schema = elaborate_rule(body, "", parameters, dict.fromkeys(bound), self.names)
         name = f"rule#{number}"
         if schema is not None:
             self.program.schemas[name] = schema
-        return name, tuple(map(Variable, bound.values()))
+        return name, tuple(bound.values())
 
     def react(self, node: s.React, place: _Place, number: int) -> k.Statement:
         cases = self.cases(node.cases, place, number, react=True)
@@ -263,7 +280,11 @@ class _Statements:
     def assign(self, node: s.Assign, place: _Place, _: int) -> k.Statement:
         value = self.expression(node.value, place)
         variable = place.scope.find(node.variable.text)
-        if variable is None:
+        if node.variable.text in place.scope.fixed:
+            message = f"'{node.variable.text}' stands for the same throughout the member"
+            hint = f"bind another name: let other = {node.variable.text}"
+            self.names.findings.add(Code.UNBOUND_VARIABLE, node.variable, message, hint)
+        elif variable is None:
             hint = self.names.findings.suggest(node.variable.text, place.scope.names())
             message = f"'{node.variable.text}' is no variable here"
             self.names.findings.add(
@@ -338,7 +359,8 @@ class _Statements:
             self.program.branch(number, rank, case)
             inner = place.scope.inner()
             check_distinct(case.pattern, self.names)
-            pattern = elaborate_pattern(case.pattern, self.names, partial(self.bind, inner), react=react)
+            bind = partial(self.bind, inner)
+            pattern = elaborate_pattern(case.pattern, self.names, bind, place.scope.fixed, react=react)
             guard = None if case.guard is None else elaborate_expression(case.guard, inner, self.names)
             tested = (self.program.reserve(case),) if react and guard is not None else ()
             body = self.block(case.body, inner, tail=place.tail)

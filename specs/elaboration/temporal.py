@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Final
 
 from semantics.properties import temporal as t
@@ -15,6 +15,7 @@ from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.formulas import IMPLICATIONS, Context, Formulas, TooLarge, implications
 from specs.elaboration.names import Names
+from specs.writing import write
 
 MOST_NESTED: Final = 32
 """So many operators of paths may be inside each other."""
@@ -111,10 +112,10 @@ class TemporalFormulas:
                     message = "in ctl no step is taken: all that may follow are looked at"
                     self._refuse(node, message, "write it in ltl, or say enabled")
                 self.formulas.count(1)
-                return t.Taken(self.steps(steps)[0])
+                return t.Taken(self.steps(steps, around.names)[0])
             case s.Enabled(steps):
                 self.formulas.count(1)
-                return t.Enabled(self.steps(steps)[0])
+                return t.Enabled(self.steps(steps, around.names)[0])
         if around.depth >= MOST_NESTED:
             raise TooLarge(f"more than {MOST_NESTED} operators of paths inside each other", "split it")
         return self._of_paths(node, around)
@@ -131,14 +132,31 @@ class TemporalFormulas:
 
     def _quantified(self, node: s.Quantified, around: Context) -> t.Temporal:
         claims = []
-        for each in self.formulas.instances(node, around, self._claim):
-            claims.append(self._claim(node.body, each))  # noqa: PERF401 - a frame less
+        if around.depth == 0:
+            self._check_begun(node)
+        for each, if_so in self.formulas.instances(node, around, self._claim):
+            claim = self._claim(node.body, each)
+            if if_so is not None and node.quantifier == "forall":
+                claim = t.Either(t.Denied(t.Now(if_so)), claim)
+            elif if_so is not None:
+                claim = t.Both(t.Now(if_so), claim)
+            claims.append(claim)
         join = t.Both if node.quantifier == "forall" else t.Either
         while len(claims) > 1:  # in pairs: a tree that is not deep
             odd = claims[-1:] if len(claims) % 2 else []
             pairs = zip(claims[::2], claims[1::2], strict=False)
             claims = [*(join(one, other) for one, other in pairs), *odd]
         return claims[0] if claims else t.Now(Always(node.quantifier == "forall"))
+
+    def _check_begun(self, node: s.Quantified) -> None:
+        """Refuse to quantify at the beginning of runs over bigActors that are only spawned in them."""
+        late = self.formulas.among.late(node)
+        if late is not None:
+            message = f"this is about the beginning of runs, and '{late}' is spawned in them"
+            hint = (
+                f"write always ({node.quantifier} ...), or quantify over others: agents with_behavior visit"
+            )
+            self.names.findings.add(Code.WRONG_LOGIC, node.range, message, hint)
 
     # --- operators of paths
 
@@ -198,26 +216,27 @@ class TemporalFormulas:
     def fairness(self, declared: s.Fairness) -> Iterable[t.Fairness]:
         """Yield a fairness condition for each of the steps that a declaration lists."""
         for each in declared.steps:
-            steps, per = self.steps(each)
-            word = " ".join(name.text for name in each.words)
+            steps, per = self.steps(each, {})
+            word = write(each)
             yield t.Fairness(declared.strength == "strong", steps, per, word)
 
-    def steps(self, node: s.Steps) -> tuple[t.Steps, tuple[str, ...]]:
+    def steps(self, node: s.Steps, bound: Mapping[str, str]) -> tuple[t.Steps, tuple[str, ...]]:
         """Return the steps that words name, and what tells apart those that fairness means by them."""
         first, *whose = node.words
-        if not whose and first.text in self.names.agents:
-            return t.Steps((), first.text), ()
+        if isinstance(first, s.Member) or (
+            not whose and (first.text in self.names.agents or first.text in bound)
+        ):
+            return t.Steps((), self.formulas.agent(first, bound)), ()
         if not whose and first.text in EACH:
             return EACH[first.text]
         if first.text not in RULES:
             self._unknown(first, whose)
             return t.Steps(), ()
         if whose and self._somebodys(first):
-            self.names.agent(whose[0])
-            return t.Steps((first.text,), whose[0].text), ()
+            return t.Steps((first.text,), self.formulas.agent(whose[0], bound)), ()
         return t.Steps((first.text,)), ("label",) if first.text in t.ENVIRONMENTS else ("agent",)
 
-    def _unknown(self, first: s.Name, whose: list[s.Name]) -> None:
+    def _unknown(self, first: s.Name, whose: Sequence[s.Agent]) -> None:
         among = RULES if whose else (*RULES, *EACH, *self.names.agents)
         otherwise = f"the rules are {', '.join(RULES)}"
         sort = "rule" if whose else "rule or bigActor"

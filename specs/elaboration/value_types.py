@@ -42,7 +42,7 @@ NONE: Final = Types()
 _RESULTS: Final[Mapping[str, type]] = {
     **dict.fromkeys(("in", "==", "!=", "<", "<=", ">", ">=", "not", "empty", "linked"), Truth),
     **dict.fromkeys(("union", "nodes", "agents", "children"), frozenset),
-    **dict.fromkeys(("kind", "parent"), str),
+    **dict.fromkeys(("kind", "parent", "[]"), str),
     "size": int,
 }
 """What operators return that always return the same type."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TypeAlias, TypeVar
 
 from specs.syntax.actions import RuleBody
-from specs.syntax.expressions import Expression, TextLiteral
+from specs.syntax.expressions import Agent, Expression, TextLiteral
 from specs.syntax.formulas import FairDeadlockFreedom, Formula, Progress, TemporalProperty
 from specs.syntax.live import Live
 from specs.syntax.nodes import Name, Node
@@ -54,6 +54,24 @@ class BigActor(Node):
     """
 
     name: Name | None
+    host: Name
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Family(Node):
+    """`BigActor patrol[i] for u in UAV hosted_at u with_behavior visit(u, i)`.
+
+    A family of agents: one for each entity of a kind, or of a set or a route of entities. A member is called by its
+    entity, `patrol[uav0]`, so a name says where to look however many there are. In its body `u` is that entity, and `i`
+    the member's number, from 0: in the order of a route, else of the entities' names. `BigActor patrol[u] for u in ...`
+    does without the number. The host may be `u` or an entity that all have in common.
+    """
+
+    name: Name
+    index: Name
+    variable: Name
+    range: Expression
     host: Name
     body: tuple[Statement, ...]
 
@@ -126,7 +144,7 @@ class Says(Node):
     """
 
     message: Expression
-    recipient: Name | None = None
+    recipient: Agent | None = None
     times: int = 1
 
 
@@ -208,6 +226,7 @@ Declaration: TypeAlias = (
     | Rule
     | Definition
     | BigActor
+    | Family
     | Environment
     | Scheduler
     | ControlMode

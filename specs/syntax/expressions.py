@@ -67,6 +67,17 @@ class RouteLiteral(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Member(Node):
+    """`patrol[uav0]`, `patrol[0]`: a member of a family of bigActors, by its entity or by its number, from 0.
+
+    In behaviours both may be computed: `send "go" to patrol[who]`, `patrol[i + 1]`.
+    """
+
+    family: Name
+    index: Expression
+
+
+@dataclass(frozen=True, slots=True)
 class UnaryOperation(Node):
     """`not e` (also `!e`), `-e`: negation."""
 
@@ -119,8 +130,11 @@ class QueryApplication(Node):
     argument: Query
 
 
+Agent: TypeAlias = Name | Member
+
 Expression: TypeAlias = (
     Name
+    | Member
     | TextLiteral
     | IntegerLiteral
     | TruthLiteral

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from specs.syntax.expressions import Expression, TextLiteral, TruthLiteral
+from specs.syntax.expressions import Agent, Expression, TextLiteral, TruthLiteral
 from specs.syntax.nodes import Name, Node
 
 
@@ -27,12 +27,20 @@ class Connective(Node):
 
 @dataclass(frozen=True, slots=True)
 class Quantified(Node):
-    """`forall x: UAV . F` or `exists x: UAV . F`: all entities of a kind, or some; F extends as far as possible."""
+    """`forall x: UAV . F`, `exists x: UAV . F`, `forall x: agents . F`, `forall x: patrol . F`.
+
+    All entities of a kind, or some; all bigActors; those of a family. F extends as far as possible. `agents
+    with_behavior visit` are those that are declared or spawned so, and `agents hosted_at Y` those that Y hosts at that
+    moment, or that an entity of the kind Y hosts. Of bigActors that are spawned, those count that are there at that
+    moment.
+    """
 
     quantifier: str
     variable: Name
-    kind: Name
+    range: Name
     body: Formula
+    behaviour: Name | None = None
+    host: Name | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,9 +70,9 @@ class LinkedTo(Node):
 
 @dataclass(frozen=True, slots=True)
 class Present(Node):
-    """`present X`: X is in P."""
+    """`present X`: X is in P; of a bigActor that it is there, at first or since it was spawned."""
 
-    entity: Name
+    entity: Agent
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +89,7 @@ class Pending(Node):
     Agent a has a request in η: any, or one of that sort (`OBS`, `READY`, `CTR`, `FLY`, `SND` or `MGR`).
     """
 
-    agent: Name
+    agent: Agent
     request: str | None = None
 
 
@@ -89,21 +97,21 @@ class Pending(Node):
 class Ended(Node):
     """`ended a`: agent a has nothing left to run."""
 
-    agent: Name
+    agent: Agent
 
 
 @dataclass(frozen=True, slots=True)
 class Waiting(Node):
     """`waiting a`: agent a is at a `react` statement."""
 
-    agent: Name
+    agent: Agent
 
 
 @dataclass(frozen=True, slots=True)
 class HostedAt(Node):
     """`a hosted_at X`: X hosts agent a."""
 
-    agent: Name
+    agent: Agent
     host: Name
 
 
@@ -111,8 +119,8 @@ class HostedAt(Node):
 class SameName(Node):
     """`x == y`: two names are the same; at least one of them is quantified."""
 
-    left: Name
-    right: Name
+    left: Agent
+    right: Agent
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +132,7 @@ class Stored(Node):
     `<`, `<=`, `>` and `>=` compare numbers only.
     """
 
-    agent: Name
+    agent: Agent
     variable: Name
     value: Expression
     operator: str = "=="
@@ -134,7 +142,7 @@ class Stored(Node):
 class HasValue(Node):
     """`bound a.x`: agent a has given its variable x a value."""
 
-    agent: Name
+    agent: Agent
     variable: Name
 
 
@@ -196,7 +204,7 @@ class Steps(Node):
     environment. [temporal.md](temporal.md#fairness) lists what each means under fairness.
     """
 
-    words: tuple[Name, ...]
+    words: tuple[Agent, ...]
 
 
 @dataclass(frozen=True, slots=True)

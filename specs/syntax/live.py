@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from specs.syntax.nodes import Name, Node
+from specs.syntax.expressions import Agent
+from specs.syntax.nodes import Node
 from specs.syntax.statements import Duration
 
 
@@ -28,7 +29,7 @@ class TimeLimit(Node):
     """
 
     request: str | None
-    agent: Name | None
+    agent: Agent | None
     limit: Duration
     fallback: str
 

@@ -58,6 +58,7 @@ def bigger_expressions(smaller):
         st.builds(s.TupleLiteral, tuples(smaller, 2)),
         st.builds(s.SetLiteral, tuples(smaller)),
         st.builds(s.RouteLiteral, tuples(smaller)),
+        st.builds(s.Member, names, smaller),
     )
 
 
@@ -160,6 +161,7 @@ beliefs = st.one_of(
     st.builds(s.BelievedLinked, names, tuples(channels)),
 )
 spots = tuples(names | placements, 1)
+agents = names | st.builds(s.Member, names, names | integers)
 clauses = st.one_of(
     st.builds(s.DriftsAmong, names, spots),
     st.builds(s.DriftsWithin, names, names),
@@ -167,29 +169,37 @@ clauses = st.one_of(
     st.builds(s.Leaves, names, channels, st.booleans()),
     st.builds(s.Appears, names, spots, tuples(channels)),
     st.builds(s.Vanishes, names),
-    st.builds(s.Says, expressions, maybe(names), st.integers(0, 99)),
+    st.builds(s.Says, expressions, maybe(agents), st.integers(0, 99)),
     st.builds(s.Arrives, names),
 )
 claims = st.one_of(
     truths,
     st.builds(s.Inside, names, names, st.booleans(), st.booleans()),
     st.builds(s.LinkedTo, names, channels, st.booleans()),
-    st.builds(s.Present, names),
+    st.builds(s.Present, agents),
     st.builds(s.Known, names),
-    st.builds(s.Pending, names, maybe(st.sampled_from(["OBS", "READY", "CTR", "FLY", "SND", "MGR"]))),
-    st.builds(s.Ended, names),
-    st.builds(s.Waiting, names),
-    st.builds(s.HostedAt, names, names),
-    st.builds(s.SameName, names, names),
-    st.builds(s.Stored, names, names, expressions, st.sampled_from(["==", "<", "<=", ">", ">="])),
-    st.builds(s.HasValue, names, names),
+    st.builds(s.Pending, agents, maybe(st.sampled_from(["OBS", "READY", "CTR", "FLY", "SND", "MGR"]))),
+    st.builds(s.Ended, agents),
+    st.builds(s.Waiting, agents),
+    st.builds(s.HostedAt, agents, names),
+    st.builds(s.SameName, agents, agents),
+    st.builds(s.Stored, agents, names, expressions, st.sampled_from(["==", "<", "<=", ">", ">="])),
+    st.builds(s.HasValue, agents, names),
 )
 formulas = st.recursive(
     claims,
     lambda f: st.one_of(
         st.builds(s.Negation, f),
         st.builds(s.Connective, st.sampled_from(["and", "or", "->", "<->"]), f, f),
-        st.builds(s.Quantified, st.sampled_from(["forall", "exists"]), names, names, f),
+        st.builds(
+            s.Quantified,
+            st.sampled_from(["forall", "exists"]),
+            names,
+            names,
+            f,
+            maybe(names),
+            maybe(names),
+        ),
     ),
     max_leaves=6,
 )
@@ -204,7 +214,7 @@ fallbacks = st.sampled_from(["hold", "return", "continue"])
 requests = st.sampled_from(["OBS", "CTR", "FLY", "SND", "MGR"])
 precautions = st.one_of(
     st.builds(s.OnBroken, fallbacks),
-    st.builds(s.TimeLimit, maybe(requests), maybe(names), durations, fallbacks),
+    st.builds(s.TimeLimit, maybe(requests), maybe(agents), durations, fallbacks),
 )
 kinds = st.builds(s.Kind, names, tuples(names), tuples(names), st.booleans(), st.booleans())
 declarations = st.one_of(
@@ -214,6 +224,7 @@ declarations = st.one_of(
     st.builds(s.Rule, names, tuples(st.builds(s.Parameter, names, names)), bodies),
     st.builds(s.Definition, names, tuples(names), tuples(statements)),
     st.builds(s.BigActor, maybe(names), names, tuples(statements)),
+    st.builds(s.Family, names, names, names, expressions, names, tuples(statements)),
     st.builds(s.Environment, tuples(clauses)),
     st.sampled_from(["program_order", "unordered", "fcfs"]).map(s.Scheduler),
     st.sampled_from(["atomic", "timed"]).map(s.ControlMode),

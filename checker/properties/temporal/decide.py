@@ -26,7 +26,7 @@ from checker.properties.vacuity import atoms_of
 from checker.traces import Trace, replay, step_of, to_json
 from checker.verdicts import Outcome, Verdict, Violation
 from semantics.properties.kinds import PropertyKind
-from semantics.properties.property import Property
+from semantics.properties.property import Property, Ranges
 from semantics.properties.propositions import Proposition
 from semantics.properties.temporal import Fairness, Now, Temporal, atoms
 from semantics.successors import expand
@@ -117,7 +117,7 @@ class Decider:
         if lasso is None:
             outcome, judged = self.unless_violated(), Judged()
             if outcome is Outcome.HOLDS:
-                judged = self.judged(asked.temporal, self.conditions(asked.fairness))
+                judged = self.judged(asked.temporal, self.conditions(asked.fairness), asked.ranges)
             return Verdict(
                 asked,
                 outcome,
@@ -132,11 +132,11 @@ class Decider:
         violation = Violation(asked.kind, message, self.trace(lasso), tuple(self.pauses(lasso)))
         return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
 
-    def judged(self, formula: Temporal, fairness: Conditions) -> Judged:
+    def judged(self, formula: Temporal, fairness: Conditions, ranges: Ranges) -> Judged:
         """Return what there is to say of a formula that holds of all fair runs."""
         if is_still(self.found, formula):
             return Judged((STILL,))
-        return judge_linear(self.truth, formula, fairness, self.setting.kinds)
+        return judge_linear(self.truth, formula, fairness, ranges)
 
     # --- branching time
 
@@ -151,7 +151,7 @@ class Decider:
             outcome, witness = self.unless_violated(), tree.evidence(formula) if surely else None
             if outcome is Outcome.HOLDS:
                 still = is_still(self.found, formula)
-                judged = Judged((STILL,)) if still else judge_branching(tree, formula, self.setting.kinds)
+                judged = Judged((STILL,)) if still else judge_branching(tree, formula, asked.ranges)
                 remarks += judged.remarks
                 witness = judged.witness or witness
             return Verdict(

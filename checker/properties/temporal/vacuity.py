@@ -4,7 +4,7 @@ A part is replaced by the worst that may stand there, and the formula is decided
 doesn't hold then, the run that shows it is one on which the part is needed (an interesting witness).
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import reduce
 from typing import Final, cast
@@ -22,9 +22,9 @@ from checker.properties.temporal.lassos import Lasso, component_of, fair_cycle, 
 from checker.properties.temporal.linear import conjuncts, counterexample
 from checker.properties.temporal.shortest import shortest_false
 from checker.properties.temporal.truth import Truth
+from semantics.properties.property import Ranges
 from semantics.properties.propositions import Always, Not, Or
 from semantics.properties.temporal import Denied, Either, Globally, Now, OnAllPaths, Temporal
-from semantics.state.signature import Name
 
 MOST_EDGES: Final = 1_000_000
 """A formula is decided again as often as a graph's edges go into so many, and not at all where they don't."""
@@ -62,7 +62,7 @@ def is_judged(graph: Graph) -> bool:
     return len(graph.targets) <= MOST_EDGES
 
 
-def judge_linear(truth: Truth, formula: Temporal, fairness: Conditions, kinds: Mapping[Name, str]) -> Judged:
+def judge_linear(truth: Truth, formula: Temporal, fairness: Conditions, ranges: Ranges) -> Judged:
     """Return what there is to say of a formula that holds of all fair runs of a graph that is not partial."""
     graph, held = truth.graph, set(conjuncts(formula))
 
@@ -71,7 +71,7 @@ def judge_linear(truth: Truth, formula: Temporal, fairness: Conditions, kinds: M
         return all(counterexample(graph, truth, each, fairness) is None for each in changed)
 
     trials = _Trials(decide, MOST_EDGES // max(1, len(graph.targets)))
-    remarks = _remarks(truth, formula, kinds, trials)
+    remarks = _remarks(truth, formula, ranges, trials)
     if not trials.left or (remarks and not trials.failed):
         return Judged(remarks)
     try:
@@ -83,10 +83,10 @@ def judge_linear(truth: Truth, formula: Temporal, fairness: Conditions, kinds: M
     return Judged(remarks, witness)
 
 
-def judge_branching(tree: Branching, formula: Temporal, kinds: Mapping[Name, str]) -> Judged:
+def judge_branching(tree: Branching, formula: Temporal, ranges: Ranges) -> Judged:
     """Return what there is to say of a formula that holds; a witness where its own evidence is no step long."""
     trials = _Trials(lambda each: bool(tree.where(each)[0]), MOST_EDGES // max(1, len(tree.graph.targets)))
-    remarks = _remarks(tree.truth, formula, kinds, trials)
+    remarks = _remarks(tree.truth, formula, ranges, trials)
     if len(tree.evidence(formula)):
         return Judged(remarks)
     found = (tree.evidence(each, claimed=False) for each in trials.failed)
@@ -99,13 +99,13 @@ def judge_branching(tree: Branching, formula: Temporal, kinds: Mapping[Name, str
 # --- what is never needed -------------------------------------------------------------------------------------
 
 
-def _remarks(truth: Truth, formula: Temporal, kinds: Mapping[Name, str], trials: _Trials) -> tuple[str, ...]:
+def _remarks(truth: Truth, formula: Temporal, ranges: Ranges, trials: _Trials) -> tuple[str, ...]:
     """Return what is said of parts, as far as bounds let it be known."""
     found = list(_never_begun(truth, formula))
     if found:
         return tuple(found)
     try:
-        found.extend(_remark(truth, formula, *each) for each in unneeded(formula, kinds, trials.holds))
+        found.extend(_remark(truth, formula, *each) for each in unneeded(formula, ranges, trials.holds))
     except (Exhausted, TooLargeError, BoundMet):
         trials.left = 0
     return few(found)

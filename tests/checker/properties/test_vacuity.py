@@ -13,7 +13,7 @@ from checker.properties.vacuity import Valuations, atoms_of, remarks_on, truth
 from semantics.properties.propositions import Always, And, Ended, Inside, LinkedWith, Not, Or, Waiting, holds
 
 A, B, C = Waiting("a"), Waiting("b"), Waiting("c")
-KINDS = {"a": "X", "b": "X", "c": "X", "uav0": "UAV", "uav1": "UAV"}
+RANGES = (("a", "b", "c"), ("uav0", "uav1"))
 
 
 def remarks(text, name="it"):
@@ -168,13 +168,13 @@ def test_every_valuation_is_remembered_once():
 
 def test_operands_that_go_through_a_kind_are_a_quantifiers():
     every = And(tuple(Not(Inside(name, "gate0")) for name in ("uav0", "uav1")))
-    assert is_quantified(every.formulas, KINDS)
-    assert not is_quantified(every.formulas[:1], KINDS)
-    assert not is_quantified(every.formulas, KINDS | {"uav2": "UAV"})
-    assert not is_quantified((Inside("uav0", "a"), LinkedWith("uav1", "a")), KINDS)
-    assert not is_quantified((Inside("uav0", "a"), Inside("uav1", "b")), KINDS)
+    assert is_quantified(every.formulas, RANGES)
+    assert not is_quantified(every.formulas[:1], RANGES)
+    assert not is_quantified(every.formulas, (("uav0", "uav1", "uav2"),))
+    assert not is_quantified((Inside("uav0", "a"), LinkedWith("uav1", "a")), RANGES)
+    assert not is_quantified((Inside("uav0", "a"), Inside("uav1", "b")), RANGES)
     pairs = And(tuple(Or((Always(x == "uav0"), Inside(x, "uav0"))) for x in ("uav0", "uav1")))
-    assert is_quantified(pairs.formulas, KINDS)
+    assert is_quantified(pairs.formulas, RANGES)
 
 
 def test_all_valuations_of_three_atoms_need_all_of_them():

@@ -53,7 +53,7 @@ def put(formula, path, by):
 
 def told(formula, holds):
     """Return where the parts stand that are told to be never needed."""
-    return {part.paths[0] for _, part in unneeded(formula, {}, holds)}
+    return {part.paths[0] for _, part in unneeded(formula, (), holds)}
 
 
 @examples(120)
@@ -104,7 +104,7 @@ def test_no_run_violates_a_formula_in_which_anything_stands_for_a_part_that_is_n
 
 # --- quantifiers and polarity ---------------------------------------------------------------------------------
 
-KINDS = {"uav0": "UAV", "uav1": "UAV", "gate0": "Gate"}
+RANGES = (("gate0",), ("uav0", "uav1"))
 
 
 def body(name):
@@ -113,13 +113,13 @@ def body(name):
 
 def test_the_body_of_a_quantifier_is_one_part_in_all_places():
     formula = Both(Both(Both(body("uav0"), body("uav1")), Now(P)), Now(Q))
-    found = {part.formula: part for part in Part(formula).parts(KINDS)}
+    found = {part.formula: part for part in Part(formula).parts(RANGES)}
     assert len(found) == 4  # of other operands beside it, it is none
-    (part,) = Part(Both(body("uav0"), body("uav1"))).parts(KINDS)
+    (part,) = Part(Both(body("uav0"), body("uav1"))).parts(RANGES)
     assert part.paths == ((0,), (1,))
-    (either,) = part.parts(KINDS)
-    condition, _ = either.parts(KINDS)
-    (atom,) = condition.parts(KINDS)
+    (either,) = part.parts(RANGES)
+    condition, _ = either.parts(RANGES)
+    (atom,) = condition.parts(RANGES)
     assert (len(atom.paths), atom.positive) == (2, False)
     true = Now(Always(True))
     assert strengthened(Both(body("uav0"), body("uav1")), atom) == Both(

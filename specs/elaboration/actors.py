@@ -1,0 +1,108 @@
+"""The bigActors that are there at first: those declared one by one, and the members of families."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+from semantics.behaviours.values import Value
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.names import Names
+
+MOST_WRITTEN: Final = 100_000
+"""The most pieces of syntax that the members of all families may have together."""
+
+
+@dataclass(frozen=True, slots=True)
+class Actor:
+    """A bigActor that is there at first.
+
+    Attributes:
+        name: What it is called; of a member `patrol[uav0]`.
+        host: Where it is hosted.
+        body: What it does.
+        where: Where it is declared.
+        family: Of a member the name of its family.
+        constants: Of a member the names that stand for its entity and its number.
+    """
+
+    name: str
+    host: s.Name
+    body: tuple[s.Statement, ...]
+    where: s.Node
+    family: str = ""
+    constants: Mapping[str, Value] = field(default_factory=dict)
+
+
+def first_actors(mission: s.Mission, names: Names) -> tuple[Actor, ...]:
+    """Return the bigActors, those without a name as bigActor0, bigActor1 and so on, families written out."""
+    singles = mission.each(s.BigActor)
+    taken = {actor.name.text for actor in singles if actor.name is not None}
+    free = (name for number in range(len(singles) + len(taken)) if (name := f"bigActor{number}") not in taken)
+    found, written = list[Actor](), 0
+    for item in mission.declarations:
+        if isinstance(item, s.BigActor):
+            name = item.name.text if item.name is not None else next(free)
+            found.append(Actor(name, item.host, item.body, item.name or item))
+        elif isinstance(item, s.Family):
+            members = tuple(_members(item, names))
+            written += len(members) * sum(1 for _ in s.walk(item))
+            if written > MOST_WRITTEN:
+                message = f"written out, the families have more than {MOST_WRITTEN:,} words"
+                hint = "let the members share a behaviour: def visit(u) = { ... }"
+                names.findings.add(Code.BAD_FAMILY, item.range, message, hint)
+                members = members[:1]
+            found += members
+    return tuple(found)
+
+
+def _members(family: s.Family, names: Names) -> Iterator[Actor]:
+    """Yield the members of a family, declared as such."""
+    name, nodes = family.name.text, tuple(_nodes(family, names))
+    if not nodes:
+        kind = (
+            f"entity of kind {family.range.text}"
+            if isinstance(family.range, s.Name)
+            else "entity to go through"
+        )
+        message = f"the family '{name}' has no member: there is no {kind}"
+        hint = "declare one, absent if it is to appear later, or leave the family out"
+        names.findings.warn(Code.NOTHING_QUANTIFIED, family.range, message, hint)
+    if names.declare("family", name, family.name):
+        names.families[name] = {node: f"{name}[{node}]" for node in nodes}
+    for number, node in enumerate(nodes):
+        own = family.host.text == family.variable.text
+        host = s.Name(node, span=family.host.span) if own else family.host
+        constants: dict[str, Value] = {family.index.text: number, family.variable.text: node}
+        yield Actor(f"{name}[{node}]", host, family.body, family.name, name, constants)
+
+
+def _nodes(family: s.Family, names: Names) -> Iterator[str]:
+    """Yield the entities that a family goes through, in turn."""
+    among = family.range
+    if isinstance(among, s.Name) and among.text not in names.kinds:
+        if names.kind(among):
+            yield from sorted(name for name, kind in names.kinds.items() if kind == among.text)
+    elif isinstance(among, s.SetLiteral | s.RouteLiteral):
+        yield from _listed(among, names)
+    else:
+        hint = "write for u in UAV, or for u in [uav1, uav0]"
+        names.findings.add(
+            Code.BAD_FAMILY, among, "a family goes through a kind, or a set or route of entities", hint
+        )
+
+
+def _listed(among: s.SetLiteral | s.RouteLiteral, names: Names) -> Iterator[str]:
+    nodes: dict[str, None] = {}
+    for item in among.items:
+        if not isinstance(item, s.Name):
+            hint = "write their names: for u in [uav1, uav0]"
+            names.findings.add(Code.BAD_FAMILY, item, "a family goes through entities", hint)
+        elif names.entity(item) is not None:
+            if item.text in nodes:
+                message = f"'{item.text}' stands here twice, and a member is called by its entity"
+                names.findings.add(Code.BAD_FAMILY, item, message, "leave one of the two out")
+            nodes[item.text] = None
+    yield from nodes if isinstance(among, s.RouteLiteral) else sorted(nodes)
