@@ -32,6 +32,8 @@ _UNITS: Final = (
 _SYMBOL: Final = re.compile(r"[\w\s\"()\[\]{},;:.=<>!&|+\-]")
 _CLOSE: Final = 0.7
 
+FAMILY: Final = "a family is written BigActor patrol[i] for u in UAV hosted_at u with_behavior { ... }"
+
 
 def misplaced_header(at: Situation) -> Diagnostic | None:
     """`mission` anywhere but at the beginning."""
@@ -192,9 +194,8 @@ def missing_host(at: Situation) -> Diagnostic | None:
     """`BigActor a { ... }`."""
     if at.accepted in ({"hosted_at"}, {"hosted_at", "["}):
         message = f"expected 'hosted_at' and a host, found {at.found.shown}"
-        return at.mistake(
-            Code.MISSING_HOST, message, "write BigActor name hosted_at host with_behavior { ... }"
-        )
+        one = "write BigActor name hosted_at host with_behavior { ... }"
+        return at.mistake(Code.MISSING_HOST, message, FAMILY if at.found.text in ("for", "[") else one)
     return None
 
 

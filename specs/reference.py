@@ -123,6 +123,13 @@ BigActor a hosted_at uav0 with_behavior {
     case "home" => patrol({searchArea0, base0})
   }
 }
+
+BigActor patrol[i] for u in [uav1, uav2] hosted_at u with_behavior {
+  for place in [searchArea0, base0] {
+    visit(place)
+  }
+  send ("round", u, i) to patrol[uav1]
+}
 """,
     "Control actions": """\
 BigActor pilot hosted_at uav1 with_behavior {
@@ -182,6 +189,7 @@ check {
   race_freedom
   invariant "one at a time": forall x: UAV . x in base0 -> not pending op
   reachable "found": uav0 in oilSpill0 and a.found == true
+  reachable "all done": forall x: agents with_behavior visit . ended x
   progress
   ltl "answered" under weak fairness of agents: pending OBS a leads to taken sense a
   ltl "watched" under strong fairness of actuate a and weak fairness of op, environment:

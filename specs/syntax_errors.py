@@ -8,7 +8,7 @@ from lark import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
 from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS
 from specs.codes import Code
-from specs.common_mistakes import MISTAKES
+from specs.common_mistakes import FAMILY, MISTAKES
 from specs.diagnostics import Diagnostic
 from specs.grammar import QUERY_WORDS, SECTIONS, STATEMENTS, Run, first_words
 from specs.parse_error import Situation, line_of, situation
@@ -101,7 +101,9 @@ def _unexpected(at: Situation) -> Diagnostic:
 
 
 def _hint(at: Situation) -> str:
-    if "with_behavior" in at.accepted:
+    if at.accepted == {"for"} or (at.before.text == "[" and at.sorts == {"NAME"}):
+        return FAMILY
+    if "with_behavior" in at.accepted and "." not in at.accepted:
         return "write hosted_at host with_behavior { ... }"
     if at.found.text == "}" and at.at_expression:
         return f"something is missing behind {at.before.shown}" if at.before.text else ""

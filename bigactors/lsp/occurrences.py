@@ -8,6 +8,7 @@ from typing import Final, get_args
 
 from bigraphs.notation.paper import NodeTerm
 from specs import syntax as s
+from specs.elaboration.names import AGENTS
 from specs.elaboration.rule_regions import regions_of
 
 DECLARED: Final[Mapping[type[s.Node], str]] = {
@@ -17,6 +18,7 @@ DECLARED: Final[Mapping[type[s.Node], str]] = {
     s.Rule: "rule",
     s.Definition: "behaviour",
     s.BigActor: "agent",
+    s.Family: "family",
     s.Spawn: "agent",
 }
 """What each construct declares by its `name`."""
@@ -30,7 +32,7 @@ _ONE_SORT: Final = {
 }
 """Fields whose names are of one sort, whatever else has that name."""
 
-_SHARED: Final = ("entity", "agent", "kind", "channel")
+_SHARED: Final = ("entity", "agent", "family", "kind", "channel")
 """Sorts whose names differ from each other: a name alone says which is meant."""
 
 
@@ -152,13 +154,34 @@ class _Resolver:
                 inner = dict(scope)
                 self.bind(variable, inner, node.span)
                 self.block(body, inner, node.span)
-            case s.Quantified(_, variable, among, body):
-                inner = dict(scope)
-                self.note(among, self.meaning(among, {}))
-                self.bind(variable, inner, node.span)
-                self.visit(body, inner)
+            case s.Quantified():
+                self.quantified(node, scope)
+            case s.Family():
+                self.family(node, scope)
             case _:
                 self.fields(node, scope)
+
+    def quantified(self, node: s.Quantified, scope: Scope) -> None:
+        inner, sort = dict(scope), self.known.get(node.range.text, "kind")
+        if sort == "family" or node.range.text != AGENTS or AGENTS in self.known:
+            self.sorted_name(node.range, "family" if sort == "family" else "kind")
+        if node.behaviour is not None:
+            self.sorted_name(node.behaviour, "behaviour")
+        if node.host is not None:
+            self.visit(node.host, scope)
+        self.bind(node.variable, inner, node.span)
+        self.visit(node.body, inner)
+
+    def family(self, node: s.Family, scope: Scope) -> None:
+        inner = dict(scope)
+        self.bind(node.variable, inner, node.span)
+        if node.index.text == node.variable.text:
+            self.note(node.index, inner[node.variable.text])
+        else:
+            self.bind(node.index, inner, node.span)
+        self.visit(node.range, scope)
+        self.visit(node.host, inner)
+        self.block(node.body, inner, node.span)
 
     def fields(self, node: s.Node, scope: Scope) -> None:
         """Note the names in the fields of a node that binds no variables."""
@@ -251,8 +274,9 @@ class _Resolver:
         """Make one of all variables of a bigActor that `a.x` in a property means, and of that."""
         bodies = _running(mission)
         for node in s.walk(mission):
-            if isinstance(node, s.Stored | s.HasValue) and isinstance(node.agent, s.Name):
-                spans = bodies.get(node.agent.text, ())
+            if isinstance(node, s.Stored | s.HasValue):
+                whose = node.agent.family if isinstance(node.agent, s.Member) else node.agent
+                spans = bodies.get(whose.text, ())
                 meant = {
                     each.symbol
                     for each in self.bindings
@@ -291,7 +315,7 @@ def _running(mission: s.Mission) -> dict[str, tuple[s.Span, ...]]:
     definitions = {each.name.text: each for each in mission.each(s.Definition)}
     starts: dict[str, list[s.Node]] = {}
     for node in s.walk(mission):
-        if isinstance(node, s.BigActor):
+        if isinstance(node, s.BigActor | s.Family):
             starts.setdefault(node.name.text if node.name else "", []).append(node)
         elif (
             isinstance(node, s.Spawn)

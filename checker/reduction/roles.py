@@ -115,6 +115,10 @@ class Roles:
                 return self.roles[agent].named.get(name, frozenset())
             case SetOf(items) | RouteOf(items):
                 return _either(self.names(agent, item) for item in items)
+            case Apply("+" | "union", parts):
+                return _either(self.names(agent, each) for each in parts)
+            case Apply("-" | "minus" | "intersect" | "of" | "first" | "element", (first, *_)):
+                return self.names(agent, first)
             case Apply("[]", (Literal(frozenset(members)), node)):
                 return self._members(members, self.names(agent, node))
             case Apply("parent", (node, _)):

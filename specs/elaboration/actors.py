@@ -46,15 +46,14 @@ def first_actors(mission: s.Mission, names: Names) -> tuple[Actor, ...]:
         if isinstance(item, s.BigActor):
             name = item.name.text if item.name is not None else next(free)
             found.append(Actor(name, item.host, item.body, item.name or item))
-        elif isinstance(item, s.Family):
+        elif isinstance(item, s.Family) and written <= MOST_WRITTEN:
             members = tuple(_members(item, names))
             written += len(members) * sum(1 for _ in s.walk(item))
+            found += members
             if written > MOST_WRITTEN:
                 message = f"written out, the families have more than {MOST_WRITTEN:,} words"
                 hint = "let the members share a behaviour: def visit(u) = { ... }"
                 names.findings.add(Code.BAD_FAMILY, item.range, message, hint)
-                members = members[:1]
-            found += members
     return tuple(found)
 
 

@@ -135,9 +135,8 @@ def elaborate_bodies(
         if key[0] in ("rule", "behaviour")
     }
     begun = {name: body.block for name, body in bodies.agents.items()}
-    return bodies, Program(
-        statements, behaviours, reactions, lines, program.branch_lines, declared, begun, copies
-    )
+    whole = Program(statements, behaviours, reactions, lines, program.branch_lines, declared, begun, copies)
+    return bodies, whole
 
 
 def _parameters(definition: s.Definition, names: Names) -> dict[str, str]:

@@ -146,8 +146,13 @@ def _name(node: s.Name, scope: Scope, names: Names) -> Expression:
 
 
 def _member(node: s.Member, scope: Scope, names: Names) -> Expression:
-    """Return the name of a member, or what looks it up by its entity where a run decides which one is meant."""
-    index = elaborate_expression(node.index, scope, names)
+    """Return the name of a member, or what looks it up by its entity where a run decides which one is meant.
+
+    Of a variable it is an element.
+    """
+    index, variable = elaborate_expression(node.index, scope, names), scope.find(node.family.text)
+    if variable is not None:
+        return Apply("element", (Variable(variable), index))
     if index is _ANY:
         return _ANY
     if isinstance(index, Literal):
@@ -179,18 +184,14 @@ def elaborate_agent(node: s.Expression, scope: Scope, names: Names) -> Expressio
 def _named(node: s.Expression, scope: Scope, names: Names, wanted: str) -> Expression:
     """Elaborate what is to name a node or a bigActor; a constant that doesn't is reported."""
     known = names.kinds if wanted == "node" else names.agents
-    other = s.SelfReference | s.Member if wanted == "node" else s.HostReference
+    other = s.SelfReference if wanted == "node" else s.HostReference
+    hint = "write its name, or a variable that holds it"
     if isinstance(node, s.Name) and node.text in scope.fixed:
         value = scope.fixed[node.text]
         if value not in known:
             what = "a number" if isinstance(value, int) else "an entity"
-            hint = "write its name, or a variable that holds it"
-            names.findings.add(
-                Code.WRONG_VALUE,
-                node,
-                f"a {wanted} is expected here, and '{node.text}' is {what}",
-                hint,
-            )
+            message = f"a {wanted} is expected here, and '{node.text}' is {what}"
+            names.findings.add(Code.WRONG_VALUE, node, message, hint)
         return Literal(value)
     if isinstance(node, s.Name) and scope.find(node.text) is None:
         sort = names.sort_of(node.text)
@@ -204,12 +205,16 @@ def _named(node: s.Expression, scope: Scope, names: Names, wanted: str) -> Expre
     if isinstance(node, s.TextLiteral) and node.value not in known:
         message = f"a {wanted} is expected here, and a text that names none is given"
         names.findings.add(Code.WRONG_VALUE, node, message, names.findings.suggest(node.value, known))
-    elif isinstance(
-        node, s.IntegerLiteral | s.TruthLiteral | s.TupleLiteral | s.SetLiteral | s.RouteLiteral | other
-    ):
-        hint = "write its name, or a variable that holds it"
+    elif isinstance(node, _NAMELESS | other) or (wanted == "node" and _is_member(node, scope)):
         names.findings.add(Code.WRONG_VALUE, node, f"a {wanted} is expected here", hint)
     return elaborate_expression(node, scope, names)
+
+
+_NAMELESS: Final = s.IntegerLiteral | s.TruthLiteral | s.TupleLiteral | s.SetLiteral | s.RouteLiteral
+
+
+def _is_member(node: s.Expression, scope: Scope) -> bool:
+    return isinstance(node, s.Member) and scope.find(node.family.text) is None
 
 
 # --- queries --------------------------------------------------------------------------------------------------

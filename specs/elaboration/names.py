@@ -12,10 +12,10 @@ from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import Findings, a, shorten
 
-AGENTS: Final = "agents"
-"""The word for all bigActors, unless a kind or a family has this name."""
-
 SORTS: Final = ("entity", "agent", "family", "kind", "channel", "rule", "behaviour")
+AGENTS: Final = "agents"
+"""What properties call all bigActors, unless a kind or a family has this name."""
+
 WORDS: Final = {
     "agent": "bigActor",
     "family": "family of bigActors",

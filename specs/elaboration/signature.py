@@ -70,21 +70,26 @@ def _extended(kind: Kind, by: Kind) -> Kind:
 
 def _undeclared(mission: s.Mission, kinds: Kinds) -> Uses:
     """Return where each undeclared kind is used, in the order of the text; rules' bodies are looked at later."""
-    found = Uses()
-    others = {AGENTS, *(family.name.text for family in mission.each(s.Family))}
-    used = (name for node in s.walk(mission) for name in _kinds_in(node))
+    found, others = Uses(), _not_kinds(mission)
+    used = (name for node in s.walk(mission) for name in _kinds_in(node, others))
     for name in sorted(used, key=lambda name: name.span):
         if name.text not in kinds and name.text not in others:
             found.setdefault(name.text, []).append(name)
     return found
 
 
-def _kinds_in(node: s.Node) -> tuple[s.Name, ...]:
+def _not_kinds(mission: s.Mission) -> frozenset[str]:
+    """Return what quantifiers and families name that is no kind: bigActors, families, entities."""
+    named = (node for node in s.walk(mission) if isinstance(node, s.Family | s.Entity))
+    return frozenset({AGENTS, *(each.name.text for each in named)})
+
+
+def _kinds_in(node: s.Node, others: frozenset[str]) -> tuple[s.Name, ...]:
     match node:
         case s.Entity() | s.Parameter() | s.OfKind() | s.Keep():
             return (node.kind,)
-        case s.Quantified():
-            return (node.range,)
+        case s.Quantified(range=s.Name() as among) | s.Family(range=s.Name() as among):
+            return () if among.text in others else (among,)
         case s.Kind():
             return (*node.contains, *node.carries)
         case _:
@@ -112,7 +117,7 @@ def _lacking_kinds(mission: s.Mission, kinds: Kinds, uses: Uses, names: Names) -
     own = {kind.name: kind for kind in proposed(mission, tuple(uses))}
     for kind, where in uses.items():
         times = f", used {len(where)} times" if len(where) > 1 else ""
-        similar = "" if kind in _standard() else names.findings.suggest(kind, kinds)
+        similar = "" if kind in _standard() else names.findings.suggest(kind, (*kinds, AGENTS))
         hint = similar or f"declare it: signature {{ {_written(own[kind])} }}"
         names.findings.add(Code.UNKNOWN_KIND, where[0], f"unknown kind '{shorten(kind)}'{times}", hint)
     holding = {

@@ -70,7 +70,8 @@ class RouteLiteral(Node):
 class Member(Node):
     """`patrol[uav0]`, `patrol[0]`: a member of a family of bigActors, by its entity or by its number, from 0.
 
-    In behaviours both may be computed: `send "go" to patrol[who]`, `patrol[i + 1]`.
+    In behaviours both may be computed: `send "go" to patrol[who]`, `patrol[i + 1]`. Behind a variable the brackets
+    give an element of its tuple or route: `route[0]` is `element(route, 0)`.
     """
 
     family: Name

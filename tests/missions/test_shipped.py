@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from checker import Limits, Report, check
+from checker import Engine, Limits, Outcome, Reduction, Report, check
 from semantics import Control, Scheduler
 from specs.elaboration import Variation, load_mission
 
@@ -29,6 +29,7 @@ SHIPPED: dict[str, Expected] = {
     "broken_inconsistent": Expected(24, 48, violated={"local_consistency": {"inconsistent": 2}}),
     "broken_unmatched": Expected(24, 46, violated={"local_consistency": {"unmatched": 3}}),
     "broken_unrealisable": Expected(60, 136, violated={"local_consistency": {"unrealisable": 4}}),
+    "convoy": Expected(3_730, 11_253, witnesses={"all are out": 54}),
     "distributed_handover": Expected(102, 157, witnesses={"once around": 45}),
     "go_ahead": Expected(82, 202, witnesses={"surveyed": 9}),
     "handover": Expected(23, 34, witnesses={"handed over": 6}),
@@ -124,6 +125,19 @@ def test_who_looks_before_entering_races_under_every_scheduler_and_control(sched
             v.property.kind: v.outcome.value for v in check(mission.initial, mission.properties).verdicts
         }
         assert verdicts["race_freedom"] == outcome
+
+
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+@pytest.mark.parametrize(("control", "whole", "part"), [("timed", 3_730, 612), ("atomic", 2_754, 437)])
+def test_a_family_keeps_apart_on_its_route_whatever_explores_it(engine, control, whole, part):
+    mission = load_mission(MISSIONS / "convoy.mission", Variation(control=Control(control)))
+    for reductions, expected in (((), whole), ((Reduction.POR,), part)):
+        report = check(mission.initial, mission.properties, engine=engine, reduce=reductions)
+        undecided = {"all come home"} if reductions else set()
+        assert report.configurations == expected
+        assert {
+            each.property.name for each in report.verdicts if each.outcome is not Outcome.HOLDS
+        } == undecided
 
 
 TIMED = {"oil_spill": (43, 98), "handover": (23, 34), "search_and_deploy": (98, 166), "tanker": (62, 141)}

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from semantics.behaviours.expressions import Apply, Literal
+from semantics.behaviours.expressions import Apply, Literal, Variable
 from semantics.behaviours.statements import ControlBy, Send
 from semantics.environment import Says
 from semantics.properties.propositions import Ended, Exists, HostedAt, Not, Or, Waiting, holds
@@ -233,3 +233,24 @@ def test_quantifiers_at_the_beginning_of_runs_do_not_leave_out_who_is_spawned():
     assert hint == "write always (forall ...), or quantify over others: agents with_behavior visit"
     elaborated(text.format(WORLD, CREW, "always forall x: agents . <> ended x"))
     elaborated(text.format(WORLD, CREW, "forall x: f . <> ended x"))
+
+
+# --- brackets
+
+
+def test_brackets_behind_a_variable_give_an_element():
+    body = "let way = [b0, a0] control(MOVE_HOST_TO way[1]) let f = (a0, b0) control(MOVE_HOST_TO f[i])"
+    found = statements(family(body), ControlBy)[:2]
+    assert [each.arguments for each in found] == [
+        (Apply("element", (Variable("way"), Literal(1))),),
+        (Apply("element", (Variable("f"), Literal(0))),),
+    ]
+
+
+@pytest.mark.parametrize(
+    "head", ["f for u in UAV hosted_at u", "f[] for u in UAV", "f[uav0] hosted_at uav0", "[u] for u in UAV"]
+)
+def test_a_family_that_is_written_otherwise_is_shown_how(head):
+    ((code, _, hint),) = mistakes(WORLD + family("skip", head))
+    assert code in {"LS101", "LS121"}
+    assert hint == "a family is written BigActor patrol[i] for u in UAV hosted_at u with_behavior { ... }"

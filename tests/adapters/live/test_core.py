@@ -440,6 +440,24 @@ def test_what_the_mission_says_may_be_said_is_heard_and_not_too_often():
     assert [step.transition.shown for step in run.steps][-1] == ("gone",)
 
 
+def test_a_member_of_a_family_is_spoken_to_by_its_name():
+    family = """
+    BigActor op[i] for g in Station hosted_at g with_behavior { loop { react { case ("go", way) => display(way) } } }
+    environment { says ("go", [gcs1, gcs0, gcs1]) to op[gcs1] }
+    """
+    run = Run(plan_of(TOUR + family))
+    run.turn(0.0)
+    said = "(go, [gcs1, gcs0, gcs1])"
+    run.turn(1.0, sayings=[Saying("op[gcs1]", said), Saying("op[1]", said), Saying("op", said)])
+    assert run.rules == ["say", "rcv_msg", "fun"]
+    assert [step.transition.shown for step in run.steps][-1] == ("[gcs1, gcs0, gcs1]",)
+    assert [answer.refusal.partition(";")[0] for answer in run.answers] == [
+        "",
+        "there is no bigActor 'op[1]'",
+        "there is no bigActor 'op'",
+    ]
+
+
 def test_an_agent_that_never_waits_does_not_keep_others_from_going_on():
     text = TOUR + (
         "BigActor a hosted_at gcs0 with_behavior { loop { observe(ALL)\n react { case x => skip } } }\n"

@@ -66,6 +66,29 @@ def recorded(tmp_path):
     return path, run
 
 
+def test_members_of_families_and_routes_are_recorded_and_replay(tmp_path):
+    patrol = """
+    BigActor patrol[i] for u in UAV hosted_at u with_behavior {
+      let way = [west0, east0, west0]
+      for place in way { control(MOVE_HOST_TO place) send (u, place, way) to op[gcs0] }
+    }
+    BigActor op[i] for g in {gcs0} hosted_at uav0 with_behavior {
+      loop { react { case (u, place, way) => display(way) } }
+    }
+    """
+    path = tmp_path / "run.mcap"
+    recorder = Recorder(path, HEADER | {"text": TOUR + patrol}, 0.0)
+    run = Run(plan_of(TOUR + patrol, Precautions(Fallback.CONTINUE)))
+    for now, place in enumerate((WEST, BETWEEN, EAST)):
+        recorder.arrival(seen("uav0", place, float(now)), float(now))
+        recorder.turn(run.turn(float(now), seen("uav0", place, float(now))), float(now), lambda _: ())
+    recorder.close("done", 3.0)
+    again = replay(mission(TOUR + patrol).initial, read_recording(path).trace(SCHEMA))
+    assert again.configurations[-1] == run.state.configuration
+    assert {step.label.agent for step in again.steps} == {"op[gcs0]", "patrol[uav0]"}
+    assert "commit" in {step.label.rule for step in again.steps}
+
+
 def test_a_recording_replays_to_the_same_configurations(recorded):
     path, run = recorded
     recording = read_recording(path)

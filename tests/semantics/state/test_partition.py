@@ -55,7 +55,7 @@ world {
 def visit(host) = {
   observe(CHILDREN(PARENT(HOST)))
   migrate(host)
-  react { case view if gcs1 in view => send ("seen", view, {1, 2}) to op0 }
+  react { case view if gcs1 in view => send ("seen", view, [gcs1, {1, 2}, gcs1]) to op0 }
 }
 BigActor nomad hosted_at gcs0 with_behavior { loop { visit(gcs1)
   visit(gcs2)
