@@ -17,6 +17,7 @@ from checker import (
     CheckpointError,
     Cluster,
     ClusterError,
+    CompilerError,
     Engine,
     Keeping,
     Limits,
@@ -37,6 +38,10 @@ REPORTS_SCHEMA = "bigactors.reports/1"
 REFUSALS: dict[type[Exception], tuple[Exit, str]] = {
     CheckpointError: (Exit.MISTAKE, "leave --resume out to begin anew"),
     ClusterError: (Exit.MISTAKE, "leave --engine ray out to check it in one process"),
+    CompilerError: (
+        Exit.INCOMPLETE,
+        "set NUMBA_CACHE_DIR to a folder that you may write, or add --engine reference",
+    ),
     RefusedError: (Exit.MISTAKE, "check it without, or with the other reduction alone"),
     MachineError: (Exit.INCOMPLETE, "try again when less else runs here, or leave --engine out"),
     MemoryError: (Exit.INCOMPLETE, "explore less: --max-memory SIZE, --max-configurations N"),

@@ -13,6 +13,8 @@ from bigactors.terminal import broken, is_terminal, paint, write
 from checker import Interruption, Progress
 from physical.messages import counted
 
+COMPILING = "compiling loops, some seconds once after an installation"
+
 
 class Watch:
     """What is told about an exploration now and then, and shows it on a line; it knows whether to end.
@@ -61,7 +63,11 @@ def describe(name: str, progress: Progress) -> str:
 
     >>> describe("m", Progress(configurations=12000, transitions=30000, depth=7, frontier=450, rate=5300.2))
     'm: 12,000 configurations, depth 7, frontier 450, 5,300/s, no estimate while layers grow'
+    >>> describe("m", Progress(0, 0, 0, 0, 0.0, compiling=7))
+    'm: compiling loops, some seconds once after an installation: function 7'
     """
+    if progress.compiling:
+        return f"{name}: {COMPILING}: function {progress.compiling}"
     return (
         f"{name}: {counted(progress.configurations, 'configuration')}, depth {progress.depth}, "
         f"frontier {progress.frontier:,}, {progress.rate:,.0f}/s, "

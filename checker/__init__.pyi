@@ -4,6 +4,7 @@ from .engines.choose import explore as explore
 from .engines.cluster.crew import ClusterError as ClusterError
 from .engines.contract import CheckpointError as CheckpointError
 from .engines.contract import Cluster as Cluster
+from .engines.contract import CompilerError as CompilerError
 from .engines.contract import Engine as Engine
 from .engines.contract import Exploration as Exploration
 from .engines.contract import Keeping as Keeping

@@ -19,24 +19,24 @@ from bigactors.mistakes import Mistake, suggestion
 
 __all__ = ["FORMATS", "NAMES", "Command", "Parser", "make_parser", "parse_arguments", "parser_of"]
 
-NAMES: Final = (
-    "new",
-    "check",
-    "show",
-    "simulate",
-    "run",
-    "say",
-    "give-back",
-    "keygen",
-    "replay",
-    "world",
-    "big",
-    "explain",
-    "fmt",
-    "demo",
-    "completion",
-)
-"""The commands, in the order of the help."""
+GROUPS: Final = {
+    "write and check missions": ("new", "check", "simulate", "show", "replay", "fmt", "explain"),
+    "fly them": ("run", "say", "give-back", "keygen"),
+    "places and bigraphs": ("world", "big"),
+    "begin": ("demo", "completion"),
+}
+"""The commands, as the help lists them."""
+
+NAMES: Final = tuple(name for names in GROUPS.values() for name in names)
+
+BEGINNING: Final = """\
+examples:
+  bigactors check oil_spill                  decide on a mission that ships
+  bigactors show oil_spill                   draw its first configuration
+  bigactors new patrol                       write one of your own
+  bigactors check --watch patrol.mission     check it whenever it is saved
+
+bigactors COMMAND --help describes a command, with examples. FILE is a mission file or the name of one that ships."""
 
 
 def command_of(name: str) -> Command:
@@ -49,18 +49,24 @@ def make_parser() -> tuple[Parser, dict[str, Parser]]:
     """Return the parser of the whole line, and those of the commands in the order of their help."""
     whole = Parser(
         prog="bigactors",
+        usage="bigactors [-h] [--version] [--color WHEN] COMMAND ...",
         description=(
-            "Logical-space programming: check a mission in every interleaving, draw it, fly it, replay it."
+            "Logical-space programming: check a mission in every interleaving, draw it, fly it, replay it.\n\n"
+            + "\n\n".join(map(_listed, GROUPS))
         ),
-        epilog="bigactors COMMAND --help describes a command, with examples.\n\n" + EXITS,
+        epilog=f"{BEGINNING}\n\n{EXITS}",
     )
     whole.add_argument("--version", action="version", version=f"bigactors {__version__}")
-    commands = whole.add_subparsers(dest="command", metavar="COMMAND", title="commands")
-    made = {
-        name: parser_of(name, partial(commands.add_parser, name, help=command_of(name).summary))
-        for name in NAMES
-    }
-    return whole, made
+    commands = whole.add_subparsers(dest="command", metavar="COMMAND", help=argparse.SUPPRESS)
+    return whole, {name: parser_of(name, partial(commands.add_parser, name)) for name in NAMES}
+
+
+def _listed(group: str) -> str:
+    """Return the commands of a group, each with what it does."""
+    width = max(map(len, NAMES))
+    return "\n".join(
+        [f"{group}:", *(f"  {name:<{width}}  {command_of(name).summary}" for name in GROUPS[group])]
+    )
 
 
 def parser_of(name: str, make: Callable[..., Parser] = Parser) -> Parser:
@@ -77,13 +83,14 @@ def parse_arguments(line: Sequence[str]) -> argparse.Namespace:
     if line and line[0] in NAMES:  # the others' parsers are not made
         return _parsed(parser_of(line[0]), line[1:], argparse.Namespace(command=line[0], color="auto"))
     whole, _ = make_parser()
-    if not line:
-        whole.print_help()
-        raise SystemExit(2)
-    if not line[0].startswith("-"):
+    if line and not line[0].startswith("-"):
         hint = suggestion(line[0], NAMES) or f"the commands are {', '.join(NAMES)}"
         raise Mistake(f"unknown command '{line[0]:.60}'", hint)
-    return _parsed(whole, line, argparse.Namespace(color="auto"))
+    options = _parsed(whole, line, argparse.Namespace(color="auto"))
+    if options.command is None:
+        whole.print_help()
+        raise SystemExit(2)
+    return options
 
 
 def _parsed(parser: Parser, line: Sequence[str], options: argparse.Namespace) -> argparse.Namespace:

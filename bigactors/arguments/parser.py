@@ -1,6 +1,7 @@
 """The argument parser: argparse with the error messages of bigactors."""
 
 import argparse
+import re
 import textwrap
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -37,7 +38,8 @@ def _lines(text: str) -> Iterator[str]:
 
 
 def _wrapped(line: str, width: int) -> list[str]:
-    further = "     " if line.startswith(" ") else ""
+    column = re.match(r" +\S+(?: \S+)*  +", line)
+    further = " " * min(column.end() if column else 0, width // 2)
     return textwrap.wrap(
         line, width, subsequent_indent=further, break_long_words=False, break_on_hyphens=False
     )

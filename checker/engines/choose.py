@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from checker.engines.contract import (
     Cluster,
+    CompilerError,
     Engine,
     Exploration,
     Inspect,
@@ -52,12 +53,20 @@ def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Op
         case Engine.REFERENCE:
             return explore_one_by_one(initial, inspect, options)
         case Engine.FAST:
-            from checker.engines.fast.explorer import explore_fast  # noqa: PLC0415  # numba takes its time to load
-
-            return explore_fast(initial, inspect, options)
+            return _explore_fast(initial, inspect, options)
         case Engine.RAY:
             from checker.engines.cluster.ray_crew import explore_with_ray  # noqa: PLC0415  # Ray is an extra
 
             return explore_with_ray(initial, inspect, options)
         case _:
             assert_never(options.engine)
+
+
+def _explore_fast(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
+    try:
+        from checker.engines.fast.explorer import explore_fast  # noqa: PLC0415  # numba takes its time to load
+    except RuntimeError as error:
+        if "locator" not in str(error):
+            raise
+        raise CompilerError("there is no folder here in which numba may keep compiled loops") from error
+    return explore_fast(initial, inspect, options)

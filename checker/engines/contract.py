@@ -29,6 +29,10 @@ class MachineError(Exception):
     """What the machine does not give: workers that start in time and stay, room for an engine. Nothing is decided."""
 
 
+class CompilerError(Exception):
+    """The loops cannot be compiled here."""
+
+
 class CheckpointError(Exception):
     """A checkpoint that can't be read, or that is of something else."""
 
@@ -67,6 +71,7 @@ class Progress:
         frontier: How many wait to be expanded.
         rate: How many are expanded in a second.
         estimate: How many there may be in all; None while nobody can say.
+        compiling: Which of the compiled functions is being compiled, counted from 1; 0 when none is.
     """
 
     configurations: int
@@ -75,6 +80,7 @@ class Progress:
     frontier: int
     rate: float
     estimate: Estimate | None = None
+    compiling: int = 0
 
     @property
     def left(self) -> tuple[float, float] | None:

@@ -1,6 +1,7 @@
 """What every command shares: help, mistakes on the line, exit codes, broken pipes, encodings."""
 
 import os
+import re
 import subprocess
 import sys
 
@@ -25,14 +26,25 @@ def test_the_version_is_printed(bigactors):
 def test_without_a_command_the_help_is_shown_and_nothing_is_a_success(bigactors):
     code, out, _ = bigactors()
     assert code == 2
-    assert "commands:" in out
+    assert "write and check missions:" in out
+
+
+def test_an_option_without_a_command_is_no_success_either(bigactors):
+    code, out, err = bigactors("--color", "never")
+    assert (code, err) == (2, "")
+    assert out == bigactors()[1]
+
+
+def test_the_front_page_lists_each_command_once_in_its_group(bigactors):
+    listed = re.findall(r"^  ([a-z-]+) {2,}\w", bigactors("--help")[1].partition("options:")[0], re.MULTILINE)
+    assert tuple(listed) == NAMES
 
 
 @pytest.mark.parametrize("command", NAMES)
 def test_the_help_of_each_command_shows_examples(bigactors, command):
     code, out, err = bigactors(command, "--help")
     assert (code, err) == (0, "")
-    assert f"examples:\n  bigactors {command}" in out
+    assert f"bigactors {command}" in out.partition("\nexamples:\n")[2]
 
 
 def test_an_unknown_command_is_told_with_the_one_that_may_be_meant(bigactors):

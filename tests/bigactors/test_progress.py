@@ -39,7 +39,7 @@ def test_a_line_is_no_wider_than_the_terminal(monkeypatch):
     monkeypatch.setenv("COLUMNS", "20")
     stream = Terminal()
     Watch("mission", stream)(PROGRESS)
-    assert stream.getvalue() == "\rmission: 12,000 con"
+    assert stream.getvalue() == "\rmission: 12,000"
 
 
 def test_nothing_is_shown_in_a_pipe():

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, overload
 from checker.engines.contract import Exploration, Inspect, Options, Progress
 from checker.engines.estimate import estimate
 from checker.engines.fast.checkpoint import Journey, resume, save
+from checker.engines.fast.compiling import compilation_reported
 from checker.engines.fast.graph import GraphSurvey
 from checker.engines.fast.inspecting import inspect_fast
 from checker.engines.fast.learner import Learner
@@ -76,7 +77,8 @@ def explore_fast(initial: Configuration, inspect: tuple[Inspect, ...], options: 
     Raises:
         CheckpointError: There is none to go on from, or it is of something else.
     """
-    return _Explorer(initial, options).run(inspect)
+    with compilation_reported(options.report):
+        return _Explorer(initial, options).run(inspect)
 
 
 class _Explorer:

@@ -1,0 +1,48 @@
+"""What is told of compiling: at the first start, and not when what was compiled is loaded."""
+
+import os
+import subprocess
+import sys
+
+PROGRAM = """
+from checker import Engine, check
+from specs.elaboration import load_mission
+from specs.missions import shipped_missions
+mission = load_mission(shipped_missions()["oil_spill"])
+told = []
+check(mission.initial, mission.properties, report=told.append, engine=Engine.FAST)
+print(max((progress.compiling for progress in told), default=0))
+"""
+NOWHERE = """
+import sys, tempfile
+def refuse(*args, **settings): raise PermissionError(13, "this file system is read-only")
+tempfile.TemporaryFile = refuse  # by which numba tries whether it may write
+from bigactors.cli import main
+sys.exit(main(["check", "--engine", "fast", "oil_spill"]))
+"""
+
+
+def run(program, **environment):
+    return subprocess.run(
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | environment,
+    )
+
+
+def test_compiling_is_reported_once_after_an_installation(tmp_path):
+    first, second = (run(PROGRAM, NUMBA_CACHE_DIR=str(tmp_path)) for _ in range(2))
+    assert (first.stderr, second.stderr) == ("", "")
+    assert int(first.stdout) > 10
+    assert int(second.stdout) == 0
+
+
+def test_where_nothing_compiled_can_be_kept_the_remedy_is_told():
+    found = run(NOWHERE)
+    assert (found.returncode, found.stdout) == (3, "")
+    assert found.stderr.splitlines() == [
+        "oil_spill: there is no folder here in which numba may keep compiled loops",
+        "  hint: set NUMBA_CACHE_DIR to a folder that you may write, or add --engine reference",
+    ]
