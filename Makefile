@@ -8,7 +8,7 @@ WHEEL  := .wheel
 SMOKE  := $(addprefix tests/,missions paper semantics/state/test_cells.py \
 	$(addprefix bigactors/test_,big.py cli.py engines.py missions.py public_names.py run.py))
 
-.PHONY: demo live-demo test lint types test-wheel wheel constraints fuzz bounds bench bench-bigraphs bench-cluster docs clean
+.PHONY: demo live-demo test lint types test-wheel wheel constraints fuzz bounds bench bench-bigraphs bench-cluster docs pictures clean
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -79,5 +79,15 @@ docs: $(STAMP)  ## write the generated pages of docs/, and all of them as a site
 	$(BIN)/python -m bigactors.docs
 	$(BIN)/python -m sphinx -W --keep-going --quiet -c docs . site
 
+pictures: $(STAMP)  ## draw the README's pictures again; the page of a trace with chromium
+	rm -rf .pictures
+	for mission in oil_spill broken_inconsistent look_before_entry_racy; do \
+		$(BIN)/bigactors check $$mission --trace .pictures > /dev/null; done; true
+	$(BIN)/bigactors show --trace .pictures/oil_spill/over_the_spill-witness/trace.json --output docs/pictures/oil_spill.svg
+	$(BIN)/bigactors show --trace .pictures/broken_inconsistent/local_consistency-inconsistent/trace.json \
+		--output docs/pictures/broken_inconsistent.svg
+	chromium --headless --no-sandbox --hide-scrollbars --window-size=1400,940 --screenshot=docs/pictures/trace_page.png \
+		"file://$(CURDIR)/.pictures/look_before_entry_racy/race_freedom-stale-observation_race/trace.html#c12"
+
 clean:
-	rm -rf $(VENV) $(WHEEL) .numba-bounds demo live-demo dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(WHEEL) .pictures .numba-bounds demo live-demo dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis

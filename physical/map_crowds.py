@@ -34,7 +34,8 @@ def folded(
     ]
     gone = {name for names in groups for name in names}
     left = {name: spot for name, spot in spots.items() if name not in gone}
-    members = {names[0]: tuple(sorted(names, key=lambda name: (len(name), name))) for names in groups}
+    ordered = (sorted(names, key=lambda name: (len(name), name)) for names in groups)
+    members = {names[0]: tuple(names) for names in ordered}
     return left | {name: _mean([spots[each] for each in names]) for name, names in members.items()}, members
 
 

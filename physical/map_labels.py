@@ -13,7 +13,7 @@ Spot = tuple[float, float]
 GAP: Final = 2.0
 """Points kept free between labels."""
 
-RINGS: Final = (3.0, 8.0, 15.0, 24.0, 36.0)
+RINGS: Final = (3.0, 8.0, 15.0, 24.0, 36.0, 50.0)
 """Points from the clearance to the label, tried in turn."""
 
 DIRECTIONS: Final = (0, 180, 90, 270, 45, 315, 135, 225, 22, 338, 158, 202, 68, 292, 112, 248)

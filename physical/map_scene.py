@@ -7,6 +7,8 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
+import shapely
+
 from physical.frame import Position
 from physical.land import ACCURACY, land_within
 from physical.map_crowds import HIDING, fanned, folded
@@ -192,11 +194,19 @@ def scene_of(
 
 
 def arranged(scene: Scene, reach: float) -> Scene:
-    """Return the scene with markers of one kind folded within so many points, and others fanned out where they hide."""
+    """Return the scene with markers folded and fanned out.
+
+    Folded are those of one kind, in the same places, within so many points; fanned out are others that hide each other.
+    """
     scene = replace(scene, spots={}, members={})
     markers = [name for name in scene.near() if not scene.is_polygon(name)]
     spots = {name: scene.middle(name) for name in markers}
-    alike = {name: scene.entities[name].kind for name in markers if not _stands_out(scene, name)}
+    polygons = [shapely.Polygon(scene.outlines[name]) for name in scene.near() if scene.is_polygon(name)]
+    alike = {
+        name: (scene.entities[name].kind, *(polygon.contains(shapely.Point(spot)) for polygon in polygons))
+        for name, spot in spots.items()
+        if not _stands_out(scene, name)
+    }
     left, members = folded(spots, alike, reach)
     return replace(scene, spots=fanned(left), members=members)
 

@@ -39,7 +39,7 @@ MOST_CARRIED: Final = 8
 
 COAST_NOTE: Final = f"coasts ± {metres_text(ACCURACY)}"
 
-FAR_FROM_PLACE: Final = 15.0
+FAR_FROM_PLACE: Final = 24.0
 """Points between a place and its name at most; more would not be seen to belong together."""
 
 FEW: Final = 3

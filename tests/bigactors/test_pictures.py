@@ -10,6 +10,7 @@ import pytest
 from drawn_missions import KINDS, PLACEMENTS, SIGNATURE, oil_spill, run
 from matplotlib.text import Text
 
+from bigactors.cli import main
 from bigactors.pictures import PictureError, draw_configuration, draw_overview, draw_trace
 from bigactors.pictures.page import wrapped
 from bigactors.pictures.scene import changed_names, differing, is_place, map_entities, palette_of
@@ -26,6 +27,8 @@ from semantics.state.configuration import Label
 from semantics.state.initial import Beliefs, initial
 from semantics.state.physical_model import Placed, channels_cell, placement_cell
 from semantics.state.setting import Setting
+
+ROOT = Path(__file__).parents[2]
 
 
 def written(monkeypatch, draw, *arguments, **options):
@@ -141,8 +144,7 @@ def test_a_picture_is_the_same_twice(tmp_path, suffix):
 
 def test_text_in_an_svg_is_text_that_can_be_searched(tmp_path):
     draw_configuration(oil_spill(), tmp_path / "c.svg", title="a <oil> spill")
-    picture = ElementTree.parse(tmp_path / "c.svg").getroot()
-    texts = [each.text for each in picture.iter("{http://www.w3.org/2000/svg}text")]
+    texts = texts_of(tmp_path / "c.svg")
     assert {"searchArea0", "uav0", "coasts ± 1 km", "control:gcs0"} <= set(texts)
     assert texts.count("a <oil> spill") == 1
     assert len((tmp_path / "c.svg").read_bytes()) < 40_000
@@ -200,6 +202,24 @@ def draw_two(stem):
     configurations, labels = run(oil_spill())
     draw_configuration(configurations[3], f"{stem}c.svg", changed=configurations[2])
     draw_overview(configurations, labels, f"{stem}t.svg")
+
+
+@pytest.mark.parametrize(
+    ("mission", "evidence"),
+    [("oil_spill", "over_the_spill-witness"), ("broken_inconsistent", "local_consistency-inconsistent")],
+)
+def test_the_pictures_of_the_readme_say_what_is_drawn_today(tmp_path, mission, evidence, capsys):
+    main(["check", mission, "--trace", str(tmp_path)])
+    trace = tmp_path / mission / evidence / "trace.json"
+    main(["show", "--trace", str(trace), "--output", str(tmp_path / "now.svg")])
+    capsys.readouterr()
+    kept = ROOT / "docs" / "pictures" / f"{mission}.svg"
+    assert texts_of(kept) == texts_of(tmp_path / "now.svg"), "make pictures"
+
+
+def texts_of(path):
+    texts = ElementTree.parse(path).getroot().iter("{http://www.w3.org/2000/svg}text")
+    return [text.text for text in texts]
 
 
 # --- traces ---------------------------------------------------------------------------------------
