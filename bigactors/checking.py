@@ -124,12 +124,10 @@ def check_mission(
         mission = checkable(open_mission(name, variation))
         with watching(mission.name, limits.interruption) as watch:
             report = check(
-                mission.initial,
-                mission.properties,
-                limits,
-                watch,
-                mission.notes,
-                how.engine,
+                mission,
+                limits=limits,
+                report=watch,
+                engine=how.engine,
                 violations=how.violations,
                 reduce=how.reduce,
                 keeping=how.keeping and _of_this(how.keeping, mission, limits),

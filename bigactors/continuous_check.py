@@ -31,7 +31,13 @@ def check_at_each_save(
     check: Callable[[Interruption], Iterable[Checked | Failed]],
     report: Callable[[Results], Exit],
 ) -> Exit:
-    """Check missions now and at each save until Ctrl-C; return what the last check that came to its end returned."""
+    """Check missions now and at each save until Ctrl-C; return what the last check that came to its end returned.
+
+    Raises:
+        Mistake: There is no such mission to begin with.
+    """
+    for name in names:
+        locate(name)  # who misspells a name does not wait for its file
     code, verdicts, files = Exit.INCOMPLETE, dict[str, Mapping[str, str]](), dict[str, tuple[Path, ...]]()
     why = "checking " + ", ".join(names)
     with suppress(KeyboardInterrupt):

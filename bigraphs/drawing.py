@@ -100,7 +100,7 @@ def fitting(svg: str) -> str:
     '<svg style="width:100%;max-width:96pt;height:auto" viewBox="0 0 96 72">'
     """
     style = r'<svg\1style="width:100%;max-width:\2pt;height:auto"'
-    return re.sub(r'<svg(\s[^>]*?)width="([\d.]+)pt" height="[\d.]+pt"', style, svg, count=1)
+    return re.sub(r'<svg(\s[^>]*?)width="([\d.]+)(?:pt)?" height="[\d.]+(?:pt)?"', style, svg, count=1)
 
 
 def _save(

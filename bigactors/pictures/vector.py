@@ -48,10 +48,10 @@ FILE: Final = re.compile(r"[\w-]+\.svg")
 """What a link may lead to: a picture beside this one."""
 
 STYLE: Final = (
-    'text{font-family:"DejaVu Sans",Verdana,Geneva,sans-serif;white-space:pre;paint-order:stroke;stroke:#fff;'
-    "stroke-opacity:.8;stroke-width:2.2px;stroke-linejoin:round}path{stroke-linejoin:round}"
+    '.bigactors text{font-family:"DejaVu Sans",Verdana,Geneva,sans-serif;white-space:pre;paint-order:stroke;stroke:#fff;'
+    "stroke-opacity:.8;stroke-width:2.2px;stroke-linejoin:round}.bigactors path{stroke-linejoin:round}"
 )
-"""What a picture by itself looks like: its font, and a halo around text."""
+"""What a picture by itself looks like: its font, and a halo around text; a page that it stands in keeps its own."""
 
 LONG: Final = re.compile(r"-?\d+\.\d{3,}")
 FONT: Final = re.compile(r"font: (?:(?P<style>\w+) )?(?:(?P<weight>\d+|bold) )?(?P<size>[\d.]+)px")
@@ -63,7 +63,7 @@ def svg_file(figure: "Figure", title: str) -> str:
     about = f"<title>{escape(clean(title))}</title><style>{STYLE}</style>"
     paper = f'<rect width="{width:g}" height="{height:g}" fill="#fff"/>'
     size = f'width="{width:g}" height="{height:g}" viewBox="0 0 {width:g} {height:g}"'
-    root = f'<svg xmlns="http://www.w3.org/2000/svg" {size} role="img">'
+    root = f'<svg xmlns="http://www.w3.org/2000/svg" {size} class="bigactors" role="img">'
     return f"{root}{about}{paper}{svg_of(figure, 'p')}</svg>\n"
 
 

@@ -92,10 +92,10 @@ def test_several_missions_get_a_line_each_and_the_gravest_code(bigactors):
 def test_a_bug_at_one_mission_does_not_keep_the_others_from_being_checked(bigactors, monkeypatch):
     honest = checking.check
 
-    def failing(initial, *rest, **more):
-        if len(initial.alpha.names()) == 2:
+    def failing(mission, *rest, **more):
+        if len(mission.initial.alpha.names()) == 2:
             raise RuntimeError("our bug")
-        return honest(initial, *rest, **more)
+        return honest(mission, *rest, **more)
 
     monkeypatch.setattr(checking, "check", failing)
     code, out, err = bigactors("check", "race.mission", "holds.mission", "mistaken.mission")

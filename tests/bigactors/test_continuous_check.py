@@ -179,6 +179,13 @@ def test_who_watches_reads_the_report_himself(bigactors):
     assert "--watch prints its reports" in err
 
 
+@pytest.mark.usefixtures("missions")
+def test_a_name_that_is_misspelt_is_not_waited_for(bigactors):
+    code, out, err = bigactors("check", "--watch", "oil_spil")
+    assert (code, out) == (2, "")
+    assert err == "oil_spil: there is no such file\n  hint: did you mean 'oil_spill'?\n"
+
+
 def test_files_are_compared_by_their_content(tmp_path):
     path = tmp_path / "a"
     assert changed(look([path]), look([path])) == ()
