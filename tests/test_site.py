@@ -62,7 +62,7 @@ def test_the_first_page_leads_to_the_landing_page(site):
         (["race"], "docs/tutorial/race"),
         (["race"], "docs/explanation/races"),
         (["connect", "vehicl"], "docs/how-to/connect-a-vehicle"),
-        (["own", "rule"], "docs/how-to/own-rule"),
+        (["test", "rule"], "docs/how-to/own-rule"),
         (["bigraph", "alon"], "docs/how-to/bigraphs"),
         (["ci"], "docs/how-to/check-in-ci"),
         (["simul"], "docs/tutorial/flight"),
