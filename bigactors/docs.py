@@ -11,6 +11,7 @@ from textwrap import dedent
 from typing import Any
 
 from adapters.recording.schemas import SCHEMAS
+from bigactors.api_pages import api_pages
 from bigactors.arguments import make_parser
 from bigactors.files import make_folder, write_text
 from bigactors.terminal import safe_output, say
@@ -91,6 +92,7 @@ def pages() -> dict[str, str]:
         "reference/language.md": f"{GENERATED}{language_reference()}",
         "reference/recording.md": "".join(recording_page()),
         "reference/rules.md": "".join(rules_page()),
+        **{f"reference/python/{name}.md": f"{GENERATED}{page}" for name, page in api_pages().items()},
     }
 
 

@@ -40,6 +40,7 @@ html_theme = "furo"
 html_title = f"bigactors {version}"
 html_copy_source = False
 html_show_copyright = False
+html_search_scorer = str(Path(__file__).with_name("scorer.js"))
 html_theme_options = {"navigation_with_keys": True}
 pygments_style = "friendly"
 highlight_language = "none"

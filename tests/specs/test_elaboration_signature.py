@@ -37,7 +37,9 @@ def mistakes(text):
 
 
 def readme_mission():
-    blocks = re.findall(r"^```mission\n(.*?)^```", (ROOT / "README.md").read_text(encoding="utf-8"), re.M | re.S)
+    blocks = re.findall(
+        r"^```mission\n(.*?)^```", (ROOT / "README.md").read_text(encoding="utf-8"), re.M | re.S
+    )
     return next(block for block in blocks if "BigActor" in block)
 
 
