@@ -33,6 +33,7 @@ NAMES: Final = (
     "big",
     "explain",
     "fmt",
+    "lsp",
     "demo",
     "completion",
 )
