@@ -58,8 +58,10 @@ class Editor:
         return t.Position(line, len(before.rpartition("\n")[2].encode("utf-16-le")) // 2)
 
     async def mistakes(self):
-        await asyncio.wait_for(self.client.wait_for_notification(t.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS), 30)
-        return self.client.diagnostics[self.uri]
+        async with asyncio.timeout(30):
+            while self.uri not in self.client.diagnostics:
+                await asyncio.sleep(0.01)
+        return tuple(self.client.diagnostics.pop(self.uri))
 
     def applied(self, edits):
         """Return the text with edits, all of which are about it as it is."""
