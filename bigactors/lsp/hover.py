@@ -13,7 +13,7 @@ from bigactors.lsp.reading import Reading
 from physical.measure import area
 from semantics import extension, rules
 from semantics.behaviours.commands import COMMANDS
-from semantics.properties.property import ABOUT, PropertyKind
+from semantics.properties.kinds import ABOUT, PropertyKind
 from specs import explain
 from specs import syntax as s
 from specs.elaboration.findings import Findings

@@ -8,7 +8,7 @@ import difflib
 import json
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -27,7 +27,7 @@ from bigactors.lsp.outline import Part, outline, title_of
 from bigactors.lsp.positions import Lines
 from bigactors.lsp.reading import Reading, reading_of
 from bigactors.lsp.tokens import MODIFIERS, TYPES, tokens
-from specs import Diagnostic, MissionError, format_mission
+from specs import MissionError, format_mission
 from specs import syntax as s
 
 CHECK, CANCEL, SHOW_TRACE = "bigactors.check", "bigactors.cancel", "bigactors.showTrace"
@@ -137,6 +137,7 @@ class Server(LanguageServer):
             return
         document.running = await asyncio.create_subprocess_exec(
             sys.executable,
+            "-P",  # no module of the user's folder takes the place of one of ours
             "-m",
             f"{__package__}.worker",
             stdin=asyncio.subprocess.PIPE,
@@ -413,32 +414,16 @@ def _tokens(server: Server, params: t.SemanticTokensParams) -> t.SemanticTokens:
 
 
 def _actions(server: Server, params: t.CodeActionParams) -> list[t.CodeAction]:
-    document = server.document(params.text_document.uri)
-    start, end_ = document.offset(params.range.start), document.offset(params.range.end)
-    diagnosis = document.reading.diagnosis
-    return [
-        _action(document, params.text_document.uri, found)
-        for each in (*diagnosis.mistakes, *diagnosis.warnings)
-        if each.span.start <= end_ and start <= each.span.end
-        for found in _fixes(document, each)
-    ]
-
-
-@dataclass(frozen=True)
-class _Fixing:
-    title: str
-    edit: t.TextEdit
-
-
-def _fixes(document: Document, found: Diagnostic) -> Iterator[_Fixing]:
-    for fix in fixes(found, document.reading.text):
-        yield _Fixing(fix.title, t.TextEdit(document.range(fix.span), fix.text))
-
-
-def _action(document: Document, uri: str, fixing: _Fixing) -> t.CodeAction:
-    del document
-    edit = t.WorkspaceEdit({uri: [fixing.edit]})
-    return t.CodeAction(fixing.title, t.CodeActionKind.QuickFix, edit=edit)
+    uri = params.text_document.uri
+    document = server.document(uri)
+    first, last = document.offset(params.range.start), document.offset(params.range.end)
+    found: list[t.CodeAction] = []
+    for each in document.reading.diagnosis.mistakes:
+        if each.span.start <= last and first <= each.span.end:
+            for fix in fixes(each, document.reading.text):
+                edit = t.WorkspaceEdit({uri: [t.TextEdit(document.range(fix.span), fix.text)]})
+                found.append(t.CodeAction(fix.title, t.CodeActionKind.QuickFix, edit=edit))
+    return found
 
 
 # --- checking
@@ -507,6 +492,3 @@ async def _show_trace(server: Server, uri: str, name: str, *_: object) -> str | 
     else:
         server.window_show_message(t.ShowMessageParams(t.MessageType.Info, f"the trace is in {page}"))
     return address
-
-
-Handler = Callable[..., Any]
