@@ -13,6 +13,7 @@ from typing import Any
 from adapters.recording.schemas import SCHEMAS
 from bigactors.arguments import make_parser
 from bigactors.files import make_folder, write_text
+from bigactors.lsp.textmate import textmate_grammar
 from bigactors.terminal import safe_output, say
 from semantics.extension import EXTENSION
 from semantics.extension import say as say_rule
@@ -84,13 +85,14 @@ The topics, and what their messages hold:
 
 
 def pages() -> dict[str, str]:
-    """Return the generated pages by their file names."""
+    """Return the generated pages by their file names, and what editors colour missions by."""
     return {
         "reference/cli.md": "".join(cli_page()),
         "reference/codes.md": f"{GENERATED}{CODES_HEAD}\n{code_table()}",
         "reference/language.md": f"{GENERATED}{language_reference()}",
         "reference/recording.md": "".join(recording_page()),
         "reference/rules.md": "".join(rules_page()),
+        "../editors/vscode/syntaxes/mission.tmLanguage.json": textmate_grammar(),
     }
 
 
