@@ -14,6 +14,7 @@ from adapters.recording.schemas import SCHEMAS
 from bigactors.api_pages import api_pages
 from bigactors.arguments import make_parser
 from bigactors.files import make_folder, write_text
+from bigactors.lsp.textmate import textmate_grammar
 from bigactors.terminal import safe_output, say
 from semantics.extension import EXTENSION
 from semantics.extension import say as say_rule
@@ -85,7 +86,7 @@ The topics, and what their messages hold:
 
 
 def pages() -> dict[str, str]:
-    """Return the generated pages by their file names."""
+    """Return the generated pages by their file names, and what editors colour missions by."""
     return {
         "reference/cli.md": "".join(cli_page()),
         "reference/codes.md": f"{GENERATED}{CODES_HEAD}\n{code_table()}",
@@ -93,6 +94,7 @@ def pages() -> dict[str, str]:
         "reference/recording.md": "".join(recording_page()),
         "reference/rules.md": "".join(rules_page()),
         **{f"reference/python/{name}.md": f"{GENERATED}{page}" for name, page in api_pages().items()},
+        "../editors/vscode/syntaxes/mission.tmLanguage.json": textmate_grammar(),
     }
 
 

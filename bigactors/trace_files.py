@@ -18,6 +18,7 @@ class Evidence:
     """A trace.
 
     Attributes:
+        property: The name of the property that it is evidence on.
         stem: What its folder is called.
         about: What it is evidence of.
         trace: Its steps.
@@ -26,6 +27,7 @@ class Evidence:
         details: More of what it is evidence of.
     """
 
+    property: str
     stem: str
     about: str
     trace: Trace
@@ -41,6 +43,7 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
         for violation in verdict.violations:
             about = f"{name} violated: {violation.kind}: {violation.message}"
             yield Evidence(
+                name,
                 file_stem(f"{name}-{violation.kind}"),
                 about,
                 violation.trace,
@@ -50,9 +53,8 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
             )
         if verdict.witness is not None:
             found = verdict.property.kind is PropertyKind.REACHABLE
-            yield Evidence(
-                file_stem(f"{name}-witness"), f"{name}: a witness", verdict.witness, False, telling=found
-            )
+            stem = file_stem(f"{name}-witness")
+            yield Evidence(name, stem, f"{name}: a witness", verdict.witness, False, telling=found)
 
 
 def write_evidence(checked: Checked, folder: Path) -> tuple[Path, ...]:

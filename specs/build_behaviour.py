@@ -27,7 +27,7 @@ from specs.building import (
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
 
-_TYPES = ("Observation", "Message")
+PATTERN_TYPES = ("Observation", "Message")
 _OPERATORS = {"||": "or", "&&": "and", "!": "not"}
 
 
@@ -143,7 +143,7 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
 
     def typed(self, c: Children) -> s.Pattern:
         variable = name(c[0]) if c[0].type == "NAME" else None
-        if option("type of a pattern", c[2], _TYPES) == "Observation":
+        if option("type of a pattern", c[2], PATTERN_TYPES) == "Observation":
             return s.ObservationPattern(variable, span=cover(c))
         return s.MessagePattern(variable, span=cover(c))
 

@@ -46,6 +46,8 @@ LIBRARIES = {
     "zstandard": ("adapters/recording/decompression.py",),
     "lz4": ("adapters/recording/decompression.py",),
     "nicegui": ("adapters/",),
+    "pygls": ("bigactors/lsp/server.py",),  # which nothing imports before it serves
+    "lsprotocol": ("bigactors/lsp/server.py",),
     "cryptography": ("bigactors/signatures.py",),
     "hypothesis": ("semantics/strategies.py",),
     "wcwidth": ("bigactors/terminal.py", "checker/reports/lanes.py"),

@@ -20,7 +20,7 @@ from bigactors.mistakes import Mistake, suggestion
 __all__ = ["FORMATS", "NAMES", "Command", "Parser", "make_parser", "parse_arguments", "parser_of"]
 
 GROUPS: Final = {
-    "write and check missions": ("new", "check", "simulate", "show", "replay", "fmt", "explain"),
+    "write and check missions": ("new", "check", "simulate", "show", "replay", "fmt", "lsp", "explain"),
     "fly them": ("run", "say", "give-back", "keygen"),
     "places and bigraphs": ("world", "big"),
     "begin": ("demo", "completion"),

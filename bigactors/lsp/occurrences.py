@@ -107,6 +107,13 @@ def occurrences_of(mission: s.Mission) -> Occurrences:
     return Occurrences(tuple(sorted(found.values())), declared, tuple(resolver.bindings))
 
 
+def variables_of(mission: s.Mission, agent: str) -> tuple[str, ...]:
+    """Return the names of the variables of a bigActor, those of the behaviours that it may run included."""
+    spans = _running(mission).get(agent, ())
+    bindings = occurrences_of(mission).bindings
+    return tuple(sorted({each.symbol.name for each in bindings if _within(each.symbol, spans)}))
+
+
 Scope = dict[str, Symbol]
 
 
@@ -280,8 +287,7 @@ class _Resolver:
                 meant = {
                     each.symbol
                     for each in self.bindings
-                    if each.symbol.name == node.variable.text
-                    and any(span.start <= each.symbol.place < span.end for span in spans)
+                    if each.symbol.name == node.variable.text and _within(each.symbol, spans)
                 }
                 self._join(meant, node.variable)
 
@@ -293,6 +299,10 @@ class _Resolver:
             Binding(one if each.symbol in meant and one else each.symbol, each.seen) for each in self.bindings
         ]
         self.note(name, one)
+
+
+def _within(symbol: Symbol, spans: Iterable[s.Span]) -> bool:
+    return any(span.start <= symbol.place < span.end for span in spans)
 
 
 def _renamed(each: Occurrence, meant: set[Symbol], one: Symbol | None) -> Occurrence:

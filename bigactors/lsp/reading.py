@@ -11,7 +11,7 @@ from specs.diagnostics import MissionError, Source
 from specs.elaboration import Diagnosis, diagnose
 from specs.parser import read
 from specs.recovery import Recovered
-from specs.syntax import Mission
+from specs.syntax import Mission, Node
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,10 @@ class Reading:
     def text(self) -> str:
         """The text."""
         return self.source.text
+
+    def written(self, node: Node) -> str:
+        """Return what a node says as it is written, in one line."""
+        return " ".join(self.text[node.span.start : node.span.end].split())
 
     @cached_property
     def recovered(self) -> Recovered:
@@ -53,3 +57,9 @@ class Reading:
     def diagnosis(self) -> Diagnosis:
         """What it means, or all that is wrong with it."""
         return diagnose(self.recovered, self.source, self.directory)
+
+
+def reading_of(name: str, text: str, directory: Path) -> Reading:
+    """Return the reading of an editor's text, in which every offset stays: its line ends take no other space."""
+    plain = text.replace("\r\n", " \n").replace("\r", "\n")
+    return Reading(Source(name, f" {plain[1:]}" if plain.startswith("\ufeff") else plain), directory)

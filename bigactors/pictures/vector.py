@@ -48,8 +48,8 @@ FILE: Final = re.compile(r"[\w-]+\.svg")
 """What a link may lead to: a picture beside this one."""
 
 STYLE: Final = (
-    '.bigactors text{font-family:"DejaVu Sans",Verdana,Geneva,sans-serif;white-space:pre;paint-order:stroke;stroke:#fff;'
-    "stroke-opacity:.8;stroke-width:2.2px;stroke-linejoin:round}.bigactors path{stroke-linejoin:round}"
+    '.bigactors text{font-family:"DejaVu Sans",Verdana,Geneva,sans-serif;white-space:pre;paint-order:stroke;'
+    "stroke:#fff;stroke-opacity:.8;stroke-width:2.2px;stroke-linejoin:round}.bigactors path{stroke-linejoin:round}"
 )
 """What a picture by itself looks like: its font, and a halo around text; a page that it stands in keeps its own."""
 

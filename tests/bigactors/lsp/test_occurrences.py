@@ -21,7 +21,7 @@ RENAMED = [
         ROOT / "specs/missions" / f"{name}.mission"
         for name in ("harbour_watch", "oil_spill", "takeover", "two_gates")
     ),
-    *(CORPUS / f"{name}.mission" for name in ("everything", "rules", "statements", "formulas")),
+    *(CORPUS / f"{name}.mission" for name in ("everything", "rules")),
 ]
 
 

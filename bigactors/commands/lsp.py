@@ -1,0 +1,27 @@
+"""`bigactors lsp`: the language server."""
+
+import contextlib
+import os
+import sys
+from argparse import Namespace
+
+from bigactors.exits import Exit
+from bigactors.mistakes import Mistake
+
+
+def run(options: Namespace) -> Exit:
+    """Serve an editor until it says that it ends."""
+    del options
+    try:
+        from bigactors.lsp.server import make_server  # noqa: PLC0415 - an extra, and slow to import
+    except ModuleNotFoundError as error:
+        if (error.name or "").split(".")[0] not in ("pygls", "lsprotocol"):
+            raise
+        raise Mistake(
+            "an editor is served by pygls, which is not installed", "pip install 'bigactors[lsp]'"
+        ) from error
+    # The protocol has the standard output for itself: whatever else is printed goes to the standard error.
+    streams = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    with streams[0], streams[1], contextlib.redirect_stdout(sys.stderr):
+        make_server().start_io(*streams)
+    return Exit.HOLDS

@@ -1,0 +1,185 @@
+"""What may stand at a place: words of the language, and the names of the sorts that fit."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Final
+
+from bigactors.lsp.occurrences import variables_of
+from bigactors.lsp.reading import Reading
+from semantics.behaviours.commands import COMMAND_WORDS
+from specs.build_behaviour import PATTERN_TYPES
+from specs.build_world import CONTROL_MODES, FALLBACKS, SCHEDULERS
+from specs.diagnostics import MissionError, Source
+from specs.elaboration.expressions import FUNCTIONS
+from specs.elaboration.temporal import EACH, RULES
+from specs.preprocessing import prepare
+from specs.recovery import Expected, expected_behind
+from specs.standard_signature import standard_kinds
+from specs.syntax import Signature, Span
+
+_BEGUN: Final = re.compile(r"\w+(?:[:.\-]\w+)*\Z|\Z")
+_WORD: Final = re.compile(r"\w+")
+_ENTITIES: Final = ("entity",)
+_CLAIMS: Final = ("entity", "agent")
+
+NAMES_BEHIND: Final[Mapping[str, tuple[str, ...]]] = {
+    "contains": ("kind",),
+    "carries": ("kind",),
+    "as": ("kind",),
+    "linked": ("channel",),
+    "leaves": ("channel",),
+    "by": _ENTITIES,
+    "hosted_at": _ENTITIES,
+    "among": _ENTITIES,
+    "within": _ENTITIES,
+    "at": _ENTITIES,
+    "directly": _ENTITIES,
+    "present": _ENTITIES,
+    "known": _ENTITIES,
+    "actually": _ENTITIES,
+    "in": _ENTITIES,
+    "to": ("agent",),
+    "ended": ("agent",),
+    "waiting": ("agent",),
+    "pending": ("agent",),
+    "bound": ("agent",),
+    "live": ("agent",),
+    "taken": ("agent", "step"),
+    "enabled": ("agent", "step"),
+    "observe": (*_ENTITIES, "variable"),
+    "control": ("rule",),
+}
+"""The sorts of names that may follow a word, or stand anywhere behind it in its construct."""
+
+_FIXED: Final[Mapping[str, tuple[str, ...]]] = {
+    "step": (*RULES, *EACH),
+    "type": PATTERN_TYPES,
+    "scheduler": SCHEDULERS,
+    "control": CONTROL_MODES,
+    "fallback": FALLBACKS,
+}
+_BEHIND: Final = {".": "field", "scheduler": "scheduler", "control": "control"}
+_SORTS_BEHIND_COLON: Final = {"case": "type", "live": "fallback"}
+_COLONS: Final = frozenset(["world", "rule", "case", "live", "forall", "exists"])
+_VALUES: Final = ("variable", "entity", "agent")
+
+_NEW: Final = frozenset(
+    ["mission", "kind", "channel", "rule", "def", "BigActor", "let", "for", "spawn", "from", "keep"]
+)
+"""Words that a new name follows."""
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """Something that may stand at a place: `sort` is that of a name, `word`, `function` or `command`."""
+
+    text: str
+    sort: str
+
+
+@dataclass(frozen=True, slots=True)
+class Candidates:
+    """What may stand at a place, and the word begun there that it takes the place of."""
+
+    span: Span
+    all: tuple[Candidate, ...]
+
+
+def complete(reading: Reading, offset: int) -> Candidates:
+    """Return what may stand at an offset; nothing within comments and strings."""
+    begun = _BEGUN.search(reading.text, max(0, offset - 100), offset)
+    start = begun.start() if begun else offset
+    if begun and "." in begun.group():  # `a.x`: the name before the dot is not part of it
+        start = offset - len(begun.group().rpartition(".")[2])
+    try:
+        prepared = prepare(Source("", reading.text[:start]))
+    except MissionError:
+        return Candidates(Span(start, offset), ())
+    line = reading.text.rfind("\n", 0, start) + 1
+    if prepared.mistakes or any(line <= comment.span.start for comment in prepared.comments):
+        return Candidates(Span(start, offset), ())
+    expected = expected_behind(prepared)
+    if ";" in expected.words and not reading.text[line:start].strip():  # in a new line something new begins
+        expected = expected_behind(replace(prepared, text=prepared.text + ";"))
+    end = _WORD.match(reading.text, offset)
+    found = [*_names(reading, expected, start), *_words(expected)]
+    return Candidates(Span(start, end.end() if end else offset), tuple(dict.fromkeys(found)))
+
+
+def _words(expected: Expected) -> Iterator[Candidate]:
+    for word in sorted(expected.words):
+        if word.isidentifier() and len(word) > 1:
+            yield Candidate(word, "command" if word in COMMAND_WORDS else "word")
+    if "SELF" in expected.words:
+        yield from (Candidate(name, "function") for name in FUNCTIONS)
+
+
+def _names(reading: Reading, expected: Expected, offset: int) -> Iterator[Candidate]:
+    words = [word for word in expected.before if word not in ("", ";")]
+    for sort in _sorts(expected, words):
+        if sort == "variable":
+            seen = _seen_at(reading.text, offset)
+            yield from (Candidate(name, sort) for name in reading.occurrences.variables(seen))
+        elif sort == "field":
+            yield from (Candidate(name, "variable") for name in variables_of(reading.mission, words[-2]))
+        elif sort in _FIXED:
+            yield from (Candidate(name, "word") for name in _FIXED[sort])
+        else:
+            yield from (Candidate(name, sort) for name in _declared(reading, sort))
+
+
+def _seen_at(text: str, offset: int) -> int:
+    """Return the offset that decides which variables are seen: where what was written ends, its block still open."""
+    end = len(text[:offset].rstrip())
+    return offset if text[end - 1 : end] == "}" else end
+
+
+def _declared(reading: Reading, sort: str) -> tuple[str, ...]:
+    sections = reading.mission.each(Signature)
+    if sort == "kind" and (not sections or any(section.standard for section in sections)):
+        standard = {kind.name.text for kind in standard_kinds()}
+        return tuple(sorted(standard | set(reading.occurrences.names(sort))))
+    return reading.occurrences.names(sort)
+
+
+def _sorts(expected: Expected, words: list[str]) -> tuple[str, ...]:
+    """Return the sorts of names that fit, by the words around the place."""
+    last = words[-1] if words else ""
+    if not expected.sorts & {"NAME", "CHANNEL"} or last in _NEW:
+        return ()
+    if "SELF" in expected.words:
+        command = any(word in COMMAND_WORDS for word in words[_last(words, "control") :])
+        return ("variable", "agent") if last == "to" else ("variable", "entity") if command else _VALUES
+    if "observe" in expected.words:
+        return ("behaviour", "variable")
+    if "actually" in expected.words:
+        return (*_CLAIMS, "variable")
+    if last == ":":
+        return (_SORTS_BEHIND_COLON.get(words[_opening(words)], "kind"),)
+    if last in _BEHIND:
+        return (_BEHIND[last],)
+    if last == "of":
+        return ("agent", "step") if "fairness" in words else ("kind",)
+    if last == "{" and "believes" in words:
+        return ("entity",)
+    if "someone" in expected.words:
+        return ("entity", "channel")
+    for word in reversed(words):
+        if word in NAMES_BEHIND:
+            return NAMES_BEHIND[word]
+        if word in ("{", "=>", "="):
+            break
+    return ()
+
+
+def _last(words: list[str], word: str) -> int:
+    """Return the place of the last of some words, their end if it isn't one."""
+    return len(words) - 1 - words[::-1].index(word) if word in words else len(words)
+
+
+def _opening(words: list[str]) -> int:
+    """Return the place of the word that says what a colon is for."""
+    return max((place for place, word in enumerate(words) if word in _COLONS), default=0)

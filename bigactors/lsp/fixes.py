@@ -1,0 +1,60 @@
+"""Remedies that are replacements of text: what an editor offers to do about a mistake."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from specs.codes import Code
+from specs.diagnostics import Diagnostic
+from specs.syntax import Span
+
+_MEANT: Final = re.compile(r"did you mean '([^']+)'\?")
+_DECLARE: Final = re.compile(r"declare it: (signature|world) \{ ((?:kind|channel) [\w:.\-]+) \}")
+_PUT_BEFORE: Final = {
+    Code.MISSING_ARROW: "=> ",
+    Code.MISSING_EQUALS: "= ",
+    Code.MISSING_COMMA: ", ",
+}
+_INSTEAD: Final = {Code.SINGLE_EQUALS: "=="}
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """What to write where, and how that is called."""
+
+    title: str
+    span: Span
+    text: str
+
+
+def fixes(found: Diagnostic, text: str) -> Iterator[Fix]:
+    """Yield what may be written to mend a mistake."""
+    start, end = found.span.start, found.span.end
+    if meant := _MEANT.search(found.hint):
+        yield Fix(f"Write '{meant[1]}'", found.span, meant[1])
+    if found.code in _INSTEAD:
+        yield Fix(f"Write '{_INSTEAD[found.code]}'", found.span, _INSTEAD[found.code])
+    if found.code in _PUT_BEFORE:
+        sign = _PUT_BEFORE[found.code]
+        place = len(text[:start].rstrip()) if sign == ", " else start
+        yield Fix(
+            f"Put '{sign.strip()}' before it", Span(place, place), sign.rstrip() if sign == ", " else sign
+        )
+    if found.code is Code.UNCLOSED_STRING:
+        yield Fix('Close the string with "', Span(end, end), '"')
+    if declared := _DECLARE.search(found.hint):
+        yield _declaration(text, declared[1], declared[2])
+
+
+def _declaration(text: str, section: str, entry: str) -> Fix:
+    """Return what declares something: in the section of its sort, in a new one where there is none."""
+    begin = re.search(rf"^{section}\b[^{{\n]*\{{", text, re.MULTILINE)
+    title = f"Declare '{entry}'"
+    if begin:
+        return Fix(title, Span(begin.end(), begin.end()), f"\n  {entry}")
+    header = re.match(r"(?:\s|//[^\n]*|#[^\n]*)*(?:mission\s+\w+[ \t]*\n)?", text)
+    place = header.end() if header else 0
+    return Fix(title, Span(place, place), f"{section} {{\n  {entry}\n}}\n\n")

@@ -1,0 +1,76 @@
+"""Check the text of an editor, in a process of its own that can be ended at any time.
+
+It reads what is to be checked from the standard input, and writes what was found to the standard output.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from bigactors.checking import Checked
+from bigactors.files import make_folder, write_text
+from bigactors.missions import digest_of
+from bigactors.pages import trace_page
+from bigactors.trace_files import evidence_of, story_of
+from checker import Limits, check
+from checker.verdicts import Verdict
+from specs import MissionError, Source
+from specs.diagnostics import render_all
+from specs.elaboration import diagnose, require_bigactor
+from specs.parser import read
+
+
+def main() -> None:
+    """Check what the standard input says."""
+    asked = json.load(sys.stdin)
+    source = Source(asked["name"], asked["text"])
+    limits = Limits(asked["configurations"], asked["seconds"])
+    try:
+        found = checked(source, Path(asked["directory"]), limits, Path(asked["folder"]))
+    except MissionError as error:
+        found = {"refused": render_all(error.diagnostics, error.source)}
+    json.dump(found, sys.stdout)
+
+
+def checked(source: Source, directory: Path, limits: Limits, folder: Path) -> dict[str, Any]:
+    """Return the verdicts on a text by property, with the pages of their traces; raises MissionError."""
+    diagnosis = diagnose(read(source), source, directory)
+    mission = diagnosis.elaborated
+    if mission is None:
+        raise MissionError(source, diagnosis.mistakes)
+    require_bigactor(mission)
+    report = check(mission.initial, mission.properties, limits, notes=mission.notes)
+    result = Checked(source.name, mission, digest_of(mission), report, False)
+    pages = _pages(result, folder)
+    return {
+        "verdicts": {verdict.property.name: _verdict(verdict, pages) for verdict in report.verdicts},
+        "configurations": report.configurations,
+        "complete": report.complete,
+    }
+
+
+def _verdict(verdict: Verdict, pages: dict[str, str]) -> dict[str, Any]:
+    message = verdict.violations[0].message if verdict.violations else verdict.note
+    return {
+        "outcome": verdict.outcome.value,
+        "message": message,
+        "trace": pages.get(verdict.property.name, ""),
+    }
+
+
+def _pages(result: Checked, folder: Path) -> dict[str, str]:
+    """Write the page of the first trace of each property; return their paths by its name."""
+    found: dict[str, str] = {}
+    for each in evidence_of(result):
+        if each.property not in found:
+            path = Path(make_folder(str(folder))) / f"{each.stem}.html"
+            write_text(str(path), trace_page(story_of(result, each)))
+            found[each.property] = str(path)
+    return found
+
+
+if __name__ == "__main__":
+    main()

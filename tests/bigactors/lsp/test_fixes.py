@@ -1,0 +1,57 @@
+"""Quick fixes: applied, each mends the mistake that it is offered for."""
+
+from pathlib import Path
+
+import pytest
+
+from bigactors.lsp.fixes import fixes
+from bigactors.lsp.reading import reading_of
+from bigactors.lsp.renaming import replaced
+
+MISSIONS = Path(__file__).parents[3] / "specs/missions"
+OIL_SPILL = (MISSIONS / "oil_spill.mission").read_text(encoding="utf-8")
+
+
+def mistakes(text):
+    return reading_of("m", text, MISSIONS).diagnosis.mistakes
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "title"),
+    [
+        ("MOVE_HOST_TO searchArea0", "MOVE_HOST_TO serchArea0", "Write 'searchArea0'"),
+        ("kind UAV driven", "kind UAV drivn", "Write 'driven'"),
+        ("oilSpill0 drifts among", "oilSpill0 drift among", "Write 'drifts'"),
+        ("obs => control", "obs control", "Put '=>' before it"),
+        ("uav0: UAV = point", "uav0: UAV point", "Put '=' before it"),
+        ("(36.94, -8.79)", "(36.94 -8.79)", "Put ',' before it"),
+        ('"over the spill": actually', '"over the spill: actually', 'Close the string with "'),
+    ],
+)
+def test_what_is_offered_mends_the_mistake(right, wrong, title):
+    assert right in OIL_SPILL
+    text = OIL_SPILL.replace(right, wrong)
+    (found,) = mistakes(text)
+    (fix,) = (fix for fix in fixes(found, text) if fix.title == title)
+    after = replaced(text, (fix.span,), fix.text)
+    if "string" in title:  # where it ends is for the user to say
+        assert [each.code.number for each in mistakes(after)] != [found.code.number]
+    else:
+        assert after.split() == OIL_SPILL.split()
+
+
+def test_a_channel_that_is_not_declared_can_be():
+    text = OIL_SPILL.replace("environment {", "environment {\n  wifi drops")
+    (found,) = mistakes(text)
+    (fix,) = fixes(found, text)
+    assert fix.title == "Declare 'channel wifi'"
+    assert mistakes(replaced(text, (fix.span,), fix.text)) == ()
+
+
+def test_where_a_section_is_missing_it_is_written_behind_the_header():
+    text = "// a comment\nmission m\n\nenvironment {\n  wifi drops\n}\n"
+    (found,) = mistakes(text)
+    (fix,) = fixes(found, text)
+    after = replaced(text, (fix.span,), fix.text)
+    assert after.startswith("// a comment\nmission m\nworld {\n  channel wifi\n}\n")
+    assert mistakes(after) == ()
