@@ -85,7 +85,7 @@ def _found(verdict: Verdict) -> str:
 
 def _examined(verdict: Verdict) -> str:
     one, many = verdict.property.kind.about.examined
-    return f"examined {counted(verdict.examined, one, many)}".rstrip()
+    return f"examined {counted(verdict.examined, one, many) if one else f'{verdict.examined:,}'}"
 
 
 def _violation(violation: Violation, *, traces: bool) -> Iterator[str]:
