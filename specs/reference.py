@@ -124,7 +124,7 @@ BigActor a hosted_at uav0 with_behavior {
   }
 }
 
-BigActor patrol[i] for u in [uav1, uav2] hosted_at u with_behavior {
+BigActor patrol[i] for u in [uav1, uav0] hosted_at u with_behavior {
   for place in [searchArea0, base0] {
     visit(place)
   }

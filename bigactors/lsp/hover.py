@@ -19,6 +19,7 @@ from specs import syntax as s
 from specs.elaboration.findings import Findings
 from specs.elaboration.geometry import elaborate_geometry
 from specs.standard_signature import STANDARD
+from specs.writing import write
 
 N = TypeVar("N", bound=s.Node)
 
@@ -181,6 +182,9 @@ def _channel(reading: Reading, symbol: Symbol) -> Iterator[str]:
 def _agent(reading: Reading, symbol: Symbol) -> Iterator[str]:
     for actor in _named(reading, s.BigActor, symbol):
         yield _code(f"BigActor {symbol.name} hosted_at {actor.host.text}")
+    for family in _named(reading, s.Family, symbol):
+        each = f"{symbol.name}[{family.index.text}] for {family.variable.text} in {write(family.range)}"
+        yield _code(f"BigActor {each} hosted_at {family.host.text}")
     for spawned in _named(reading, s.Spawn, symbol):
         yield _code(reading.written(spawned))
 

@@ -18,7 +18,7 @@ DECLARED: Final[Mapping[type[s.Node], str]] = {
     s.Rule: "rule",
     s.Definition: "behaviour",
     s.BigActor: "agent",
-    s.Family: "family",
+    s.Family: "agent",
     s.Spawn: "agent",
 }
 """What each construct declares by its `name`."""
@@ -32,7 +32,7 @@ _ONE_SORT: Final = {
 }
 """Fields whose names are of one sort, whatever else has that name."""
 
-_SHARED: Final = ("entity", "agent", "family", "kind", "channel")
+_SHARED: Final = ("entity", "agent", "kind", "channel")
 """Sorts whose names differ from each other: a name alone says which is meant."""
 
 
@@ -169,9 +169,9 @@ class _Resolver:
                 self.fields(node, scope)
 
     def quantified(self, node: s.Quantified, scope: Scope) -> None:
-        inner, sort = dict(scope), self.known.get(node.range.text, "kind")
-        if sort == "family" or node.range.text != AGENTS or AGENTS in self.known:
-            self.sorted_name(node.range, "family" if sort == "family" else "kind")
+        inner, among = dict(scope), node.range
+        if among.text != AGENTS or AGENTS in self.known:
+            self.sorted_name(among, "agent" if self.known.get(among.text) == "agent" else "kind")
         if node.behaviour is not None:
             self.sorted_name(node.behaviour, "behaviour")
         if node.host is not None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from bigactors.lsp.reading import Reading
 from specs import syntax as s
+from specs.writing import write
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +49,9 @@ def _declaration(node: s.Declaration, reading: Reading) -> Part:
             named = name or host
             title = name.text if name else "BigActor"
             return Part(title, "agent", node.span, named.span, f"hosted_at {host.text}")
+        case s.Family(name, _, variable, among, host):
+            each = f"for {variable.text} in {write(among)} hosted_at {host.text}"
+            return Part(name.text, "agent", node.span, name.span, each)
         case _:
             return Part(reading.written(node), "setting", node.span, node.span)
 

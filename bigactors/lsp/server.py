@@ -438,7 +438,8 @@ def _lenses(server: Server, params: t.CodeLensParams) -> list[t.CodeLens]:
         found += _lens(document, s.Span(node.span.start, node.span.start + 5), _running(document, uri))
         for each in node.properties:
             found += _lens(document, each.span, _verdict(document, title_of(each), uri))
-    if not checks and document.reading.mission.each(s.BigActor):
+    declared = document.reading.mission.declarations
+    if not checks and any(isinstance(each, s.BigActor | s.Family) for each in declared):
         found += _lens(document, s.Span(0, 0), _running(document, uri))
         for name in document.verdicts:
             found += _lens(document, s.Span(0, 0), _verdict(document, name, uri, named=True))

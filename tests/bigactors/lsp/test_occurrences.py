@@ -19,7 +19,7 @@ GOOD = [*MISSIONS, *sorted(CORPUS.glob("*.mission"))]
 RENAMED = [
     *(
         ROOT / "specs/missions" / f"{name}.mission"
-        for name in ("harbour_watch", "oil_spill", "takeover", "two_gates")
+        for name in ("convoy", "harbour_watch", "oil_spill", "takeover", "two_gates")
     ),
     *(CORPUS / f"{name}.mission" for name in ("everything", "rules")),
 ]
@@ -68,6 +68,26 @@ def test_a_variable_is_seen_where_it_is_bound(statements, lines):
     assert words_at(BODY.format(statements)) == lines
 
 
+FAMILY = """BigActor f[{}i] for {}u in {}UAV hosted_at u with_behavior {{
+send i to {}f[u]
+let x = i
+}}
+signature {{ kind UAV }}
+check {{
+invariant "i": forall y: f . f[0].x == i and waiting y
+invariant "j": forall y: agents hosted_at UAV . ended y
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("marks", "lines"),
+    [("^...", [1, 2, 3]), (".^..", [1, 1, 2]), ("..^.", [1, 5, 8]), ("...^", [1, 2, 7, 7])],
+)
+def test_a_family_binds_its_number_and_its_entity_in_its_body(marks, lines):
+    assert words_at(FAMILY.format(*(mark.strip(".") for mark in marks))) == lines
+
+
 def test_a_variable_in_a_property_is_that_of_the_bigactor_and_of_what_it_calls():
     text = (
         "def f(y) = {\nlet ^x = y\n}\n"
@@ -97,8 +117,9 @@ def test_every_name_that_the_elaborator_knows_is_found(path):
     elaborated = reading.diagnosis.elaborated
     if elaborated is None:
         return
-    written = {key for key, span in elaborated.spans.items() if reading.text[span.start : span.end] == key[1]}
-    assert written <= declared
+    spans = elaborated.spans.items()
+    written = {key for key, span in spans if reading.text[span.start : span.end] == key[1]}
+    assert {("agent" if sort == "family" else sort, name) for sort, name in written} <= declared
 
 
 REFUSED = {"harbour_watch": ["Vessel"]}  # the recording says Vessel too
