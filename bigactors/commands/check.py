@@ -16,9 +16,7 @@ from bigactors.files import check_writable, file_stem, make_folder, write_json
 from bigactors.missions import variation_of
 from bigactors.mistakes import Mistake
 from bigactors.outputs import Output, cautions_of, outputs_of, write_outputs
-from bigactors.signatures import load_key
 from bigactors.terminal import paint, say, tell
-from bigactors.verdict_files import verdict_json
 from checker import Cluster, Engine, Interruption, Keeping, Limits, Reduction, report_text
 from checker.reports.report import MARKS, coverage_text
 from checker.reports.results import caution_text
@@ -212,12 +210,15 @@ def _check_verdict(options: Namespace) -> SigningKey | None:
     check_writable(options.verdict)
     if options.sign is None:
         return None
+    from bigactors.signatures import load_key  # noqa: PLC0415 - few verdicts are signed
 
     return load_key(options.sign)
 
 
 def keep_verdict(checked: Checked, options: Namespace, key: SigningKey | None) -> None:
     """Write the verdict on a mission, and say so."""
+    from bigactors.verdict_files import verdict_json  # noqa: PLC0415 - few checks are for a flight
+
     data = verdict_json(checked, options.engine or "by size", key)
     write_json(options.verdict, data)
     tell(f"  verdict: {'holds' if data['holds'] else 'does not hold'}, written to {options.verdict}")
