@@ -7,6 +7,8 @@
 `programs`, `queries` and `reactions` yield their parts. What fails is shrunk to few entities, statements and steps.
 """
 
+from physical.messages import install_extra
+
 try:
     from semantics.strategies import (
         GeneratedMission,
@@ -26,7 +28,7 @@ try:
         worlds,
     )
 except ModuleNotFoundError as error:
-    raise ImportError("strategies need hypothesis: pip install 'bigactors[strategies]'") from error
+    raise ImportError(f"strategies need hypothesis: {install_extra('strategies')}") from error
 
 __all__ = [
     "GeneratedMission",

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from checker.engines.contract import Exploration
 from checker.engines.graph import Graph, graph_of
 from checker.traces import step_of
+from physical.messages import install_extra
 from semantics.state.requests import Received
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ def to_pandas(found: Exploration) -> "DataFrame":
     try:
         from pandas import DataFrame  # noqa: PLC0415 - an extra
     except ImportError as error:
-        raise ImportError("tables need pandas: pip install 'bigactors[notebook]'") from error
+        raise ImportError(f"tables need pandas: {install_extra('notebook')}") from error
 
     return DataFrame(list(rows(found)), columns=list(Row._fields))
 

@@ -18,6 +18,7 @@ from bigactors.mistakes import Mistake
 from bigactors.outputs import Output, cautions_of, outputs_of, write_outputs
 from bigactors.terminal import paint, say, tell
 from checker import Cluster, Engine, Interruption, Keeping, Limits, Reduction, report_text
+from checker.engines.fast.loading import ALONE
 from checker.reports.report import MARKS, coverage_text
 from checker.reports.results import caution_text
 from checker.verdicts import Outcome
@@ -41,6 +42,7 @@ WORDS = {
 
 def run(options: Namespace) -> Exit:
     """Check missions, with `--watch` at each save; print the reports and write what was asked for."""
+    ALONE.set(True)
     limits = limits_of(options)
     if options.trace:
         make_folder(options.trace)

@@ -7,6 +7,7 @@ from argparse import Namespace
 
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
+from physical.messages import install_extra
 
 
 def run(options: Namespace) -> Exit:
@@ -17,9 +18,7 @@ def run(options: Namespace) -> Exit:
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] not in ("pygls", "lsprotocol"):
             raise
-        raise Mistake(
-            "an editor is served by pygls, which is not installed", "pip install 'bigactors[lsp]'"
-        ) from error
+        raise Mistake("an editor is served by pygls, which is not installed", install_extra("lsp")) from error
     # The protocol has the standard output for itself: whatever else is printed goes to the standard error.
     streams = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     with streams[0], streams[1], contextlib.redirect_stdout(sys.stderr):

@@ -15,6 +15,7 @@ from checker.engines.contract import (
     Options,
     Reporter,
 )
+from checker.engines.fast.loading import load_numba
 from checker.engines.reference import explore_one_by_one
 from checker.limits import Limits
 from semantics.state.configuration import Configuration
@@ -63,6 +64,7 @@ def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Op
 
 
 def _explore_fast(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
+    load_numba()
     try:
         from checker.engines.fast.explorer import explore_fast  # noqa: PLC0415  # numba takes its time to load
     except RuntimeError as error:

@@ -46,3 +46,20 @@ def test_where_nothing_compiled_can_be_kept_the_remedy_is_told():
         "oil_spill: there is no folder here in which numba may keep compiled loops",
         "  hint: set NUMBA_CACHE_DIR to a folder that you may write, or add --engine reference",
     ]
+
+
+COV = """
+import numpy as np
+from numba import njit
+from checker import Engine, check
+from specs.elaboration import load_mission
+from specs.missions import shipped_missions
+mission = load_mission(shipped_missions()["oil_spill"])
+check(mission.initial, mission.properties, engine=Engine.FAST)
+print(njit(lambda a: np.cov(a))(np.array([1.0, 2.0, 3.0])))
+"""
+
+
+def test_what_others_compile_in_the_process_finds_its_linear_algebra():
+    found = run(COV)
+    assert (found.stdout, found.stderr) == ("1.0\n", "")
