@@ -290,7 +290,7 @@ class _Pills:
 
     @property
     def height(self) -> float:
-        return self.rows * (PILL_HEIGHT + 5) + RIM - 5 if self.names else 0.0
+        return self.rows * (PILL_HEIGHT + GAP) + RIM - GAP if self.names else 0.0
 
     @property
     def width(self) -> float:
@@ -302,7 +302,7 @@ class _Pills:
         found: list[tuple[str, Box]] = []
         for row in range(self.rows):
             names = order[row :: self.rows]
-            y = top + row * (PILL_HEIGHT + 5)
+            y = top + row * (PILL_HEIGHT + GAP)
             lefts = _spread([pill_width(name) for name in names], [wanted[name] for name in names], width)
             found += [
                 (name, Box(x, y, pill_width(name), PILL_HEIGHT)) for name, x in zip(names, lefts, strict=True)

@@ -47,11 +47,12 @@ NAMES: Final = "names:"
 FILE: Final = re.compile(r"[\w-]+\.svg")
 """What a link may lead to: a picture beside this one."""
 
+FONTS: Final = "'DejaVu Sans',Verdana,Geneva,sans-serif"
 STYLE: Final = (
-    '.bigactors text{font-family:"DejaVu Sans",Verdana,Geneva,sans-serif;white-space:pre;paint-order:stroke;'
-    "stroke:#fff;stroke-opacity:.8;stroke-width:2.2px;stroke-linejoin:round}.bigactors path{stroke-linejoin:round}"
+    ".bigactors text{white-space:pre;paint-order:stroke;stroke:#fff;stroke-opacity:.8;stroke-width:2.2px;"
+    "stroke-linejoin:round}"
 )
-"""What a picture by itself looks like: its font, and a halo around text; a page that it stands in keeps its own."""
+"""A halo around the text of a picture by itself, and of no other in the same notebook."""
 
 LONG: Final = re.compile(r"-?\d+\.\d{3,}")
 FONT: Final = re.compile(r"font: (?:(?P<style>\w+) )?(?:(?P<weight>\d+|bold) )?(?P<size>[\d.]+)px")
@@ -62,8 +63,9 @@ def svg_file(figure: "Figure", title: str) -> str:
     width, height = (72 * inches for inches in figure.get_size_inches())
     about = f"<title>{escape(clean(title))}</title><style>{STYLE}</style>"
     paper = f'<rect width="{width:g}" height="{height:g}" fill="#fff"/>'
-    size = f'width="{width:g}" height="{height:g}" viewBox="0 0 {width:g} {height:g}"'
-    root = f'<svg xmlns="http://www.w3.org/2000/svg" {size} class="bigactors" role="img">'
+    size = f'width="{width:g}pt" height="{height:g}pt" viewBox="0 0 {width:g} {height:g}"'
+    look = f'class="bigactors" font-family="{FONTS}" role="img"'
+    root = f'<svg xmlns="http://www.w3.org/2000/svg" {size} {look}>'
     return f"{root}{about}{paper}{svg_of(figure, 'p')}</svg>\n"
 
 

@@ -147,6 +147,10 @@ def test_text_in_an_svg_is_text_that_can_be_searched(tmp_path):
     texts = texts_of(tmp_path / "c.svg")
     assert {"searchArea0", "uav0", "coasts ± 1 km", "control:gcs0"} <= set(texts)
     assert texts.count("a <oil> spill") == 1
+    style = re.search(r"<style>(.*?)</style>", (tmp_path / "c.svg").read_text())[1]
+    assert re.findall(r"([^{}]+){", style) == [
+        ".bigactors text"
+    ]  # other pictures of a notebook stay as they are
     assert len((tmp_path / "c.svg").read_bytes()) < 40_000
 
 

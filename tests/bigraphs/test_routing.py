@@ -77,3 +77,13 @@ def test_a_link_goes_around_the_label_of_the_place_that_it_leaves():
         {"control:gcs0": ["gcs0", "uav0"]},
     )
     assert crossings(world) == (0, 2)
+
+
+def test_a_link_goes_around_the_names_in_the_rows_below_its_own():
+    world = from_relations(
+        {"shore0": "Location", "gcs0": "Station", "gcs2": "Station", "sea0": "Location", "uav0": "UAV"},
+        {"gcs0": "shore0", "gcs2": "shore0", "uav0": "sea0"},
+        {"control:gcs0": ["gcs0"], "control:gcs2": ["gcs2", "uav0"], "internet": ["gcs0", "gcs2"]},
+    )
+    rows = {box.y for _, box in layout(world).outer}
+    assert (len(rows), crossings(world)) == (2, (0, 5))
