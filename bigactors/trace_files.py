@@ -49,7 +49,7 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
                 violation.trace,
                 True,
                 telling=True,
-                details=violation.details,
+                details=violation.told,
             )
         if verdict.witness is not None:
             found = verdict.property.kind is PropertyKind.REACHABLE

@@ -159,12 +159,16 @@ def touched(before: Configuration, after: Configuration) -> tuple[Name, ...]:
 def changed_slots(
     before: Configuration, after: Configuration, names: tuple[Name, ...], asked: Questions
 ) -> frozenset[Key]:
-    """Return which of some slots of A(P) differ in two configurations, where only these entities may."""
+    """Return which of some slots of A(P) differ after a control, where only those of these entities may.
+
+    A control lets nothing come or go and no channel drop: links differ only with the channels of what is on them.
+    """
     old, new = before.structure.physical, after.structure.physical
+    relinked = {cell[-1] for cell in after.state.changed(before.state) if cell[0] == "channels"}
     keys: set[Key] = set()
     for name in names:
         links: Key = (f"{SLOT}links", name)
-        if relevant([links], asked) and old.links(name) != new.links(name):
+        if name in relinked and relevant([links], asked) and old.links(name) != new.links(name):
             keys.add(links)
         if not meet(asked, frozenset({(f"{SLOT}parent", name), (f"{SLOT}children", ANY)})):
             continue

@@ -70,6 +70,20 @@ def test_nothing_lies_outside_in_generated_missions(text, scheduler):
     assert outside_of(initial, [Inside("uav0", "gate0", actually=True), Ended("a")]) == set()
 
 
+MOVED_AND_HANDED = """
+BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) }
+BigActor b hosted_at gcs0 with_behavior {
+  observe(CHILDREN(PARENT(HOST)))
+  react { case o if uav0 in o => control(HAND uav0 TO gcs0) case o => skip }
+}
+control timed
+"""
+
+
+def test_whose_place_a_control_changes_is_not_asked_for_its_links():
+    assert outside_of(load(MOVED_AND_HANDED).initial, count=60) == set()
+
+
 BUSY = """
 BigActor mover hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) control(MOVE uav0 TO north0) }
 BigActor sailor hosted_at vessel0 with_behavior { control(MOVE_HOST_TO gate0) }

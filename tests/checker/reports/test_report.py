@@ -213,6 +213,11 @@ def test_what_was_found_before_the_end_stands():
     assert "  ✓ asked        holds; examined 1, a witness of 1 step" in found
 
 
+def test_of_what_is_reachable_it_is_told_how_often_it_is_true():
+    found = lines(ENTERS + 'check { reachable "there": present uav0 }')
+    assert "  ✓ there        holds; it is true from the start; examined 3, a witness of 0 steps" in found
+
+
 def test_the_notes_of_a_mission_come_last():
     report = replace(checked(ENTERS), notes=("borders are left out",))
     assert list(report_text("m", report))[-1] == "  note: borders are left out"
