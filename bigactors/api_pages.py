@@ -12,7 +12,6 @@ from typing import Any, Final
 from adapters.plugin import __name__ as plugin
 from bigraphs import __name__ as bigraphs
 from physical import __name__ as physical
-from semantics import __name__ as semantics
 
 FOLDER: Final = Path(__file__).parent.parent / "docs" / "reference" / "python"
 """Where the examples are, a text for each page."""
@@ -26,7 +25,7 @@ PAGES: Final = {
     "physical": (physical, "Geometry on the earth, GeoJSON, AIS and waypoint files."),
     "plugin": (plugin, "What a vehicle, a feed or a service implements, and what it is told."),
     "strategies": (
-        f"{semantics}.strategies",
+        "bigactors.strategies",
         "Generated worlds, programs and configurations, for Hypothesis.",
     ),
 }
