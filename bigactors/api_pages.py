@@ -95,7 +95,7 @@ def _readable(signature: str) -> str:
 
 
 def _documentation(value: Any) -> str:
-    """Return a docstring in Markdown: its sections as lists, its sessions as they are."""
+    """Return a docstring in Markdown: its sections as lists, without its sessions."""
     if isinstance(value, UnionType) or not (text := inspect.getdoc(value)):
         return ""
     head, *sections = SECTION.split(text)
@@ -104,7 +104,8 @@ def _documentation(value: Any) -> str:
 
 def _prose(text: str) -> Iterator[str]:
     for paragraph in re.split(r"\n\s*\n", text.strip()):
-        yield f"```text\n{paragraph}\n```\n" if ">>>" in paragraph else f"{paragraph}\n"
+        if ">>>" not in paragraph:  # the page has its own examples
+            yield f"{paragraph}\n"
 
 
 def _lists(sections: Iterable[tuple[str, str]]) -> Iterator[str]:

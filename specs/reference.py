@@ -89,6 +89,7 @@ world {
   oilSpill0: OilSpill = circle (37, -8.7) radius 400 m
   uav0: UAV = point (37.14, -8.58) altitude 100 m to 300 m linked control:gcs0, wifi
   uav1: UAV = point (37.08, -8.55) linked control:gcs0
+  uav2: UAV = point (37.08, -8.56) linked control:gcs0
   gcs0: Station = point (37.145, -8.58) linked control:gcs0, wifi
   gcs1: Station = point (37.12, -8.54) linked control:gcs1, wifi
   vessel0: Vessel = point (37.05, -8.5)
