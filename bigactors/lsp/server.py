@@ -471,7 +471,8 @@ def _verdict(document: Document, name: str, uri: str, *, named: bool = False) ->
         said = f"▶ check again (before the last changes: {said})"
     yield t.Command(said, CHECK, arguments=[uri])
     if verdict["trace"]:
-        yield t.Command("show the trace", SHOW_TRACE, arguments=[uri, name])
+        shown = "show a run to it" if outcome == "holds" else "show the trace"
+        yield t.Command(shown, SHOW_TRACE, arguments=[uri, name])
 
 
 async def _check(server: Server, uri: str, *_: object) -> None:
