@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import difflib
+import hashlib
 import json
 import sys
 import tempfile
@@ -90,7 +91,7 @@ class Server(LanguageServer):
     def __init__(self) -> None:
         super().__init__("bigactors", __version__, text_document_sync_kind=t.TextDocumentSyncKind.Full)
         self.documents: dict[str, Document] = {}
-        self.pages = Path(tempfile.mkdtemp(prefix="bigactors-"))
+        self.pages = tempfile.TemporaryDirectory(prefix="bigactors-")
         self.pending: dict[str, asyncio.Task[None]] = {}
 
     def document(self, uri: str) -> Document:
@@ -107,6 +108,12 @@ class Server(LanguageServer):
             known = self.documents[uri] = Document(reading, lines)
         known.reading, known.lines = reading, lines
         return known
+
+    def close(self) -> None:
+        """End what runs, and delete the pages of traces."""
+        for document in self.documents.values():
+            end(document)
+        self.pages.cleanup()
 
     # --- diagnostics
 
@@ -156,7 +163,7 @@ class Server(LanguageServer):
         self._refresh()
 
     def _asked(self, uri: str, document: Document) -> bytes:
-        folder = self.pages / str(abs(hash(uri)))
+        folder = Path(self.pages.name) / hashlib.sha256(uri.encode()).hexdigest()[:16]
         reading = document.reading
         return json.dumps(
             {

@@ -222,6 +222,16 @@ async def test_a_check_is_cancelled_and_never_blocks(client):
     assert (await lenses(client, editor))[0].title == "▶ check all"
 
 
+async def test_an_editor_that_leaves_ends_the_check_that_runs(client):
+    editor = Editor(client, shipped("surveillance"))
+    checking = asyncio.ensure_future(run(client, (await lenses(client, editor))[0]))
+    while (await lenses(client, editor))[0].command != "bigactors.cancel":
+        await asyncio.sleep(0.01)
+    client.text_document_did_close(t.DidCloseTextDocumentParams(editor.id))
+    async with asyncio.timeout(30):
+        await checking
+
+
 async def test_a_file_that_is_too_large_is_refused_and_the_server_lives_on(client):
     editor = Editor(client, "// " + "x" * 10_000_000)
     (found,) = await editor.mistakes()
