@@ -35,6 +35,10 @@ _CLOSE: Final = 0.7
 FAMILY: Final = "a family is written BigActor patrol[i] for u in UAV hosted_at u with_behavior { ... }"
 
 
+LINE_NUMBERS: Final = "printed line numbers must count on from the line of BigActor"
+"""The hint at a line number that does not: where one is wrong, the others are too."""
+
+
 def misplaced_header(at: Situation) -> Diagnostic | None:
     """`mission` anywhere but at the beginning."""
     if at.found.text == "mission" and "mission" not in at.accepted and "NAME" not in at.sorts:
@@ -264,8 +268,7 @@ def bad_coordinate(at: Situation) -> Diagnostic | None:
 def loose_number(at: Situation) -> Diagnostic | None:
     """A line number that does not count on from the line before."""
     if at.at_statement and at.found.is_number:
-        hint = "printed line numbers must count on from the line of BigActor"
-        return at.mistake(Code.UNEXPECTED, f"expected a statement, found {at.found.shown}", hint)
+        return at.mistake(Code.UNEXPECTED, f"expected a statement, found {at.found.shown}", LINE_NUMBERS)
     return None
 
 

@@ -20,6 +20,7 @@ from lark import Token, Tree, UnexpectedInput
 from lark.parsers.lalr_analysis import Shift
 
 from specs.building import Child, Mistake, span_of
+from specs.common_mistakes import LINE_NUMBERS
 from specs.diagnostics import Diagnostic
 from specs.grammar import SECTIONS, Run, spellings, start
 from specs.parse_error import Word, words_from
@@ -148,11 +149,15 @@ class _Reading:
         known = [*self.unread, *(mistake.span for mistake in self.prepared.mistakes)]
         if surplus:
             self.missing -= 1
-        elif not any(begin <= span.start < self.resumed for span in known):  # one mistake of an item
-            self.mistakes.setdefault(found)
+        elif not (self.numbered(found) or any(begin <= span.start < self.resumed for span in known)):
+            self.mistakes.setdefault(found)  # one of an item
         self.unread.append(Span(begin, self.resumed))
         if self.prepared.unmatched and found == self.prepared.unmatched[1]:
             self.prepared = replace(self.prepared, unmatched=None)
+
+    def numbered(self, found: Diagnostic) -> bool:
+        """Tell whether a line number is wrong only because one before it is."""
+        return found.hint == LINE_NUMBERS and any(known.hint == LINE_NUMBERS for known in self.mistakes)
 
     def item_start(self, at: int) -> int:
         """Complete the item that is being read, if it can end; return where the one with the mistake begins.

@@ -21,6 +21,11 @@ def run(options: Namespace) -> Exit:
         raise Mistake("an editor is served by pygls, which is not installed", install_extra("lsp")) from error
     # The protocol has the standard output for itself: whatever else is printed goes to the standard error.
     streams = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
-    with streams[0], streams[1], contextlib.redirect_stdout(sys.stderr):
-        make_server().start_io(*streams)
+    with (
+        streams[0],
+        streams[1],
+        contextlib.redirect_stdout(sys.stderr),
+        contextlib.closing(make_server()) as server,
+    ):
+        server.start_io(*streams)
     return Exit.HOLDS

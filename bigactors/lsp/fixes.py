@@ -19,6 +19,9 @@ _PUT_BEFORE: Final = {
     Code.MISSING_COMMA: ", ",
 }
 _INSTEAD: Final = {Code.SINGLE_EQUALS: "=="}
+_QUOTES: Final = "strings take straight double quotes"
+_QUOTED: Final = re.compile(r"[^\w\s]([^\"\n]*?)['`\u2018\u2019\u201c\u201d\u201e\u00ab\u00bb]")
+_STANDARD: Final = "signature standard"
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +46,15 @@ def fixes(found: Diagnostic, text: str) -> Iterator[Fix]:
         yield Fix(
             f"Put '{sign.strip()}' before it", Span(place, place), sign.rstrip() if sign == ", " else sign
         )
+    if found.hint.startswith("remove it") and found.code in (Code.UNKNOWN_CHARACTER, Code.UNOPENED_BRACKET):
+        yield Fix("Remove it", found.span, "")
+    if found.hint.startswith(_QUOTES):
+        quoted = _QUOTED.match(text, start)
+        span = Span(start, quoted.end()) if quoted else found.span
+        yield Fix("Write straight quotes", span, f'"{quoted[1]}"' if quoted else '"')
+    if found.hint == f"write: {_STANDARD}":
+        place = _behind_header(text)
+        yield Fix(f"Write '{_STANDARD}'", Span(place, place), f"{_STANDARD}\n\n")
     if found.code is Code.UNCLOSED_STRING:
         yield Fix('Close the string with "', Span(end, end), '"')
     if declared := _DECLARE.search(found.hint):
@@ -55,6 +67,10 @@ def _declaration(text: str, section: str, entry: str) -> Fix:
     title = f"Declare '{entry}'"
     if begin:
         return Fix(title, Span(begin.end(), begin.end()), f"\n  {entry}")
-    header = re.match(r"(?:\s|//[^\n]*|#[^\n]*)*(?:mission\s+\w+[ \t]*\n)?", text)
-    place = header.end() if header else 0
+    place = _behind_header(text)
     return Fix(title, Span(place, place), f"{section} {{\n  {entry}\n}}\n\n")
+
+
+def _behind_header(text: str) -> int:
+    header = re.match(r"(?:\s|//[^\n]*|#[^\n]*)*(?:mission\s+\w+\s*)?", text)
+    return header.end() if header else 0

@@ -32,9 +32,6 @@ _ONE_SORT: Final = {
 }
 """Fields whose names are of one sort, whatever else has that name."""
 
-_SHARED: Final = ("entity", "agent", "kind", "channel")
-"""Sorts whose names differ from each other: a name alone says which is meant."""
-
 
 @dataclass(frozen=True, slots=True, order=True)
 class Symbol:
@@ -259,7 +256,7 @@ class _Resolver:
     # --- names
 
     def meaning(self, name: s.Name, scope: Scope) -> Symbol | None:
-        """Return what a name means where several sorts of names may stand."""
+        """Return what a name means where several sorts may stand: those differ in their names, but for variables."""
         sort = self.known.get(name.text)
         return scope.get(name.text) or (Symbol(sort, name.text) if sort else None)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import difflib
+import hashlib
 import json
 import sys
 import tempfile
@@ -90,7 +91,7 @@ class Server(LanguageServer):
     def __init__(self) -> None:
         super().__init__("bigactors", __version__, text_document_sync_kind=t.TextDocumentSyncKind.Full)
         self.documents: dict[str, Document] = {}
-        self.pages = Path(tempfile.mkdtemp(prefix="bigactors-"))
+        self.pages = tempfile.TemporaryDirectory(prefix="bigactors-")
         self.pending: dict[str, asyncio.Task[None]] = {}
 
     def document(self, uri: str) -> Document:
@@ -107,6 +108,12 @@ class Server(LanguageServer):
             known = self.documents[uri] = Document(reading, lines)
         known.reading, known.lines = reading, lines
         return known
+
+    def close(self) -> None:
+        """End what runs, and delete the pages of traces."""
+        for document in self.documents.values():
+            end(document)
+        self.pages.cleanup()
 
     # --- diagnostics
 
@@ -156,7 +163,7 @@ class Server(LanguageServer):
         self._refresh()
 
     def _asked(self, uri: str, document: Document) -> bytes:
-        folder = self.pages / str(abs(hash(uri)))
+        folder = Path(self.pages.name) / hashlib.sha256(uri.encode()).hexdigest()[:16]
         reading = document.reading
         return json.dumps(
             {
@@ -471,7 +478,8 @@ def _verdict(document: Document, name: str, uri: str, *, named: bool = False) ->
         said = f"▶ check again (before the last changes: {said})"
     yield t.Command(said, CHECK, arguments=[uri])
     if verdict["trace"]:
-        yield t.Command("show the trace", SHOW_TRACE, arguments=[uri, name])
+        shown = "show a run to it" if outcome == "holds" else "show the trace"
+        yield t.Command(shown, SHOW_TRACE, arguments=[uri, name])
 
 
 async def _check(server: Server, uri: str, *_: object) -> None:

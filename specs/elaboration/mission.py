@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Final
 
@@ -49,7 +49,6 @@ class ElaboratedMission:
         name: The mission's name: its header's, else the file's stem.
         source: Its text.
         setting: What stays the same.
-        initial: The first configuration.
         properties: What is checked, in the order written.
         notes: What a verdict has to say beside its results.
         fixed: Entities whose place neither agents nor the environment can ever change.
@@ -63,7 +62,6 @@ class ElaboratedMission:
     name: str
     source: Source
     setting: Setting
-    initial: Configuration
     properties: tuple[Property, ...]
     notes: tuple[str, ...]
     fixed: frozenset[Name]
@@ -79,10 +77,15 @@ class ElaboratedMission:
             f"entities={len(self.setting.kinds)} properties={len(self.properties)}>"
         )
 
+    @cached_property
+    def initial(self) -> Configuration:
+        """The first configuration, made when it is asked for first: no mistake is left to be found there."""
+        return self.begin(self.setting)
+
     def under(self, scheduler: Scheduler, control: Control) -> ElaboratedMission:
         """Return the same mission under another scheduler and kind of control; no file is read again."""
         setting = self.setting.with_(scheduler=scheduler, control=control)
-        return replace(self, setting=setting, initial=self.begin(setting))
+        return replace(self, setting=setting)
 
     def line(self, sort: str, name: str) -> int:
         """Return the line in which a name is declared, from 1; 0 where none is."""
@@ -132,18 +135,15 @@ def elaborate(
     )
     there = {name: world.channels[name] for name in world.placements}
     begin = partial(initial, placements=world.placements, channels=there, agents=agents)
-    first = begin(setting)
     if beliefs.parents or beliefs.links:
-        begin = partial(begin, beliefs=settled(beliefs, first))
-        first = begin(setting)
-        check_forest(mission, first, names)
+        begin = partial(begin, beliefs=settled(beliefs, begin(setting)))
+        check_forest(mission, begin(setting), names)
     _stop(names.findings)
     called = mission.name.text if mission.name is not None else Path(source.name).stem
     return ElaboratedMission(
         called,
         source,
         setting,
-        first,
         properties,
         tuple(world.notes),
         fixed,

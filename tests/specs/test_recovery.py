@@ -99,6 +99,12 @@ def test_a_declaration_that_the_end_of_the_file_cuts_short_is_kept():
     assert unread(text) == ["let x"]
 
 
+def test_one_wrong_line_number_is_one_mistake():
+    text = "0 BigActor a hosted_at u with_behavior {\n1   skip\n3   skip\n4   skip\n5 }\nscheduler fcfs\n"
+    assert codes(text) == [Code.UNEXPECTED]
+    assert len(recovered(text).mission.each(s.Scheduler)) == 1
+
+
 def test_an_option_that_does_not_exist_leaves_the_rest():
     text = "scheduler fast\ncontrol slow\nlive {\n  on broken assumption: explode\n}\nscheduler fcfs\n"
     assert codes(text) == [Code.UNKNOWN_OPTION] * 3

@@ -25,6 +25,8 @@ def mistakes(text):
         ("obs => control", "obs control", "Put '=>' before it"),
         ("uav0: UAV = point", "uav0: UAV point", "Put '=' before it"),
         ("(36.94, -8.79)", "(36.94 -8.79)", "Put ',' before it"),
+        ("observe(CHILDREN(PARENT(HOST)))", "observe(CHILDREN(PARENT(HOST))))", "Remove it"),
+        ("observe(CHILDREN", "§ observe(CHILDREN", "Remove it"),
         ('"over the spill": actually', '"over the spill: actually', 'Close the string with "'),
     ],
 )
@@ -53,5 +55,21 @@ def test_where_a_section_is_missing_it_is_written_behind_the_header():
     (found,) = mistakes(text)
     (fix,) = fixes(found, text)
     after = replaced(text, (fix.span,), fix.text)
-    assert after.startswith("// a comment\nmission m\nworld {\n  channel wifi\n}\n")
+    assert after.startswith("// a comment\nmission m\n\nworld {\n  channel wifi\n}\n")
     assert mistakes(after) == ()
+
+
+def test_without_a_signature_that_of_the_paper_is_offered():
+    text = "mission m\n\nworld {\n  uav0: UAV absent\n}\n"
+    (found,) = mistakes(text)
+    (fix,) = fixes(found, text)
+    after = replaced(text, (fix.span,), fix.text)
+    assert after == "mission m\n\nsignature standard\n\nworld {\n  uav0: UAV absent\n}\n"
+    assert mistakes(after) == ()
+
+
+def test_quotes_from_a_document_become_straight():
+    text = OIL_SPILL.replace('"over the spill":', "“over the spill”:")
+    (found,) = mistakes(text)
+    (fix,) = fixes(found, text)
+    assert replaced(text, (fix.span,), fix.text) == OIL_SPILL

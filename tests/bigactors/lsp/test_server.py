@@ -2,6 +2,7 @@
 
 import asyncio
 import itertools
+import random
 import re
 import sys
 from pathlib import Path
@@ -11,6 +12,9 @@ import pytest_lsp
 from lsprotocol import types as t
 from pygls.exceptions import JsonRpcException
 from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
+
+from bigactors.lsp.positions import Lines
+from bigactors.lsp.reading import reading_of
 
 ROOT = Path(__file__).parents[3]
 MISSIONS = ROOT / "specs/missions"
@@ -222,6 +226,16 @@ async def test_a_check_is_cancelled_and_never_blocks(client):
     assert (await lenses(client, editor))[0].title == "▶ check all"
 
 
+async def test_an_editor_that_leaves_ends_the_check_that_runs(client):
+    editor = Editor(client, shipped("surveillance"))
+    checking = asyncio.ensure_future(run(client, (await lenses(client, editor))[0]))
+    while (await lenses(client, editor))[0].command != "bigactors.cancel":
+        await asyncio.sleep(0.01)
+    client.text_document_did_close(t.DidCloseTextDocumentParams(editor.id))
+    async with asyncio.timeout(30):
+        await checking
+
+
 async def test_a_file_that_is_too_large_is_refused_and_the_server_lives_on(client):
     editor = Editor(client, "// " + "x" * 10_000_000)
     (found,) = await editor.mistakes()
@@ -239,3 +253,20 @@ async def test_places_are_counted_as_the_editor_counts(client):
     editor = Editor(client, text)
     (found,) = await editor.mistakes()
     assert found.range.start == editor.at("oilSpil0")
+
+
+async def test_after_any_changes_the_server_has_the_text_that_the_editor_has(client):
+    chance = random.Random(7)
+    editor = Editor(client, shipped("takeover"))
+    await editor.mistakes()
+    for _ in range(12):
+        lines = editor.text.splitlines(keepends=True)
+        at = chance.randrange(len(lines))
+        typed = ["🚁 loop {\r\n", "observe(ALL)\n", "é\u2028\x85}\r", lines[at]]
+        lines[at : at + chance.randrange(3)] = [chance.choice(typed)]
+        editor.change("".join(lines))
+        expected = reading_of("m", editor.text, MISSIONS).diagnosis
+        found = [*expected.mistakes, *expected.warnings]
+        places = [Lines(editor.text, "utf-16").position(each.span.start) for each in found]
+        told = await editor.mistakes()
+        assert [(each.range.start.line, each.range.start.character) for each in told] == places
