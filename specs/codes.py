@@ -351,8 +351,10 @@ class Code(Enum):
     WRONG_VALUE = (
         "LS407",
         "value of another type",
-        """A node or a bigActor is expected, and this is a number, a truth value, a tuple, a route or a text that is
-        no name; or something to go through is expected, and this is a tuple.""",
+        """What stands here cannot take a value of this type: a condition is true or false, `size` counts a set or an
+        observation, `MOVE_HOST_TO` needs an entity, `send` a bigActor. Types are inferred through variables, arguments,
+        patterns and messages; a line in brackets gives the variable that value. It is a mistake only where no possible
+        value would do.""",
     )
     BAD_FAMILY = (
         "LS408",
@@ -513,6 +515,19 @@ class Code(Enum):
         "far from everything else",
         """An entity is a thousand kilometres or more from all others. Usually latitude and longitude are swapped:
         missions use (latitude, longitude), GeoJSON uses [longitude, latitude].""",
+    )
+
+    TWO_TYPES = (
+        "LS703",
+        "variable of two types",
+        """A variable is given values of different types, and one of them cannot be taken where the variable is used.
+        It is no mistake if the other one is always there then; a variable of its own for each is easier to check.""",
+    )
+
+    ALWAYS_THE_SAME = (
+        "LS704",
+        "comparison that is always the same",
+        """Values of different types are never equal, and a set or an observation has no members of that type.""",
     )
 
     @property
