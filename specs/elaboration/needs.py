@@ -52,6 +52,9 @@ class Need:
         return bool(taken - HOLDERS or (taken & HOLDERS and fits) or not given.sorts)
 
 
+MOST_MESSAGES: Final = 50
+"""Types of messages whose lines are told: each is compared with the cases of each react."""
+
 CONDITIONAL: Final = "a condition"
 _NAME_IT: Final = "write its name, or a variable that holds it"
 _NODES: Final = HOLDERS | {Sort.ENTITY}
@@ -132,7 +135,7 @@ Demand = Use | Pair | Choice
 def check_types(demands: list[Demand], inference: Inference, findings: Findings) -> Types:
     """Report values of which nothing can be taken where they stand, and doubts; returns the variables' types."""
     known = inference.variables()
-    judge = _Judge(inference, known, findings)
+    judge = _Judge(inference, known, _gifts(inference, known), findings)
     for demand in demands:
         if isinstance(demand, Use):
             judge.use(demand)
@@ -147,10 +150,30 @@ def check_types(demands: list[Demand], inference: Inference, findings: Findings)
     return known
 
 
+def _gifts(inference: Inference, known: Types) -> Mapping[str, list[tuple[int, Type]]]:
+    """Return the lines that give each variable a value, with its type: of a message, the line that sends it."""
+    program, found = inference.program, dict[str, list[tuple[int, Type]]]()
+    sent: list[tuple[int, Type]] = []
+    for number, each in enumerate(program.statements):
+        if isinstance(each, Send) and len(sent) < MOST_MESSAGES:
+            message = inference.type(each.message, known)
+            if all(message != other for _, other in sent):
+                sent.append((program.line(number), message))
+    seen = Sorts({Sort.OBSERVATION})
+    for number, statement in enumerate(program.statements):
+        here = program.line(number)
+        for line, message in [*(sent if isinstance(statement, React) else ()), (here, NOTHING)]:
+            for name, given in inference.given(statement, known, message):
+                if given.sorts and (line == here or given.sorts != seen):
+                    found.setdefault(name, []).append((line, given))
+    return found
+
+
 @dataclass(frozen=True, slots=True)
 class _Judge:
     inference: Inference
     known: Types
+    gifts: Mapping[str, list[tuple[int, Type]]]
     findings: Findings
 
     def use(self, use: Use) -> None:
@@ -172,7 +195,7 @@ class _Judge:
 
     def doubt(self, use: Use, variable: str) -> None:
         """Warn of a variable that some statement gives what can't be taken here."""
-        for line, given in self.gifts(variable):
+        for line, given in self.gifts.get(variable, ()):
             if not use.need.met(given):
                 message = (
                     f"{use.by} needs {_words(use.need)}, and {_shown(use.where)} may be "
@@ -183,25 +206,9 @@ class _Judge:
                 return
 
     def origin(self, variable: Variable, need: Need) -> str:
-        lines = (line for line, given in self.gifts(variable.name) if not need.met(given) and line)
+        lines = (line for line, given in self.gifts.get(variable.name, ()) if not need.met(given) and line)
         first = min(lines, default=0)
         return f" (line {first})" if first else ""
-
-    def gifts(self, variable: str) -> Iterator[tuple[int, Type]]:
-        """Yield the lines that give a variable a value, with its type; of a pattern only what is certain."""
-        program = self.inference.program
-        sent = [
-            (program.line(number), self.inference.type(each.message, self.known))
-            for number, each in enumerate(program.statements)
-            if isinstance(each, Send)
-        ]
-        seen = Sorts({Sort.OBSERVATION})
-        for number, statement in enumerate(program.statements):
-            here = program.line(number)
-            for line, message in [*(sent if isinstance(statement, React) else ()), (here, NOTHING)]:
-                for name, given in self.inference.given(statement, self.known, message):
-                    if name == variable and given.sorts and (line == here or given.sorts != seen):
-                        yield line, given
 
     def choice(self, choice: Choice) -> None:
         given = self.inference.type(choice.subject, self.known)
