@@ -107,8 +107,8 @@ class Code(Enum):
     UNKNOWN_CHARACTER = (
         "LS106",
         "unknown character",
-        """This character has no meaning in a mission. Quotes pasted from a document are often
-        typographic; strings need straight double quotes.""",
+        """This character has no meaning here. Quotes pasted from a document are often typographic; strings need
+        straight double quotes. Of operators there are `+`, `-`, comparisons, `and`, `or`, `not`, `in` and `of`.""",
     )
     MISSING_ARROW = (
         "LS107",
@@ -128,8 +128,9 @@ class Code(Enum):
     )
     MISSPELT_KEYWORD = (
         "LS110",
-        "misspelt keyword",
-        """Only a keyword is allowed here, and this word is close to one. Upper and lower case differ.""",
+        "no word of the language",
+        """This word means nothing here. It is close to one that does (upper and lower case differ), or it is what other
+        languages write: the hint says what is written here.""",
     )
     RESERVED_WORD = (
         "LS111",
@@ -458,8 +459,8 @@ class Code(Enum):
     NOT_CONSTANT = (
         "LS609",
         "value that is not constant",
-        """A message of `says`, and a value that a property compares a variable with, is constant: a text, number,
-        truth value, name, or a tuple or set of these.""",
+        """A message of `says`, what a pattern compares with (`=uav0`), and a value that a property compares a variable
+        with, is constant: a text, number, truth value, name, or a tuple or set of these.""",
     )
     TOO_MANY_MISTAKES = (
         "LS610",

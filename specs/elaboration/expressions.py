@@ -33,7 +33,9 @@ from specs.elaboration.names import Names
 from specs.elaboration.needs import AGENT, COLLECTION, CONDITION, NODE, NODES, NUMBER, Need, operands
 from specs.elaboration.scopes import Scope
 from specs.elaboration.value_types import MISTAKEN
+from specs.grammar import QUERY_WORDS
 
+_WORDS: Final = ("HOST", "SELF", "true", "false")
 FUNCTIONS: Final = tuple(
     sorted(name for name in OPERATORS if name.isidentifier() and name not in {"in", "of", "not"})
 )
@@ -140,7 +142,7 @@ def _name(node: s.Name, scope: Scope, names: Names) -> Expression:
         return Literal(node.text)
     sort = names.sort_of(node.text)
     if sort is None:
-        names.findings.unknown(node, [*scope.names(), *names.kinds, *names.agents])
+        names.findings.unknown(node, [*scope.names(), *names.kinds, *names.agents, *_WORDS])
     else:
         family = names.families.get(node.text, {})
         hint = (
@@ -197,7 +199,8 @@ def _named(node: s.Expression, scope: Scope, names: Names, need: Need, by: str) 
     if isinstance(node, s.Name) and scope.find(node.text) is None and node.text not in scope.fixed:
         sort = names.sort_of(node.text)
         if sort is None:
-            names.findings.unknown(node, [*scope.names(), *known])
+            words = {"SELF"} if need is AGENT else {"HOST"} | (QUERY_WORDS if need is NODES else set())
+            names.findings.unknown(node, [*scope.names(), *known, *words])
         elif need is AGENT:
             names.agent(node)
         else:

@@ -73,7 +73,9 @@ TUPLE: Final = Need(
 )
 NODE: Final = Need(_NODES, _NAME_IT, Sorts({Sort.ENTITY}), filled=True)
 NODES: Final = Need(_NODES, _NAME_IT, Sorts({Sort.ENTITY}))
-AGENT: Final = Need(HOLDERS | {Sort.AGENT}, _NAME_IT, Sorts({Sort.AGENT}), filled=True)
+AGENT: Final = Need(
+    HOLDERS | {Sort.AGENT}, f"{_NAME_IT}: send message to bigActor", Sorts({Sort.AGENT}), filled=True
+)
 ENTITY: Final = Need(Sorts({Sort.ENTITY}), _NAME_IT)
 
 OPERANDS: Final[Mapping[str, tuple[Need | None, ...]]] = {

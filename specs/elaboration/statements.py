@@ -30,6 +30,7 @@ from specs.elaboration.rule_regions import regions_of
 from specs.elaboration.rule_schemas import Parameter, Schema
 from specs.elaboration.rules import elaborate_rule, word_of
 from specs.elaboration.scopes import Scope, Variables
+from specs.foreign_words import DONE
 from specs.writing import write
 
 LONGEST: Final = 7 * 24 * 3600.0
@@ -292,6 +293,7 @@ class _Statements:
                 message,
                 hint or f"bind it: let {node.variable.text} = ...",
             )
+            variable = self.bind(place.scope, node.variable)  # what follows is not to blame
         return k.Assign(variable or "", value)
 
     def if_(self, node: s.If, place: _Place, _: int) -> k.Statement:
@@ -349,7 +351,9 @@ class _Statements:
     def called(self, node: s.Call) -> None:
         behaviour = self.names.behaviours.get(node.behaviour.text)
         if behaviour is None:
-            self.names.findings.unknown(node.behaviour, self.names.behaviours, sort="behaviour")
+            instead = DONE.get(node.behaviour.text, "define it: def name(parameters) = { ... }")
+            known = self.names.behaviours
+            self.names.findings.unknown(node.behaviour, known, sort="behaviour", otherwise=instead)
         else:
             check_arity(node.behaviour, len(node.arguments), len(behaviour.parameters), self.names.findings)
 
@@ -362,7 +366,7 @@ class _Statements:
             inner = place.scope.inner()
             check_distinct(case.pattern, self.names)
             bind = partial(self.bind, inner)
-            pattern = elaborate_pattern(case.pattern, self.names, bind, place.scope.fixed, react=react)
+            pattern = elaborate_pattern(case.pattern, self.names, place.scope, bind, react=react)
             guard = None
             if case.guard is not None:
                 tested = elaborate_expression(case.guard, inner, self.names)
