@@ -16,6 +16,7 @@ from bigactors.arguments import make_parser
 from bigactors.files import make_folder, write_text
 from bigactors.lsp.textmate import textmate_grammar
 from bigactors.terminal import safe_output, say
+from checker.reports.glossary import word_table
 from semantics.extension import EXTENSION
 from semantics.extension import say as say_rule
 from semantics.rules import RULES, TIMED_RULES, env
@@ -42,6 +43,13 @@ CODES_HEAD = """\
 # Diagnostic codes
 
 Each mistake that `bigactors` finds in a mission has one of these codes. `bigactors explain CODE` prints the same text.
+"""
+
+WORDS_HEAD = """
+## Words of reports
+
+`bigactors explain WORD` prints the same text, and of a rule its inference bar ([rules.md](rules.md)).
+
 """
 
 CLI_HEAD = """\
@@ -89,7 +97,7 @@ def pages() -> dict[str, str]:
     """Return the generated pages by their file names, and what editors colour missions by."""
     return {
         "reference/cli.md": "".join(cli_page()),
-        "reference/codes.md": f"{GENERATED}{CODES_HEAD}\n{code_table()}",
+        "reference/codes.md": f"{GENERATED}{CODES_HEAD}\n{code_table()}{WORDS_HEAD}{word_table()}",
         "reference/language.md": f"{GENERATED}{language_reference()}",
         "reference/recording.md": "".join(recording_page()),
         "reference/rules.md": "".join(rules_page()),

@@ -175,7 +175,7 @@ def once(clauses: Children, owner: Token) -> dict[str, Part]:
     for clause in clauses:
         if clause.word in found:
             message = f"'{clause.word}' is said twice of '{_short(owner)}'"
-            hint = "write it once; lists are separated by commas"
+            hint = "write it once, behind what it is said of; lists are separated by commas"
             raise Mistake(Diagnostic(Code.REPEATED_CLAUSE, clause.span, message, hint))
         found[clause.word] = clause
     return found
@@ -199,7 +199,11 @@ def rule_mistake(body: RuleBody) -> Diagnostic | None:
     except NotationError as error:
         start = min(body.raw_start + error.offset, body.span.end - 1)
         span = Span(start, max(start + 1, min(start + error.length, body.span.end)))
-        return Diagnostic(Code.RULE_SYNTAX, span, error.message, error.hint)
+        arrow = body.raw.startswith("=>", error.offset)
+        hint = error.hint or (
+            "an arrow is written ->" if arrow else "write redex -> reactum: u[c] || b.$0 -> b.(u[c] | $0)"
+        )
+        return Diagnostic(Code.RULE_SYNTAX, span, error.message, hint)
     return None
 
 

@@ -107,8 +107,8 @@ class Code(Enum):
     UNKNOWN_CHARACTER = (
         "LS106",
         "unknown character",
-        """This character has no meaning in a mission. Quotes pasted from a document are often
-        typographic; strings need straight double quotes.""",
+        """This character has no meaning here. Quotes pasted from a document are often typographic; strings need
+        straight double quotes. Of operators there are `+`, `-`, comparisons, `and`, `or`, `not`, `in` and `of`.""",
     )
     MISSING_ARROW = (
         "LS107",
@@ -128,8 +128,9 @@ class Code(Enum):
     )
     MISSPELT_KEYWORD = (
         "LS110",
-        "misspelt keyword",
-        """Only a keyword is allowed here, and this word is close to one. Upper and lower case differ.""",
+        "no word of the language",
+        """This word means nothing here. It is close to one that does (upper and lower case differ), or it is what other
+        languages write: the hint says what is written here.""",
     )
     RESERVED_WORD = (
         "LS111",
@@ -351,8 +352,10 @@ class Code(Enum):
     WRONG_VALUE = (
         "LS407",
         "value of another type",
-        """A node or a bigActor is expected, and this is a number, a truth value, a tuple, a route or a text that is
-        no name; or something to go through is expected, and this is a tuple.""",
+        """What stands here cannot take a value of this type: a condition is true or false, `size` counts a set or an
+        observation, `MOVE_HOST_TO` needs an entity, `send` a bigActor. Types are inferred through variables, arguments,
+        patterns and messages; a line in brackets gives the variable that value. It is a mistake only where no possible
+        value would do.""",
     )
     BAD_FAMILY = (
         "LS408",
@@ -456,8 +459,8 @@ class Code(Enum):
     NOT_CONSTANT = (
         "LS609",
         "value that is not constant",
-        """A message of `says`, and a value that a property compares a variable with, is constant: a text, number,
-        truth value, name, or a tuple or set of these.""",
+        """A message of `says`, what a pattern compares with (`=uav0`), and a value that a property compares a variable
+        with, is constant: a text, number, truth value, name, or a tuple or set of these.""",
     )
     TOO_MANY_MISTAKES = (
         "LS610",
@@ -513,6 +516,19 @@ class Code(Enum):
         "far from everything else",
         """An entity is a thousand kilometres or more from all others. Usually latitude and longitude are swapped:
         missions use (latitude, longitude), GeoJSON uses [longitude, latitude].""",
+    )
+
+    TWO_TYPES = (
+        "LS703",
+        "variable of two types",
+        """A variable is given values of different types, and one of them cannot be taken where the variable is used.
+        It is no mistake if the other one is always there then; a variable of its own for each is easier to check.""",
+    )
+
+    ALWAYS_THE_SAME = (
+        "LS704",
+        "comparison that is always the same",
+        """Values of different types are never equal, and a set or an observation has no members of that type.""",
     )
 
     @property

@@ -13,12 +13,14 @@ from collections.abc import Callable, Iterable
 from typing import Final
 
 from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS, VIA, WAY
+from semantics.behaviours.observations import QueryOperator
 from semantics.behaviours.statements import UNITS
 from specs.building import ANGLES
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
-from specs.grammar import QUERY_WORDS, RESERVED, SECTIONS, STATEMENTS
-from specs.parse_error import Situation, Word, is_keyword, line_of, open_brackets
+from specs.foreign_words import foreign_operator, foreign_word, operator_first
+from specs.grammar import QUERY_WORDS, RESERVED, SECTIONS, STATEMENTS, first_words
+from specs.parse_error import Situation, Word, is_keyword, line_of, open_brackets, word_before
 from specs.syntax.nodes import Span
 
 _GEOMETRIES: Final = frozenset({"point", "box", "polygon", "circle"})
@@ -29,6 +31,11 @@ _UNITS: Final = (
     (("m", "km"), "write 400 m or 1.5 km"),
     (tuple(reversed(UNITS)), "write 90 s, 10 min or 1.5 h"),
 )
+_HEADER: Final = re.compile(r"^\s*mission\b", re.MULTILINE)
+_DROP: Final = re.compile(r"(\w+(?:[:.\-]\w+)*)\s+(drop\w*|loses?|lost|fails?)(?!\w)")
+_LINKS: Final = frozenset({"drops"})
+_CALLED: Final = frozenset({"observe", "control", "migrate", "display", "spawn", *QueryOperator})
+_GUARDS: Final = frozenset({"and", "or", "&&", "||", "when", "where", "with"})
 _SYMBOL: Final = re.compile(r"[\w\s\"()\[\]{},;:.=<>!&|+\-]")
 _CLOSE: Final = 0.7
 
@@ -42,9 +49,9 @@ LINE_NUMBERS: Final = "printed line numbers must count on from the line of BigAc
 def misplaced_header(at: Situation) -> Diagnostic | None:
     """`mission` anywhere but at the beginning."""
     if at.found.text == "mission" and "mission" not in at.accepted and "NAME" not in at.sorts:
-        return at.mistake(
-            Code.REPEATED_HEADER, "'mission' stands once, before all declarations", "remove it here"
-        )
+        again = len(_HEADER.findall(at.prepared.text)) > 1
+        hint = "leave it out here" if again else "move it to the beginning"
+        return at.mistake(Code.REPEATED_HEADER, "'mission' stands once, before all declarations", hint)
     return None
 
 
@@ -52,7 +59,7 @@ def unknown_character(at: Situation) -> Diagnostic | None:
     """A character without a meaning."""
     if at.found.text and not _SYMBOL.match(at.found.text):
         quote = at.found.text in _QUOTES
-        hint = 'strings take straight double quotes: "handover"' if quote else "remove it"
+        hint = 'strings take straight double quotes: "handover"' if quote else "leave it out"
         return at.mistake(Code.UNKNOWN_CHARACTER, f"{at.found.shown} has no meaning here", hint)
     return None
 
@@ -61,7 +68,9 @@ def bad_angle(at: Situation) -> Diagnostic | None:
     """`(37°08'49", 8°35')`, `(37 08 49, 8 35 0)`, `(37,147, -8,58)`."""
     behind = at.before.is_number and at.accepted in ({","}, {")"})
     if behind and at.found.text == "," and at.accepted == {")"}:
-        hint = "a decimal number has a point, 37.147; a height stands behind: altitude 90 m"
+        if at.following.text == ")":
+            return None
+        hint = "a decimal number has a point, 37.147; each corner has brackets; a height is written altitude 90 m"
         return at.mistake(Code.BAD_COORDINATE, "a coordinate has two numbers, and here is a third", hint)
     if behind and at.found.text[:1] in _ANGLE_MARKS:
         message = "an angle in degrees, minutes and seconds ends with its letter: N, S, E or W"
@@ -81,6 +90,8 @@ def bad_angle(at: Situation) -> Diagnostic | None:
 
 def single_equals(at: Situation) -> Diagnostic | None:
     """`if x = y`."""
+    if at.found.text == "=" and "=>" in at.accepted and at.following.text in STATEMENTS:
+        return missing_arrow(at)
     if at.found.text == "=" and (at.in_expression or "==" in at.accepted):
         hint = "write == to compare; an assignment is a statement of its own"
         return at.mistake(Code.SINGLE_EQUALS, "'=' does not compare", hint)
@@ -89,9 +100,7 @@ def single_equals(at: Situation) -> Diagnostic | None:
 
 def unclosed_section(at: Situation) -> Diagnostic | None:
     """A section that begins within another, or within a behaviour."""
-    line_start = at.prepared.text.rfind("\n", 0, at.found.span.start) + 1
-    first = not at.prepared.text[line_start : at.found.span.start].strip()
-    if at.found.text not in SECTIONS or at.at_declaration or not first:
+    if at.found.text not in SECTIONS or at.at_declaration or not at.is_first:
         return None
     waiting = open_brackets(at.prepared.text, at.found.span.start)
     if not waiting:
@@ -104,7 +113,11 @@ def unclosed_section(at: Situation) -> Diagnostic | None:
 
 def misspelt_word(at: Situation) -> Diagnostic | None:
     """`enviroment { ... }`: nearly one of the words that could have stood here."""
-    return _misspelt(at.found, at.accepted)
+    return _misspelt(at.found, at.accepted | (_LINKS if _in_environment(at) else frozenset()))
+
+
+def _in_environment(at: Situation) -> bool:
+    return {"appears", "vanishes"} <= at.accepted
 
 
 def misspelt_word_before(at: Situation) -> Diagnostic | None:
@@ -116,9 +129,113 @@ def misspelt_word_before(at: Situation) -> Diagnostic | None:
     if at.accepted == {"("}:
         return _misspelt(at.before, COMMAND_WORDS)
     if at.accepted == {":"}:
-        return _misspelt(at.before, {"channel", "from"})
-    if "drifts" in at.accepted:
-        return _misspelt(at.before, {"someone", "says"})
+        return _misspelt(at.before, {"channel", "from", "linked", "carried", "absent", "altitude"})
+    if _in_environment(at):
+        return _misspelt(at.before, {"someone", "says"}) or _channel(at)
+    if {"directly", "hosted_at"} <= at.accepted:
+        return _misspelt(at.before, first_words("_claim")) or _claim(at)
+    return None
+
+
+def _channel(at: Situation) -> Diagnostic | None:
+    """`wifi:land drop`: the name of a channel is read together with `drops` only."""
+    found = _DROP.match(at.prepared.text, at.before.span.start)
+    if found is None:
+        return None
+    message = f"'{found[2]}' is not a word of the language here"
+    return Diagnostic(Code.MISSPELT_KEYWORD, Span(*found.span(2)), message, "did you mean 'drops'?")
+
+
+def _claim(at: Situation) -> Diagnostic | None:
+    """`a ended`."""
+    if at.found.text not in first_words("_claim"):
+        return None
+    message = f"{at.found.shown} stands before its name"
+    return at.mistake(Code.UNEXPECTED, message, f"write {at.found.text} {at.before.text}")
+
+
+def misplaced_command(at: Situation) -> Diagnostic | None:
+    """`contol(MOVE_HOST_TO r0)`, or `MOVE_HOST_TO r0` as a statement."""
+    if (
+        at.found.text not in COMMANDS
+        or at.found.text in at.accepted
+        or not (at.at_expression or at.at_statement)
+    ):
+        return None
+    form = COMMANDS[at.found.text].form
+    called = word_before(at.prepared.text, at.before.span.start) if at.before.text == "(" else at.found
+    if called is at.found or not called.is_name:
+        return at.mistake(Code.UNEXPECTED, "a control action is requested", f"write control({form})")
+    message = f"{called.shown} requests no control action"
+    return Diagnostic(Code.MISSPELT_KEYWORD, called.span, message, f"write control({form})")
+
+
+def misplaced_query(at: Situation) -> Diagnostic | None:
+    """`if r0 in CHILDREN(HOST) { ... }`."""
+    if at.found.text not in QUERY_WORDS or not at.at_expression:
+        return None
+    hint = f"write observe({at.found.text}...), and ask what is received: react {{ case obs if x in obs => ... }}"
+    return at.mistake(Code.UNEXPECTED, "a query is observed, it has no value of its own", hint)
+
+
+def missing_parenthesis(at: Situation) -> Diagnostic | None:
+    """`observe HOST`, `CHILDREN HOST`, `PARENT()`, `box (37.0, -8.5 (36.9, -8.6)`."""
+    if at.accepted == {"("} and at.before.text in _CALLED:
+        message = f"expected '(' behind {at.before.shown}, found {at.found.shown}"
+        return at.mistake(Code.UNEXPECTED, message, f"write {at.before.text}(...)")
+    if at.found.text == ")" and at.before.text == "(" and at.accepted >= {"ALL", "HOST"}:
+        name = word_before(at.prepared.text, at.before.span.start).text
+        return at.mistake(
+            Code.UNEXPECTED, "expected a query, found ')'", f"write {name}(HOST), or {name}(place0)"
+        )
+    if at.found.text == "(" and at.sorts == {"NAME"} and at.before.text in first_words("_claim"):
+        hint = f"write {at.before.text} {at.following.text}, without brackets"
+        return at.mistake(Code.UNEXPECTED, "expected a name, found '('", hint)
+    waiting = open_brackets(at.prepared.text, at.found.span.start)
+    alone = at.accepted == {")"} and at.found.text not in (",", ";", ".")
+    over = ")" in at.accepted and at.is_first and at.found.text in STATEMENTS | {"}", "case"}
+    if (alone or over) and waiting:
+        opening, message = waiting[-1], f"'(' is not closed before {at.found.shown}"
+        return Diagnostic(Code.UNCLOSED_BRACKET, Span(opening, opening + 1), message, "close it with ')'")
+    if at.found.text == "[" and "(" in at.accepted:
+        return at.mistake(Code.UNEXPECTED, "expected '(', found '['", "write ( ... )")
+    return None
+
+
+def spare_separator(at: Situation) -> Diagnostic | None:
+    """`(a, b,)`, `(a,, b)`, `(a; b)`, `display(a,)`, `scheduler: fcfs`, `react {; ... }`."""
+    if "," in (at.found.text, at.before.text) and (at.found.text in (",", ")", "}") or at.found.text == ";"):
+        comma = at.before if at.before.text == "," else at.found
+        message = (
+            f"nothing follows {comma.shown}"
+            if comma is at.before
+            else f"{comma.shown} stands behind the last item"
+        )
+        return Diagnostic(Code.UNEXPECTED, comma.span, message, "leave it out")
+    if at.found.text == ";" and "," in at.accepted:
+        return at.mistake(Code.MISSING_COMMA, "expected ',', found ';'", "separate items by commas")
+    if at.found.text in (":", ";") or (at.found.text == "=" and "NUMBER" in at.sorts):
+        return at.mistake(Code.UNEXPECTED, f"{at.found.shown} has no meaning here", "leave it out")
+    return None
+
+
+def missing_quotes(at: Situation) -> Diagnostic | None:
+    """`invariant never: ...`."""
+    if at.sorts == {"STRING"} and (at.found.is_name or at.found.is_number):
+        hint = f'write it in double quotes: "{at.found.text}"'
+        return at.mistake(Code.UNEXPECTED, f"expected a string, found {at.found.shown}", hint)
+    return None
+
+
+def missing_word(at: Situation) -> Diagnostic | None:
+    """`carried vessel0`, `circle (37.0, -8.5) 400 m`, `invariant "x" true`: only one word could have stood here."""
+    if len(at.accepted) == 1 == len(at.sorts) and "for" not in at.accepted and at.found.text != ";":
+        (word,) = at.accepted
+        if word.startswith(at.found.text) and word not in "([{":
+            return at.mistake(Code.UNEXPECTED, f"expected '{word}', found {at.found.shown}", f"write {word}")
+        if word not in "([{":
+            message = f"expected '{word}' before {at.found.shown}"
+            return at.mistake(Code.UNEXPECTED, message, f"write {word} before it")
     return None
 
 
@@ -156,11 +273,18 @@ def misplaced_via(at: Situation) -> Diagnostic | None:
 
 def missing_arrow(at: Situation) -> Diagnostic | None:
     """`case obs: Observation display(obs)`."""
-    if "=>" in at.accepted:
-        waits = at.before.text in UNITS
-        hint = "write after 10 min => statements" if waits else "write case pattern => statements"
-        return at.mistake(Code.MISSING_ARROW, f"expected '=>' before {at.found.shown}", hint)
-    return None
+    typed = at.before.text == ":" and at.found.text in STATEMENTS and at.sorts == {"NAME"}
+    if "=>" not in at.accepted and not typed:
+        return None
+    word = at.before if typed else at.found
+    guard = at.found.text in _COMPARISONS | _GUARDS and "if" in at.accepted
+    hint = "a condition stands behind if: case pattern if condition => statements"
+    instead = word.text in ("=", ":", "->", "-")
+    where = f"'=>', found {word.shown}" if instead else f"'=>' before {word.shown}"
+    waits = at.before.text in UNITS
+    form = "write after 10 min => statements" if waits else "write case pattern => statements"
+    shown = hint if guard else form
+    return Diagnostic(Code.MISSING_ARROW, word.span, f"expected {where}", shown)
 
 
 def chained_comparison(at: Situation) -> Diagnostic | None:
@@ -176,8 +300,9 @@ def missing_unit(at: Situation) -> Diagnostic | None:
     """`radius 400`, or `after 10`."""
     for units, hint in _UNITS:
         if set(units) <= at.accepted:
-            message = f"expected {', '.join(map(repr, units[:-1]))} or '{units[-1]}', found {at.found.shown}"
-            return at.mistake(Code.MISSING_UNIT, message, hint)
+            listed = f"{', '.join(map(repr, units[:-1]))} or '{units[-1]}'"
+            message = f"expected {listed} behind {at.before.shown}"
+            return Diagnostic(Code.MISSING_UNIT, at.before.span, message, hint)
     return None
 
 
@@ -206,6 +331,13 @@ def missing_host(at: Situation) -> Diagnostic | None:
 def missing_comma(at: Situation) -> Diagnostic | None:
     """`visit(a b)` or `(37.0 -8.5)`."""
     starts = at.found.is_name or at.found.is_number or at.found.text[:1] in {'"', "(", "-"}
+    if (
+        _in_environment(at) and at.found.text == "(" and at.before.text in _GEOMETRIES
+    ):  # read as the name of a clause
+        message = f"expected ',' before {at.before.shown}"
+        return Diagnostic(Code.MISSING_COMMA, at.before.span, message, "separate items by commas")
+    if at.found.text == "and" and "," in at.accepted:
+        return at.mistake(Code.MISSING_COMMA, "expected ',', found 'and'", "separate items by commas")
     if "," in at.accepted and starts and ("]" in at.accepted or ")" in at.accepted or at.accepted == {","}):
         return at.mistake(
             Code.MISSING_COMMA, f"expected ',' before {at.found.shown}", "separate items by commas"
@@ -216,6 +348,8 @@ def missing_comma(at: Situation) -> Diagnostic | None:
 def missing_brace(at: Situation) -> Diagnostic | None:
     """`loop observe(HOST)`."""
     opens = "{" in at.accepted and not at.at_expression
+    if at.found.text == "=" and at.before.text == "=":
+        return None
     if opens or ("RULE_BODY" in at.sorts and at.before.text != "("):
         return at.mistake(
             Code.MISSING_BRACE, f"expected '{{' before {at.found.shown}", "open the block with {"
@@ -225,8 +359,62 @@ def missing_brace(at: Situation) -> Diagnostic | None:
 
 def missing_equals(at: Situation) -> Diagnostic | None:
     """`def visit(place) { ... }`, or `uav0: UAV point (37.0, -8.5)`."""
+    if {"=", "absent"} <= at.accepted and at.found.text == "(":
+        hint = "write name: Kind = point (37.08, -8.55)"
+        return at.mistake(Code.MISSING_EQUALS, "expected '=' and a geometry before '('", hint)
     if at.accepted == {"="} or ("=" in at.accepted and at.found.text in _GEOMETRIES):
         return at.mistake(Code.MISSING_EQUALS, f"expected '=' before {at.found.shown}", "put = before it")
+    return None
+
+
+def missing_kind_word(at: Situation) -> Diagnostic | None:
+    """`signature { UAV driven }`, `kind Location contains UAV; Station`."""
+    if "kind" not in at.accepted or not at.found.is_name or is_keyword(at.found):
+        return None
+    if "," in at.accepted and not at.is_first:
+        return at.mistake(
+            Code.MISSING_COMMA, f"expected ',' before {at.found.shown}", "separate items by commas"
+        )
+    hint = f"write kind {at.found.text}; in a list, kinds are separated by commas"
+    return at.mistake(Code.UNEXPECTED, f"expected 'kind' before {at.found.shown}", hint)
+
+
+def missing_geometry(at: Situation) -> Diagnostic | None:
+    """`uav0: UAV = (37.0, -8.5)`, `box (37.0, -8.5), (36.9, -8.6)`."""
+    if at.accepted >= _GEOMETRIES and (at.found.text in ("(", "-") or at.found.is_number):
+        hint = "write point (latitude, longitude), or a box, a polygon or a circle"
+        return at.mistake(Code.BAD_COORDINATE, f"expected a geometry before {at.found.shown}", hint)
+    if at.accepted == {"("} and at.found.text == "," and at.before.text == ")":
+        return at.mistake(Code.BAD_COORDINATE, "corners are not separated by commas", "leave it out")
+    return None
+
+
+def missing_recipient(at: Situation) -> Diagnostic | None:
+    """`send b "yours"`, `emit ("found", place) to b`."""
+    if at.found.text == "to" and at.at_statement:
+        return at.mistake(
+            Code.UNEXPECTED, "'to' stands behind what is sent", "write send message to bigActor"
+        )
+    if "to" in at.accepted and (at.found.is_name or at.found.text[:1] in ('"', "(")) and at.before.is_name:
+        words = f"expected 'to' before {at.found.shown}"
+        return at.mistake(Code.MISSING_RECIPIENT, words, "write send message to bigActor")
+    return None
+
+
+def missing_value(at: Situation) -> Diagnostic | None:
+    """`match { case ... }`."""
+    if at.found.text == "case" and at.before.text == "{" and at.at_expression:
+        before = word_before(at.prepared.text, at.before.span.start)
+        hint = "write match value { case ... }; what is received is told apart by react { case ... }"
+        return Diagnostic(Code.UNEXPECTED, before.span, f"{before.shown} needs a value to look at", hint)
+    return None
+
+
+def missing_at_most(at: Situation) -> Diagnostic | None:
+    """`says "handover" once`."""
+    if _in_environment(at) and at.before.text in ("once", "times", "twice"):
+        message = f"expected 'at most' before {at.before.shown}"
+        return Diagnostic(Code.UNEXPECTED, at.before.span, message, "write at most once, or at most 3 times")
     return None
 
 
@@ -266,36 +454,22 @@ def bad_coordinate(at: Situation) -> Diagnostic | None:
 
 
 def loose_number(at: Situation) -> Diagnostic | None:
-    """A line number that does not count on from the line before."""
+    """A line number that does not count on from the line before, or before a misspelt `BigActor`."""
+    if at.at_declaration and at.found.is_number:
+        hint = f"write BigActor for {at.following.shown}: from there on, the numbers of printed lines are left out"
+        return at.mistake(Code.UNEXPECTED, f"expected a declaration, found {at.found.shown}", hint)
     if at.at_statement and at.found.is_number:
         return at.mistake(Code.UNEXPECTED, f"expected a statement, found {at.found.shown}", LINE_NUMBERS)
     return None
 
 
-MISTAKES: Final[tuple[Callable[[Situation], Diagnostic | None], ...]] = (
-    bad_angle,
-    unknown_character,
-    unclosed_section,
-    misplaced_header,
-    single_equals,
-    bad_number,
-    misspelt_word,
-    misspelt_word_before,
-    misplaced_statement,
-    missing_destination,
-    misplaced_via,
-    missing_arrow,
-    chained_comparison,
-    missing_unit,
-    missing_host,
-    bad_coordinate,
-    missing_comma,
-    missing_brace,
-    missing_equals,
-    missing_kind,
-    reserved_word,
-    loose_number,
-)
+def misspelt_word_after_all(at: Situation) -> Diagnostic | None:
+    """`weak fairness of env nad ...`: what could stand here is nearly what stands before."""
+    return _misspelt(at.before, at.accepted)
+
+
+def _letters(word: str) -> list[str]:
+    return sorted(word.lower())
 
 
 def _misspelt(word: Word, candidates: Iterable[str]) -> Diagnostic | None:
@@ -306,8 +480,49 @@ def _misspelt(word: Word, candidates: Iterable[str]) -> Diagnostic | None:
     )
     nearest = difflib.get_close_matches(word.text[:40], possible, n=1, cutoff=_CLOSE)
     if not nearest:
-        nearest = [candidate for candidate in possible if candidate.lower() == word.text.lower()][:1]
+        nearest = [candidate for candidate in possible if _letters(candidate) == _letters(word.text)][:1]
     if not nearest:
         return None
     message = f"{word.shown} is not a word of the language here"
     return Diagnostic(Code.MISSPELT_KEYWORD, word.span, message, f"did you mean '{nearest[0]}'?")
+
+
+MISTAKES: Final[tuple[Callable[[Situation], Diagnostic | None], ...]] = (
+    bad_angle,
+    foreign_operator,
+    unknown_character,
+    unclosed_section,
+    misplaced_header,
+    single_equals,
+    bad_number,
+    foreign_word,
+    misspelt_word,
+    missing_at_most,
+    misspelt_word_before,
+    misplaced_statement,
+    misplaced_command,
+    misplaced_query,
+    missing_destination,
+    misplaced_via,
+    missing_arrow,
+    chained_comparison,
+    missing_unit,
+    missing_host,
+    missing_geometry,
+    missing_value,
+    missing_parenthesis,
+    bad_coordinate,
+    operator_first,
+    missing_recipient,
+    missing_comma,
+    missing_kind_word,
+    missing_brace,
+    missing_equals,
+    missing_kind,
+    missing_quotes,
+    missing_word,
+    reserved_word,
+    loose_number,
+    spare_separator,
+    misspelt_word_after_all,
+)

@@ -56,6 +56,17 @@ class Situation:
     prepared: Prepared
 
     @property
+    def following(self) -> Word:
+        """The word behind the one that was found."""
+        return word_at(self.prepared.text, self.found.span.end)
+
+    @property
+    def is_first(self) -> bool:
+        """Whether the word found is the first of its line."""
+        text, start = self.prepared.text, self.found.span.start
+        return not text[text.rfind("\n", 0, start) + 1 : start].strip()
+
+    @property
     def in_expression(self) -> bool:
         """Whether what is before is an expression that could go on."""
         return bool(self.accepted & {"of", "&&"})

@@ -35,6 +35,7 @@ _CONTROL: Final = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
 _NUMBERED: Final = re.compile(r"[ \t]*(?P<number>[0-9]{1,6})(?=\s|$)")
 _NUMBERED_ACTOR: Final = re.compile(r"[ \t]*[0-9]{1,6}[ \t]+BigActor\b")
 _QUOTED: Final = re.compile(r'"(?:[^"\\\n]|\\.)*+"')
+_CLOSE: Final = 'close it with ", or look for a quote that is missing before it'
 _PARTNER: Final = {"(": ")", "[": "]", "{": "}"}
 
 
@@ -161,7 +162,7 @@ def _scan(text: str) -> Prepared:
 
 def _unclosed(start: int, end: int) -> Diagnostic:
     message = "the string that begins here does not end on its line"
-    return Diagnostic(Code.UNCLOSED_STRING, Span(start, end), message, 'close it with "')
+    return Diagnostic(Code.UNCLOSED_STRING, Span(start, end), message, _CLOSE)
 
 
 def _refuse(sort: str | None, start: int, end: int, words: int, depth: int) -> None:

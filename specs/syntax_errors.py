@@ -7,6 +7,7 @@ from typing import Final
 from lark import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
 from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS
+from semantics.properties.kinds import Asked, asked_by
 from specs.codes import Code
 from specs.common_mistakes import FAMILY, MISTAKES
 from specs.diagnostics import Diagnostic
@@ -22,6 +23,8 @@ _OPERATORS: Final = frozenset(
 _PATHS: Final = frozenset(["[]", "<>", "always", "eventually", "next", "infinitely"])
 _FORMULA: Final = first_words("_claim") | _PATHS | {"forall", "exists", "not", "!", "false", "("}
 _CONNECTIVES: Final = frozenset(["and", "&&", "or", "||", "->", "<->", "U", "R", "W", "until", "leads"])
+_STANDARD: Final = frozenset(asked_by(Asked.BY_DEFAULT, Asked.BY_NAME))
+_HAPPENINGS: Final = frozenset(["appears", "arrives", "drifts", "leaves", "vanishes"])
 _GROUPS: Final[tuple[tuple[str, str, frozenset[str], frozenset[str]], ...]] = (
     ("observe", "a statement", STATEMENTS, frozenset({"NAME"})),
     ("signature", "a declaration", SECTIONS | {"control"}, frozenset()),
@@ -38,6 +41,13 @@ _GROUPS: Final[tuple[tuple[str, str, frozenset[str], frozenset[str]], ...]] = (
     ("polygon", "a geometry", frozenset({"point", "box", "polygon", "circle"}), frozenset()),
     ("of", "an operator", _OPERATORS, frozenset()),
     ("<->", "a connective", _CONNECTIVES, frozenset()),
+    ("invariant", "a property", first_words("_property") | _STANDARD, frozenset()),
+    (
+        "vanishes",
+        "what happens (appears, arrives, drifts, drops, leaves, vanishes)",
+        _HAPPENINGS,
+        frozenset(),
+    ),
 )
 _SORTS: Final = {
     "NAME": "a name",

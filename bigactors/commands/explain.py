@@ -1,22 +1,31 @@
-"""`bigactors explain`: what a diagnostic code means."""
+"""`bigactors explain`: what a diagnostic code or a word of a report means."""
 
 from argparse import Namespace
 
 from bigactors.exits import Exit
-from bigactors.mistakes import Mistake
+from bigactors.mistakes import Mistake, suggestion
 from bigactors.terminal import say
+from checker.reports.glossary import ALL, find_word
 from specs import Code, explain, find_code
 
 
 def run(options: Namespace) -> Exit:
-    """Print the explanation of a code, or the list of all."""
-    if options.code is None:
+    """Print the explanation of a code or a word, or the list of all."""
+    if not options.code:
         for code in sorted(Code, key=lambda code: code.number):
             say(f"{code.number}  {code.title}")
-        say("\nbigactors explain CODE says more of each")
+        say(f"\nwords of reports: {', '.join(ALL)}")
+        say("\nbigactors explain CODE, or a word, says more of each")
         return Exit.HOLDS
-    found = find_code(options.code)
-    if found is None:
-        raise Mistake(f"there is no code '{options.code:.40}'", "bigactors explain lists them all")
-    say(explain(found).rstrip())
+    asked = " ".join(options.code)
+    found, word = find_code(asked), find_word(asked)
+    if found is not None:
+        say(explain(found).rstrip())
+    elif word is not None:
+        say(f"{word[0]}\n\n{word[1]}")
+    else:
+        hint = suggestion(asked, ALL)
+        raise Mistake(
+            f"there is no code and no word '{asked:.40}'", hint or "bigactors explain lists them all"
+        )
     return Exit.HOLDS

@@ -1,14 +1,15 @@
 """Race-freedom (semantics.md, check 2): control races in a configuration, stale-observation races at a transition."""
 
-from collections.abc import Iterable, Iterator, Set
+from collections.abc import Iterable, Iterator, Mapping, Set
 from itertools import combinations
+from typing import Final
 
 from checker.properties.control_sites import common_sites
 from checker.properties.findings import Seen
 from checker.properties.inspections import Excerpt, Inspection
 from semantics.control import applicable
 from semantics.races.monitor import CONTROLS, slots_used, stale_tests
-from semantics.races.provenance import Dependency
+from semantics.races.provenance import EVERYTHING, Dependency
 from semantics.rules import TIMED_RULES, actuate
 from semantics.state.cells import MONITOR
 from semantics.state.configuration import Configuration, Transition
@@ -131,13 +132,32 @@ class StaleObservationRaces(Inspection):
 
 def _resting_on(c: Configuration, stale: Dependency, by: Transition) -> Seen:
     request = _request(by)
-    asked = " ".join(stale.asked or ())
     changed = "that answer" if stale.stale else "a relation that it uses"
-    message = (
-        f"{request} rests on '{asked}' of observe({stale.query}), "
-        f"and another agent has changed {changed} since it was sensed"
-    )
+    message = f"{request} rests on {asked_in_words(stale)}, and another agent has changed {changed} since it was sensed"
     return Seen(("stale-observation race", str(request)), by, message, alike=lambda: common_sites(c, request))
+
+
+_QUESTIONS: Final[Mapping[str, str]] = {
+    "all": "all that {seen} shows",
+    "members": "which names {seen} shows",
+    "size": "how many names {seen} shows",
+    "in": "whether {seen} shows {name}",
+    "parent": "where {seen} shows {name}",
+    "children": "what {seen} shows in {name}",
+    "links": "the links on which {seen} shows {name}",
+}
+"""What may be asked of an observation, by the first word of the key."""
+
+
+def asked_in_words(stale: Dependency) -> str:
+    """Return what was asked of an observation, as a report says it.
+
+    >>> from semantics.behaviours.observations import Nodes, Of, QueryOperator
+    >>> asked_in_words(Dependency(Of(QueryOperator.CHILDREN, Nodes(("gate0",))), (), asked=("in", "uav0")))
+    'whether observe(CHILDREN(gate0)) shows uav0'
+    """
+    question, *names = stale.asked or EVERYTHING
+    return _QUESTIONS[question].format(seen=f"observe({stale.query})", name=" ".join(names))
 
 
 def is_stale(c: Configuration, pending: Pending) -> tuple[Dependency, ...]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TypeVar
 
-from semantics.behaviours.program import Program
 from semantics.properties.kinds import Asked, PropertyKind, asked_by
 from semantics.properties.property import Property
 from semantics.state.setting import Control, Scheduler
@@ -15,6 +14,7 @@ from specs.elaboration.bodies import Bodies
 from specs.elaboration.formulas import Formulas
 from specs.elaboration.names import Names
 from specs.elaboration.temporal import TemporalFormulas
+from specs.elaboration.value_types import Types
 
 D = TypeVar("D", bound=s.Node)
 
@@ -39,12 +39,10 @@ def _only(named: tuple[D, ...], word: str, names: Names) -> D | None:
     return named[0] if named else None
 
 
-def elaborate_checks(
-    mission: s.Mission, names: Names, bodies: Bodies, program: Program
-) -> tuple[Property, ...]:
+def elaborate_checks(mission: s.Mission, names: Names, bodies: Bodies, types: Types) -> tuple[Property, ...]:
     """Return the properties in the order written, or those of the default, and those that go without saying."""
     written = [item for section in mission.each(s.Check) for item in section.properties]
-    formulas, found = Formulas(names, bodies, program), list[Property]()
+    formulas, found = Formulas(names, bodies, types), list[Property]()
     always = tuple(Property(kind, kind.value) for kind in asked_by(Asked.ALWAYS))
     seen = {prop.name for prop in always}
     temporal = TemporalFormulas(formulas)

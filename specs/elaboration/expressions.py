@@ -30,8 +30,12 @@ from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import Findings
 from specs.elaboration.names import Names
+from specs.elaboration.needs import AGENT, COLLECTION, CONDITION, NODE, NODES, NUMBER, Need, operands
 from specs.elaboration.scopes import Scope
+from specs.elaboration.value_types import MISTAKEN
+from specs.grammar import QUERY_WORDS
 
+_WORDS: Final = ("HOST", "SELF", "true", "false")
 FUNCTIONS: Final = tuple(
     sorted(name for name in OPERATORS if name.isidentifier() and name not in {"in", "of", "not"})
 )
@@ -42,9 +46,6 @@ _COLLECTIONS: Final[Mapping[type, type[TupleOf | SetOf | RouteOf]]] = {
     s.SetLiteral: SetOf,
     s.RouteLiteral: RouteOf,
 }
-
-_ANY: Final = Literal("")
-"""Stands for an expression with a mistake; the mission is refused."""
 
 
 def elaborate_expression(node: s.Expression, scope: Scope, names: Names) -> Expression:
@@ -70,7 +71,8 @@ def elaborate_expression(node: s.Expression, scope: Scope, names: Names) -> Expr
             return _binary(node, scope, names)
         case s.OfKind(operand, kind):
             names.kind(kind)
-            return Apply("of", (elaborate_expression(operand, scope, names), Literal(kind.text)))
+            members = elaborate_expression(operand, scope, names)
+            return Apply("of", (names.need(operand, members, COLLECTION, "'of'"), Literal(kind.text)))
         case s.FunctionCall():
             return _call(node, scope, names)
 
@@ -86,17 +88,22 @@ def _unary(node: s.UnaryOperation, scope: Scope, names: Names) -> Expression:
     if node.operator == "-" and isinstance(node.operand, s.IntegerLiteral):
         return Literal(-node.operand.value)
     operand = elaborate_expression(node.operand, scope, names)
-    return Apply("-", (Literal(0), operand)) if node.operator == "-" else Apply("not", (operand,))
+    if node.operator == "-":
+        return Apply("-", (Literal(0), names.need(node.operand, operand, NUMBER, "'-'")))
+    return Apply("not", (names.need(node.operand, operand, CONDITION, "'not'"),))
 
 
 def _binary(node: s.BinaryOperation, scope: Scope, names: Names) -> Expression:
     left = elaborate_expression(node.left, scope, names)
     right = elaborate_expression(node.right, scope, names)
     if node.operator in ("and", "or"):
+        names.need(node.left, left, CONDITION, f"'{node.operator}'")
+        names.need(node.right, right, CONDITION, f"'{node.operator}'")
         return Either(node.operator == "or", left, right)
-    if node.operator == "not in":
-        return Apply("not", (Apply("in", (left, right)),))
-    return Apply(node.operator, (left, right))
+    operator = node.operator.removeprefix("not ")
+    names.demands += operands(operator, (node.left, node.right), (left, right))
+    applied = Apply(operator, (left, right))
+    return Apply("not", (applied,)) if operator != node.operator else applied
 
 
 def _call(node: s.FunctionCall, scope: Scope, names: Names) -> Expression:
@@ -108,8 +115,10 @@ def _call(node: s.FunctionCall, scope: Scope, names: Names) -> Expression:
             f"it is a {other}, and no function" if other else f"the functions are {', '.join(FUNCTIONS)}"
         )
         names.findings.unknown(node.function, FUNCTIONS, sort="function", otherwise=otherwise)
-        return _ANY
-    check_arity(node.function, len(arguments), OPERATORS[name].arity, names.findings)
+        return MISTAKEN
+    if not check_arity(node.function, len(arguments), OPERATORS[name].arity, names.findings):
+        return MISTAKEN
+    names.demands += operands(name, node.arguments, arguments)
     return Apply(name, arguments)
 
 
@@ -133,7 +142,7 @@ def _name(node: s.Name, scope: Scope, names: Names) -> Expression:
         return Literal(node.text)
     sort = names.sort_of(node.text)
     if sort is None:
-        names.findings.unknown(node, [*scope.names(), *names.kinds, *names.agents])
+        names.findings.unknown(node, [*scope.names(), *names.kinds, *names.agents, *_WORDS])
     else:
         family = names.families.get(node.text, {})
         hint = (
@@ -142,7 +151,7 @@ def _name(node: s.Name, scope: Scope, names: Names) -> Expression:
             else f'as a text it is written "{node.text}"'
         )
         names.findings.add(Code.WRONG_SORT, node, f"'{node.text}' is a {sort}, which is no value", hint)
-    return _ANY
+    return MISTAKEN
 
 
 def _member(node: s.Member, scope: Scope, names: Names) -> Expression:
@@ -152,11 +161,14 @@ def _member(node: s.Member, scope: Scope, names: Names) -> Expression:
     """
     index, variable = elaborate_expression(node.index, scope, names), scope.find(node.family.text)
     if variable is not None:
-        return Apply("element", (Variable(variable), index))
-    if index is _ANY:
-        return _ANY
+        found = (Variable(variable), index)
+        names.demands += operands("element", (node.family, node.index), found)
+        return Apply("element", found)
+    if index is MISTAKEN:
+        return MISTAKEN
     if isinstance(index, Literal):
-        return Literal(names.member(node.family, index.value, node.index) or "")
+        member = names.member(node.family, index.value, node.index)
+        return MISTAKEN if member is None else Literal(member)
     members = names.family(node.family) or {}
     if all(
         isinstance(leaf, Literal) for leaf in leaves(index)
@@ -171,50 +183,36 @@ def _member(node: s.Member, scope: Scope, names: Names) -> Expression:
 # --- what must be a node or a bigActor ------------------------------------------------------------------------
 
 
-def elaborate_node(node: s.Expression, scope: Scope, names: Names) -> Expression:
-    """Return an expression that is to be a node; reports what certainly is none."""
-    return _named(node, scope, names, "node")
+def elaborate_node(node: s.Expression, scope: Scope, names: Names, by: str, need: Need = NODE) -> Expression:
+    """Return an expression that is to be a node, as something needs it; reports a name that is none."""
+    return _named(node, scope, names, need, by)
 
 
-def elaborate_agent(node: s.Expression, scope: Scope, names: Names) -> Expression:
-    """Return an expression that is to be a bigActor; reports what certainly is none."""
-    return _named(node, scope, names, "bigActor")
+def elaborate_agent(node: s.Expression, scope: Scope, names: Names, by: str) -> Expression:
+    """Return an expression that is to be a bigActor, as something needs it; reports a name that is none."""
+    return _named(node, scope, names, AGENT, by)
 
 
-def _named(node: s.Expression, scope: Scope, names: Names, wanted: str) -> Expression:
-    """Elaborate what is to name a node or a bigActor; a constant that doesn't is reported."""
-    known = names.kinds if wanted == "node" else names.agents
-    other = s.SelfReference if wanted == "node" else s.HostReference
-    hint = "write its name, or a variable that holds it"
-    if isinstance(node, s.Name) and node.text in scope.fixed:
-        value = scope.fixed[node.text]
-        if value not in known:
-            what = "a number" if isinstance(value, int) else "an entity"
-            message = f"a {wanted} is expected here, and '{node.text}' is {what}"
-            names.findings.add(Code.WRONG_VALUE, node, message, hint)
-        return Literal(value)
-    if isinstance(node, s.Name) and scope.find(node.text) is None:
+def _named(node: s.Expression, scope: Scope, names: Names, need: Need, by: str) -> Expression:
+    """Elaborate what is to name a node or a bigActor; a word that doesn't is reported."""
+    known = names.agents if need is AGENT else names.kinds
+    if isinstance(node, s.Name) and scope.find(node.text) is None and node.text not in scope.fixed:
         sort = names.sort_of(node.text)
         if sort is None:
-            names.findings.unknown(node, [*scope.names(), *known])
-        elif wanted == "node":
-            names.entity(node)
-        else:
+            words = {"SELF"} if need is AGENT else {"HOST"} | (QUERY_WORDS if need is NODES else set())
+            names.findings.unknown(node, [*scope.names(), *known, *words])
+        elif need is AGENT:
             names.agent(node)
+        else:
+            names.entity(node)
         return Literal(node.text)
     if isinstance(node, s.TextLiteral) and node.value not in known:
-        message = f"a {wanted} is expected here, and a text that names none is given"
-        names.findings.add(Code.WRONG_VALUE, node, message, names.findings.suggest(node.value, known))
-    elif isinstance(node, _NAMELESS | other) or (wanted == "node" and _is_member(node, scope)):
-        names.findings.add(Code.WRONG_VALUE, node, f"a {wanted} is expected here", hint)
-    return elaborate_expression(node, scope, names)
-
-
-_NAMELESS: Final = s.IntegerLiteral | s.TruthLiteral | s.TupleLiteral | s.SetLiteral | s.RouteLiteral
-
-
-def _is_member(node: s.Expression, scope: Scope) -> bool:
-    return isinstance(node, s.Member) and scope.find(node.family.text) is None
+        wanted = "a bigActor" if need is AGENT else "an entity"
+        message = f"{by} needs {wanted}, and a text that names none is given"
+        hint = names.findings.suggest(node.value, known) or need.remedy
+        names.findings.add(Code.WRONG_VALUE, node, message, hint)
+        return Literal(node.value)
+    return names.need(node, elaborate_expression(node, scope, names), need, by)
 
 
 # --- queries --------------------------------------------------------------------------------------------------
@@ -228,7 +226,7 @@ def elaborate_query(query: s.Query, scope: Scope, names: Names, *, inside: bool 
         case s.HostReference():
             return QueryOf(None, Host())
         case s.Name():
-            return QueryOf(None, elaborate_node(query, scope, names))
+            return QueryOf(None, elaborate_node(query, scope, names, "a query", NODES))
         case s.QueryApplication(relation, argument):
             if inside and relation == QueryOperator.HOSTED_AT:
                 hint = "bigActors have no parents, children or links: write HOSTED_AT outermost"

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from semantics.behaviours.program import Program, VariableOf
+from semantics.behaviours.program import VariableOf
 from semantics.behaviours.values import Value, show
 from semantics.properties.propositions import (
     ORDERS,
@@ -34,10 +34,20 @@ from specs.elaboration.among import Among
 from specs.elaboration.bodies import Bodies
 from specs.elaboration.constants import elaborate_constant
 from specs.elaboration.names import Names
-from specs.elaboration.value_types import ANY, WORDS, types_of
+from specs.elaboration.value_types import ANY, NAMES, NOTHING, Sort, Types, sort_of
 from specs.writing import write
 
 MOST_ATOMS: Final = 50_000
+
+_PLURALS: Final = {
+    Sort.NUMBER: "numbers",
+    Sort.TEXT: "names and texts",
+    Sort.TRUTH: "true and false",
+    Sort.TUPLE: "tuples",
+    Sort.SET: "sets",
+    Sort.ROUTE: "routes",
+    Sort.OBSERVATION: "observations",
+}
 
 NOBODY: Final = REGION
 """What a quantified name stands for where there is nothing to quantify over."""
@@ -80,10 +90,10 @@ class TooLarge(Exception):
 class Formulas:
     """Elaborates the formulas of a mission; `atoms` counts those of all of them."""
 
-    def __init__(self, names: Names, bodies: Bodies, program: Program) -> None:
+    def __init__(self, names: Names, bodies: Bodies, types: Types) -> None:
         self.names = names
         self.bodies = bodies
-        self.types = types_of(program)
+        self.types = types
         self.atoms = 0
         self.among = Among(names, bodies)
         self.ranges = set[tuple[str, ...]]()
@@ -268,9 +278,10 @@ class Formulas:
             hint = "write a whole number, or compare with == or !="
             self.names.findings.add(Code.NOT_COMPARABLE, node, message, hint)
             return
-        types = frozenset[type]().union(*(self.types.get(each, ANY) for each in variable.variables))
-        if type(value) not in types:
-            has = " or ".join(WORDS[each] for each in WORDS if each in types)
+        sorts = frozenset[Sort]().union(*(self.types.get(each, NOTHING).sorts for each in variable.variables))
+        sorts = sorts | NAMES if sorts & NAMES else sorts or ANY.sorts
+        if sort_of(value) not in sorts:
+            has = " or ".join(words for sort, words in _PLURALS.items() if sort in sorts)
             message = f"'{variable}' never has a value of that type, only {has}"
             hint = f"whether it has a value at all is asked with: bound {variable}"
             self.names.findings.add(Code.NOT_COMPARABLE, node, message, hint)

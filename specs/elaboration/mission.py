@@ -10,6 +10,7 @@ from typing import Final
 
 from physical import open_file
 from semantics.contingencies import Precautions
+from semantics.environment import Says
 from semantics.properties.property import Property, watched
 from semantics.state.brief import cut
 from semantics.state.configuration import Configuration
@@ -29,10 +30,12 @@ from specs.elaboration.findings import Findings
 from specs.elaboration.live import elaborate_live
 from specs.elaboration.mobility import check_nesting, elaborate_mobility, fixed_entities, warn_of_outliers
 from specs.elaboration.names import Names
+from specs.elaboration.needs import check_types
 from specs.elaboration.realisability import Ground, check_controls
 from specs.elaboration.rules import elaborate_rules
 from specs.elaboration.signature import elaborate_signature
 from specs.elaboration.unread import independent
+from specs.elaboration.value_types import Inference
 from specs.elaboration.variation import AS_WRITTEN, Variation
 from specs.elaboration.world import elaborate_world
 from specs.missions import shipped_missions
@@ -120,7 +123,10 @@ def elaborate(
     check_controls(bodies, Ground(names, world, mobility, fixed))
     scheduler, control = elaborate_scheduler(mission, names), elaborate_control(mission, names)
     scheduler, control = variation.scheduler or scheduler, variation.control or control
-    properties = elaborate_checks(mission, names, bodies, program)
+    said = tuple(clause.message for clause in clauses if isinstance(clause, Says))
+    inference = Inference(program, frozenset(names.kinds), frozenset(names.agents), said)
+    types = check_types(names.demands, inference, names.findings)
+    properties = elaborate_checks(mission, names, bodies, types)
     precautions = elaborate_live(mission, names)
     _stop(names.findings)
     setting = Setting(

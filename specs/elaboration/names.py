@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
+from semantics.behaviours.expressions import Expression
 from semantics.behaviours.values import Value, show
 from semantics.state.signature import REGION, Signature
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import Findings, a, shorten
+from specs.elaboration.needs import Demand, Need, Use
 
 SORTS: Final = ("entity", "agent", "family", "kind", "channel", "rule", "behaviour")
 AGENTS: Final = "agents"
@@ -44,6 +46,7 @@ class Names:
         channels: All channels.
         lacking: Kinds that were reported as undeclared.
         families: For each family its members by their entities, in turn.
+        demands: What the values of expressions are needed for, judged when all types are known.
     """
 
     findings: Findings
@@ -56,6 +59,7 @@ class Names:
     families: dict[str, dict[str, str]] = field(default_factory=dict)
     channels: set[str] = field(default_factory=set)
     lacking: set[str] = field(default_factory=set)
+    demands: list[Demand] = field(default_factory=list)
 
     def declare(self, sort: str, name: str, where: s.Node | s.Span) -> bool:
         """Give a name its meaning; reports one that has a meaning already, and tells whether all is well."""
@@ -83,6 +87,11 @@ class Names:
 
     def _line(self, sort: str, name: str) -> int:
         return self.findings.source.line(self.spans[sort, name].start)
+
+    def need(self, node: s.Node, value: Expression, need: Need, by: str) -> Expression:
+        """Note what an expression is needed for, and return it."""
+        self.demands.append(Use(node, value, need, by))
+        return value
 
     # --- look-ups
 

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from semantics.behaviours.patterns import Anything, Elements, Exactly, Pattern
-from semantics.behaviours.values import Value
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.constants import elaborate_constant
 from specs.elaboration.names import Names
+from specs.elaboration.scopes import Scope
 
 Bind = Callable[[s.Name], str]
 """Gives a variable of a pattern its unique name."""
 
 
-def elaborate_pattern(
-    node: s.Pattern, names: Names, bind: Bind, constants: Mapping[str, Value], *, react: bool
-) -> Pattern:
+def elaborate_pattern(node: s.Pattern, names: Names, scope: Scope, bind: Bind, *, react: bool) -> Pattern:
     """Return a pattern; in a `react`, a variable that is the whole of it takes an observation."""
     match node:
         case s.ObservationPattern(variable):
@@ -30,12 +28,17 @@ def elaborate_pattern(
             return Anything()
         case s.LiteralPattern(value):
             return Exactly(elaborate_constant(value, names))
+        case s.ConstantPattern(name) if scope.find(name.text) is not None:
+            hint = f"take the value, and compare it in a guard: case x if x == {name.text} => ..."
+            message = f"'{name.text}' is a variable, and a pattern compares with fixed names"
+            names.findings.add(Code.NOT_CONSTANT, node, message, hint)
+            return Anything()
         case s.ConstantPattern(name):
-            return Exactly(elaborate_constant(name, names, constants))
+            return Exactly(elaborate_constant(name, names, scope.fixed))
         case s.TuplePattern(items):
             found = []
             for item in items:  # a loop, since a comprehension would cost a frame at each depth
-                found.append(elaborate_pattern(item, names, bind, constants, react=False))  # noqa: PERF401
+                found.append(elaborate_pattern(item, names, scope, bind, react=False))  # noqa: PERF401
             return Elements(tuple(found))
 
 

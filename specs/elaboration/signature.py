@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from difflib import get_close_matches
 from typing import Final
 
 from semantics.state.signature import Kind, Signature
@@ -14,6 +15,8 @@ from specs.elaboration.proposed_signature import proposed
 from specs.standard_signature import standard_kinds
 
 _MOST_NAMED: Final = 8
+_ALIKE: Final = 0.8
+"""How alike the declared kind must be that one of the paper's is taken for, misspelt."""
 
 Kinds = dict[str, Kind]
 Uses = dict[str, list[s.Name]]
@@ -117,7 +120,9 @@ def _lacking_kinds(mission: s.Mission, kinds: Kinds, uses: Uses, names: Names) -
     own = {kind.name: kind for kind in proposed(mission, tuple(uses))}
     for kind, where in uses.items():
         times = f", used {len(where)} times" if len(where) > 1 else ""
-        similar = "" if kind in _standard() else names.findings.suggest(kind, (*kinds, AGENTS))
+        alike = get_close_matches(kind.lower(), [other.lower() for other in kinds], 1, _ALIKE)
+        unlike = kind in _standard() and not alike
+        similar = "" if unlike else names.findings.suggest(kind, (*kinds, AGENTS))
         hint = similar or f"declare it: signature {{ {_written(own[kind])} }}"
         names.findings.add(Code.UNKNOWN_KIND, where[0], f"unknown kind '{shorten(kind)}'{times}", hint)
     holding = {

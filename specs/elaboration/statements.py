@@ -24,11 +24,13 @@ from specs.elaboration.expressions import (
 )
 from specs.elaboration.findings import Findings
 from specs.elaboration.names import Names
+from specs.elaboration.needs import COLLECTION, CONDITION, CONDITIONAL, FILLED, Choice, Need
 from specs.elaboration.patterns import check_distinct, elaborate_pattern
 from specs.elaboration.rule_regions import regions_of
 from specs.elaboration.rule_schemas import Parameter, Schema
 from specs.elaboration.rules import elaborate_rule, word_of
 from specs.elaboration.scopes import Scope, Variables
+from specs.foreign_words import DONE
 from specs.writing import write
 
 LONGEST: Final = 7 * 24 * 3600.0
@@ -178,11 +180,8 @@ class _Statements:
     def expression(self, node: s.Expression, place: _Place) -> Expression:
         return elaborate_expression(node, place.scope, self.names)
 
-    def collection(self, node: s.Expression, place: _Place) -> Expression:
-        if isinstance(node, s.TupleLiteral):
-            hint = f"in this order it is a route: {write(s.RouteLiteral(node.items))}"
-            self.names.findings.add(Code.WRONG_VALUE, node, "nothing goes through a tuple", hint)
-        return self.expression(node, place)
+    def needed(self, node: s.Expression, place: _Place, need: Need, by: str) -> Expression:
+        return self.names.need(node, self.expression(node, place), need, by)
 
     # --- commands
 
@@ -204,13 +203,14 @@ class _Statements:
                 self.names.findings.unknown(action.rule, self.names.rules, sort="rule")
             else:
                 check_arity(action.rule, len(action.arguments), len(rule.parameters), self.names.findings)
-            return action.rule.text, tuple(self.node(each, place) for each in action.arguments)
-        arguments = tuple(self.node(each, place) for each in (*action.operands, *action.via))
+            by = f"rule '{action.rule.text}'"
+            return action.rule.text, tuple(self.node(each, place, by) for each in action.arguments)
+        arguments = tuple(self.node(each, place, action.name) for each in (*action.operands, *action.via))
         _check_way(action, arguments, self.names.findings)
         return action.name, arguments
 
-    def node(self, node: s.Expression, place: _Place) -> Expression:
-        return elaborate_node(node, place.scope, self.names)
+    def node(self, node: s.Expression, place: _Place, by: str) -> Expression:
+        return elaborate_node(node, place.scope, self.names, by)
 
     def inline(self, body: s.RuleBody, place: _Place, number: int) -> tuple[str, tuple[Expression, ...]]:
         """A rule written in place is open in the variables that are bound there."""
@@ -250,15 +250,15 @@ class _Statements:
 
     def send(self, node: s.Send, place: _Place, _: int) -> k.Statement:
         message = self.expression(node.message, place)
-        return k.Send(message, elaborate_agent(node.recipient, place.scope, self.names))
+        return k.Send(message, elaborate_agent(node.recipient, place.scope, self.names, "'send'"))
 
     def migrate(self, node: s.Migrate, place: _Place, _: int) -> k.Statement:
-        host = self.node(node.host, place)
+        host = self.node(node.host, place, "'migrate'")
         self.into.migrations.append(host)
         return k.Migrate(host)
 
     def spawn(self, node: s.Spawn, place: _Place, _: int) -> k.Statement:
-        host, called = self.node(node.host, place), node.behaviour
+        host, called = self.node(node.host, place, "'hosted_at'"), node.behaviour
         arguments = tuple(self.expression(each, place) for each in called.arguments)
         self.called(called)
         if node.name is None:
@@ -293,10 +293,11 @@ class _Statements:
                 message,
                 hint or f"bind it: let {node.variable.text} = ...",
             )
+            variable = self.bind(place.scope, node.variable)  # what follows is not to blame
         return k.Assign(variable or "", value)
 
     def if_(self, node: s.If, place: _Place, _: int) -> k.Statement:
-        test = self.expression(node.condition, place)
+        test = self.needed(node.condition, place, CONDITION, CONDITIONAL)
         then = self.block(node.then, place.scope.inner(), tail=place.tail)
         return k.If(test, then, self.block(node.otherwise, place.scope.inner(), tail=place.tail))
 
@@ -311,20 +312,22 @@ class _Statements:
         return k.Loop(body)
 
     def while_(self, node: s.While, place: _Place, _: int) -> k.Statement:
-        test = self.expression(node.condition, place)
+        test = self.needed(node.condition, place, CONDITION, CONDITIONAL)
         return k.While(test, self.block(node.body, place.scope.inner(), tail=False))
 
     def for_(self, node: s.For, place: _Place, _: int) -> k.Statement:
-        members, rest = self.collection(node.collection, place), self.program.variables.rest()
+        members = self.needed(node.collection, place, COLLECTION, "'for'")
+        rest = self.program.variables.rest()
         inner, each = place.scope.inner(), self.program.reserve(node)
         variable = self.bind(inner, node.variable)
         self.program.statements[each] = k.ForEach(variable, rest, self.block(node.body, inner, tail=False))
         return k.For(members, rest, each)
 
     def match(self, node: s.Match, place: _Place, number: int) -> k.Statement:
-        return k.Match(
-            self.expression(node.subject, place), self.cases(node.cases, place, number, react=False)
-        )
+        subject = self.expression(node.subject, place)
+        cases = self.cases(node.cases, place, number, react=False)
+        self.names.demands.append(Choice(node.subject, subject, tuple(case.pattern for case in cases)))
+        return k.Match(subject, cases)
 
     def choose(self, node: s.Choose, place: _Place, number: int) -> k.Statement:
         found: list[k.Block] = []
@@ -334,7 +337,8 @@ class _Statements:
         return k.Choose(tuple(found))
 
     def choose_from(self, node: s.ChooseFrom, place: _Place, _: int) -> k.Statement:
-        members, inner = self.collection(node.collection, place), place.scope.inner()
+        members = self.needed(node.collection, place, FILLED, "'choose'")
+        inner = place.scope.inner()
         variable = self.bind(inner, node.variable)
         return k.ChooseFrom(variable, members, self.block(node.body, inner, tail=place.tail))
 
@@ -347,7 +351,9 @@ class _Statements:
     def called(self, node: s.Call) -> None:
         behaviour = self.names.behaviours.get(node.behaviour.text)
         if behaviour is None:
-            self.names.findings.unknown(node.behaviour, self.names.behaviours, sort="behaviour")
+            instead = DONE.get(node.behaviour.text, "define it: def name(parameters) = { ... }")
+            known = self.names.behaviours
+            self.names.findings.unknown(node.behaviour, known, sort="behaviour", otherwise=instead)
         else:
             check_arity(node.behaviour, len(node.arguments), len(behaviour.parameters), self.names.findings)
 
@@ -360,11 +366,14 @@ class _Statements:
             inner = place.scope.inner()
             check_distinct(case.pattern, self.names)
             bind = partial(self.bind, inner)
-            pattern = elaborate_pattern(case.pattern, self.names, bind, place.scope.fixed, react=react)
-            guard = None if case.guard is None else elaborate_expression(case.guard, inner, self.names)
-            tested = (self.program.reserve(case),) if react and guard is not None else ()
+            pattern = elaborate_pattern(case.pattern, self.names, place.scope, bind, react=react)
+            guard = None
+            if case.guard is not None:
+                tested = elaborate_expression(case.guard, inner, self.names)
+                guard = self.names.need(case.guard, tested, CONDITION, CONDITIONAL)
+            first = (self.program.reserve(case),) if react and guard is not None else ()
             body = self.block(case.body, inner, tail=place.tail)
-            found.append(k.Case(pattern, guard, (*tested, *body)))
+            found.append(k.Case(pattern, guard, (*first, *body)))
         return tuple(found)
 
 

@@ -1,8 +1,10 @@
-"""The possible types of variables' values, over-approximated from the text."""
+"""The possible types of values, over-approximated from the text: what is said of none of them is certain."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import Final
 
 from semantics.behaviours.expressions import (
@@ -18,87 +20,326 @@ from semantics.behaviours.expressions import (
     Variable,
 )
 from semantics.behaviours.observations import Observation
-from semantics.behaviours.patterns import Anything, variables
+from semantics.behaviours.patterns import Anything, Elements, Exactly, Pattern
 from semantics.behaviours.program import Program
-from semantics.behaviours.statements import Assign, Call, ChooseFrom, ForEach, Match, React, Spawn, Statement
-from semantics.behaviours.values import Route, Truth
+from semantics.behaviours.statements import (
+    Assign,
+    Call,
+    ChooseFrom,
+    For,
+    ForEach,
+    Match,
+    React,
+    Send,
+    Spawn,
+    Statement,
+)
+from semantics.behaviours.values import Route, Truth, Value, within
 
-Types = frozenset[type]
+MISTAKEN: Final = Literal("")
+"""Stands for an expression with a mistake, by its identity: the mission is refused, and its type is unknown."""
 
-WORDS: Final[Mapping[type, str]] = {
-    int: "numbers",
-    str: "names and texts",
-    Truth: "true and false",
-    tuple: "tuples",
-    frozenset: "sets",
-    Route: "routes",
-    Observation: "observations",
+
+class Sort(StrEnum):
+    """What a value is, by what messages call it."""
+
+    NUMBER = "a number"
+    TRUTH = "true or false"
+    TEXT = "a text"
+    ENTITY = "an entity"
+    AGENT = "a bigActor"
+    TUPLE = "a tuple"
+    SET = "a set"
+    ROUTE = "a route"
+    OBSERVATION = "an observation"
+
+
+Sorts = frozenset[Sort]
+EVERY: Final = Sorts(Sort)
+NAMES: Final = Sorts({Sort.TEXT, Sort.ENTITY, Sort.AGENT})
+HOLDERS: Final = Sorts({Sort.SET, Sort.ROUTE})
+COLLECTIONS: Final = HOLDERS | {Sort.OBSERVATION}
+PLACES: Final = Sorts({Sort.TEXT, Sort.ENTITY})
+"""What an observation calls a place: an entity, or the region around everything, which is none."""
+
+Shape = tuple[int, str | None]
+"""How many items a tuple has, and the text that is its first item, if that is fixed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Type:
+    """What a value may be.
+
+    Attributes:
+        sorts: Its possible sorts; none where there is no value at all.
+        members: Those of the members of its sets and routes.
+        tuples: Those of the items of its tuples, by their shape; None where they may be any.
+    """
+
+    sorts: Sorts
+    members: Sorts = frozenset()
+    tuples: Mapping[Shape, tuple[Sorts, ...]] | None = field(default_factory=dict)
+
+    def __or__(self, other: Type) -> Type:
+        return Type(
+            self.sorts | other.sorts, self.members | other.members, _merged(self.tuples, other.tuples)
+        )
+
+    def without(self, sort: Sort) -> Type:
+        """Return the type of a value that is not of a sort."""
+        return Type(self.sorts - {sort}, self.members, self.tuples)
+
+
+def _merged(
+    one: Mapping[Shape, tuple[Sorts, ...]] | None, other: Mapping[Shape, tuple[Sorts, ...]] | None
+) -> Mapping[Shape, tuple[Sorts, ...]] | None:
+    if one is None or other is None:
+        return None
+    both = {
+        shape: tuple(a | b for a, b in zip(one[shape], other[shape], strict=True))
+        for shape in one.keys() & other.keys()
+    }
+    return {**one, **other, **both}
+
+
+def of(*sorts: Sort) -> Type:
+    """Return the type of a value of these sorts, of whose parts nothing is known."""
+    return Type(
+        Sorts(sorts), EVERY if HOLDERS & Sorts(sorts) else Sorts(), None if Sort.TUPLE in sorts else {}
+    )
+
+
+def sort_of(value: Value) -> Sort:
+    """Return the sort of a constant; whether a text names something is left open."""
+    if isinstance(value, str):
+        return Sort.TEXT
+    return next(sort for type_, sort in _SORT_OF.items() if isinstance(value, type_))
+
+
+_SORT_OF: Final[Mapping[type, Sort]] = {
+    Truth: Sort.TRUTH,
+    int: Sort.NUMBER,
+    tuple: Sort.TUPLE,
+    frozenset: Sort.SET,
+    Route: Sort.ROUTE,
+    Observation: Sort.OBSERVATION,
 }
-"""What values of each type are called."""
 
-ANY: Final = Types(WORDS)
-NONE: Final = Types()
+ANY: Final = of(*Sort)
+NOTHING: Final = Type(Sorts())
+Types = Mapping[str, Type]
 
-_RESULTS: Final[Mapping[str, type]] = {
-    **dict.fromkeys(("in", "==", "!=", "<", "<=", ">", ">=", "not", "empty", "linked"), Truth),
-    **dict.fromkeys(("union", "nodes", "agents", "children"), frozenset),
-    **dict.fromkeys(("kind", "parent", "[]"), str),
-    "size": int,
+
+@dataclass(frozen=True)
+class Inference:
+    """What is known of a mission's values.
+
+    Attributes:
+        program: What bigActors run.
+        entities: The names of entities.
+        agents: The names of bigActors.
+        said: What someone outside says.
+    """
+
+    program: Program
+    entities: frozenset[str]
+    agents: frozenset[str]
+    said: tuple[Value, ...] = ()
+
+    def variables(self) -> Types:
+        """Return the types of the values that each variable may be given; a least fixpoint, since loops lead back."""
+        known: dict[str, Type] = {}
+        grown = True
+        while grown:
+            grown = False
+            messages = self._messages(known)
+            for statement in self.program.statements:
+                for variable, given in self.given(statement, known, messages):
+                    before = known.get(variable, NOTHING)
+                    known[variable] = before | given
+                    grown = grown or known[variable] != before
+        return known
+
+    def _messages(self, known: Types) -> Type:
+        sent = (each.message for each in self.program.statements if isinstance(each, Send))
+        found = NOTHING
+        for message in (*map(self.constant, self.said), *(self.type(each, known) for each in sent)):
+            found |= message
+        return found
+
+    def given(
+        self, statement: Statement, known: Types, messages: Type | None = None
+    ) -> Iterator[tuple[str, Type]]:
+        """Yield what a statement gives to variables."""
+        match statement:
+            case Assign(variable, expression):
+                yield variable, self.type(expression, known)
+            case Call(behaviour, arguments) | Spawn(_, _, behaviour, arguments):
+                called = self.program.behaviours.get(behaviour)
+                parameters = () if called is None else called.parameters
+                for parameter, argument in zip(parameters, arguments, strict=False):
+                    yield parameter, self.type(argument, known)
+            case For(members, _, each):
+                following = self.program.statements[each]
+                if isinstance(following, ForEach):
+                    yield following.variable, of(*members_of(self.type(members, known)))
+            case ChooseFrom(variable, members, _):
+                yield variable, of(*members_of(self.type(members, known)))
+            case React(cases):
+                received = (ANY if messages is None else messages) | of(Sort.OBSERVATION)
+                for case in cases:
+                    yield from bound(case.pattern, received)
+            case Match(value, cases):
+                subject = self.type(value, known)
+                for case in cases:
+                    yield from bound(case.pattern, subject)
+
+    def constant(self, value: Value) -> Type:
+        """Return the type of a constant."""
+        match value:
+            case str() if value in self.entities | self.agents:
+                return of(Sort.ENTITY if value in self.entities else Sort.AGENT)
+            case tuple():
+                shape = (len(value), value[0] if value and isinstance(value[0], str) else None)
+                return Type(
+                    Sorts({Sort.TUPLE}), tuples={shape: tuple(self.constant(each).sorts for each in value)}
+                )
+            case frozenset() | Route():
+                members = (self.constant(each).sorts for each in within(value))
+                return Type(Sorts({sort_of(value)}), Sorts().union(*members))
+            case _:
+                return of(sort_of(value))
+
+    def type(self, expression: Expression, known: Types) -> Type:
+        """Return the type of an expression."""
+        match expression:
+            case Literal(value):
+                return ANY if expression is MISTAKEN else self.constant(value)
+            case Variable(name):
+                return known.get(name, NOTHING)
+            case Host():
+                return of(Sort.ENTITY)
+            case Self():
+                return of(Sort.AGENT)
+            case Either():
+                return of(Sort.TRUTH)
+            case TupleOf(items):
+                first = items[0].value if isinstance(items[0], Literal) else None
+                shape = (len(items), first if isinstance(first, str) else None)
+                return Type(
+                    Sorts({Sort.TUPLE}), tuples={shape: tuple(self.type(each, known).sorts for each in items)}
+                )
+            case SetOf(items) | RouteOf(items):
+                sort = Sort.ROUTE if isinstance(expression, RouteOf) else Sort.SET
+                return Type(Sorts({sort}), Sorts().union(*(self.type(each, known).sorts for each in items)))
+            case Apply(operator, arguments):
+                given = [self.type(argument, known) for argument in arguments]
+                if operator == "element":
+                    return _element(given[0], arguments[1])
+                return _RESULTS[operator](*given) if operator in _RESULTS else ANY
+
+
+def members_of(collection: Type) -> Sorts:
+    """Return the sorts of what a set, a route or an observation holds."""
+    seen = NAMES if Sort.OBSERVATION in collection.sorts else Sorts()
+    return collection.members | seen if HOLDERS & collection.sorts else seen
+
+
+def bound(pattern: Pattern, value: Type) -> Iterator[tuple[str, Type]]:
+    """Yield what a pattern gives to variables, where it takes a value of that type."""
+    match pattern:
+        case Anything(str() as variable, kind):
+            seen, told = of(Sort.OBSERVATION), value.without(Sort.OBSERVATION)
+            yield variable, seen if kind == "observation" else told if kind == "message" else value
+        case Elements(items):
+            parts = _items(items, value)
+            for item, sorts in zip(items, parts, strict=True):
+                yield from bound(item, of(*sorts))
+
+
+def may_take(pattern: Pattern, value: Type, inference: Inference) -> bool:
+    """Tell whether a pattern may take a value of that type."""
+    match pattern:
+        case Anything(_, "observation"):
+            return Sort.OBSERVATION in value.sorts
+        case Anything(_, kind):
+            return bool(value.sorts - {Sort.OBSERVATION} if kind == "message" else value.sorts)
+        case Exactly(constant):
+            return bool(inference.constant(constant).sorts & value.sorts)
+        case Elements(items):
+            parts = zip(items, _items(items, value), strict=True)
+            return Sort.TUPLE in value.sorts and all(
+                may_take(item, of(*sorts), inference) for item, sorts in parts
+            )
+
+
+def _items(items: tuple[Pattern, ...], value: Type) -> tuple[Sorts, ...]:
+    """Return the sorts of the items of the tuples that a pattern may take."""
+    if value.tuples is None:
+        return (EVERY,) * len(items)
+    wanted = items[0].value if isinstance(items[0], Exactly) else None
+    found = [
+        sorts
+        for (length, first), sorts in value.tuples.items()
+        if length == len(items) and (wanted is None or first is None or first == wanted)
+    ]
+    return tuple(map(Sorts().union, *found)) if found else (Sorts(),) * len(items)
+
+
+def _element(value: Type, index: Expression) -> Type:
+    """Return the type of one item of a tuple or a route."""
+    if value.tuples is None:
+        return ANY
+    at = index.value if isinstance(index, Literal) and isinstance(index.value, int) else None
+    items = [
+        sorts
+        for parts in value.tuples.values()
+        for position, sorts in enumerate(parts)
+        if at is None or at == position
+    ]
+    stops = value.members if Sort.ROUTE in value.sorts else Sorts()
+    return of(*stops.union(*items))
+
+
+def _always(*sorts: Sort) -> Callable[..., Type]:
+    return lambda *_: of(*sorts)
+
+
+def _set(members: Iterable[Sort]) -> Type:
+    return Type(Sorts({Sort.SET}), Sorts(members))
+
+
+def _sum(left: Type, right: Type) -> Type:
+    number = of(Sort.NUMBER) if Sort.NUMBER in left.sorts else NOTHING
+    return number | Type(left.sorts & HOLDERS, left.members | members_of(right))
+
+
+def _part(left: Type, members: Sorts) -> Type:
+    """Return what is kept of a collection: of a route a route, else a set."""
+    route = Type(Sorts({Sort.ROUTE}), members) if Sort.ROUTE in left.sorts else NOTHING
+    return route | _set(members) if left.sorts - {Sort.ROUTE} else route
+
+
+def _difference(left: Type, _: Type) -> Type:
+    number = of(Sort.NUMBER) if Sort.NUMBER in left.sorts else NOTHING
+    return number | _part(left, members_of(left)) if left.sorts & COLLECTIONS else number
+
+
+_RESULTS: Final[Mapping[str, Callable[..., Type]]] = {
+    **dict.fromkeys(("in", "==", "!=", "<", "<=", ">", ">=", "not", "empty", "linked"), _always(Sort.TRUTH)),
+    "+": _sum,
+    "-": _difference,
+    "of": lambda left, _: _part(left, Sorts({Sort.ENTITY})),
+    "union": lambda left, right: _set(members_of(left) | members_of(right)),
+    "minus": lambda left, _: _part(left, members_of(left)),
+    "intersect": lambda left, right: _part(left, members_of(left) & members_of(right)),
+    "[]": _always(Sort.AGENT),
+    "nodes": lambda _: _set(PLACES),
+    "children": lambda *_: _set(PLACES),
+    "agents": lambda _: _set({Sort.AGENT}),
+    "kind": _always(Sort.TEXT),
+    "parent": _always(*PLACES),
+    "size": _always(Sort.NUMBER),
+    "first": lambda value: of(*members_of(value)),
 }
-"""What operators return that always return the same type."""
-
-
-def types_of(program: Program) -> Mapping[str, Types]:
-    """Return the types of the values that each variable may be given; a least fixpoint, since loops lead back."""
-    known: dict[str, Types] = {}
-    grown = True
-    while grown:
-        grown = False
-        for statement in program.statements:
-            for variable, types in _given(statement, program, known):
-                before = known.get(variable, NONE)
-                known[variable] = before | types
-                grown = grown or known[variable] != before
-    return known
-
-
-def _given(statement: Statement, program: Program, known: Mapping[str, Types]) -> Iterator[tuple[str, Types]]:
-    """Yield what a statement gives to variables."""
-    match statement:
-        case Assign(variable, expression):
-            yield variable, _types(expression, known)
-        case Call(behaviour, arguments) | Spawn(_, _, behaviour, arguments):
-            called = program.behaviours.get(behaviour)
-            parameters = () if called is None else called.parameters
-            for parameter, argument in zip(parameters, arguments, strict=False):
-                yield parameter, _types(argument, known)
-        case ForEach(variable, _, _) | ChooseFrom(variable, _, _):
-            yield variable, ANY
-        case React(cases) | Match(_, cases):
-            for case in cases:
-                seen = isinstance(case.pattern, Anything) and case.pattern.of == "observation"
-                types = Types({Observation}) if seen else ANY
-                yield from ((variable, types) for variable in variables(case.pattern))
-
-
-def _types(expression: Expression, known: Mapping[str, Types]) -> Types:
-    match expression:
-        case Literal(value):
-            return Types({type(value)})
-        case Variable(name):
-            return known.get(name, NONE)
-        case Host() | Self():
-            return Types({str})
-        case TupleOf():
-            return Types({tuple})
-        case SetOf():
-            return Types({frozenset})
-        case RouteOf():
-            return Types({Route})
-        case Either():
-            return Types({Truth})
-        case Apply(operator, _) if operator in _RESULTS:
-            return Types({_RESULTS[operator]})
-        case Apply("+" | "-" | "of" | "minus" | "intersect", (left, _)):
-            return Types(each if each in (int, Route) else frozenset for each in _types(left, known))
-    return ANY
+"""What operators return, given the types of their arguments; of others nothing is known."""

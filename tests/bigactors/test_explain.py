@@ -1,5 +1,8 @@
+"""`bigactors explain`: codes of diagnostics, and words of reports."""
+
 import pytest
 
+from checker.reports.glossary import ALL
 from specs import Code
 
 
@@ -12,12 +15,43 @@ def test_every_code_is_explained(bigactors, code):
 
 def test_without_a_code_all_are_listed(bigactors):
     _, out, _ = bigactors("explain")
-    assert [line.split()[0] for line in out.splitlines()[:-2]] == sorted(code.number for code in Code)
+    codes = [line.split()[0] for line in out.splitlines() if line.startswith("LS")]
+    assert codes == sorted(code.number for code in Code)
+    assert set(", ".join(ALL).split()) <= set(out.split())
 
 
-def test_an_unknown_code_is_told(bigactors):
+@pytest.mark.parametrize(
+    ("asked", "first"),
+    [
+        (["stale-observation"], "stale-observation race"),
+        (["stale-observation", "race"], "stale-observation race"),
+        (["race_freedom"], "race_freedom"),
+        (["local_consistency"], "local_consistency"),
+        (["Inconsistent"], "inconsistent"),
+        (["by", "ownership"], "by ownership"),
+        (["unserved", "OBS"], "unserved request"),
+    ],
+)
+def test_a_word_of_a_report_is_explained(bigactors, asked, first):
+    exit_code, out, err = bigactors("explain", *asked)
+    assert (exit_code, err) == (0, "")
+    assert out.splitlines()[:2] == [first, ""]
+
+
+def test_a_rule_is_explained_with_its_bar(bigactors):
+    _, out, _ = bigactors("explain", "sense")
+    assert "OBS(a, q) ∈ η, in line" in out
+    assert "───" in out
+
+
+def test_an_unknown_code_or_word_is_told(bigactors):
     assert bigactors("explain", "LS999") == (
         2,
         "",
-        "bigactors: there is no code 'LS999'\n  hint: bigactors explain lists them all\n",
+        "bigactors: there is no code and no word 'LS999'\n  hint: bigactors explain lists them all\n",
+    )
+    assert bigactors("explain", "deadlok") == (
+        2,
+        "",
+        "bigactors: there is no code and no word 'deadlok'\n  hint: did you mean 'deadlock'?\n",
     )

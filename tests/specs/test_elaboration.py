@@ -399,7 +399,8 @@ def test_the_lines_are_those_of_the_statements():
 
 
 def test_a_control_of_what_is_no_node_is_a_fault():
-    mission = elaborated(WORLD + actor('let place = "nowhere" control(MOVE_HOST_TO place)'))
+    unknown = 'element(element((("nowhere", 1), 1), 0), 0)'  # the types of a tuple's tuples are not followed
+    mission = elaborated(WORLD + actor(f"let place = {unknown} control(MOVE_HOST_TO place)"))
     step = successors(mission.initial)[0].target
     with pytest.raises(Fault, match='MOVE_HOST_TO needs a node, not "nowhere"'):
         successors(step)

@@ -13,13 +13,15 @@ from stale_by_definition import Judge, companies, text_of
 
 from checker import Engine, Limits, check, explore
 from checker.properties.findings import Collected
-from checker.properties.races import ControlRaces, StaleObservationRaces, is_stale
+from checker.properties.races import ControlRaces, StaleObservationRaces, asked_in_words, is_stale
 from checker.verdicts import Outcome
 from semantics import extension
 from semantics.behaviours import stepping
+from semantics.behaviours.expressions import OPERATORS
+from semantics.behaviours.observations import Nodes, Observation
 from semantics.races import monitor
 from semantics.races.monitor import monitored
-from semantics.races.provenance import ANY, EVERYTHING, MEMBERS, SIZE
+from semantics.races.provenance import ANY, EVERYTHING, MEMBERS, SIZE, Dependency
 from semantics.races.relevance import SLOTS
 from semantics.successors import expand
 from specs import MissionError
@@ -200,7 +202,7 @@ def test_a_stale_observation_is_told_with_the_query_and_the_test_and_a_shortest_
     assert list(kinds(found)) == [STALE]
     race = violation(found, STALE)
     assert race.message == (
-        "CTR(b, MOVE_HOST_TO gate0) rests on 'in uav0' of observe(CHILDREN(gate0)), "
+        "CTR(b, MOVE_HOST_TO gate0) rests on whether observe(CHILDREN(gate0)) shows uav0, "
         "and another agent has changed that answer since it was sensed"
     )
     assert len(race.trace) == 12  # each looks and asks in 5 steps, then both are served
@@ -999,3 +1001,12 @@ def test_in_a_run_each_control_is_stale_that_is_so_by_definition_and_no_other(co
             assert bool(is_stale(c, taken.served)) == race
         judge.take(c, taken)
         c = taken.target
+
+
+@pytest.mark.parametrize("operator", sorted(OPERATORS))
+def test_whatever_is_asked_of_an_observation_is_told_in_words(operator):
+    seen = Observation.of(shown=["uav0"])
+    for key in OPERATORS[operator].asks(*[seen] * OPERATORS[operator].arity):
+        told = asked_in_words(Dependency(Nodes(("place0",)), (), asked=key))
+        assert "observe(place0)" in told
+        assert told.startswith(("all that ", "which ", "how ", "whether ", "where ", "what ", "the links "))

@@ -1,0 +1,183 @@
+"""The words of reports: what each means, and what to do where it names a fault."""
+
+from collections.abc import Mapping
+from inspect import getdoc
+from typing import Final
+
+WORDS: Final[Mapping[str, str]] = {
+    "holds": """
+        No configuration that the rules allow contradicts the property, and all of them were looked
+        at.""",
+    "violated": """
+        The property is false. A shortest trace shows how it comes to that: replay it with
+        `bigactors replay`, or step through its page (`check --trace DIR`).""",
+    "incomplete": """
+        The search stopped at a limit (exit code 3). It is no success: raise the limit, bound the
+        mission's environment, or reduce what is explored with `--reduce`.""",
+    "complete": "Everything that the rules allow was explored.",
+    "configuration": """
+        ⟨α | S | η⟩: the bigActors with what each has left to run, the logical and the physical
+        model, and the pending requests. `check` counts the different ones that can be reached.""",
+    "transition": "A step from one configuration to another by one rule.",
+    "depth": """
+        The number of steps from the first configuration to the last that was found, by the shortest
+        way.""",
+    "trace": """
+        A run, step by step: `c0 --⟨rule : agent, what⟩--> c1`. Those of violations are shortest
+        ones. A trace of `ltl` ends in a cycle, which repeats for ever.""",
+    "witness": """
+        A trace to something that was examined and found good: the property is not true for want of
+        cases.""",
+    "examined": "What a property is about, as often as it was met and found good.",
+    "vacuous": """
+        The property holds, but says less than it seems to: what it speaks of never happens, or a
+        part of it is never needed. Look for a mistake in it, or in the mission.""",
+    "by ownership": """
+        Race-freedom was shown without a search: no bigActor may write what another's control reads,
+        tests or writes. It holds whatever the order of steps.""",
+    "at rest": """
+        Nothing but the environment can move. It is no deadlock if everybody has ended, or waits at
+        the `react` of an outermost `loop` or for what someone may still say.""",
+    "coverage": """
+        The statements, branches and clauses of the environment that some run reaches. The rest is
+        listed.""",
+    "never used": "A rule that no step of any run was taken by: the mission may not do what you think.",
+    "weak fairness": "What can be done without a break from some point on is done at some time.",
+    "strong fairness": """
+        What can be done again and again is done at some time, even if not without a break.""",
+    "believed": """
+        What L says, which bigActors observe and act on: `uav0 in searchArea0`. `actually` asks P.""",
+    "unmatched": """
+        A control is next in line, and its redex is nowhere in L: what it wants to change is not as
+        it assumes. Observe before it, and test what is seen.""",
+    "inconsistent": """
+        A control is next in line, and L believes what P no longer shows, since nobody has looked
+        after the world had changed. Observe what the control uses just before it, or let nothing
+        change it.""",
+    "unrealisable": """
+        A control is next in line, and no change of the world makes its reactum true: nothing can
+        drive the node, or its new place may not contain it or has no room.""",
+    "control race": """
+        Two controls are enabled, and serving one disables the other, or the two orders end
+        differently. Let one bigActor do both, or let one wait for a message of the other.""",
+    "stale-observation race": """
+        A control rests on the answer to an observation, and another bigActor's control has changed
+        that answer since. Both acted on what they had seen. Let one bigActor decide, or pass the
+        permission on by messages.""",
+    "deadlock": """
+        Nothing but the environment can move, and a request is pending or a bigActor waits. The
+        message says who waits for what: a message that nobody sends, or a link that is not there.""",
+    "not arrived": """
+        Only flights are left, and nothing says that they end. Where they always do, the environment
+        says so: `uav0 arrives`.""",
+    "unserved request": """
+        A request is never served in some fair run. Its enabling condition may come and go: then
+        only strong fairness serves it.""",
+    "diverges": """
+        A computation reaches no command: a loop runs for ever without observing, controlling or
+        receiving.""",
+    "fails": """
+        A computation is given what it cannot take: the first member of an empty set, a `match`
+        without a case.""",
+    "L": "The logical model: the bigraph of what is believed. Observations bring it nearer to P.",
+    "P": "The physical model: where everything is, and on which channels.",
+    "η": "The pending requests: OBS, READY, CTR, FLY, SND and MGR.",
+    "OBS": "A pending observation: OBS(agent, query). `sense` answers it.",
+    "READY": "An observation that was made and not yet received: a `react` takes it.",
+    "CTR": """
+        A pending control: CTR(agent, action). `actuate` carries it out, `command` sends it to a
+        vehicle.""",
+    "FLY": "A control under way (`control timed`): `commit` ends it where the vehicle arrives.",
+    "SND": """
+        A message on its way: it is delivered when both hosts are one node or share a link, in L and
+        in P.""",
+    "MGR": "A bigActor that wants to move to another host: `migrate` serves it where the hosts are linked.",
+    "redex": """
+        What a control needs to find, the left side of its reaction rule; the right side, the
+        reactum, is what it makes.""",
+}
+"""What no rule and no property is."""
+
+SHORTEST: Final = 3
+"""Letters of a word that are not enough to find it by its beginning."""
+
+PROPERTIES: Final[Mapping[str, str]] = {
+    "local_consistency": """
+        Every control next in line can be served on what the world shows. Otherwise it is
+        *unmatched*, *inconsistent* or *unrealisable*; the usual remedy is to observe what a control
+        uses just before it.""",
+    "race_freedom": """
+        No bigActor changes what another's control rests on. Otherwise there is a *control race* or
+        a *stale-observation race*.""",
+    "deadlock_freedom": """
+        Some bigActor can move wherever one has anything left to do. Otherwise there is a
+        *deadlock*.""",
+    "arrival": "No run waits for ever for the end of a flight. Otherwise it has *not arrived*.",
+    "computation": "No bigActor's computation *fails* or *diverges*. This is always checked.",
+    "invariant": 'A proposition is true of every configuration: `invariant "name": formula`.',
+    "reachable": """
+        A proposition is true of some configuration: `reachable "name": formula`; the witness shows
+        how.""",
+    "ltl": """
+        A formula of linear time is true of every fair run: `ltl "name": formula`, with `[]`, `<>`,
+        `X` and `U`.""",
+    "ctl": """
+        A formula of branching time is true of the tree of fair runs: `ctl "name": formula`, where
+        each of `G`, `F`, `X` and `U` directly follows `A` or `E`.""",
+    "progress": "Every request is served in every fair run. Otherwise there is an *unserved request*.",
+}
+"""What each kind of properties means, by its word."""
+
+RULES: Final = (
+    *("fun", "req_obs", "sense", "rcv_obs", "req_ctr", "actuate", "env", "command", "commit"),
+    *("req_snd", "snd", "rcv_msg", "timeout", "req_mgr", "migrate", "spawn", "say"),
+)
+"""The rules, which are imported only where one is asked for: that takes time."""
+
+ALL: Final = (*PROPERTIES, *WORDS, *RULES)
+"""All that can be asked for."""
+
+
+def find_word(asked: str) -> tuple[str, str] | None:
+    """Return a word of reports with its meaning; hyphens, underscores and case don't matter, nor does its end.
+
+    >>> find_word("stale-observation")[0], find_word("Race Freedom")[0], find_word("unserved OBS")[0]
+    ('stale-observation race', 'race_freedom', 'unserved request')
+    """
+    word = _found(asked)
+    if word is None:
+        return None
+    if word in RULES:
+        return word, _rule(word)
+    return word, " ".join((PROPERTIES.get(word) or WORDS[word]).split())
+
+
+def word_table() -> str:
+    """Return the table of all words but the rules, in Markdown, for the documentation."""
+    rows = [f"| {word} | {' '.join(text.split())} |" for word, text in {**PROPERTIES, **WORDS}.items()]
+    return "\n".join(["| word | meaning |", "| --- | --- |", *rows]) + "\n"
+
+
+def _found(asked: str) -> str | None:
+    if asked in ALL:
+        return asked
+    spelt = {_spelling(each): each for each in reversed(ALL)}
+    wanted = _spelling(asked)
+    near = (each for spelling, each in spelt.items() if _begins(spelling, wanted))
+    return spelt.get(wanted) or next(near, None)
+
+
+def _begins(word: str, asked: str) -> bool:
+    """Tell whether one is the beginning of the other, or both begin with the same of several words."""
+    first, *rest = asked.split() or [""]
+    return len(asked) > SHORTEST and (word.startswith(asked) or (bool(rest) and word.startswith(f"{first} ")))
+
+
+def _spelling(word: str) -> str:
+    return word.replace("-", " ").replace("_", " ").lower().strip()
+
+
+def _rule(name: str) -> str:
+    from semantics import extension, rules  # noqa: PLC0415 - slow to import
+
+    return getdoc(getattr(rules, name, None) or getattr(extension, name)) or ""

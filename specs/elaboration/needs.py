@@ -1,0 +1,293 @@
+"""What values are needed where: collected while statements are elaborated, and judged when all types are known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from semantics.behaviours.expressions import Expression, Literal, Variable
+from semantics.behaviours.patterns import Pattern
+from semantics.behaviours.statements import React, Send
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.findings import Findings, shorten
+from specs.elaboration.value_types import (
+    COLLECTIONS,
+    EVERY,
+    HOLDERS,
+    NAMES,
+    NOTHING,
+    Inference,
+    Sort,
+    Sorts,
+    Type,
+    Types,
+    may_take,
+    members_of,
+)
+from specs.writing import write
+
+
+@dataclass(frozen=True, slots=True)
+class Need:
+    """What something takes.
+
+    Attributes:
+        sorts: The sorts that it takes.
+        remedy: What to write instead of another one.
+        members: Where it takes sets or routes, what these may hold.
+        filled: Whether these must hold something.
+    """
+
+    sorts: Sorts
+    remedy: str
+    members: Sorts = EVERY
+    filled: bool = False
+
+    def met(self, given: Type) -> bool:
+        """Tell whether a value of a type may be taken; what never has a value is not complained of."""
+        taken = given.sorts & self.sorts
+        fits = given.members & self.members if given.members else not self.filled
+        return bool(taken - HOLDERS or (taken & HOLDERS and fits) or not given.sorts)
+
+
+MOST_MESSAGES: Final = 50
+"""Types of messages whose lines are told: each is compared with the cases of each react."""
+
+CONDITIONAL: Final = "a condition"
+_NAME_IT: Final = "write its name, or a variable that holds it"
+_NODES: Final = HOLDERS | {Sort.ENTITY}
+
+CONDITION: Final = Need(
+    Sorts({Sort.TRUTH}), "compare it, or ask something of it: x == 3, uav0 in obs, not empty(seen)"
+)
+COLLECTION: Final = Need(
+    COLLECTIONS, "write a set, {a0, b0}, a route, [a0, b0], or a variable that holds one"
+)
+FILLED: Final = Need(COLLECTIONS, COLLECTION.remedy, filled=True)
+SEEN: Final = Need(Sorts({Sort.OBSERVATION}), "give it what a react received: case obs: Observation => ...")
+NUMBER: Final = Need(Sorts({Sort.NUMBER}), "write a whole number, or count: size(obs)")
+TUPLE: Final = Need(
+    Sorts({Sort.TUPLE, Sort.ROUTE}), "write a tuple, (a0, 3), or a route, [a0, b0]", filled=True
+)
+NODE: Final = Need(_NODES, _NAME_IT, Sorts({Sort.ENTITY}), filled=True)
+NODES: Final = Need(_NODES, _NAME_IT, Sorts({Sort.ENTITY}))
+AGENT: Final = Need(
+    HOLDERS | {Sort.AGENT}, f"{_NAME_IT}: send message to bigActor", Sorts({Sort.AGENT}), filled=True
+)
+ENTITY: Final = Need(Sorts({Sort.ENTITY}), _NAME_IT)
+
+OPERANDS: Final[Mapping[str, tuple[Need | None, ...]]] = {
+    **dict.fromkeys(("<", "<=", ">", ">="), (NUMBER, NUMBER)),
+    **dict.fromkeys(("union", "minus", "intersect"), (COLLECTION, COLLECTION)),
+    **dict.fromkeys(("size", "empty"), (COLLECTION,)),
+    "first": (FILLED,),
+    **dict.fromkeys(("nodes", "agents"), (SEEN,)),
+    **dict.fromkeys(("parent", "children"), (None, SEEN)),
+    "linked": (None, None, SEEN),
+    "of": (COLLECTION, None),
+    "in": (None, COLLECTION),
+    "not": (CONDITION,),
+    "kind": (ENTITY,),
+    "element": (TUPLE, NUMBER),
+}
+"""What the operators take whose operands are judged one by one; None for anything."""
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """An expression where something takes it.
+
+    Attributes:
+        where: The expression as it was written.
+        value: What it is.
+        need: What is taken there.
+        by: What takes it, for messages.
+    """
+
+    where: s.Node
+    value: Expression
+    need: Need
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Two operands that are judged together."""
+
+    operator: str
+    left: s.Node
+    right: s.Node
+    values: tuple[Expression, Expression]
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A `match`: one of its cases has to take the subject."""
+
+    where: s.Node
+    subject: Expression
+    patterns: tuple[Pattern, ...]
+
+
+Demand = Use | Pair | Choice
+
+
+def check_types(demands: list[Demand], inference: Inference, findings: Findings) -> Types:
+    """Report values of which nothing can be taken where they stand, and doubts; returns the variables' types."""
+    known = inference.variables()
+    judge = _Judge(inference, known, _gifts(inference, known), findings)
+    for demand in demands:
+        if isinstance(demand, Use):
+            judge.use(demand)
+        elif isinstance(demand, Choice):
+            judge.choice(demand)
+        elif demand.operator == "element":
+            judge.item(demand)
+        elif demand.operator in ("+", "-"):
+            judge.sum(demand)
+        else:
+            judge.comparison(demand)
+    return known
+
+
+def _gifts(inference: Inference, known: Types) -> Mapping[str, list[tuple[int, Type]]]:
+    """Return the lines that give each variable a value, with its type: of a message, the line that sends it."""
+    program, found = inference.program, dict[str, list[tuple[int, Type]]]()
+    sent: list[tuple[int, Type]] = []
+    for number, each in enumerate(program.statements):
+        if isinstance(each, Send) and len(sent) < MOST_MESSAGES:
+            message = inference.type(each.message, known)
+            if all(message != other for _, other in sent):
+                sent.append((program.line(number), message))
+    seen = Sorts({Sort.OBSERVATION})
+    for number, statement in enumerate(program.statements):
+        here = program.line(number)
+        for line, message in [*(sent if isinstance(statement, React) else ()), (here, NOTHING)]:
+            for name, given in inference.given(statement, known, message):
+                if given.sorts and (line == here or given.sorts != seen):
+                    found.setdefault(name, []).append((line, given))
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class _Judge:
+    inference: Inference
+    known: Types
+    gifts: Mapping[str, list[tuple[int, Type]]]
+    findings: Findings
+
+    def use(self, use: Use) -> None:
+        given = self.inference.type(use.value, self.known)
+        if not use.need.met(given):
+            self.report(use, given)
+        elif isinstance(use.value, Variable) and given.sorts != EVERY:
+            self.doubt(use, use.value.name)
+
+    def report(self, use: Use, given: Type) -> None:
+        needs = f"{use.by} {'is' if use.by == CONDITIONAL else 'needs'} {_words(use.need)}"
+        message = f"{needs}, and {_shown(use.where)} is {_said(given, use.need)}"
+        origin = self.origin(use.value, use.need) if isinstance(use.value, Variable) else ""
+        several = use.need in (NODE, AGENT) and bool(use.need.members & members_of(given))
+        hint = f"take one: choose x in {write(use.where)} {{ ... }}" if several else use.need.remedy
+        if isinstance(use.where, s.TupleLiteral) and use.need.sorts >= COLLECTIONS:
+            hint = f"in this order it is a route: {write(s.RouteLiteral(use.where.items))}"
+        self.findings.add(Code.WRONG_VALUE, use.where, message + origin, hint)
+
+    def doubt(self, use: Use, variable: str) -> None:
+        """Warn of a variable that some statement gives what can't be taken here."""
+        for line, given in self.gifts.get(variable, ()):
+            if not use.need.met(given):
+                message = (
+                    f"{use.by} needs {_words(use.need)}, and {_shown(use.where)} may be "
+                    f"{_said(given, use.need)}: line {line} gives it that"
+                )
+                hint = "use a variable of its own for each"
+                self.findings.warn(Code.TWO_TYPES, use.where, message, hint)
+                return
+
+    def origin(self, variable: Variable, need: Need) -> str:
+        lines = (line for line, given in self.gifts.get(variable.name, ()) if not need.met(given) and line)
+        first = min(lines, default=0)
+        return f" (line {first})" if first else ""
+
+    def choice(self, choice: Choice) -> None:
+        given = self.inference.type(choice.subject, self.known)
+        taken = (may_take(pattern, given, self.inference) for pattern in choice.patterns)
+        if given.sorts and not any(taken):
+            message = f"no case takes {_shown(choice.where)}, which is {_listed(given.sorts)}"
+            self.findings.add(Code.WRONG_VALUE, choice.where, message, "add one that does: case _ => ...")
+
+    def item(self, pair: Pair) -> None:
+        """Report an item that no tuple has."""
+        given, index = self.inference.type(pair.values[0], self.known), pair.values[1]
+        if given.tuples and isinstance(index, Literal) and isinstance(index.value, int):
+            longest = max(length for length, _ in given.tuples)
+            if not 0 <= index.value < longest and given.sorts == {Sort.TUPLE}:
+                message = (
+                    f"{_shown(pair.left)} has {longest} items, counted from 0, and no item {index.value}"
+                )
+                self.findings.add(Code.WRONG_VALUE, pair.right, message, f"write 0 to {longest - 1}")
+
+    def sum(self, pair: Pair) -> None:
+        left, right = (self.inference.type(value, self.known) for value in pair.values)
+        numbers = Sort.NUMBER in left.sorts and Sort.NUMBER in right.sorts
+        routes = Sort.ROUTE in left.sorts and Sort.ROUTE in right.sorts
+        joined = left.sorts & (COLLECTIONS if pair.operator == "-" else {Sort.SET})
+        if numbers or routes or (joined and right.sorts & COLLECTIONS) or not (left.sorts and right.sorts):
+            return
+        alone = Sort.ROUTE in left.sorts and not joined
+        need = NUMBER if Sort.NUMBER in left.sorts else _SETS if joined else _ROUTE if alone else _ADDENDS
+        blamed = (pair.right, pair.values[1]) if need is not _ADDENDS else (pair.left, pair.values[0])
+        self.use(Use(*blamed, need, f"'{pair.operator}'"))
+
+    def comparison(self, pair: Pair) -> None:
+        left, right = (self.inference.type(value, self.known) for value in pair.values)
+        others = members_of(right) if pair.operator == "in" else right.sorts
+        if not left.sorts or not others or left.sorts & others:
+            return
+        outcome = "true" if pair.operator == "!=" else "false"
+        verb = "holds" if pair.operator == "in" else "is"
+        those = f"{_shown(pair.right)} {verb} {_listed(others)}"
+        message = f"this is always {outcome}: {_shown(pair.left)} is {_listed(left.sorts)}, and {those}"
+        span = pair.left.span.to(pair.right.span)
+        self.findings.warn(Code.ALWAYS_THE_SAME, span, message, "compare it with a value of the same type")
+
+
+_SETS: Final = Need(COLLECTIONS, COLLECTION.remedy)
+_ROUTE: Final = Need(Sorts({Sort.ROUTE}), "routes are joined with routes: [a0] + [b0, a0]")
+_ADDENDS: Final = Need(HOLDERS | {Sort.NUMBER}, "add numbers, or join sets or routes: {a0} + {b0}")
+
+
+def operands(
+    operator: str, nodes: tuple[s.Expression, ...], values: tuple[Expression, ...]
+) -> Iterator[Demand]:
+    """Yield what an operator asks of its operands."""
+    if operator in ("+", "-", "==", "!=", "in", "element"):
+        yield Pair(operator, nodes[0], nodes[1], (values[0], values[1]))
+    for node, value, need in zip(nodes, values, OPERANDS.get(operator, ()), strict=False):
+        if need is not None:
+            yield Use(node, value, need, f"'{operator}'")
+
+
+def _words(need: Need) -> str:
+    return _listed(need.sorts - HOLDERS if need in (NODE, NODES, AGENT) else need.sorts)
+
+
+def _said(given: Type, need: Need) -> str:
+    what = _listed(given.sorts)
+    if not (given.sorts <= HOLDERS and given.sorts <= need.sorts):
+        return what
+    return f"{what} that holds {_listed(given.members)}" if given.members else what.replace("a ", "an empty ")
+
+
+def _listed(sorts: Sorts) -> str:
+    if sorts >= NAMES:
+        sorts = sorts - {Sort.TEXT}
+    words = [sort.value for sort in Sort if sort in sorts]
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
+
+
+def _shown(node: s.Node) -> str:
+    return f"'{shorten(write(node))}'"

@@ -1,0 +1,145 @@
+"""Words and symbols of other languages, and what is written here for them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Final
+
+from specs.codes import Code
+from specs.diagnostics import Diagnostic
+from specs.parse_error import Situation, Word
+
+_BEHAVIOUR: Final = "a behaviour is defined by def name(parameters) = { ... }"
+_ACTOR: Final = "write BigActor name hosted_at host with_behavior { ... }"
+_VARIABLE: Final = "a variable is bound by let x = ..., and given another value by x = ..."
+_REACT: Final = "write react { case obs: Observation => ... case m: Message => ... }"
+_SEND: Final = "write send message to bigActor"
+
+DECLARED: Final[Mapping[str, str]] = {
+    **dict.fromkeys(
+        ("function", "fn", "fun", "behavior", "behaviour", "proc", "procedure", "sub"), _BEHAVIOUR
+    ),
+    **dict.fromkeys(("agent", "Agent", "actor", "Actor", "robot", "process", "bigactor"), _ACTOR),
+    **dict.fromkeys(("property", "properties", "verify", "assert"), 'write check { invariant "name": ... }'),
+    **dict.fromkeys(
+        ("import", "include", "use"), 'entities come from files: world { from "places.geojson" }'
+    ),
+    **dict.fromkeys(("entities", "places", "map"), "write world { name: Kind = point (37.08, -8.55) }"),
+    **dict.fromkeys(("kinds", "types", "kind", "type"), "write signature { kind UAV driven }"),
+}
+"""What other languages begin a declaration with."""
+
+DONE: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("var", "const", "val", "int", "set"), _VARIABLE),
+    **dict.fromkeys(("forever", "repeat", "do"), "write loop { ... }, or while condition { ... }"),
+    "until": "write while not condition { ... }",
+    "foreach": "write for x in collection { ... }",
+    **dict.fromkeys(("receive", "wait", "await", "on", "when", "expect"), _REACT),
+    **dict.fromkeys(("switch", "select"), "write match value { case ... => ... }"),
+    **dict.fromkeys(
+        ("elif", "elseif", "elsif", "otherwise"), "write } else if condition { ... } or } else { ... }"
+    ),
+    **dict.fromkeys(("print", "println", "log", "echo", "show", "printf"), "write display(value)"),
+    **dict.fromkeys(("emit", "tell", "post", "notify", "publish"), _SEND),
+    **dict.fromkeys(("move", "goto", "go", "fly"), "write control(MOVE_HOST_TO place)"),
+    **dict.fromkeys(("sense", "look", "query"), "write observe(CHILDREN(PARENT(HOST)))"),
+    **dict.fromkeys(("pass", "noop", "continue"), "write skip"),
+    **dict.fromkeys(
+        ("return", "break", "exit", "stop"), "a behaviour ends with its last statement; use if, while"
+    ),
+}
+"""What other languages do something with."""
+
+CHOSEN: Final = dict.fromkeys(
+    ("when", "on", "of", "default", "otherwise"), "write case pattern => statements"
+)
+ASKED: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("always", "never", "safety", "assert"), 'write invariant "name": formula'),
+    **dict.fromkeys(("eventually", "sometime", "liveness"), 'write reachable "name": formula'),
+    **dict.fromkeys(("no_races", "races", "race"), "write race_freedom"),
+    **dict.fromkeys(("deadlock", "deadlocks", "no_deadlock"), "write deadlock_freedom"),
+}
+OF_A_KIND: Final = dict.fromkeys(
+    ("moves", "moving", "mobile", "movable", "drives", "flies"),
+    "what controls can move is driven: kind UAV driven",
+)
+
+OPERATORS: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("*", "/", "%", "^"), "numbers are only added and subtracted: + and -"),
+    "&": "write and, or &&",
+    "|": "write or, or ||",
+    **dict.fromkeys(("~", "¬"), "write not"),
+    **dict.fromkeys(("∧",), "write and"),
+    **dict.fromkeys(("∨",), "write or"),
+    **dict.fromkeys(("→", "⇒"), "write -> in a formula, => behind a case"),
+    **dict.fromkeys(("∈",), "write in"),
+    **dict.fromkeys(("≠",), "write !="),
+    **dict.fromkeys(("≤", "≥"), "write <= or >="),
+    "?": "write if condition { ... } else { ... }",
+    "contains": "write element in collection",
+    "has": "write element in collection",
+    "is": "write == to compare",
+}
+
+
+def foreign_word(at: Situation) -> Diagnostic | None:
+    """`function visit() { ... }`, `var n = 3`, `receive { ... }`, `elif x { ... }`."""
+    for applies, words in _CONTEXTS:
+        if applies(at) and at.found.text in words:
+            return _instead(at.found, words)
+    named = at.accepted == {"=", "("} and at.before.text in _BEFORE
+    return _instead(at.before, _BEFORE) if named else None
+
+
+_BEFORE: Final[Mapping[str, str]] = {**OPERATORS, **DONE}
+
+_CONTEXTS: Final[tuple[tuple[Callable[[Situation], bool], Mapping[str, str]], ...]] = (
+    (lambda at: at.at_declaration and not at.at_statement, DECLARED),
+    (lambda at: {"case", "}"} <= at.accepted and not at.at_statement, CHOSEN),
+    (lambda at: "invariant" in at.accepted, ASKED),
+    (lambda at: "driven" in at.accepted, OF_A_KIND),
+    (lambda at: at.at_statement or at.in_expression, DONE),
+)
+
+
+def _instead(word: Word, words: Mapping[str, str]) -> Diagnostic:
+    message = f"{word.shown} is not a word of the language here"
+    return Diagnostic(Code.MISSPELT_KEYWORD, word.span, message, words[word.text])
+
+
+def foreign_operator(at: Situation) -> Diagnostic | None:
+    """`2 * 3`, `a & b`, `obs contains uav0`, `a => b`, `n += 1`, `x := 3`, `b.send(m)`, `b ! m`."""
+    found, behind = at.found.text, at.prepared.text[at.found.span.end : at.found.span.end + 1]
+    hint = OPERATORS.get(found, "")
+    symbol = not found.isidentifier()
+    in_formula = "<->" in at.accepted
+    if found == "=>" and in_formula:
+        hint = "an implication is written ->"
+    elif at.accepted == {"=", "("} and found in ("+", "-") and behind in ("=", found):
+        hint = f"write {at.before.text} = {at.before.text} {found} 1"
+    elif at.accepted == {"=", "("} and found in (".", "!"):
+        hint = f"a message is sent: send message to {at.before.text}"
+    elif found == "." and at.in_expression:
+        hint = "functions are called with all they are given: size(obs)"
+    elif found == ":" and behind == "=" and "=" in at.accepted:
+        hint = "write ="
+    elif found == "=" and at.before.text == "=" and at.before.span.end == at.found.span.start:
+        hint = "a single = gives a value, == compares"
+    elif not hint or not (symbol or at.in_expression or in_formula or at.accepted & {"=>", "directly"}):
+        return None
+    return at.mistake(Code.UNKNOWN_CHARACTER if symbol else Code.MISSPELT_KEYWORD, _no_operator(at), hint)
+
+
+def _no_operator(at: Situation) -> str:
+    return f"{at.found.shown} has no meaning here"
+
+
+def operator_first(at: Situation) -> Diagnostic | None:
+    """`in(a, obs)`: an operator called like a function; `&& found { ... }` as a statement."""
+    if at.at_statement and at.found.text in ("&&", "||", "and", "or"):
+        hint = "write if condition { ... }, or case pattern if condition => ..."
+        return at.mistake(Code.UNEXPECTED, f"expected a statement, found {at.found.shown}", hint)
+    if at.at_expression and at.found.text in ("in", "of", "and", "or"):
+        hint = f"write it between the two: a {at.found.text} b"
+        return at.mistake(Code.UNEXPECTED, f"expected an expression, found {at.found.shown}", hint)
+    return None
