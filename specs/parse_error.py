@@ -13,7 +13,9 @@ from specs.grammar import keywords, spellings
 from specs.preprocessing import Prepared
 from specs.syntax.nodes import Span
 
-_WORD: Final = re.compile(r'"(?:[^"\\\n]|\\.)*+"|\w+|<->|<>|\[\]|=>|==|!=|<=|>=|->|\|\||&&|\S')
+_WORD: Final = re.compile(
+    r'[0-9.]{1,30}+\s?[°º][^,()\n]*|"(?:[^"\\\n]|\\.)*+"|\w+|<->|<>|\[\]|=>|==|!=|<=|>=|->|\|\||&&|\S'
+)
 _NAME: Final = re.compile(r"[^\W\d_]\w*")
 _SEEN: Final = 200  # characters looked back for the previous word
 
