@@ -19,6 +19,7 @@ _PUT_BEFORE: Final = {
     Code.MISSING_COMMA: ", ",
 }
 _INSTEAD: Final = {Code.SINGLE_EQUALS: "=="}
+_SURPLUS: Final = {Code.UNKNOWN_CHARACTER: "leave it out", Code.UNOPENED_BRACKET: "remove it"}
 _QUOTES: Final = "strings take straight double quotes"
 _QUOTED: Final = re.compile(r"[^\w\s]([^\"\n]*?)['`\u2018\u2019\u201c\u201d\u201e\u00ab\u00bb]")
 _STANDARD: Final = "signature standard"
@@ -46,7 +47,7 @@ def fixes(found: Diagnostic, text: str) -> Iterator[Fix]:
         yield Fix(
             f"Put '{sign.strip()}' before it", Span(place, place), sign.rstrip() if sign == ", " else sign
         )
-    if found.hint.startswith("remove it") and found.code in (Code.UNKNOWN_CHARACTER, Code.UNOPENED_BRACKET):
+    if found.code in _SURPLUS and found.hint.startswith(_SURPLUS[found.code]):
         yield Fix("Remove it", found.span, "")
     if found.hint.startswith(_QUOTES):
         quoted = _QUOTED.match(text, start)
