@@ -11,12 +11,14 @@ from typing import Final, TypeAlias
 from bigactors.checking import Checked, Failed
 from bigactors.exits import Exit
 from bigactors.file_changes import interrupted_by_save, look, wait_for_save
+from bigactors.files import read_bytes
 from bigactors.missions import locate
 from bigactors.mistakes import Mistake
 from bigactors.terminal import is_terminal, say, say_text
 from checker import Interruption
 from specs import MissionError, parse_bytes
 from specs.elaboration import Variation, files_named
+from specs.preprocessing import MAX_BYTES
 
 CLEAR: Final = "\033[H\033[2J"
 
@@ -65,8 +67,8 @@ def files_of(name: str, variation: Variation, before: tuple[Path, ...] = ()) -> 
     """Return the files that a mission is made of: its own and those of its world; as before while it does not parse."""
     try:
         path = locate(name)
-        _, tree = parse_bytes(name, path.read_bytes())
-    except (Mistake, MissionError, OSError):
+        _, tree = parse_bytes(name, read_bytes(str(path), MAX_BYTES))
+    except (Mistake, MissionError):
         return before or (Path(name),)
     return (path, *(variation.sources.get(file, path.parent / file) for file in files_named(tree)))
 

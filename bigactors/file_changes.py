@@ -10,6 +10,7 @@ from time import sleep, time_ns
 from typing import Final, TypeAlias
 
 from checker import Interruption
+from physical import open_file
 
 INTERVAL: Final = 0.2
 """Seconds between two looks at the files."""
@@ -48,7 +49,7 @@ def _look(path: Path, before: Seen | None) -> Seen:
         stamp = (status.st_ino, status.st_size, status.st_mtime_ns)
         if before is not None and before.stamp == stamp:
             return before
-        with path.open("rb") as file:
+        with open_file(path) as file:
             digest = hashlib.file_digest(file, "sha256").digest()
     except (OSError, ValueError):
         return Seen(None)

@@ -172,7 +172,7 @@ def test_what_is_hardly_meant_is_told_in_every_format_and_fails_nothing(missions
     warnings = json.loads(texts["json"])["warnings"]
     assert [(each["code"], each["line"], each["column"]) for each in warnings] == [
         ("LS702", 10, 3),
-        ("LS702", 11, 3),
+        ("LS702", 18, 3),
     ]
     run = json.loads(texts["sarif"])["runs"][0]
     found = [(each["ruleId"], each["level"]) for each in run["results"] if each["ruleId"] == "LS702"]

@@ -125,7 +125,7 @@ def test_two_ways_to_the_same_place_are_told_apart():
 
 
 def test_what_was_passed_before_a_computation_failed_was_passed():
-    found = covered(agent("display(1)\nif 1 < 2 {\ndisplay(first({}))\n}\nobserve(ALL)"))
+    found = covered(agent("display(1)\nif 1 < 2 {\ndisplay(first(minus({uav0}, {uav0})))\n}\nobserve(ALL)"))
     assert [(gap.line - FIRST + 1, gap.message) for gap in found.gaps] == [
         (3, "this condition is never false"),
         (6, "this is never reached"),
