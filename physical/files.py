@@ -5,8 +5,9 @@ from __future__ import annotations
 import errno
 import os
 import stat
+from io import BufferedReader
 from os import PathLike
-from typing import BinaryIO, Final, cast
+from typing import Final
 
 _NOT_WAITING: Final = getattr(os, "O_NONBLOCK", 0)
 """A named pipe that nobody writes into is opened at once."""
@@ -19,14 +20,14 @@ _STRANGE: Final = (
 )
 
 
-def open_file(path: str | PathLike[str]) -> BinaryIO:
+def open_file(path: str | PathLike[str]) -> BufferedReader:
     """Open a file to read its bytes.
 
     Raises:
         OSError: It can't be opened, or is a folder, a pipe, a socket or a device.
         ValueError: It is no path.
     """
-    return cast("BinaryIO", open(path, "rb", opener=_opened))
+    return open(path, "rb", opener=_opened)
 
 
 def _opened(path: str, flags: int) -> int:

@@ -434,7 +434,8 @@ def test_one_agents_fault_does_not_stop_the_others():
 def test_what_a_failed_agent_had_asked_for_is_served_all_the_same():
     text = """
     BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) send(first(minus({uav0}, {uav0})), a) }
-    BigActor b hosted_at uav1 with_behavior { control(MOVE_HOST_TO gate0) display(first(minus({uav0}, {uav0}))) observe(ALL) }
+    BigActor b hosted_at uav1 with_behavior { control(MOVE_HOST_TO gate0)
+        display(first(minus({uav0}, {uav0}))) observe(ALL) }
     check { reachable "a": actually uav0 in gate0 reachable "b": actually uav1 in gate0 }
     """
     report = checked(text)
