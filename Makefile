@@ -42,7 +42,7 @@ wheel: $(STAMP)  ## what is released, into dist/: the source, and the wheel that
 test-wheel: wheel  ## a quick part of the suite against the installed wheel, with the repository out of its reach
 	rm -rf $(WHEEL)
 	$(PYTHON) -m venv $(WHEEL)
-	$(WHEEL)/bin/python -m pip install --quiet --disable-pip-version-check "$$(ls dist/*.whl)[ais,live,strategies]" pytest pytest-asyncio pytest-xdist
+	$(WHEEL)/bin/python -m pip install --quiet --disable-pip-version-check "$$(ls dist/*.whl)[ais,live,lsp,strategies]" pytest pytest-asyncio pytest-xdist
 	$(BIN)/python hatch_build.py tests $(WHEEL)/suite/tests
 	mkdir $(WHEEL)/suite/specs
 	cp -r specs/missions $(WHEEL)/suite/specs
