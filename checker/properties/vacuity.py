@@ -13,7 +13,17 @@ from typing import Any, Final
 from checker.limits import look
 from checker.properties.subformulas import STILL, Part, few, never_needed, unneeded
 from semantics.properties.property import Ranges
-from semantics.properties.propositions import Always, And, Atom, Not, Or, Proposition, holds
+from semantics.properties.propositions import (
+    Always,
+    And,
+    Atom,
+    IsBound,
+    Not,
+    Or,
+    Proposition,
+    VariableIs,
+    holds,
+)
 from semantics.state import cells
 from semantics.state.cells import Cell, Cells, Changes, Question, State, Written, is_, merged
 from semantics.state.configuration import Configuration
@@ -145,9 +155,18 @@ class Asking:
 def asked(atoms: Iterable[Atom], c: Configuration) -> Answers:
     """Return all that atoms ask of a configuration."""
     asking = Asking(c.state)
-    for atom in atoms:
+    atoms = tuple(atoms)
+    for atom in (*atoms, *bindings(atoms)):
         holds(atom, Configuration(c.setting, asking))
     return asking.answers
+
+
+def bindings(atoms: Iterable[Proposition]) -> tuple[IsBound, ...]:
+    """Return that each variable has a value that atoms compare.
+
+    At first none has one. So a comparison that is true throughout is about something as soon as there is a value.
+    """
+    return tuple({IsBound(atom.variable): None for atom in atoms if isinstance(atom, VariableIs)})
 
 
 def atoms_of(formula: Proposition) -> Iterator[Atom]:

@@ -19,7 +19,7 @@ from checker.limits import look
 from checker.properties.findings import Collected, Key
 from checker.properties.inspections import Excerpt, Inspection, Invariant, Reachability, Rules
 from checker.properties.races import ControlRaces
-from checker.properties.vacuity import atoms_of, truth
+from checker.properties.vacuity import atoms_of, bindings, truth
 from checker.properties.visited import Visited, where_it_stands
 from semantics.behaviours.expressions import Fault
 from semantics.properties.propositions import Always, And, Not, Or, Proposition, holds
@@ -256,7 +256,8 @@ def truths(survey: Survey, formula: Proposition, size: int) -> Bools:
 
 def is_still(survey: Survey, atoms: Iterable[Proposition]) -> bool:
     """Tell whether nothing that atoms ask of configurations ever changes."""
-    return not any(survey.where_with_change(partial(holds, atom))[1] for atom in dict.fromkeys(atoms))
+    asked = tuple(dict.fromkeys(atoms))
+    return not any(survey.where_with_change(partial(holds, each))[1] for each in (*asked, *bindings(asked)))
 
 
 def look_at_invariant(survey: Survey, inspection: Invariant) -> None:
@@ -264,11 +265,13 @@ def look_at_invariant(survey: Survey, inspection: Invariant) -> None:
     valuations, size = inspection.valuations, survey.size
     found = np.zeros(size, np.uint64)
     changing = False
-    for rank, atom in enumerate(valuations.atoms or tuple(atoms_of(inspection.formula))):
+    atoms = valuations.atoms or tuple(atoms_of(inspection.formula))
+    for rank, atom in enumerate(atoms):
         values, varies = survey.where_with_change(partial(holds, atom))
         changing = changing or varies
         if valuations.atoms:
             found |= values.astype(np.uint64) << np.uint64(rank)
+    changing = changing or not is_still(survey, bindings(atoms))
     valuations.begun, valuations.still = True, None if changing else {}
     if valuations.atoms:
         values, firsts, counts = np.unique(found, return_index=True, return_counts=True)

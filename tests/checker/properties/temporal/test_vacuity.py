@@ -216,8 +216,10 @@ UNCHANGING = {
     'ltl "q": [] c.n == 1': True,
     'ltl "q": [] not c.n == 1': True,
     'ctl "q": AG c.n == 1': True,
-    'ltl "q": [] (c.m == 0 or c.n == 7)': True,
+    'ltl "q": [] (c.m == 0 or c.n == 7)': False,  # m gets a value
     'invariant "q": c.n == 1': True,
+    'invariant "q": c.m < 3': False,
+    'ltl "q": [] c.m < 3': False,
     'ltl "q": [] (uav0 in gate0 -> c.n == 1)': False,
     'ltl "q": [] not taken migrate a': False,
 }
