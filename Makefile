@@ -5,27 +5,37 @@ BIN    := $(VENV)/bin
 COMPILED := $(addprefix tests/checker/engines/fast/test_,rows.py checkpoints.py long_runs.py spill.py hash_compaction.py)
 STAMP  := $(VENV)/.installed
 WHEEL  := .wheel
+PAGE   := adapters/console/page
+PARTS  := $(PAGE)/parts/LICENSES.txt
 SMOKE  := $(addprefix tests/,missions paper semantics/state/test_cells.py \
 	$(addprefix bigactors/test_,big.py cli.py engines.py missions.py public_names.py run.py))
 
-.PHONY: demo live-demo test lint types test-wheel wheel constraints fuzz bounds bench bench-bigraphs bench-cluster docs pictures clean
+.PHONY: parts demo live-demo test test-long lint types test-wheel wheel constraints fuzz bounds bench bench-bigraphs bench-cluster bench-time docs pictures clean
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	touch $@
 
+parts: $(PARTS)  ## what the console's page is made of, by npm; without npm all works but the console
+
+$(PARTS): $(PAGE)/package-lock.json | $(STAMP)
+	$(BIN)/python hatch_build.py parts
+
 demo: $(STAMP)  ## check the shipped missions and draw them
 	$(BIN)/bigactors demo --out demo
 
-live-demo: $(STAMP)  ## fly a verified mission with a simulated plane and a replayed AIS feed, into live-demo/
-	$(BIN)/python -m bigactors.live_demo live-demo
+live-demo: $(STAMP) $(PARTS)  ## fly a verified mission with a simulated plane and a replayed AIS feed, into live-demo/; CONSOLE=1 serves the console
+	$(BIN)/python -m bigactors.live_demo live-demo $(if $(CONSOLE),--console)
 
 # Processes that the tests start would compile all modules again where no bytecode is kept.
-test fuzz: export PYTHONDONTWRITEBYTECODE =
+test test-long fuzz: export PYTHONDONTWRITEBYTECODE =
 
-test: lint types $(STAMP)  ## everything that must hold; of the long tests a part (tests/scale.py)
-	$(BIN)/python -m pytest -n 3 --dist worksteal -q
+test: lint types $(STAMP) $(PARTS)  ## what must hold at each change; of generated tests a part (tests/scale.py)
+	$(BIN)/python -m pytest -n 3 --dist worksteal -q -m "not long"
+
+test-long: $(STAMP) $(PARTS)  ## whole flights, killed processes, workers, compilations (some 5 minutes)
+	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m long
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
@@ -34,7 +44,7 @@ lint: $(STAMP)
 types: $(STAMP)
 	$(BIN)/mypy
 
-wheel: $(STAMP)  ## what is released, into dist/: the source, and the wheel that is made of it
+wheel: $(STAMP) $(PARTS)  ## what is released, into dist/: the source, and the wheel that is made of it
 	rm -rf dist
 	$(BIN)/python -m hatchling build -t sdist
 	$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-deps --no-build-isolation --wheel-dir dist dist/*.tar.gz
@@ -63,14 +73,19 @@ bounds: $(STAMP)  ## the compiled loops with checks of bounds over all missions,
 	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q -m bounds
 	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q $(COMPILED)
 
-bench: $(STAMP)  ## the explorer beside SPIN, its growth, the largest missions; writes docs/explanation/performance.md (some 25 minutes)
+bench: $(STAMP)  ## the explorer beside SPIN, its growth, the largest and the widest missions; writes docs/explanation/performance.md (some 30 minutes)
 	$(BIN)/python benchmarks/run.py
 	$(BIN)/python benchmarks/growth.py
 	$(BIN)/python benchmarks/largest.py
+	$(BIN)/python benchmarks/wide.py
 	$(BIN)/python benchmarks/tables.py
 
-bench-bigraphs: $(STAMP)  ## the bigraph engine beside BigraphER, up to 100,000 states
+bench-bigraphs: $(STAMP)  ## the bigraph engine beside BigraphER, up to 100,000 states, and on the real files in the folder $BIGRAPHS
 	$(BIN)/python benchmarks/bigraph_systems.py --growth
+	$(BIN)/python benchmarks/real_bigraphs.py
+
+bench-time: $(STAMP)  ## zones of the timed family; TCHECKER=tck-reach puts TChecker's beside them
+	$(BIN)/python benchmarks/timed.py
 
 bench-cluster: $(STAMP)  ## the patrol with Ray workers beside one process (some 5 minutes)
 	$(BIN)/python benchmarks/cluster.py 2x6 2x6+handover
@@ -79,7 +94,7 @@ docs: $(STAMP)  ## write the generated pages of docs/, and all of them as a site
 	$(BIN)/python -m bigactors.docs
 	$(BIN)/python -m sphinx -W --keep-going --quiet -c docs . site
 
-pictures: $(STAMP)  ## draw the README's pictures again; the page of a trace with chromium
+pictures: $(STAMP) $(PARTS)  ## draw the README's pictures again; the page of a trace and the console with chromium
 	rm -rf .pictures
 	for mission in oil_spill broken_inconsistent look_before_entry_racy; do \
 		$(BIN)/bigactors check $$mission --trace .pictures > /dev/null; done; true
@@ -88,6 +103,8 @@ pictures: $(STAMP)  ## draw the README's pictures again; the page of a trace wit
 		--output docs/pictures/broken_inconsistent.svg
 	chromium --headless --no-sandbox --hide-scrollbars --window-size=1400,940 --screenshot=docs/pictures/trace_page.png \
 		"file://$(CURDIR)/.pictures/look_before_entry_racy/race_freedom-stale-observation_race/trace.html#c12"
+	$(BIN)/python -m bigactors.live_demo .pictures/flight
+	$(BIN)/python tests/console_picture.py .pictures/flight/run.mcap docs/pictures/console.png
 
 clean:
-	rm -rf $(VENV) $(WHEEL) .pictures .numba-bounds demo live-demo dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(WHEEL) $(PAGE)/node_modules $(PAGE)/parts .pictures .numba-bounds demo live-demo dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -4,15 +4,18 @@ In the repository a room is a folder at the top, and modules say `from semantics
 would be taken from everybody else (PyPI has another `adapters`). So the wheel has `bigactors.semantics`: the modules of
 the repository, with every import of a room rewritten on the line where it stands.
 
-`python hatch_build.py FROM TO` writes a folder so: the tests that run against the wheel.
+`python hatch_build.py FROM TO` writes a folder so: the tests that run against the wheel. `python hatch_build.py parts`
+has npm fetch what the console's page is made of, and copies the files that it loads to where the page finds them; both
+sdist and wheel contain them, so a wheel is made from the sdist without npm.
 """
 
 import ast
+import json
 import re
 import subprocess
 import sys
 from pathlib import Path
-from shutil import copytree, ignore_patterns
+from shutil import copyfile, copytree, ignore_patterns, rmtree, which
 from tempfile import TemporaryDirectory
 from typing import Any
 
@@ -29,12 +32,27 @@ COMMAND = re.compile(rf"(python -m )(?=(?:{'|'.join(ROOMS)})\b)")
 """Where a text tells how to run a module of a room."""
 
 
+PAGE = ROOT / "adapters" / "console" / "page"
+PARTS = {
+    "leaflet.css": "leaflet/dist/leaflet.css",
+    "leaflet.js": "leaflet/dist/leaflet.js",
+    "pmtiles.js": "pmtiles/dist/pmtiles.js",
+    "preact.js": "htm/preact/standalone.module.js",
+    "protomaps-leaflet.js": "protomaps-leaflet/dist/protomaps-leaflet.js",
+}
+"""The files that the console's page loads, by the packages that npm puts into `node_modules`."""
+
+
 class CustomBuildHook(BuildHookInterface[Any]):
     """What hatchling calls before and after a build; an editable install has the repository as it is."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Lay out the package, and give it to the wheel."""
+        """Have the page's parts there, lay out the package, and give it to the wheel."""
         if version == "editable":
+            return
+        if not (PAGE / "parts").exists():
+            gather_parts()
+        if self.target_name != "wheel":
             return
         self.folder = TemporaryDirectory()
         package = Path(self.folder.name) / PACKAGE
@@ -44,7 +62,7 @@ class CustomBuildHook(BuildHookInterface[Any]):
 
     def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:  # noqa: ARG002 - hatchling's
         """Delete what was laid out."""
-        if version != "editable":
+        if version != "editable" and self.target_name == "wheel":
             self.folder.cleanup()
 
 
@@ -60,14 +78,16 @@ def write_package(folder: Path) -> None:
 
 
 def write_tables(package: Path) -> None:
-    """Let the package write the tables of its parser, which are made at each start where they are missing."""
-    program = f"from {PACKAGE}.specs.grammar import TABLES, grammar; grammar(); TABLES.stat()"
-    subprocess.run([sys.executable, "-B", "-c", program], cwd=package.parent, check=True)
+    """Let the package write the tables of its parsers, which are made at each start where they are missing."""
+    for module, parser in (("specs.grammar", "grammar"), ("bigraphs.notation.big.parser", "parser")):
+        program = f"from {PACKAGE}.{module} import TABLES, {parser}; {parser}(); TABLES.stat()"
+        subprocess.run([sys.executable, "-B", "-c", program], cwd=package.parent, check=True)
 
 
 def write_installed(source: Path, target: Path) -> None:
     """Copy a folder, with its modules as they are installed."""
-    copytree(source, target, ignore=ignore_patterns("__pycache__"), dirs_exist_ok=True)
+    unwanted = ignore_patterns("__pycache__", "node_modules", "package*.json")
+    copytree(source, target, ignore=unwanted, dirs_exist_ok=True)
     for path in target.rglob("*.py*"):
         path.write_text(installed(path.read_text(encoding="utf-8")), encoding="utf-8")
 
@@ -93,5 +113,40 @@ def refuse_imports_of_rooms(path: Path, folder: Path) -> None:
                 raise ValueError(f"{place} imports {module}: write 'from {module} import ...'")
 
 
+def gather_parts() -> None:
+    """Fetch what the console's page is made of, and put what it loads into `parts`, with the licenses."""
+    npm = which("npm")
+    if npm is None:
+        print("there is no npm: all works but `bigactors console`, whose page needs it", file=sys.stderr)  # noqa: T201
+        return
+    subprocess.run(
+        [npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--silent"], cwd=PAGE, check=True
+    )
+    rmtree(PAGE / "parts", ignore_errors=True)
+    (PAGE / "parts").mkdir()
+    for part, source in PARTS.items():
+        copyfile(PAGE / "node_modules" / source, PAGE / "parts" / part)
+    packages = sorted((PAGE / "node_modules").rglob("package.json"))
+    texts = [license_of(path.parent) for path in packages if is_package(path)]
+    (PAGE / "parts" / "LICENSES.txt").write_text("\n".join(texts), encoding="utf-8")
+
+
+def is_package(path: Path) -> bool:
+    """Tell whether a `package.json` describes a package whose code a part may contain."""
+    folder = path.parent.parent
+    return folder.name == "node_modules" or (folder.name.startswith("@") and folder.name != "@types")
+
+
+def license_of(package: Path) -> str:
+    """Return a package's name, version and license; some have no text of it."""
+    about = json.loads((package / "package.json").read_text(encoding="utf-8"))
+    title = f"{about['name']} {about['version']}: {about['license']}"
+    texts = [path.read_text(encoding="utf-8").strip() for path in sorted(package.glob("LICEN[CS]E*"))]
+    return "\n\n".join([title, "=" * len(title), *texts]) + "\n"
+
+
 if __name__ == "__main__":
-    write_installed(Path(sys.argv[1]), Path(sys.argv[2]))
+    if sys.argv[1:] == ["parts"]:
+        gather_parts()
+    else:
+        write_installed(Path(sys.argv[1]), Path(sys.argv[2]))

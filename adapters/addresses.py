@@ -19,6 +19,7 @@ HINT: Final = (
 
 LISTENING: Final = ("udp", "tcpin")
 CONNECTING: Final = ("udpout", "tcp")
+SCHEMES: Final = (*LISTENING, *CONNECTING, "serial", "file")
 DEFAULT_BAUD: Final = 57_600
 
 

@@ -13,9 +13,10 @@ from dataclasses import replace
 from typing import Final
 
 from adapters.addresses import parse_address
+from adapters.feed import Feed
 from adapters.lines import Lines
 from adapters.naming import NamingService
-from adapters.plugin import Aged, Command, Refused, World
+from adapters.plugin import Aged, World
 from adapters.transport import Port, Remote, open_port
 from adapters.troubles import Troubles
 from physical import Geometry, PhysicalError, PhysicalProperty, contains, open_file
@@ -34,7 +35,7 @@ PACE: Final = 100.0
 REPORT: Final = 1.0
 
 
-class AisFeed:
+class AisFeed(Feed):
     """A plugin that hears AIS.
 
     Arguments:
@@ -64,7 +65,7 @@ class AisFeed:
             raise AisError(
                 "ais-kind", f"no station is of kind {unknown[0]!r:.60}", f"the kinds are {', '.join(KINDS)}"
             )
-        self._name = name
+        super().__init__(name, "is heard over AIS")
         self._address = parse_address(address)
         self._naming = naming or NamingService()
         self._area = area
@@ -78,22 +79,9 @@ class AisFeed:
         """Set when a recording has been played to its end."""
 
     @property
-    def name(self) -> str:
-        """What reports call it."""
-        return self._name
-
-    @property
     def local(self) -> Remote | None:
         """Where it listens, once it does."""
         return self._port.local if self._port else None
-
-    def owns(self, entity: str) -> bool:  # noqa: ARG002 - a plugin's interface
-        """Vessels take no commands over AIS."""
-        return False
-
-    async def command(self, command: Command) -> None:
-        """Refuse: vessels take no commands over AIS."""
-        raise Refused(f"{command.entity} takes no commands over AIS")
 
     async def run(self, world: World) -> None:
         """Hear until cancelled."""
@@ -137,7 +125,7 @@ class AisFeed:
             self._troubles.note(reason.value, repr(line[:100]))
         for report in heard.reports:
             if isinstance(report, PositionReport):
-                self._position(replace(report, time=_shifted(report.time, shift, now)), now)
+                self._position(_shifted(report, shift, now), now)
         return heard.ear
 
     def _position(self, report: PositionReport, now: float) -> None:
@@ -152,7 +140,7 @@ class AisFeed:
                 "time stamp too old", f"{digits(report.mmsi)}, {now - report.time:.0f} s behind"
             )
             return
-        known = physical_property(replace(report, time=min(report.time, now)))
+        known = physical_property(report if report.time <= now else replace(report, time=now))
         if self._wanted(known):
             self._publish(report.mmsi, known)
 
@@ -160,10 +148,12 @@ class AisFeed:
         assert self._world is not None
         try:
             entity = self._naming.name(f"mmsi:{digits(mmsi)}")
-            known = replace(known, entity=entity, kind=self._naming.kind_of(entity, known.kind))
+            kind = self._naming.kind_of(entity, known.kind)
         except PhysicalError as clash:
             self._troubles.note(clash.code, clash.message)
             return
+        if (entity, kind) != (known.entity, known.kind):
+            known = replace(known, entity=entity, kind=kind)
         self._world.publish(Aged(known, self._time_to_live))
 
     def _wanted(self, known: PhysicalProperty) -> bool:
@@ -194,8 +184,9 @@ class AisFeed:
             yield from lines.end()
 
 
-def _shifted(time: float | None, shift: float, now: float) -> float:
-    return now if time is None else time + shift
+def _shifted(report: PositionReport, shift: float, now: float) -> PositionReport:
+    time = now if report.time is None else report.time + shift
+    return report if time == report.time else replace(report, time=time)
 
 
 def _clock(ear: Ear, line: bytes) -> float | None:

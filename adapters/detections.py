@@ -15,8 +15,9 @@ from pathlib import Path
 from typing import Final
 from urllib.parse import unquote
 
+from adapters.feed import Feed
 from adapters.naming import NamingService
-from adapters.plugin import Aged, Command, Gone, Refused, World
+from adapters.plugin import Aged, Gone, World
 from adapters.slices import in_slices
 from adapters.troubles import Troubles
 from adapters.web import MAX_BODY, Listen, serve
@@ -32,7 +33,7 @@ MAX_KNOWN: Final = 10_000
 PATH: Final = "/detections"
 
 
-class Detections:
+class Detections(Feed):
     """A plugin for detected entities.
 
     Arguments:
@@ -54,7 +55,7 @@ class Detections:
         naming: NamingService | None = None,
         time_to_live: float = 600.0,
     ) -> None:
-        self._name = name
+        super().__init__(name, "was detected")
         self._listen = listen
         self._folder = folder
         self._kinds = None if kinds is None else frozenset(kinds)
@@ -67,19 +68,6 @@ class Detections:
         self._known: OrderedDict[str, None] = OrderedDict()
         self.port: int | None = None
         """Where it listens, once it does."""
-
-    @property
-    def name(self) -> str:
-        """What reports call it."""
-        return self._name
-
-    def owns(self, entity: str) -> bool:  # noqa: ARG002 - a plugin's interface
-        """Detected entities take no commands."""
-        return False
-
-    async def command(self, command: Command) -> None:
-        """Refuse: detected entities take no commands."""
-        raise Refused(f"{command.entity} was detected, and takes no commands")
 
     async def run(self, world: World) -> None:
         """Take detections until cancelled."""

@@ -13,8 +13,9 @@ import asyncio
 from collections.abc import Mapping
 from typing import Any, Final
 
+from adapters.feed import Feed
 from adapters.naming import NamingService
-from adapters.plugin import Aged, Command, Refused, World
+from adapters.plugin import Aged, World
 from adapters.slices import in_slices
 from adapters.troubles import Troubles
 from adapters.web import MAX_BODY, fetching
@@ -28,7 +29,7 @@ FUTURE: Final = 1.0
 """Seconds by which the service's clock may be ahead of ours."""
 
 
-class LocationService:
+class LocationService(Feed):
     """A plugin that polls a location service.
 
     Arguments:
@@ -48,25 +49,12 @@ class LocationService:
         naming: NamingService | None = None,
         time_to_live: float = 60.0,
     ) -> None:
-        self._name = name
+        super().__init__(name, "is located")
         self._url = url
         self._every = every
         self._naming = naming or NamingService()
         self._time_to_live = time_to_live
         self._troubles = Troubles(name)
-
-    @property
-    def name(self) -> str:
-        """What reports call it."""
-        return self._name
-
-    def owns(self, entity: str) -> bool:  # noqa: ARG002 - a plugin's interface
-        """Located entities take no commands."""
-        return False
-
-    async def command(self, command: Command) -> None:
-        """Refuse: located entities take no commands."""
-        raise Refused(f"{command.entity} is located, and takes no commands")
 
     async def run(self, world: World) -> None:
         """Poll until cancelled."""

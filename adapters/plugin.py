@@ -10,6 +10,7 @@ another clock (`adapters.simulated.clock`) runs every plugin faster.
 from __future__ import annotations
 
 import errno
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
@@ -147,7 +148,10 @@ class GiveBack:
 
 
 Command = GoTo | Follow | HandOver | Hold | Return | GiveBack | Rebind
-"""A command to a vehicle. A new one ends the entity's previous command, except for HandOver and Rebind."""
+"""A command to a vehicle. A new one ends the entity's previous command, except for HandOver and Rebind.
+
+Hold and Return end a hand-over in progress, too.
+"""
 
 
 class Refused(Exception):  # an answer, not an error
@@ -346,6 +350,71 @@ def _reason(error: OSError | ValueError) -> str:
 Elsewhere = Delivered | Underway | Hosts | Believes | Broken
 """Reports about other stations."""
 
+
+@dataclass(frozen=True, slots=True)
+class Battery:
+    """A battery: percent that remain, volts; None is *not told*."""
+
+    percent: int | None = None
+    volts: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """What a vehicle says of itself; None is *not told*.
+
+    Attributes:
+        entity: The vehicle.
+        time: When this was reported.
+        plugin: The plugin that hears it.
+        heard: When its last message came.
+        mode: Its mode's name.
+        armed: Whether its motors may turn.
+        battery: Its battery.
+        heading: Where its nose points, in degrees from true north.
+        authority: The stations that it obeys.
+        height: Metres above its home.
+        home: Its home, in degrees.
+        returning: Whether it is in the mode in which it flies home.
+    """
+
+    entity: str
+    time: float
+    plugin: str = ""
+    heard: float | None = None
+    mode: str | None = None
+    armed: bool | None = None
+    battery: Battery | None = None
+    heading: float | None = None
+    authority: tuple[str, ...] = ()
+    height: float | None = None
+    home: tuple[float, float] | None = None
+    returning: bool | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class StatusText:
+    """A text that a vehicle has said; its severity is MAVLink's, from 0 (emergency) to 7 (debug)."""
+
+    entity: str
+    time: float
+    text: str
+    severity: int
+
+
+@dataclass(frozen=True, slots=True)
+class Presence:
+    """Whether another station is reached, and when it answered last; None is *not known yet*, and *never*."""
+
+    station: str
+    time: float
+    reached: bool | None
+    heard: float | None
+
+
+Seen = Status | StatusText | Presence
+"""Reports for people alone: a run records them, and does nothing by them."""
+
 Report = (
     Accepted
     | Arrived
@@ -357,6 +426,7 @@ Report = (
     | Trouble
     | Failed
     | Elsewhere
+    | Seen
 )
 
 # --- the interfaces ---------------------------------------------------------------------------------
@@ -407,10 +477,47 @@ class Plugin(Protocol):
         ...
 
 
+@runtime_checkable
+class Preflight(Protocol):
+    """What a plugin of vehicles can say of them before take-off, as far as they have told."""
+
+    @property
+    def fences(self) -> Mapping[str, Geometry]:
+        """The fence of each vehicle that has one."""
+        ...
+
+    def owns(self, entity: str) -> bool:
+        """Whether it speaks of a vehicle."""
+        ...
+
+    def is_known(self) -> bool:
+        """Whether all vehicles have told of themselves, or were asked for long enough."""
+        ...
+
+    def remarks(self) -> Iterable[str]:
+        """Return messages to the operator."""
+        ...
+
+    def objection(self, entity: str, place: Geometry, name: str) -> str | None:
+        """Return why a vehicle can't stay at a place; None if it can."""
+        ...
+
+    def bar(self, entity: str, place: Geometry, name: str) -> str | None:
+        """Return why a vehicle can't pass a place; None if it can."""
+        ...
+
+
+def preflights(plugins: Iterable[Plugin]) -> tuple[Preflight, ...]:
+    """Return those of some plugins that can speak of vehicles before take-off, or what these wrap as `plugin`."""
+    own = (getattr(plugin, "plugin", plugin) for plugin in plugins)
+    return tuple(plugin for plugin in own if isinstance(plugin, Preflight))
+
+
 __all__ = [
     "Accepted",
     "Aged",
     "Arrived",
+    "Battery",
     "Believes",
     "Broken",
     "Command",
@@ -428,12 +535,16 @@ __all__ = [
     "LinkLost",
     "LinkRestored",
     "Plugin",
+    "Presence",
     "Published",
     "Rebind",
     "Refused",
     "Rejected",
     "Report",
     "Return",
+    "Seen",
+    "Status",
+    "StatusText",
     "TakenOver",
     "Trouble",
     "Underway",

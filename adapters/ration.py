@@ -9,30 +9,76 @@ from typing import Generic, TypeVar
 
 Source = TypeVar("Source", bound=Hashable)
 
+LONGEST_PAUSE = 10.0
+"""Seconds; what a longer pause has piled up is counted as of one so long."""
+
 
 class Ration(Generic[Source]):
-    """How much of each source is kept in a second, and how much was not."""
+    """How much of each source is kept in a second, and how much was not.
+
+    What comes at once after a pause in which nobody asked came during it: the pause's seconds count too.
+    """
 
     def __init__(self, most: int) -> None:
         self._most = most
+        self._kept = float(most)
         self._end = -math.inf
         self._met: Counter[Source] = Counter()
+        self._passed: Counter[Source] = Counter()
         self._left_out: Counter[Source] = Counter()
 
     def takes(self, source: Source, now: float) -> bool:
         """Count one of a source, and tell whether it is kept."""
         self._end_second(now)
         self._met[source] += 1
-        return self._met[source] <= self._most
+        return self._met[source] <= self._kept
+
+    def leave_out(self, source: Source) -> None:
+        """Count one of a source that is not kept, with those of this second."""
+        self._passed[source] += 1
 
     def left_out(self, now: float = math.inf) -> tuple[tuple[Source, int], ...]:
         """Return, once, how many of each source were not kept in the seconds that are over."""
         self._end_second(now)
+        if not self._left_out:
+            return ()
         found, self._left_out = tuple(self._left_out.items()), Counter()
         return found
 
     def _end_second(self, now: float) -> None:
         if now >= self._end:
-            over = {source: met - self._most for source, met in self._met.items() if met > self._most}
+            over = {source: met - int(self._kept) for source, met in self._met.items() if met > self._kept}
             self._left_out.update(over)
-            self._met, self._end = Counter(), now + 1.0
+            self._left_out.update(self._passed)
+            pause = min(now - self._end, LONGEST_PAUSE) if math.isfinite(self._end) else 0.0
+            self._kept = self._most * (1.0 + pause)
+            self._met, self._passed, self._end = Counter(), Counter(), now + 1.0
+
+
+class Turns(Generic[Source]):
+    """So many a second of all sources together: whoever had a turn is passed over until the others had theirs."""
+
+    def __init__(self, most: int) -> None:
+        self._most = most
+        self._end = -math.inf
+        self._left = most
+        self._apart = 0.0
+        self._met: set[Source] = set()
+        self._kept: dict[Source, float] = {}
+
+    def takes(self, source: Source, now: float) -> bool:
+        """Tell whether one of a source is kept."""
+        if now >= self._end:
+            self._begin_second(now)
+        self._met.add(source)
+        if not self._left or now - self._kept.get(source, -math.inf) < self._apart:
+            return False
+        self._left -= 1
+        self._kept[source] = now
+        return True
+
+    def _begin_second(self, now: float) -> None:
+        """Begin to count anew; turns are as far apart as those who came in the last second need."""
+        self._apart = len(self._met) / self._most if len(self._met) > self._most else 0.0
+        self._kept = {source: at for source, at in self._kept.items() if now - at < self._apart}
+        self._met, self._end, self._left = set(), now + 1.0, self._most

@@ -6,7 +6,8 @@ import asyncio
 from pathlib import Path
 from typing import Final
 
-from adapters.plugin import Command, Gone, Refused, World
+from adapters.feed import Feed
+from adapters.plugin import Gone, World
 from adapters.troubles import Troubles
 from physical import PhysicalError, PhysicalProperty, open_file, read_places
 
@@ -16,31 +17,18 @@ EVERY: Final = 1.0
 MAX_BYTES: Final = 10_000_000
 
 
-class StaticPlaces:
+class StaticPlaces(Feed):
     """A plugin for the places of a file: GeoJSON, or by its ending `.waypoints` or `.plan` (waypoint0, waypoint1, ...).
 
     A file that becomes unreadable is reported, and its last places stay.
     """
 
     def __init__(self, name: str, path: Path) -> None:
-        self._name = name
+        super().__init__(name, "is a place")
         self._path = path
         self._seen: tuple[int, int, int] | None = None
         self._known: dict[str, PhysicalProperty] = {}
         self._troubles = Troubles(name)
-
-    @property
-    def name(self) -> str:
-        """What reports call it."""
-        return self._name
-
-    def owns(self, entity: str) -> bool:  # noqa: ARG002 - a plugin's interface
-        """Places take no commands."""
-        return False
-
-    async def command(self, command: Command) -> None:
-        """Refuse: places take no commands."""
-        raise Refused(f"{command.entity} is a place, and takes no commands")
 
     async def run(self, world: World) -> None:
         """Publish the places, and then their changes.

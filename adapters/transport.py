@@ -26,8 +26,8 @@ MAX_UNSENT: Final = 262_144
 BURST: Final = 1_048_576
 """The requested size of a socket's buffer in bytes; systems give less."""
 
-MAX_AT_ONCE: Final = 32
-"""How many datagrams are read at once, up to `CHUNK` bytes."""
+MAX_AT_ONCE: Final = 8
+"""How many datagrams are read at once, up to `CHUNK` bytes: about a millisecond's work, then the loop serves others."""
 
 MAX_PEERS: Final = 64
 """Connections accepted by one port."""

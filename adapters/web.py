@@ -44,7 +44,7 @@ async def serve(handler: Handler, where: Listen) -> AsyncIterator[int]:
     Only JSON is accepted, and only requests to this machine's address, so that no web page in a browser here can post
     (DNS rebinding). Raises OSError if it can't listen there.
     """
-    web = _aiohttp().web
+    web = library().web
 
     async def answer(request: Any) -> Any:
         refused = _refusal(request, where)
@@ -57,7 +57,7 @@ async def serve(handler: Handler, where: Listen) -> AsyncIterator[int]:
 
     application = web.Application(client_max_size=MAX_BODY)
     application.router.add_route("*", "/{path:.*}", answer)
-    runner = web.AppRunner(application, access_log=None, logger=_log())
+    runner = web.AppRunner(application, access_log=None, logger=quiet_log())
     await runner.setup()
     try:
         site = web.TCPSite(runner, where.host, where.port)
@@ -68,7 +68,7 @@ async def serve(handler: Handler, where: Listen) -> AsyncIterator[int]:
 
 
 def _refusal(request: Any, where: Listen) -> tuple[int, str] | None:
-    if not _is_meant(request.headers.get("Host", ""), where.host):
+    if not is_meant(request.headers.get("Host", ""), where.host):
         return (
             421,
             f"address it as localhost, or by its number: {legible(request.host, 60)} is not known here",
@@ -90,10 +90,10 @@ async def _read(request: Any) -> bytes | None:
     return None
 
 
-def _is_meant(header: str, listening: str) -> bool:
+def is_meant(header: str, listening: str) -> bool:
     """Tell whether a request's Host is an address that is listened on; a rebound DNS name is not.
 
-    >>> _is_meant("127.0.0.1:8080", "127.0.0.1"), _is_meant("[::1]", "::1"), _is_meant("evil.example:8080", "127.0.0.1")
+    >>> is_meant("127.0.0.1:8080", "127.0.0.1"), is_meant("[::1]", "::1"), is_meant("evil.example:8080", "127.0.0.1")
     (True, True, False)
     """
     host = header if header.endswith("]") else re.sub(r":[0-9]*$", "", header)
@@ -118,7 +118,7 @@ async def fetching() -> AsyncIterator[Callable[[str], Awaitable[bytes]]]:
 
     It raises OSError if there is none, or if it is too long or not 200.
     """
-    aiohttp = _aiohttp()
+    aiohttp = library()
     async with aiohttp.ClientSession(timeout=aiohttp.ClientTimeout(total=TIMEOUT)) as session:
 
         async def fetch(url: str) -> bytes:
@@ -143,7 +143,7 @@ async def _body(answer: Any) -> bytes:
 
 
 @cache
-def _log() -> logging.Logger:
+def quiet_log() -> logging.Logger:
     """Return the logger of aiohttp, without clients' mistakes, which they get as answers."""
 
     def is_ours(record: logging.LogRecord) -> bool:
@@ -156,12 +156,13 @@ def _log() -> logging.Logger:
 
 def _spoilt() -> tuple[type[Exception], ...]:
     """Return the exceptions that aiohttp raises for an unreadable request."""
-    aiohttp = _aiohttp()
+    aiohttp = library()
     return aiohttp.http_exceptions.HttpProcessingError, aiohttp.web.RequestPayloadError
 
 
 @cache
-def _aiohttp() -> Any:
+def library() -> Any:
+    """Return aiohttp; raises PhysicalError where it is not installed."""
     try:
         import aiohttp  # noqa: PLC0415 - an extra
         import aiohttp.web  # noqa: PLC0415 - an extra

@@ -123,6 +123,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--cores", type=int, help="on how many cores at most")
     parser.add_argument("--minutes", type=float, help="how long at most")
     parser.add_argument("--gigabytes", type=float, help="how much memory at most, in units of 2³⁰ bytes")
+    parser.add_argument("--most", type=int, help="how many configurations at most")
     parser.add_argument("--marks", help="numbers of configurations at which to look, and stop at the last")
     given = parser.parse_args(arguments)
     if given.cores is not None:
@@ -197,7 +198,7 @@ def _search(mission: "ElaboratedMission", given: argparse.Namespace) -> "Explora
         reducer = Reduced(mission.initial, [Reduction.POR], formulas)
     seconds = None if given.minutes is None else 60 * given.minutes
     memory = None if given.gigabytes is None else int(given.gigabytes * 2**30)
-    limits = Limits(configurations=None, seconds=seconds, memory=memory)
+    limits = Limits(configurations=given.most, seconds=seconds, memory=memory)
     return explore(mission.initial, limits=limits, engine=Engine(given.engine), reduce=reducer)
 
 

@@ -39,15 +39,15 @@ _PITCH, _HALF = (
 )  # ten-thousandths of a degree between the centres of cells, and from a centre to its border
 
 
-def neighbours(cell: int, side: int) -> tuple[int, ...]:
-    """Return the cells east, west, north and south of one, as far as the grid has them.
+def neighbours(cell: int, side: int, rows: int | None = None) -> tuple[int, ...]:
+    """Return the cells east, west, north and south of one, as far as the grid has them; without rows it is square.
 
     >>> neighbours(0, 2), neighbours(4, 3)
     ((1, 2), (5, 3, 7, 1))
     """
     row, column = divmod(cell, side)
     beside = ((row, column + 1), (row, column - 1), (row + 1, column), (row - 1, column))
-    return tuple(r * side + c for r, c in beside if 0 <= r < side and 0 <= c < side)
+    return tuple(r * side + c for r, c in beside if 0 <= r < (rows or side) and 0 <= c < side)
 
 
 def starts(agents: int, side: int) -> tuple[int, ...]:
@@ -71,8 +71,8 @@ def mission_text(agents: int, side: int, handover: bool = False) -> str:
         side: Of the square grid, in cells.
         handover: Whether a UAV that has found the spill hands itself over to one of three stations.
     """
-    places = [f"  cell{cell}: Cell = {_box(cell, side)}" for cell in range(side * side)]
-    uavs = [f"  uav{i}: UAV = point {_centre(cell, side)}" for i, cell in enumerate(starts(agents, side))]
+    places = [f"  cell{cell}: Cell = {box(cell, side)}" for cell in range(side * side)]
+    uavs = [f"  uav{i}: UAV = point {centre(cell, side)}" for i, cell in enumerate(starts(agents, side))]
     found = "      case obs if spill0 in obs => skip"
     if handover:
         uavs = [f"{uav} linked control:gcs{i % STATIONS}" for i, uav in enumerate(uavs)]
@@ -84,7 +84,7 @@ def mission_text(agents: int, side: int, handover: bool = False) -> str:
     return _MISSION.substitute(
         kinds="  kind Station\n" if handover else "",
         places="\n".join([*places, *uavs]),
-        spill=_centre(0, side),
+        spill=centre(0, side),
         rule=_RULE if handover else "",
         cases="\n".join([found, *cases]),
         actors="\n".join(actors),
@@ -96,12 +96,14 @@ def _station(number: int) -> str:
     return f"point {_position(-5 * _PITCH, number * _PITCH)}"
 
 
-def _centre(cell: int, side: int) -> str:
+def centre(cell: int, side: int) -> str:
+    """Write the middle of a cell of a grid with so many cells in a row."""
     row, column = divmod(cell, side)
     return _position(row * _PITCH, column * _PITCH)
 
 
-def _box(cell: int, side: int) -> str:
+def box(cell: int, side: int) -> str:
+    """Write a cell's box."""
     row, column = divmod(cell, side)
     north_east = _position(row * _PITCH + _HALF, column * _PITCH + _HALF)
     return f"box {north_east} {_position(row * _PITCH - _HALF, column * _PITCH - _HALF)}"

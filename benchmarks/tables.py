@@ -146,6 +146,25 @@ def _beside_spin(searches: Iterable[Kept]) -> list[str]:
     return [_table(head, rows)] if rows else []
 
 
+def wide_table(kept: Kept) -> str:
+    """Lay out the fleets, in full and by partial order."""
+    rows = [
+        (
+            each["size"].replace(" apart", " UAVs apart").replace("x", " UAVs, ", 1).replace("x", " × "),
+            each["way"],
+            f"{each['configurations']:,}",
+            f"{each['transitions']:,}",
+            f"{each['configurations'] / each['seconds']:,.0f}",
+            f"{each['learning'] / each['seconds']:.0%}",
+            f"{each['rule_runs']:,}",
+            f"{each['bytes_per_configuration']:.0f}",
+        )
+        for each in kept["rows"]
+    ]
+    head = "fleet, grid|searched|configurations|transitions|configurations/s|learning|rules run in Python|bytes each"
+    return f"{_table(head, rows)}\n{machine(kept)}"
+
+
 def _peer(row: Kept, peer: Kept, ratio: Kept) -> tuple[str, ...]:
     reduced, below = row["reduced"], "< " if peer["bounds"] else ""
     return (
@@ -179,13 +198,14 @@ def machine(kept: Kept) -> str:
 
 def growth_section(kept: Kept) -> str:
     """Return the table of the growth and the picture that was plotted beside it."""
-    return f"{growth_tables(kept)}\n![Rate and bytes a configuration](pictures/growth.svg)\n"
+    return f"{growth_tables(kept)}\n![Rate and bytes a configuration](../pictures/growth.svg)\n"
 
 
 TABLES: dict[str, Callable[[Kept], str]] = {
     "patrol": patrol_tables,
     "growth": growth_section,
     "largest": largest_tables,
+    "wide": wide_table,
 }
 
 

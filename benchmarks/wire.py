@@ -1,19 +1,25 @@
-"""Measure the latency from a sent telemetry packet to the committed rule, sockets and decoding included.
+"""Measure the latency from a telemetry packet in our socket to the committed rule, decoding included.
 
 A hundred simulated vehicles, which speak MAVLink at 10 Hz, and a receiver that sends a thousand AIS positions a second
 are another process; here run the autopilot plugin, the AIS plugin, the loop, the rules and the recording. The clock is
-the system's, which both read: a vehicle's own clock says when its position was sent. `python -m benchmarks.wire`.
+the system's, which says of each packet when it arrived. The time since it was sent, by the vehicle's own clock, is told
+too: it includes what the simulators wait for the processor. `python -m benchmarks.wire`.
 """
 
 import argparse
 import asyncio
+import fcntl
 import os
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import AsyncIterator
+from contextlib import AsyncExitStack, asynccontextmanager
 from pathlib import Path
+from typing import Any, Final
 
 from pyais.encode import encode_dict
 
@@ -29,6 +35,8 @@ from adapters.recording.writing import Recorder
 from adapters.simulated import Kind, Simulator, Vehicle
 from adapters.transport import Remote
 from benchmarks.live import LANES, TimedRun
+from bigactors import __version__
+from bigactors.missions import digest_of
 from bigactors.terminal import say
 from bigactors.watchers import Tape
 from physical import Geometry, contains
@@ -46,6 +54,9 @@ GROUPS = 10
 
 APART = 100
 """Vehicles that begin each 0.7 m east of the one before: 0.07 s of flight."""
+
+SIOCGSTAMP: Final = 0x8906
+"""Linux' question for the time of the datagram that was read last."""
 
 NAMED = 50
 """Vessels that the mission names; the others pass by outside of its places."""
@@ -139,18 +150,23 @@ def _sentence(number: int) -> bytes:
 
 
 class Link(Autopilot):
-    """The plugin, which remembers when each vehicle sent its last position, and where it was told to go."""
+    """The plugin, which remembers when each vehicle's last position was sent and came, and where it was told to go."""
 
     start = 0.0
+    arrived = 0.0
 
     def __init__(self, crafts: list[Craft]) -> None:
         super().__init__("fleet", "udp:127.0.0.1:0", crafts)
-        self.sent: dict[int, float] = {}
+        self.sent: dict[int, tuple[float, float]] = {}
         self.goals: dict[str, Geometry] = {}
+
+    def _receive(self, remote: Remote, data: bytes) -> None:
+        self.arrived = _arrival(self._port)
+        super()._receive(remote, data)
 
     def _hear(self, remote: Remote, message: Message) -> None:
         if message.name == "GLOBAL_POSITION_INT":
-            self.sent[message.system] = self.start + message["time_boot_ms"] / 1000
+            self.sent[message.system] = self.start + message["time_boot_ms"] / 1000, self.arrived
         super()._hear(remote, message)
 
     async def command(self, command: Command) -> None:
@@ -160,13 +176,25 @@ class Link(Autopilot):
         await super().command(command)
 
 
+def _arrival(port: Any) -> float:
+    """Return when the system took the datagram that was read last, by the monotonic clock."""
+    seconds: int
+    parts: int
+    try:
+        seconds, parts = struct.unpack("ll", fcntl.ioctl(port._link, SIOCGSTAMP, bytes(16)))  # noqa: SLF001 - its socket
+    except OSError:  # the first one: from now on it is told
+        return time.monotonic()
+    return time.monotonic() - (time.time() - seconds - parts / 1e6)
+
+
 class Stopwatch:
     """Takes the time from the first position in the place that was sent to the commit that it allowed."""
 
     def __init__(self, link: Link) -> None:
         self.link, self.steps, self.broken, self.heard = link, 0, 0, 0
-        self.arrived_at: dict[str, float] = {}
+        self.arrived_at: dict[str, tuple[float, float]] = {}
         self.delays: list[float] = []
+        self.since_sent: list[float] = []
 
     def arrived(self, heard: Heard, now: float) -> None:  # noqa: ARG002 - as watchers have it
         """Take the time of the first position in the place that a vehicle goes to."""
@@ -189,48 +217,55 @@ class Stopwatch:
             if step.transition.label.rule == "commit":
                 entity = f"uav{str(step.transition.label.agent)[1:]}"
                 self.link.goals.pop(entity, None)
-                self.delays.append(time.monotonic() - self.arrived_at.pop(entity))
+                sent, arrived = self.arrived_at.pop(entity)
+                self.delays.append(time.monotonic() - arrived)
+                self.since_sent.append(time.monotonic() - sent)
+
+
+@asynccontextmanager
+async def flown(vehicles: int, vessels: int, recording: Path) -> AsyncIterator[tuple[TimedRun, Stopwatch]]:
+    """Yield a run whose vehicles have taken off; its recording is closed when it is left."""
+    source = Source("wire", mission_text(vehicles))
+    mission = elaborate(parse(source), source, Path(), Variation(Scheduler.FCFS, Control.TIMED, {}))
+    plan = Plan(mission.initial, {f"uav{number}": "fleet" for number in range(vehicles)})
+    link = Link([Craft(f"uav{number}", "UAV", number + 1) for number in range(vehicles)])
+    table = {f"mmsi:{mmsi(number)}": f"boat{number}" for number in range(NAMED)}
+    ais, watch = AisFeed("ais", "udp:127.0.0.1:0", NamingService(table)), Stopwatch(link)
+    header = {"mission": "wire", "text": source.text, "digest": digest_of(mission), "version": __version__}
+    header |= {"verified": False, "vehicles": dict(plan.vehicles)}
+    async with AsyncExitStack() as stack:
+        recorder = Recorder(recording, header, time.time(), mission.setting.kinds)
+        stack.callback(lambda: recorder.close("it was measured", time.time()))
+        tape = Tape(recorder, lambda _finding: ())
+        run = await stack.enter_async_context(TimedRun(plan, started(plan), [link, ais], [tape, watch]))
+        while not link.local or not ais.local:
+            await asyncio.sleep(0.01)
+        line = ["--simulate", str(link.local[1]), str(ais.local[1])]
+        line += ["--vehicles", str(vehicles), "--vessels", str(vessels)]
+        others = stack.enter_context(
+            subprocess.Popen(
+                [sys.executable, "-m", "benchmarks.wire", *line], stdout=subprocess.PIPE, text=True
+            )
+        )
+        stack.callback(others.kill)
+        assert others.stdout is not None
+        link.start = float(await asyncio.to_thread(others.stdout.readline))
+        await run.begin(60.0)
+        settle()
+        await run.go(seconds=WARM_UP)
+        yield run, watch
 
 
 async def measure(vehicles: int, vessels: int, seconds: float) -> dict[str, float]:
     """Run for some seconds and return the figures."""
-    source = Source("wire", mission_text(vehicles))
-    mission = elaborate(parse(source), source, Path(), Variation(Scheduler.FCFS, Control.TIMED, {}))
-    plan = Plan(mission.initial, {f"uav{number}": "fleet" for number in range(vehicles)})
-    channels = {number: Craft(f"uav{number}", "UAV", number + 1) for number in range(vehicles)}
-    link = Link(list(channels.values()))
-    table = {f"mmsi:{mmsi(number)}": f"boat{number}" for number in range(NAMED)}
-    ais, watch = AisFeed("ais", "udp:127.0.0.1:0", NamingService(table)), Stopwatch(link)
     with tempfile.TemporaryDirectory() as folder:
-        header = {"mission": "wire", "text": source.text, "digest": "", "version": "", "verified": False}
-        recorder = Recorder(Path(folder) / "wire.mcap", {**header, "vehicles": {}}, time.time())
-        tape = Tape(recorder, lambda _finding: ())
-        async with TimedRun(plan, started(plan), [link, ais], [tape, watch]) as run:
-            while not link.local or not ais.local:
-                await asyncio.sleep(0.01)
-            line = [
-                sys.executable,
-                "-m",
-                "benchmarks.wire",
-                "--simulate",
-                str(link.local[1]),
-                str(ais.local[1]),
-            ]
-            line += ["--vehicles", str(vehicles), "--vessels", str(vessels)]
-            with subprocess.Popen(line, stdout=subprocess.PIPE, text=True) as others:
-                try:
-                    assert others.stdout is not None
-                    link.start = float(await asyncio.to_thread(others.stdout.readline))
-                    await run.begin(60.0)
-                    settle()
-                    await run.go(seconds=WARM_UP)
-                    return await _measured(run, watch, seconds)
-                finally:
-                    others.kill()
+        async with flown(vehicles, vessels, Path(folder) / "wire.mcap") as (run, watch):
+            return await measured(run, watch, seconds)
 
 
-async def _measured(run: TimedRun, watch: Stopwatch, seconds: float) -> dict[str, float]:
-    watch.delays, watch.steps, watch.heard, run.busy = [], 0, 0, []
+async def measured(run: TimedRun, watch: Stopwatch, seconds: float) -> dict[str, float]:
+    """Go on for some seconds and return the figures."""
+    watch.delays, watch.since_sent, watch.steps, watch.heard, run.busy = [], [], 0, 0, []
     before, began = time.process_time(), time.monotonic()
     await run.go(seconds=seconds)
     busy, took = time.process_time() - before, time.monotonic() - began
@@ -244,8 +279,10 @@ async def _measured(run: TimedRun, watch: Stopwatch, seconds: float) -> dict[str
         "median ms": delays[len(delays) // 2] * 1000,
         "99th percentile ms": delays[int(len(delays) * 0.99)] * 1000,
         "worst ms": delays[-1] * 1000,
+        "99th p. ms since sent": sorted(watch.since_sent)[int(len(delays) * 0.99)] * 1000,
         "99th p. of turns, CPU": sorted(run.busy)[int(len(run.busy) * 0.99)] * 1000,
         "load of one core": busy / took,
+        "CPU µs a position": busy / watch.heard * 1e6,
     }
 
 

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any, Final
 
-from bigactors.big_formulas import LOGICS, parse_formula
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import paint
@@ -26,6 +25,9 @@ from bigraphs.verdicts import (
     predicate_verdict,
     property_verdict,
 )
+
+LOGICS: Final = ("ltl", "ctl")
+"""The options that take formulas."""
 
 MARKS: Final = {
     Outcome.HOLDS: ("✓", "green", Exit.HOLDS),
@@ -62,6 +64,8 @@ def verdicts_on(options: Namespace, found: TransitionSystem) -> Iterator[Decided
 def check_formulas(options: Namespace, system: System) -> None:
     """Refuse what is no formula, before a long exploration and not after it."""
     for logic, text in asked_formulas(options):
+        from bigactors.big_formulas import parse_formula  # noqa: PLC0415 - geometry takes its time to load
+
         try:
             parse_formula(text, logic, system)
         except NotationError as error:

@@ -5,17 +5,16 @@ Atoms are the predicates of the system, and `taken` and `enabled` with a rule of
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from itertools import chain
 from typing import Final, cast
 
 from bigraphs.errors import NotationError
 from bigraphs.notation import formulas as s
+from bigraphs.notation.spelling import did_you_mean
 from bigraphs.system import System
 from semantics.properties import temporal as t
 from semantics.properties.propositions import Always, Proposition
 
-LOGICS: Final = ("ltl", "ctl")
 MOST_NESTED: Final = 32
 """The most path operators inside each other."""
 MOST_PARTS: Final = 2_000
@@ -150,8 +149,7 @@ class _Elaboration:
         tight = name.replace(" ", "")
         if tight in labels:
             return tight
-        near = get_close_matches(name, labels, 1)
-        hint = f"did you mean '{near[0]}'?" if near else f"the {sort}s are {_some(labels)}"
+        hint = did_you_mean(name, labels) or f"the {sort}s are {_some(labels)}"
         raise self.wrong(sort, f"unknown {sort} '{name}'", word, hint)
 
     # --- connectives

@@ -28,6 +28,7 @@ from checker import (
     check,
     report_json,
 )
+from checker.engines.contract import EngineError
 from checker.properties.findings import MOST_VIOLATIONS
 from semantics.state.canonical import digest
 from specs.elaboration import ElaboratedMission, Variation
@@ -42,6 +43,7 @@ REFUSALS: dict[type[Exception], tuple[Exit, str]] = {
         Exit.INCOMPLETE,
         "set NUMBA_CACHE_DIR to a folder that you may write, or add --engine reference",
     ),
+    EngineError: (Exit.MISTAKE, "leave out --engine, and what only that engine keeps or doubts"),
     RefusedError: (Exit.MISTAKE, "check it without, or with the other reduction alone"),
     MachineError: (Exit.INCOMPLETE, "try again when less else runs here, or leave --engine out"),
     MemoryError: (Exit.INCOMPLETE, "explore less: --max-memory SIZE, --max-configurations N"),
@@ -110,6 +112,7 @@ class How:
     reduce: tuple[Reduction, ...] = ()
     keeping: Keeping | None = None
     cluster: Cluster | None = None
+    times: bool = False
 
 
 def check_mission(
@@ -132,7 +135,10 @@ def check_mission(
                 reduce=how.reduce,
                 keeping=how.keeping and _of_this(how.keeping, mission, limits),
                 cluster=how.cluster,
+                times=how.times,
             )
+        if how.times:
+            _check_times(name, mission, report)
         return Checked(name, mission, digest_of(mission), report, watch.interrupted)
     except tuple(REFUSALS) as refused:
         code, hint = next(said for kind, said in REFUSALS.items() if isinstance(refused, kind))
@@ -149,6 +155,16 @@ def check_mission(
     except Exception as error:  # whatever it is, it is our bug, and other missions are to be checked
         tell(f"{name}:\n{describe_bug(error)}")
         return Failed(name, Exit.BUG, f"internal error: {type(error).__name__}: {error}")
+
+
+def _check_times(name: str, mission: ElaboratedMission, report: Report) -> None:
+    """Say why a report has no times that were asked for."""
+    if mission.setting.timing is None:
+        tell(
+            f"{name}: it has no times: nothing says how long anything takes; write a section timing {{ ... }}"
+        )
+    elif report.schedule is None:
+        tell(f"{name}: it has no times: time stops, as the verdict on computation says")
 
 
 def _of_this(keeping: Keeping, mission: ElaboratedMission, limits: Limits) -> Keeping:

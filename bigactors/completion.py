@@ -134,6 +134,7 @@ POSITIONAL: Final[dict[str, Completer]] = {
     "check": missions,
     "show": missions,
     "simulate": missions,
+    "export": missions,
     "run": missions,
     "fmt": mission_files,
     "big": systems,

@@ -70,13 +70,28 @@ before it is sent. `FILE.tlog` beside it has every MAVLink frame received and se
 stations. Log times are in nanoseconds since 1970 UTC.
 
 A flood does not fill the disk. Each second, at most 100 arrivals of each entity of the mission are recorded, and at
-most 100 of all other entities of one plugin; `left_out` counts the rest. Every step is recorded with what was observed,
-so a replay needs no arrivals. The telemetry log records at most 1,000 received packets a second of each link, and
-reports how many it left out.
+most 100 of all other entities of one plugin, each in its turn; `left_out` counts the rest. Every step is recorded
+with what was observed, so a replay needs no arrivals. The telemetry log records at most 1,000 received packets a
+second of each link, and reports how many it left out.
 
 `bigactors replay FILE.mcap` runs the steps again through the rules. If the rules don't allow a step, or if it leads to
 another configuration (`digest`), replay names the step and exits with code 1. `run --resume FILE.mcap` continues a
 killed run; `show --trace FILE.mcap --step K` draws any of its configurations.
+
+Other programs read it too: [Foxglove](https://foxglove.dev) and Lichtblick show its map and its log. The topics that
+begin with `/` are for them, in Foxglove's schemas. They follow from the other topics, and `bigactors` passes over them:
+
+- `/NAME/fix` (`foxglove.LocationFix`): where an entity was observed, at most once a second; `arrivals` has all.
+- `/PLUGIN/others/fix`: the same of all entities that the mission does not name; `frame_id` has the name.
+- `/places` (`foxglove.GeoJSON`): the mission's places that never move, and the vehicles' fences, once.
+- `/NAME/area` and `/PLUGIN/others/area` (`foxglove.GeoJSON`): any other place, such as a spill, whenever it is seen to
+  have changed; empty when it is gone.
+- `/log` (`foxglove.Log`): findings, commands, what operators and vehicles said, what was not recorded.
+
+An unknown altitude is 0, and the covariance is unknown. In a program that opens the file, add a Map panel and a Log
+panel. It warns that the file has no index: it reads the whole file first. The schemas in the file leave out members
+whose types these programs do not know (null, arrays of arrays), or else they would not show the topic; the tables below
+are complete. `bigactors show --trace FILE.mcap --output tracks.geojson` writes every position, for QGIS and others.
 
 A step is the step of a trace ([trace.schema.json](trace.schema.json)). `observed` holds what the world decided: the
 cells of P that were written, each as `[cell, value]`. A cell is a list of words such as `["placement", "uav0"]`,

@@ -6,9 +6,13 @@ from pathlib import Path
 
 from bigactors.files import write_text
 from bigactors.mistakes import Mistake, unreadable
-from bigactors.pages import Story, trace_page
+from bigactors.pages import Story, page_of, telling
+from bigactors.pages.timeline_page import timeline_page
 from bigactors.pictures import PictureError, draw_configuration, draw_overview, draw_trace
+from bigactors.pictures.timeline import draw_timeline
 from checker import Trace
+from checker.properties.schedule import Schedule
+from checker.reports.lanes import lanes_of_trace
 from semantics.state.configuration import Configuration
 
 MOST_PICTURES = 100
@@ -28,20 +32,29 @@ def draw_run(trace: Trace, folder: Path, title: str, *, each_step: bool) -> None
         if each_step and len(trace) <= MOST_PICTURES:
             draw_trace(trace.configurations, labels, folder, title=title, loop=trace.loop)
         else:
-            draw_overview(trace.configurations, labels, folder / "trace.svg", title=title, loop=trace.loop)
+            draw_overview(lanes_of_trace(trace), folder / "trace.svg", title=title)
 
 
-def draw_lanes(trace: Trace, path: str, title: str) -> None:
+def draw_lanes(trace: Trace, path: str, title: str, *, unfolded: bool = False) -> None:
     """Draw a trace into a file, its steps in lanes."""
     with _mistakes(path):
-        draw_overview(
-            trace.configurations, [step.label for step in trace.steps], path, title=title, loop=trace.loop
-        )
+        draw_overview(lanes_of_trace(trace), path, title=title, unfolded=unfolded)
 
 
-def write_page(trace: Trace, path: str, title: str, start: int = 0) -> None:
-    """Write a trace as a page that steps through it."""
-    write_text(path, trace_page(Story(title, "", False, trace, start)))
+def draw_schedule(schedule: Schedule, path: str, title: str) -> None:
+    """Draw who flies when into a file."""
+    with _mistakes(path):
+        if Path(path).suffix.lower() in (".html", ".htm"):
+            write_text(path, timeline_page(schedule, title))
+        else:
+            draw_timeline(schedule, path, title=title)
+
+
+def write_page(story: Story, path: str) -> tuple[str, ...]:
+    """Write a trace as a page that steps through it; return what is left out of the page."""
+    told = telling(story)
+    write_text(path, page_of(told))
+    return told.left_out
 
 
 @contextmanager

@@ -13,11 +13,15 @@ from adapters.detections import Detections
 from adapters.location import LocationService
 from adapters.naming import NamingService
 from adapters.plugin import Plugin
+from adapters.ros import RosFeed
 from adapters.static_places import StaticPlaces
 from adapters.web import Listen
 from bigactors.arguments.links import LIVING
 from bigactors.files import read_bytes
-from bigactors.mistakes import Mistake, suggestion
+from bigactors.installed_plugins import FEEDS as INSTALLED
+from bigactors.installed_plugins import make_feed, require_known
+from bigactors.mistakes import Mistake
+from bigraphs.notation.spelling import did_you_mean
 from physical import Geometry, box
 from specs.elaboration import ElaboratedMission
 
@@ -60,7 +64,7 @@ def _told(options: Namespace, mission: ElaboratedMission) -> dict[str, frozenset
     told = dict(options.kinds)
     known = mission.setting.signature.kinds
     for kind in sorted(told.get("detections", frozenset()) - known.keys()):
-        hint = suggestion(kind, known) or f"its kinds are {', '.join(known)}"
+        hint = did_you_mean(kind, known) or f"its kinds are {', '.join(known)}"
         raise Mistake(f"the mission has no kind '{kind:.60}' that could be detected", hint)
     return told
 
@@ -119,18 +123,23 @@ def _locations(name: str, address: str, hearing: Hearing) -> Plugin:
     return LocationService(name, address, naming=hearing.naming, time_to_live=hearing.living["locations"])
 
 
+def _ros(name: str, address: str, hearing: Hearing) -> Plugin:
+    return RosFeed(name, address, naming=hearing.naming, time_to_live=hearing.living["ros"])
+
+
 FEEDS: dict[str, Callable[[str, str, Hearing], Plugin]] = {
     "ais": _ais,
     "detections": _detections,
     "locations": _locations,
     "places": _places,
+    "ros": _ros,
 }
 """The function that makes each kind of feed from a name, an address and the settings."""
 
 
 def _feed(kind: str, address: str, number: int, hearing: Hearing) -> Plugin:
-    make = FEEDS.get(kind)
-    if make is None:
-        hint = suggestion(kind, FEEDS) or f"the feeds are {', '.join(FEEDS)}"
-        raise Mistake(f"there is no feed '{kind:.40}'", hint)
-    return make(f"{kind}{number}", address, hearing)
+    name, make = f"{kind}{number}", FEEDS.get(kind)
+    if make is not None:
+        return make(name, address, hearing)
+    require_known(kind, INSTALLED, FEEDS, f"there is no feed '{kind:.40}'")
+    return make_feed(kind, name, address)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from bigactors.mistakes import Mistake, suggestion
+from bigactors.mistakes import Mistake
+from bigraphs.notation.spelling import did_you_mean
 from physical import Geometry, area, box, contains
 from physical.frame import METRES_PER_DEGREE
 from semantics.environment import Placing
@@ -28,7 +29,7 @@ def fence_of(word: str, mission: ElaboratedMission) -> Geometry | None:
     at = mission.initial.structure.physical.placement(word) if word in mission.setting.kinds else None
     if not isinstance(at, Placed) or at.geometry.is_point or word not in mission.fixed:
         hint = (
-            suggestion(word, mission.fixed)
+            did_you_mean(word, mission.fixed)
             or f"name a place that has a border and never moves, {WORLD} or {NONE}"
         )
         raise Mistake(f"'{word:.60}' is no fence", hint)

@@ -1,8 +1,11 @@
 """The live demonstration: the verified oil-spill mission, flown by a simulated plane beside a replayed AIS feed.
 
 `python -m bigactors.live_demo` (or `make live-demo`) checks `spill_watch`, writes its verdict, flies it with everything
-real but the plane and the water: MAVLink and AIS over sockets and files, the rules, the monitor, the recording. Time is
-the simulation's, so that an hour takes seconds. Then the recording is replayed, compared, and drawn.
+real but the plane and the water: MAVLink and AIS over sockets and files, the camera's pictures, in which the spill is
+found, the rules, the monitor, the recording. Time is the simulation's, so that an hour takes a minute. Then the
+recording is replayed, compared, and shown as a page, `flight.html`.
+
+With `--console` (`make live-demo CONSOLE=1`) the operator's console looks on, and time passes so that one can follow.
 """
 
 from __future__ import annotations
@@ -11,46 +14,83 @@ import asyncio
 import os
 import sys
 import time
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
+from adapters.camera.feed import CameraFeed
+from adapters.camera.libraries import opencv
+from adapters.camera.view import Lens, Pose
 from adapters.live.loop import Ending
 from adapters.mavlink.autopilot import Autopilot
 from adapters.simulated import Kind, Simulator, Vehicle
 from adapters.simulated import run as run_simulated
+from adapters.simulated.camera import render
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main as command
 from bigactors.commands.run import Flight, fly, prepare, record
-from bigactors.drawings import draw
+from bigactors.drawings import write_page
 from bigactors.exits import Exit
+from bigactors.pages import Story
 from bigactors.recordings import open_recording, trace_of
 from bigactors.terminal import say, tell
-from bigactors.watchers import TOLD, Terminal
-from checker import Trace
-from physical import PhysicalProperty, circle, write_geojson
+from bigactors.watchers import Terminal
+from physical import circle
 from physical.messages import counted
 from specs.missions import shipped_missions
 
 MISSION: Final = "spill_watch"
 AIRFIELD: Final = (37.147, -8.582, 20.0)
-SPILL: Final = circle((37.0, -8.7), 650.0)
-FOUND_AFTER: Final = 60.0
-"""Seconds over the search area after which the camera sees the spill."""
+SPILL: Final = circle((36.9915, -8.6925), 200.0)
+"""What the camera films, some 300 m from the middle of the search area, around which the plane circles."""
+
+LENS: Final = Lens(fov=90.0, pitch=-30.0)
+PIXELS: Final = (240, 180)
+EVERY: Final = 6.0
+"""Seconds between two pictures."""
+
+KEPT: Final = 20
+"""How many pictures are kept."""
+
+COAST: Final = 37.05
+"""The latitude north of which the camera is off: over land it would find fields."""
 
 LONGEST: Final = 5_400.0
+FOLLOWED: Final = 10.0
+"""How much faster than the clock on the wall time passes for who looks on."""
+
+
+def arguments() -> ArgumentParser:
+    """Return the parser of the command line."""
+    parser = ArgumentParser(
+        prog="python -m bigactors.live_demo", description=(__doc__ or "").partition("\n")[0]
+    )
+    parser.add_argument("folder", type=Path, nargs="?", default="live-demo", help="default %(default)s")
+    parser.add_argument(
+        "--console", action="store_true", help="serve the operator's console, and print its link"
+    )
+    parser.add_argument(
+        "--speed",
+        type=float,
+        help=f"times the pace of the clock on the wall (default: {FOLLOWED:.0f} with --console, else all that it can)",
+    )
+    return parser
 
 
 def main() -> int:
     """Fly the demonstration into a folder; return the exit code."""
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "live-demo")
+    asked = arguments().parse_args()
+    folder: Path = asked.folder
+    speed = asked.speed or (FOLLOWED if asked.console else None)
+    more = ("--console",) if asked.console else ()
     began = time.monotonic()
     _prepare(folder)
     verdict = str(folder / "verdict.json")
     if code := command(["check", "--no-traces", "--verdict", verdict, MISSION]):
         return code
-    ending, broken = _fly(folder, verdict)
+    ending, broken = _fly(_options(folder, verdict, *more), speed)
     equal = _replay(folder, ending)
     tell(f"the demonstration took {time.monotonic() - began:.1f} s")
     done = ending.reason == "the mission has ended" and not broken and equal
@@ -59,11 +99,11 @@ def main() -> int:
 
 def _prepare(folder: Path) -> None:
     (folder / "camera").mkdir(parents=True, exist_ok=True)
-    for old in ("run.mcap", "run.tlog", "camera/spill.geojson"):
-        (folder / old).unlink(missing_ok=True)
+    for old in (folder / "run.mcap", folder / "run.tlog", *(folder / "camera").glob("*.png")):
+        old.unlink(missing_ok=True)
 
 
-def _options(folder: Path, verdict: str) -> Namespace:
+def _options(folder: Path, verdict: str, *more: str) -> Namespace:
     feed = shipped_missions()[MISSION].with_suffix(".nmea")
     return parse_arguments(
         [
@@ -71,28 +111,34 @@ def _options(folder: Path, verdict: str) -> Namespace:
             MISSION,
             "--vehicle=uav0=udp:127.0.0.1:0",
             f"--feed=ais=file:{feed}",
-            f"--feed=detections=folder:{folder / 'camera'}",
+            f"--camera=uav0=folder:{folder / 'camera'},fov={LENS.fov:g},pitch={LENS.pitch:g},every={EVERY:g}",
             "--name=mmsi:263999001=drifter0",
             "--name=mmsi:263999002=drifter1",
             f"--verdict={verdict}",
             f"--record={folder / 'run.mcap'}",
             f"--socket={folder / 'run.sock'}",
             f"--for={LONGEST}",
+            *more,
         ]
     )
 
 
-def _fly(folder: Path, verdict: str) -> tuple[Ending, bool]:
-    flight = prepare(_options(folder, verdict))
-    terminal = Terminal(flight.resting)
+def _fly(options: Namespace, speed: float | None) -> tuple[Ending, bool]:
+    flight = replace(prepare(options), rate=speed)
+    folder = Path(options.record).parent
+    terminal = Terminal(flight.resting, tuple(flight.plan.vehicles))
     with record(flight) as tape:
-        ending = run_simulated(_flying(flight, terminal, tape, folder))
+        ending = run_simulated(_flying(flight, terminal, tape, folder), speed)
+        terminal.ends()
         say(f"{ending.reason} after {ending.state.number} steps")
     return ending, terminal.broken
 
 
 async def _flying(flight: Flight, terminal: Terminal, tape: object, folder: Path) -> Ending:
     watchers = [terminal, *([tape] if tape is not None else [])]
+    for plugin in flight.plugins:
+        if isinstance(plugin, CameraFeed):
+            plugin.in_thread = False  # no thread would keep up with simulated time
     flown = asyncio.ensure_future(fly(flight, watchers))  # type: ignore[arg-type]  # a tape is a watcher
     plane = Vehicle(Kind.PLANE, AIRFIELD)
     beside = [asyncio.ensure_future(_simulate(flight, plane)), asyncio.ensure_future(_film(plane, folder))]
@@ -114,18 +160,30 @@ async def _simulate(flight: Flight, plane: Vehicle) -> None:
 
 
 async def _film(plane: Vehicle, folder: Path) -> None:
-    """Report the spill as a vision system does, once the plane has been over the search area for a while."""
-    while plane.body.latitude > 37.02:
-        await asyncio.sleep(1.0)
-    await asyncio.sleep(FOUND_AFTER)
-    spill = PhysicalProperty("oilSpill0", "OilSpill", SPILL, source="camera")
+    """Take pictures of the sea below the plane, each called after the time at which it was taken."""
+    clock = asyncio.get_running_loop()
+    began, seed = time.time() - clock.time(), 0
     while True:
-        text = write_geojson([spill])
-        target = folder / "camera" / "spill.geojson"
-        part = target.with_suffix(".part")
-        part.write_text(text, encoding="utf-8")
-        os.replace(part, target)
-        await asyncio.sleep(120.0)
+        await asyncio.sleep(EVERY)
+        if plane.body.latitude < COAST:
+            seed += 1
+            taken = began + clock.time()
+            (roll, pitch), body = plane.tilt, plane.body
+            pose = Pose(
+                taken, body.latitude, body.longitude, AIRFIELD[2] + body.height, roll, pitch, body.course
+            )
+            image = render(pose, LENS, PIXELS, [SPILL], seed=seed)
+            _put(folder / "camera" / f"{taken:.3f}.png", image)
+
+
+def _put(target: Path, image: Any) -> None:
+    """Write a picture, and rename it when it is whole; those of before are not needed any more."""
+    _, data = opencv().imencode(".png", image)
+    part = target.with_suffix(".part")
+    part.write_bytes(data.tobytes())
+    os.replace(part, target)
+    for old in sorted(target.parent.glob("*.png"))[:-KEPT]:
+        old.unlink()
 
 
 def _replay(folder: Path, ending: Ending) -> bool:
@@ -136,18 +194,12 @@ def _replay(folder: Path, ending: Ending) -> bool:
     tell(
         f"{counted(len(trace), 'step')} replayed: {'the same configuration' if equal else 'ANOTHER configuration'}"
     )
-    _draw(trace, folder)
-    tell(f"recording, log and pictures are in {folder}/")
+    times = tuple(message.time for message in recording.of("steps"))
+    page = str(folder / "flight.html")
+    for line in write_page(Story(MISSION, "", False, trace, times=times), page):
+        tell(line)
+    tell(f"the flight, step by step: {page}; its recording and the log of its link: run.mcap, run.tlog there")
     return equal
-
-
-def _draw(trace: Trace, folder: Path) -> None:
-    """Draw the configurations in which something has changed in the world."""
-    told = [number for number, step in enumerate(trace.steps, 1) if step.label.rule in TOLD]
-    for number in told:
-        label, before = trace.steps[number - 1].label, trace.configurations[number - 1]
-        path = str(folder / f"c{number:04}.svg")
-        draw(trace.configurations[number], path, f"{MISSION}, c{number}: {label}", before)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,9 @@ from pathlib import Path
 from bigactors import __version__
 from bigactors.diagnostics import as_mistake
 from bigactors.mistakes import Mistake
+from physical import PhysicalProperty
 from semantics.state.canonical import canonical
+from semantics.state.physical_model import Placed
 from semantics.state.setting import Control, Scheduler
 from specs import MissionError
 from specs.elaboration import ElaboratedMission, Variation, find_mission, load_mission, require_bigactor
@@ -57,6 +59,17 @@ def checkable(mission: ElaboratedMission) -> ElaboratedMission:
 def opening(variation: Variation) -> Callable[[str], ElaboratedMission]:
     """Return a cached `open_mission`."""
     return cache(partial(open_mission, variation=variation))
+
+
+def fixed_places(mission: ElaboratedMission) -> tuple[PhysicalProperty, ...]:
+    """Return where what never moves is."""
+    physical, kinds = mission.initial.structure.physical, mission.setting.kinds
+    placed = ((name, physical.placement(name)) for name in sorted(mission.fixed))
+    return tuple(
+        PhysicalProperty(name, kinds[name], at.geometry, at.altitude)
+        for name, at in placed
+        if isinstance(at, Placed)
+    )
 
 
 def digest_of(mission: ElaboratedMission) -> str:

@@ -2,7 +2,6 @@
 
 import traceback
 from collections.abc import Iterable
-from difflib import get_close_matches
 
 
 class Mistake(Exception):
@@ -39,13 +38,10 @@ class Mistake(Exception):
 
 
 def suggestion(word: str, among: Iterable[str]) -> str:
-    """Return `did you mean '...'?`, or nothing.
+    """Return `did you mean ...?`, or nothing; what finds it is loaded when there is a mistake."""
+    from bigraphs.notation.spelling import did_you_mean  # noqa: PLC0415 - no command needs it
 
-    >>> suggestion("chekc", ["check", "show"])
-    "did you mean 'check'?"
-    """
-    close = get_close_matches(word[:60].lower(), sorted(among), 1, 0.6)
-    return f"did you mean '{close[0]}'?" if close else ""
+    return did_you_mean(word, among)
 
 
 def unreadable(path: str, error: OSError) -> Mistake:

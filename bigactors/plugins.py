@@ -4,19 +4,27 @@ from __future__ import annotations
 
 import re
 from argparse import Namespace
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
-from adapters.mavlink.autopilot import Autopilot, Tap
+from adapters.addresses import SCHEMES
+from adapters.assigned import Assigned
+from adapters.mavlink.autopilot import Autopilot, Listener, Tap
 from adapters.mavlink.fleet import Craft, Stations
 from adapters.mavlink.keys import Keeper
 from adapters.naming import NamingService
-from adapters.plugin import Plugin
+from adapters.plugin import Plugin, preflights
+from adapters.ros import RosVehicles
 from bigactors.arguments.links import LIVING
+from bigactors.cameras import cameras_of, poses_for
 from bigactors.feeds import feeds_of
 from bigactors.fences import fence_of
-from bigactors.mistakes import Mistake, suggestion
+from bigactors.installed_plugins import VEHICLES, make_vehicles, require_known
+from bigactors.mistakes import Mistake
 from bigactors.stations import driven, own_station
+from bigraphs.notation.spelling import did_you_mean
 from physical import PhysicalError
 from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY
 from semantics.state.physical_model import Placed
@@ -24,6 +32,7 @@ from semantics.state.signature import REGION
 from specs.elaboration import ElaboratedMission
 
 MOST_STATIONS = 254
+ROS = "ros"
 
 
 def plugins_of(
@@ -32,20 +41,30 @@ def plugins_of(
     """Return the plugins of a run, and the owner of each vehicle; `tap` receives every frame; raises Mistake."""
     try:
         crafts = _crafts(options, mission)
-        vehicles = _vehicles(options, mission, crafts, tap)
-        feeds = feeds_of(
-            options,
-            mission,
-            NamingService(dict(options.name), _own_names(options, mission, crafts), mission.setting.kinds),
-        )
+        poses = poses_for(options.camera, crafts)
+        vehicles = _vehicles(options, mission, crafts, tap, {name: log.hear for name, log in poses.items()})
+        own = _own_names(options, mission, crafts)
+        naming = NamingService(dict(options.name), own, mission.setting.kinds)
+        living = (LIVING | dict(options.time_to_live))["detections"]
+        cameras = cameras_of(options, mission, poses, naming, living)
+        feeds = (*feeds_of(options, mission, naming), *cameras)
     except PhysicalError as error:
         raise Mistake(error.message, error.hint, error.where) from error
     owners = {name: plugin.name for plugin in vehicles for name in crafts if plugin.owns(name)}
     return (*vehicles, *feeds), owners
 
 
+def fences_of(plugins: Iterable[Plugin]) -> dict[str, Any]:
+    """Return the ring of each vehicle's fence."""
+    return {name: fence.ring for link in preflights(plugins) for name, fence in link.fences.items()}
+
+
 def _vehicles(
-    options: Namespace, mission: ElaboratedMission, crafts: dict[str, Craft], tap: Tap | None
+    options: Namespace,
+    mission: ElaboratedMission,
+    crafts: dict[str, Craft],
+    tap: Tap | None,
+    listeners: Mapping[str, Listener],
 ) -> tuple[Plugin, ...]:
     links: dict[str, list[Craft]] = {}
     for name, _, address in options.vehicle:
@@ -53,10 +72,29 @@ def _vehicles(
     _check_all_driven(options, mission)
     stations = _stations(options, mission)
     keeper = None if options.key is None else Keeper(Path(options.key))
-    return tuple(
-        Autopilot(f"autopilot {address}", address, crafts, stations, keeper, tap)
-        for address, crafts in links.items()
-    )
+
+    def connected(address: str, crafts: list[Craft]) -> Plugin:
+        scheme, colon, rest = address.partition(":")
+        if not colon or scheme in SCHEMES:
+            return Autopilot(f"autopilot {address}", address, crafts, stations, keeper, tap, listeners)
+        require_known(scheme, VEHICLES, (*SCHEMES, ROS), f"'{scheme:.40}' is no way to connect a vehicle")
+        assigned = tuple(_assigned(craft, mission) for craft in crafts)
+        if scheme == ROS:
+            return RosVehicles(f"robots {rest.partition('?')[0]}", rest, assigned)
+        return make_vehicles(scheme, address, rest, assigned)
+
+    return tuple(connected(address, crafts) for address, crafts in links.items())
+
+
+def _assigned(craft: Craft, mission: ElaboratedMission) -> Assigned:
+    """Return what a plugin other than MAVLink's is told of a vehicle; raises Mistake where it has a MAVLink id."""
+    if craft.system is not None or craft.serial is not None:
+        hint = "leave the id out: only vehicles that speak MAVLink have one"
+        raise Mistake(
+            f"'{craft.entity}' has an id of MAVLink, and an address that is none of MAVLink's", hint
+        )
+    channels = mission.initial.structure.physical.channels(craft.entity)
+    return Assigned(craft.entity, craft.kind, tuple(channels), craft.fence, craft.time_to_live)
 
 
 def _crafts(options: Namespace, mission: ElaboratedMission) -> dict[str, Craft]:
@@ -76,6 +114,7 @@ def _crafts(options: Namespace, mission: ElaboratedMission) -> dict[str, Craft]:
             serial=serial,
             fence=fence,
             time_to_live=living,
+            streams=("ATTITUDE",) if any(each.vehicle == name for each in options.camera) else (),
         )
     return found
 
@@ -84,7 +123,8 @@ def _craft(name: str, system: int | None, mission: ElaboratedMission) -> Craft:
     kind = mission.setting.kinds.get(name)
     if kind is None:
         hint = (
-            suggestion(name, mission.setting.kinds) or "give the vehicle the name that it has in the mission"
+            did_you_mean(name, mission.setting.kinds)
+            or "give the vehicle the name that it has in the mission"
         )
         raise Mistake(f"the mission has no entity '{name:.60}'", hint)
     if not mission.setting.signature[kind].driven:
@@ -177,7 +217,7 @@ def _stations(options: Namespace, mission: ElaboratedMission) -> Stations:
     if unknown:
         raise Mistake(
             f"no channel 'control:{unknown[0]:.40}' is in the mission",
-            suggestion(unknown[0], ids) or "see its channels",
+            did_you_mean(unknown[0], ids) or "see its channels",
         )
     own = own_station(options)
     return Stations(ids, (own,) if own in ids else tuple(ids)) if ids else Stations()

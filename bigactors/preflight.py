@@ -12,8 +12,7 @@ from contextlib import suppress
 from itertools import islice, product
 
 from adapters.live.orders import is_authority
-from adapters.mavlink.autopilot import Autopilot
-from adapters.plugin import Plugin
+from adapters.plugin import Plugin, preflights
 from bigactors.fences import placements_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import tell
@@ -45,7 +44,7 @@ def check_places(mission: ElaboratedMission, plugins: tuple[Plugin, ...]) -> Non
 
     Raises Mistake.
     """
-    pilots = _pilots(plugins)
+    pilots = preflights(plugins)
     for remark in (remark for plugin in pilots for remark in plugin.remarks()):
         tell(f"warning: {remark}")
 
@@ -64,16 +63,13 @@ def check_places(mission: ElaboratedMission, plugins: tuple[Plugin, ...]) -> Non
     _judge(mission, objection)
 
 
-async def get_to_know(plugins: tuple[Plugin, ...]) -> None:
-    """Wait until the vehicles have reported their circles and fences, or have not answered in time."""
+async def get_to_know(plugins: tuple[Plugin, ...], vehicles: Iterable[Name]) -> None:
+    """Wait until vehicles have reported their circles and fences, or have not answered in time."""
+    asked = [plugin for plugin in preflights(plugins) if any(map(plugin.owns, vehicles))]
     with suppress(TimeoutError):
         async with asyncio.timeout(PATIENCE):
-            while not all(plugin.is_known() for plugin in _pilots(plugins)):
+            while not all(plugin.is_known() for plugin in asked):
                 await asyncio.sleep(0.1)
-
-
-def _pilots(plugins: tuple[Plugin, ...]) -> list[Autopilot]:
-    return [plugin for plugin in plugins if isinstance(plugin, Autopilot)]
 
 
 def _judge(mission: ElaboratedMission, objection: Objection) -> None:

@@ -1,5 +1,7 @@
 """The progress of an exploration, on one line of a terminal; and its end by Ctrl-C."""
 
+from __future__ import annotations
+
 import shutil
 import signal
 import sys
@@ -7,11 +9,14 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from bigactors.terminal import broken, is_terminal, paint, write
-from checker import Interruption, Progress
+from checker.limits import Interruption
 from physical.messages import counted
+
+if TYPE_CHECKING:
+    from checker import Progress
 
 COMPILING = "compiling loops, some seconds once after an installation"
 
@@ -61,6 +66,7 @@ class Watch:
 def describe(name: str, progress: Progress) -> str:
     """Say in one line how far an exploration has come.
 
+    >>> from checker import Progress
     >>> describe("m", Progress(configurations=12000, transitions=30000, depth=7, frontier=450, rate=5300.2))
     'm: 12,000 configurations, depth 7, frontier 450, 5,300/s, no estimate while layers grow'
     >>> describe("m", Progress(0, 0, 0, 0, 0.0, compiling=7))
@@ -78,6 +84,7 @@ def describe(name: str, progress: Progress) -> str:
 def describe_rest(progress: Progress) -> str:
     """Describe the estimated rest of an exploration as a range, if there is an estimate.
 
+    >>> from checker import Progress
     >>> from checker.engines.estimate import Estimate
     >>> describe_rest(Progress(12_000, 30_000, 7, 450, 10.0, Estimate(12_000, 13_150)))
     'up to 13,000 in all as layers fall now, 45 s to 3 min more'

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from adapters.live.state import Finding, Outgoing, is_breach
+from adapters.live.orders import stopping
+from adapters.live.state import Bidden, Finding, Outgoing, is_breach
 from adapters.recording.mcap_files import Message, RecordingError
 from adapters.recording.reading import Recording, read_recording
 from bigactors.diagnostics import as_mistake
@@ -14,6 +15,7 @@ from bigactors.missions import digest_of
 from bigactors.mistakes import Mistake, unreadable
 from checker import ReplayError, Trace, replay
 from checker.traces import SCHEMA
+from semantics.contingencies import Fallback
 from semantics.state.configuration import Configuration
 from semantics.state.partition import Parting, Passage, parcel_of, parted
 from semantics.state.setting import Control, Scheduler
@@ -81,6 +83,7 @@ class Resumed:
         taken: Which vehicles were taken over and not given back, and how.
         station: Which part of the mission it flew, None for the whole.
         left: What left for other stations, in its order.
+        bidden: The operator's order that stands for each vehicle that was taken over by one.
     """
 
     configuration: Configuration
@@ -91,6 +94,7 @@ class Resumed:
     taken: Mapping[str, str]
     station: Parting | None = None
     left: tuple[Outgoing, ...] = ()
+    bidden: Mapping[str, Bidden] = field(default_factory=dict)
 
 
 def resume(path: str, mission: ElaboratedMission) -> Resumed:
@@ -106,15 +110,17 @@ def resume(path: str, mission: ElaboratedMission) -> Resumed:
         raise Mistake(f"it cannot be resumed: {error}", place=path) from error
     kept = tuple(message for message in recording.messages if message.topic == "steps" or _goes_on(message))
     found = (_finding(message) for message in kept if message.topic == "findings")
+    taken = _still_taken(message for message in kept if message.topic in ("reports", "given_back", "orders"))
     return Resumed(
         trace.configurations[-1],
         len(trace),
         len(recording.of("commands")),
         kept,
         tuple(found),
-        _still_taken(message for message in kept if message.topic in ("reports", "given_back")),
+        {name: each if isinstance(each, str) else each.reason for name, each in taken.items()},
         parting_of(recording),
         tuple(_left(trace)),
+        {name: each for name, each in taken.items() if isinstance(each, Bidden)},
     )
 
 
@@ -126,6 +132,8 @@ def _goes_on(message: Message) -> bool:
             return bool(said.get("report") == "TakenOver")
         case "given_back":
             return not (said.get("refusal") or said.get("at"))
+        case "orders":
+            return not said.get("refusal")
         case "findings":
             return is_breach(_finding(message))
     return False
@@ -139,14 +147,27 @@ def _finding(message: Message) -> Finding:
     return Finding(kind, about, told, message.time, fallback)
 
 
-def _still_taken(messages: Iterable[Message]) -> dict[str, str]:
-    taken: dict[str, str] = {}
+def _still_taken(messages: Iterable[Message]) -> dict[str, str | Bidden]:
+    """Return who was taken over and not given back: how, or by which order of an operator."""
+    taken: dict[str, str | Bidden] = {}
     for message in messages:
         if message.topic == "reports":
             taken[str(message.data.get("entity"))] = str(message.data.get("reason"))
+        elif message.topic == "orders":
+            taken |= _bidden(message)
         else:
             taken.pop(str(message.data.get("vehicle")), None)
     return taken
+
+
+def _bidden(message: Message) -> dict[str, Bidden]:
+    """Return what an operator's order told each vehicle."""
+    match message.data:
+        case {"order": "hold" | "return" as order, "requests": dict(requests), **more}:
+            by, fallback = str(more.get("by") or ""), Fallback(order)
+            told = {str(name): str(request) for name, request in requests.items()}
+            return {name: Bidden(stopping(fallback, request, name), by) for name, request in told.items()}
+    return {}
 
 
 def _left(trace: Trace) -> Iterator[Outgoing]:

@@ -18,8 +18,9 @@ from adapters.stations.peers import Peers, read_peers
 from adapters.stations.sharing import NAME, Sharing
 from bigactors.files import file_stem
 from bigactors.missions import digest_of
-from bigactors.mistakes import Mistake, suggestion, unreadable
+from bigactors.mistakes import Mistake, unreadable
 from bigactors.recordings import Resumed
+from bigraphs.notation.spelling import did_you_mean
 from physical import PhysicalError
 from semantics.state.parcel_serialization import parcel_json
 from semantics.state.partition import Parting, parted, took_cell
@@ -114,7 +115,7 @@ def _check_hosts(peers: Peers, mission: ElaboratedMission, place: str) -> None:
     for host, station in peers.hosts.items():
         if host not in kinds:
             what = "station" if host == station else f"host of [{station}]"
-            hint = suggestion(host, kinds) or "stations and hosts are called as in the mission"
+            hint = did_you_mean(host, kinds) or "stations and hosts are called as in the mission"
             raise Mistake(f"the mission has no host '{host:.60}', a {what} here", hint, place)
     for agent in alpha.names():
         host = alpha.host(agent)

@@ -3,27 +3,35 @@
 from __future__ import annotations
 
 import errno
+import math
 import os
 import sys
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
 
-from adapters.live.state import Finding, Heard, Turn
+from adapters.live.state import Finding, Heard, LiveState, LiveStep, Turn
+from adapters.live.watchers import TOLD
 from adapters.mavlink.tlog import entry
-from adapters.plugin import Report
+from adapters.plugin import Report, Status
 from adapters.recording.writing import Recorder
 from adapters.written_files import open_private, writing
 from bigactors.mistakes import Mistake
-from bigactors.terminal import paint, say_text, tell
-
-TOLD = frozenset({"env", "say", "command", "commit", "actuate", "migrate", "spawn"})
-"""The rules whose steps are shown to the operator; the recording has the others too."""
+from bigactors.progress import Watch
+from bigactors.terminal import is_terminal, paint, say_text, tell
+from bigactors.vehicle_lines import vehicles_line
 
 DONE = {"hold": "vehicles hold", "return": "vehicles return"}
 """What is done when the mission falls back."""
+
+EVERY = 1.0
+"""Seconds between two looks at the vehicles on a terminal."""
+
+SELDOM = 60.0
+"""Seconds of flight without a word after which a line tells of the vehicles where there is no terminal."""
 
 MOST_BREACHES = 10
 """How much of what broke in a run is said when another goes on from it."""
@@ -34,18 +42,24 @@ Resting = Callable[[Finding], tuple[str, ...]]
 
 @dataclass(slots=True)
 class Terminal:
-    """Prints steps that change the world, the displays of agents, and findings.
+    """Prints steps that change the world, the displays of agents, and findings; on a long flight what vehicles do.
 
     Attributes:
         resting: The verdicts that depend on a finding's assumption.
+        vehicles: The vehicles of the run.
         broken: Whether an assumption broke, or the recording or a plugin failed.
         taken: The vehicles that were taken over, and how.
     """
 
     resting: Resting
+    vehicles: Sequence[str] = ()
     broken: bool = field(default=False)
     began: float | None = None
     taken: Mapping[str, str] = field(default_factory=dict)
+    _said: dict[str, Status] = field(default_factory=dict)
+    _line: Watch = field(default_factory=lambda: Watch("", sys.stderr))
+    _spoke: float = -math.inf
+    _drawn: float = -math.inf
 
     def goes_on(self, broken: Sequence[Finding], taken: Mapping[str, str]) -> None:
         """Say what broke in the run that this one goes on from, and who is taken over."""
@@ -67,33 +81,55 @@ class Terminal:
     def arrived(self, heard: Heard, now: float) -> None:
         """Print nothing: positions are too frequent."""
 
-    def reported(self, report: Report, now: float) -> None:
-        """Print nothing: important reports become findings."""
+    def reported(self, report: Report, now: float) -> None:  # noqa: ARG002 - as watchers are called
+        """Print nothing: important reports become findings; what a vehicle says of itself is told with where it is."""
+        if isinstance(report, Status):
+            self._said[report.entity] = report
 
     def turned(self, turn: Turn, now: float) -> None:
         """Print the result of a turn."""
-        self.began = now if self.began is None else self.began
+        if self.began is None:
+            self.began = self._spoke = now
         self.taken = turn.state.taken
-        for step in turn.steps:
-            label = step.transition.label
-            at = f"{step.time - self.began:8.1f} s "
-            lines = [f"{at} {label}"] if label.rule in TOLD else []
-            with _flying_on():
-                say_text(
-                    "".join(
-                        f"{line}\n"
-                        for line in (
-                            *lines,
-                            *(f"{at} {label.agent}: {text}" for text in step.transition.shown),
-                        )
-                    )
-                )
+        lines = [line for step in turn.steps for line in self._told(step)]
+        if lines or turn.findings:
+            self.ends()
+            self._spoke = now
+        with _flying_on():
+            say_text("".join(f"{line}\n" for line in lines), flush=True)
         for finding in turn.findings:
             self.broken |= _breaks(finding)
             with _flying_on():
                 self._tell(finding)
+        if self.vehicles:
+            with _flying_on():
+                self._tell_of_vehicles(turn.state, now)
+
+    def ends(self) -> None:
+        """Clear the line about the vehicles, before something else is printed."""
         with _flying_on():
-            say_text("", flush=True)
+            self._line.clear()
+
+    def _told(self, step: LiveStep) -> Iterator[str]:
+        """Yield the lines of a step."""
+        label, at = step.transition.label, self._at(step.time)
+        if label.rule in TOLD:
+            yield f"{at} {label}"
+        yield from (f"{at} {label.agent}: {text}" for text in step.transition.shown)
+
+    def _at(self, time: float) -> str:
+        return f"{time - (time if self.began is None else self.began):8.1f} s "
+
+    def _tell_of_vehicles(self, state: LiveState, now: float) -> None:
+        """Tell what vehicles do: on a terminal always, in one place, else if nothing was told for a while."""
+        if is_terminal(sys.stderr):
+            wall = time.monotonic()
+            if wall - self._drawn >= EVERY:
+                self._drawn = wall
+                self._line.rewrite(f"{self._at(now)} {vehicles_line(self.vehicles, state, self._said, now)}")
+        elif now - self._spoke >= SELDOM:
+            self._spoke = now
+            say_text(f"{self._at(now)} {vehicles_line(self.vehicles, state, self._said, now)}\n", flush=True)
 
     def _tell(self, finding: Finding) -> None:
         tell(finding.message, f"{finding.kind}:")

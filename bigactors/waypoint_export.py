@@ -7,7 +7,8 @@ from itertools import pairwise
 from pathlib import Path
 
 from bigactors.files import write_text
-from bigactors.mistakes import Mistake, suggestion
+from bigactors.mistakes import Mistake
+from bigraphs.notation.spelling import did_you_mean
 from checker import Trace
 from physical import Geometry, MobilityCommand, visited, write_plan, write_waypoints
 from physical.place_files import PLAN, WAYPOINTS
@@ -31,7 +32,7 @@ def write_route(trace: Trace, vehicle: Name, path: str) -> int:
         raise Mistake("a route is written as one of " + ", ".join(WRITERS), "name the file so", path)
     start = trace.initial
     if vehicle not in start.setting.kinds:
-        hint = suggestion(vehicle, start.setting.kinds) or "name a vehicle of the mission"
+        hint = did_you_mean(vehicle, start.setting.kinds) or "name a vehicle of the mission"
         raise Mistake(f"the mission has no entity '{vehicle:.60}'", hint)
     told = tuple(_told(trace))
     points = visited(told, vehicle)

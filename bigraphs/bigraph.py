@@ -2,15 +2,15 @@
 
 Places are numbered: a node counts from 0, and region `r` is `~r` (-1, -2, ...), so that a parent is one
 integer. A link is the number of an edge or, as a string, an outer name. A node may have several parents: that
-is sharing (Sevegnani and Calder). A name identifies its node; nodes without a name, and all edges, are
-anonymous.
+is sharing (Sevegnani and Calder). A site may have none; what is put into it needs a parent of its own. A name
+identifies its node; nodes without a name, and all edges, are anonymous.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 from bigraphs.errors import BigraphError
@@ -104,6 +104,25 @@ class Bigraph:
         return draw_text(self)
 
 
+def relabelled(bigraph: Bigraph, controls: Mapping[str, str], signature: Signature) -> Bigraph:
+    """Return it with other controls, of the same arity, status and order of ports: so it needs no new check."""
+    nodes = tuple(
+        Node(controls[node.control], node.name, node.ports, node.parents)
+        if node.control in controls
+        else node
+        for node in bigraph.nodes
+    )
+    return _with(bigraph, nodes=nodes, signature=signature)
+
+
+def _with(bigraph: Bigraph, **parts: object) -> Bigraph:
+    """Return it with other parts that are known to make a bigraph: they are not checked."""
+    found = object.__new__(Bigraph)
+    for name in Bigraph.__slots__:
+        object.__setattr__(found, name, parts[name] if name in parts else getattr(bigraph, name))
+    return found
+
+
 def link_key(link: Link) -> tuple[bool, Link]:
     """Order edges before names."""
     return isinstance(link, str), link
@@ -195,7 +214,7 @@ def normal(bigraph: Bigraph, order: Sequence[int]) -> Bigraph:
         return edge_rank[old] if isinstance(old, int) else old
 
     renamed = [_tidy(bigraph.signature, moved(bigraph.nodes[number], place, link)) for number in order]
-    return replace(
+    return _with(
         bigraph,
         nodes=tuple(renamed),
         sites=tuple(tuple(sorted(rank.get(old, old) for old in parents)) for parents in bigraph.sites),
@@ -235,7 +254,7 @@ def check(bigraph: Bigraph) -> None:
         _check_ports(bigraph, node)
         _check_parents(bigraph, node.parents, str(node))
     for site, parents in enumerate(bigraph.sites):
-        _check_parents(bigraph, parents, f"site {site}")
+        _check_places(bigraph, parents, f"site {site}")
     for name, link in bigraph.inner_links:
         _check_link(bigraph, link, f"inner name '{name}'")
     _check_acyclic(bigraph)
@@ -285,6 +304,10 @@ def _check_link(bigraph: Bigraph, link: Link, who: str) -> None:
 def _check_parents(bigraph: Bigraph, parents: tuple[Place, ...], who: str) -> None:
     if not parents:
         raise BigraphError("parent", f"{who} has no parent", "put it into a node or a region")
+    _check_places(bigraph, parents, who)
+
+
+def _check_places(bigraph: Bigraph, parents: tuple[Place, ...], who: str) -> None:
     for parent in parents:
         if not -bigraph.regions <= parent < len(bigraph.nodes):
             what = f"region {~parent}" if parent < 0 else f"node {parent}"

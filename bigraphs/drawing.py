@@ -13,8 +13,8 @@ from bigraphs.errors import BigraphError
 from bigraphs.folding import Folded
 from bigraphs.labels import link_label
 from bigraphs.layout import FONT, HEADER, PAD, SMALL, Box, Item, Layout, layout
-from bigraphs.link_routing import Point
-from bigraphs.routing import Route, route
+from bigraphs.link_curves import Route, route
+from bigraphs.obstacles import Point
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -136,8 +136,9 @@ class _Search:
         found = self.numbers[key] = len(self.keys)
         self.keys.append(raw)
         self.found_from.append(source)
+        holding = self.machine.holding(spot.state)
         for predicate, holds in enumerate(self.labels):
-            holds.append(self.machine.holds(predicate, spot.state))
+            holds.append(predicate in holding)
         self.waiting.append((found, spot))
         return found
 
@@ -184,7 +185,7 @@ class _Search:
         return self.rule_sets.setdefault(tuple(sorted(rules)), len(self.rule_sets))
 
     def result(self, reason: str) -> TransitionSystem:
-        labels = [reaction.rule.label for reaction in self.machine.reactions]
+        labels = [reaction.label for reaction in self.machine.reactions]
         return TransitionSystem(
             system=self.machine.system,
             world=self.machine.world,

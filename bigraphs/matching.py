@@ -3,7 +3,8 @@
 An occurrence maps nodes injectively and keeps controls, nesting and links. A node without a site has no
 further child; a closed link is matched by an edge all of whose points are matched; an open link by any other
 link, which it may share. Regions may lie anywhere that is active and neither matched nor below what is
-matched (Milner's disjointness).
+matched (Milner's disjointness); one whose nodes are all in other nodes of the redex, too, may lie nowhere (Sevegnani
+and Calder's bigraphs with sharing, where a context has a site without a place for it).
 """
 
 from __future__ import annotations
@@ -164,8 +165,8 @@ class _Search:
         if there < inside or (there > inside and number not in self.redex.sited):
             return False
         above = sum(parent >= 0 for parent in node.parents)
-        spare = len(other.parents) - above
-        if spare < 0 or (spare > 0) != (above < len(node.parents)):
+        spare, rooted = len(other.parents) - above, above < len(node.parents)
+        if spare < 0 or (spare and not rooted):
             return False
         return self.same_neighbours(number, image)
 

@@ -54,13 +54,16 @@ def _regions(redex: Bigraph, target: Bigraph, images: Sequence[int]) -> Iterator
 
 
 def _region_choices(redex: Bigraph, region: Place, outside: Mapping[int, Places]) -> list[Places]:
-    """Return where a region can be: exactly where a node is that is in it alone, else a part of where they all are."""
+    """Return where a region can be: exactly where a node is that is in it alone, else a part of where they all are.
+
+    That part may be empty: a region all of whose nodes are in other places, too, may lie nowhere.
+    """
     tops = [number for number in outside if region in redex.nodes[number].parents]
     alone = next((n for n in tops if sum(parent < 0 for parent in redex.nodes[n].parents) == 1), None)
     if alone is not None:
         return [outside[alone]]
     common = sorted(frozenset.intersection(*(outside[number] for number in tops)))
-    return [frozenset(part) for size in range(1, len(common) + 1) for part in combinations(common, size)]
+    return [frozenset(part) for size in range(len(common) + 1) for part in combinations(common, size)]
 
 
 def _union(parents: Iterable[Place], regions: Sequence[Places]) -> Places:

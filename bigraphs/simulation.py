@@ -91,5 +91,5 @@ def _stage(
 
 
 def _labels(machine: Machine, state: State) -> tuple[str, ...]:
-    predicates = enumerate(machine.system.predicates)
-    return tuple(predicate.label for number, predicate in predicates if machine.holds(number, state))
+    holding, predicates = machine.holding(state), enumerate(machine.system.predicates)
+    return tuple(predicate.label for number, predicate in predicates if number in holding)

@@ -12,6 +12,7 @@ from enum import Enum
 from typing import TypeAlias
 
 from bigraphs.bigraph import Bigraph
+from bigraphs.errors import NotationError
 from bigraphs.properties import Property
 from bigraphs.rules import ReactionRule
 from bigraphs.signature import Signature
@@ -145,6 +146,8 @@ class System:
     actions: tuple[Action, ...] = ()
     properties: tuple[Property, ...] = ()
     sorting: Sorting = UNSORTED
+    warnings: tuple[NotationError, ...] = field(default=(), compare=False, repr=False)
+    """What its text has wrong, where it does not matter."""
 
     def rules(self) -> Iterator[Rule]:
         """Yield every rule, from the highest priority down."""

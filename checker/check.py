@@ -33,6 +33,8 @@ from semantics.races.monitor import monitored
 from semantics.state.configuration import Configuration
 
 if TYPE_CHECKING:
+    from checker.properties.deadlines import Deadlines
+    from checker.properties.schedule import Schedule
     from checker.properties.temporal.decide import Decider
     from checker.reduction.reducer import Reduced
     from semantics.properties.propositions import Proposition
@@ -47,6 +49,8 @@ BY_LOOKING: dict[PropertyKind, Callable[[int], Inspection]] = {
 
 PATIENCE = 1.0
 """Seconds after which a mission that the reference explorer has not got through is given to the fast one."""
+
+UNTIMED = "not decided: nothing says how long anything takes; give the mission a section `timing`"
 
 
 class Checkable(Protocol):
@@ -77,6 +81,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     reduce: Iterable[Reduction] = (),
     keeping: Keeping | None = None,
     cluster: Cluster | None = None,
+    times: bool = False,
 ) -> Report:
     """Explore everything that is reachable and decide the properties.
 
@@ -94,6 +99,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
         reduce: What may let it visit less; by symmetry only the reference explorer can.
         keeping: What the fast explorer keeps on the way, and what it doubts; where it is said, that one explores.
         cluster: With whom, where Ray is the engine.
+        times: Whether the report is to say when flights may begin and end, of a mission with `timing`.
 
     Raises:
         RefusedError: A reduction is unsound for the mission, or nothing in it allows one. Properties that it is
@@ -103,6 +109,9 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     initial, asked, notes = _asked(start, properties, notes)
     initial, limits = watching(initial, asked), limits or Limits()
     formulas, reductions = [each.formula for each in asked if each.kind.has_proposition], tuple(reduce)
+    timed = initial.setting.timing is not None
+    if timed and reductions:
+        raise RefusedError(reductions[0], "it is not proved sound where a mission says how long things take")
     reducer = _reduced(initial, reductions, formulas) if reductions else None
     if reducer is not None and engine is Engine.RAY:
         raise RefusedError(reducer.names[0], "the ray explorer does not reduce; leave --engine out")
@@ -115,11 +124,14 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     )
 
     def run(engine: Engine, exploring: Limits) -> Report:
-        found = _Check(initial, asked, replace(options, engine=engine, limits=exploring), violations)
+        exploration = replace(options, engine=engine, limits=exploring)
+        found = _Check(initial, asked, exploration, violations, times=times)
         return found.run(notes, limits)
 
     if (keeping is not None and reducer is None) or (limits.spill is not None and not symmetric):
         engine = engine or Engine.FAST
+    if times and timed:
+        engine = engine or Engine.REFERENCE  # only ticks know when flights begin and end
     impatient = limits.seconds is None or limits.seconds > PATIENCE
     if engine is None and not symmetric and impatient:
         tried = run(Engine.REFERENCE, replace(limits, seconds=PATIENCE))
@@ -150,9 +162,16 @@ def _reduced(
 
 class _Check:
     def __init__(
-        self, initial: Configuration, properties: tuple[Property, ...], options: Options, most: int
+        self,
+        initial: Configuration,
+        properties: tuple[Property, ...],
+        options: Options,
+        most: int,
+        *,
+        times: bool = False,
     ) -> None:
         self.initial = initial
+        self.times = times
         self.properties = properties
         self.options = options
         self.most = most
@@ -161,7 +180,7 @@ class _Check:
         self.races = ControlRaces(most)
         self.stale = StaleObservationRaces(most)
         self.formulas = {
-            each: Invariant(each.formula)
+            each: Invariant(each.formula, each.shown)
             if each.kind is PropertyKind.INVARIANT
             else Reachability(each.formula)
             for each in self.properties
@@ -173,6 +192,7 @@ class _Check:
         self.remembered: Exploration | None = None
         self.temporal = tuple(each for each in self.properties if each.is_of_runs)
         self.decider: Decider | None = None
+        self.deadlines: Deadlines | None = None
 
     def run(self, notes: tuple[str, ...], whole: Limits) -> Report:
         """Explore, and decide within the limits of the whole check."""
@@ -180,6 +200,10 @@ class _Check:
         everything = (self.visited, *self.inspections.values(), *races, *self.formulas.values())
         options = self.options
         self.found = explore_by(self.initial, everything, replace(options, edges=bool(self.temporal)))
+        if self.found.times is not None and self.initial.setting.timing is not None:
+            from checker.properties.deadlines import Deadlines  # noqa: PLC0415 - few missions speak of time
+
+            self.deadlines = Deadlines(self.found, self.found.times, self.initial.setting.timing)
         if self.searching:
             self.remembered = self.search()
         later = self.remembered.bounds if self.remembered else []
@@ -193,14 +217,21 @@ class _Check:
             depth=self.found.depth,
             bounds=tuple(dict.fromkeys([*self.found.bounds, *later])),
             rules=dict(sorted(self.found.rules.items())),
-            notes=notes,
+            notes=(*notes, *(self.deadlines.notes() if self.deadlines else ())),
             seconds=seconds,
             coverage=coverage(
                 self.initial, self.visited, complete=self.found.complete and not options.reduce
             ),
             reduced=tuple(map(str, options.reduce.names)) if options.reduce else (),
             allowed=self.found.allowed,
+            schedule=self.schedule(),
         )
+
+    def schedule(self) -> Schedule | None:
+        """Return when flights may begin and end, if that is asked for, and time does not stop."""
+        if not self.times or self.deadlines is None or self.deadlines.stop is not None:
+            return None
+        return self.deadlines.schedule(self.properties)
 
     def search(self) -> Exploration | None:
         """Explore once more, with memory and in the time that is left; None where the user has asked for the end."""
@@ -222,6 +253,8 @@ class _Check:
 
     def decide(self, asked: Property) -> Verdict:
         """Return the verdict on one property: what a reduction may have lost is not said to hold."""
+        if self.deadlines is not None:
+            return self.deadlines.judge(asked, self.decided)
         reason = self.refused(asked)
         if reason is None:
             return self.decided(asked)
@@ -249,6 +282,10 @@ class _Check:
                 return self.verdict(asked, self.collected(asked.kind))
             case PropertyKind.LTL | PropertyKind.CTL | PropertyKind.PROGRESS:
                 return self.decide_temporal(asked)
+            case PropertyKind.WITHIN | PropertyKind.ENDURANCE | PropertyKind.TIME:
+                if self.deadlines is None:
+                    return Verdict(asked, Outcome.INCOMPLETE, note=UNTIMED)
+                return self.deadlines.decide(asked)
             case _:
                 assert_never(asked.kind)
 
@@ -311,7 +348,7 @@ class _Check:
             remarks = () if witness.steps else ("it is true from the start",)
             examined = collected.examined
             return Verdict(asked, Outcome.HOLDS, examined=examined, witness=witness, remarks=remarks)
-        note = f"no reachable configuration satisfies: {asked.formula}" if self.found.complete else ""
+        note = f"no reachable configuration satisfies: {asked.shown}" if self.found.complete else ""
         outcome = Outcome.VIOLATED if self.found.complete else Outcome.INCOMPLETE
         return Verdict(asked, outcome, note=note)
 

@@ -1,9 +1,11 @@
 """Traces: runs in the paper's notation, that replay step by step."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from checker.engines.contract import Exploration
 from checker.properties.inspections import is_unfair
@@ -18,13 +20,19 @@ from semantics.state.observation_serialization import sight_json, sight_of
 from semantics.state.partition import Elsewhere
 from semantics.state.printing import print_changes
 from semantics.state.requests import Received
-from semantics.successors import expand
+from semantics.successors import expand, expand_by
+from semantics.timing.dates import clock_text
+
+if TYPE_CHECKING:
+    from checker.engines.runs import Run
+    from checker.engines.times import Times
 
 SCHEMA = "bigactors.trace/1"
 """The version of the step schema: schema, mission, digest, monitored, steps of label, choice and changes, and loop;
 steps of live runs also say what was observed, when, and the digest of what they wrote."""
 
 MOST_STEPS = 1_000_000
+MOST_SECONDS = 10_000_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +64,7 @@ class Trace:
         steps: Its steps.
         loop: The number of the configuration from which the run repeats for ever: the last is the same. If it is the
             last itself, nothing has to happen there, and the run stays. None where the run is not for ever.
+        dates: When each step is taken, in ticks from the start; empty where nothing says how long things take.
         shortest: Whether it is certain that no other run that shows the same is shorter: not where steps were put
             off (`--reduce por`), nor where to find out would take too long.
     """
@@ -64,6 +73,7 @@ class Trace:
     steps: tuple[Step, ...] = ()
     loop: int | None = None
     shortest: bool = field(default=True, compare=False)
+    dates: tuple[int, ...] = ()
 
     @property
     def called(self) -> str:
@@ -86,11 +96,17 @@ class Trace:
         """c0, c1, ..."""
         return (self.initial, *(step.target for step in self.steps))
 
-    def extended(self, transition: Transition) -> "Trace":
-        """Return the trace with one more step."""
+    def extended(self, transition: Transition, at: int | None = None) -> Trace:
+        """Return the trace with one more step, taken at some tick where it has dates."""
         source = self.configurations[-1]
         steps = (*self.steps, step_of(source, transition.label, transition.target))
-        return Trace(self.initial, steps, shortest=self.shortest)
+        dates = self.dates if at is None else (*self.dates, at)
+        return Trace(self.initial, steps, shortest=self.shortest, dates=dates)
+
+    def date(self, number: int) -> str:
+        """Return when a step is taken, as a report says it; nothing without dates."""
+        timing = self.initial.setting.timing
+        return clock_text(self.dates[number] * timing.tick) if self.dates and timing is not None else ""
 
 
 def step_of(source: Configuration, label: Label, target: Configuration) -> Step:
@@ -103,9 +119,8 @@ def step_of(source: Configuration, label: Label, target: Configuration) -> Step:
             t.label for t in candidates(source) if t.target == target and isinstance(t.label.about, Received)
         )
         label = next(found for found in same if found.agent == label.agent)
-    word = str(label)
-    alike = [transition.target for transition in candidates(source) if str(transition.label) == word]
-    return Step(label, alike.index(target), target)
+    targets = [transition.target for transition in alike(source, str(label))]
+    return Step(label, targets.index(target), target)
 
 
 def step_between(source: Configuration, target: Configuration) -> Step:
@@ -114,19 +129,42 @@ def step_between(source: Configuration, target: Configuration) -> Step:
     return step_of(source, label, target)
 
 
-def candidates(source: Configuration) -> tuple[Transition, ...]:
-    """Return what may follow: transitions in turn first."""
-    expansion = expand(source)
+def candidates(
+    source: Configuration, sight: Sight | Elsewhere | None = None, label: str | None = None
+) -> tuple[Transition, ...]:
+    """Return what may follow, or be meant by what was observed: transitions in turn first.
+
+    With a label, agents that it does not name are passed over: every label of an agent's steps names it.
+    """
+    agents = [name for name in source.alpha.names() if label is None or name in label]
+    if sight is not None:
+        return tuple(steps_seen(source, sight, agents))
+    expansion = expand_by(source, agents)
     return expansion.transitions + expansion.out_of_turn
+
+
+def alike(source: Configuration, label: str, sight: Sight | Elsewhere | None = None) -> list[Transition]:
+    """Return the steps with a label."""
+    return [each for each in candidates(source, sight, label) if str(each.label) == label]
 
 
 def trace_to(found: Exploration, number: int, by: Transition | None = None) -> Trace:
     """Return a trace to a configuration of an exploration: a shortest one, unless steps were put off."""
+    if found.times is not None:
+        return dated_trace(found.times, found.times.run_before(number, by))
     if found.reducer is not None:
         return _unfolded(found, number, by, shortest=not found.reducer.putting_off)
     run = [found.configurations[each] for each in found.path(number)]
     trace = Trace(run[0], tuple(step_between(source, target) for source, target in pairwise(run)))
     return trace if by is None else trace.extended(by)
+
+
+def dated_trace(times: Times, run: Run) -> Trace:
+    """Return a run as a trace with dates."""
+    trace = Trace(times.initial)
+    for transition, date in zip(times.transitions(run), run.dates, strict=True):
+        trace = trace.extended(transition, date)
+    return trace
 
 
 def _unfolded(found: Exploration, number: int, by: Transition | None, *, shortest: bool) -> Trace:
@@ -141,7 +179,8 @@ def _unfolded(found: Exploration, number: int, by: Transition | None, *, shortes
 def print_trace(trace: Trace, *, changes: bool = True) -> Iterator[str]:
     """Print a trace in the paper's notation, with what changed under each step."""
     for number, (step, source) in enumerate(zip(trace.steps, trace.configurations, strict=False)):
-        yield f"c{number} --{step.label}--> c{number + 1}"
+        date = trace.date(number)
+        yield f"c{number} --{f'at {date} ' if date else ''}{step.label}--> c{number + 1}"
         if changes:
             yield from (f"      {line}" for line in print_changes(source, step.target))
     if trace.loop is not None:
@@ -196,11 +235,21 @@ class ReplayError(Exception):
 def to_json(trace: Trace, mission: str, digest: str) -> dict[str, Any]:
     """Return a trace as plain data, in the step schema."""
     steps = [
-        _step_json(source, step) for step, source in zip(trace.steps, trace.configurations, strict=False)
+        _step_json(source, step) | dated
+        for step, source, dated in zip(trace.steps, trace.configurations, _dates_json(trace), strict=False)
     ]
     remembering = trace.initial.setting.monitored
     data = {"schema": SCHEMA, "mission": mission, "digest": digest, "monitored": remembering, "steps": steps}
     return data if trace.loop is None else data | {"loop": trace.loop}
+
+
+def _dates_json(trace: Trace) -> Iterator[dict[str, float]]:
+    """Yield for each step when it is taken, in seconds from the start, where the run has dates."""
+    timing = trace.initial.setting.timing
+    if timing is None or not trace.dates:
+        yield from ({} for _ in trace.steps)
+    else:
+        yield from ({"at": date * timing.tick / 1000} for date in trace.dates)
 
 
 def _step_json(source: Configuration, step: Step) -> dict[str, Any]:
@@ -221,19 +270,66 @@ def replay(initial: Configuration, data: Any) -> Trace:
         initial = monitored(initial)
     trace: list[Step] = []
     at = initial
-    for number, (label, choice, sight, wrote) in enumerate(steps, 1):
-        found = candidates(at) if sight is None else tuple(steps_seen(at, sight))
-        alike = [transition for transition in found if str(transition.label) == label]
-        if choice >= len(alike):
-            enabled = sorted({str(transition.label) for transition in found})
-            raise ReplayError(number, label, enabled, _cause(len(alike)))
-        before, at = at, alike[choice].target
-        if wrote is not None and digest_of_step(before, at) != wrote:
-            raise ReplayError(
-                number, label, print_changes(before, at), "it leads to another configuration here"
-            )
-        trace.append(Step(alike[choice].label, choice, at, sight))
-    return _closed(Trace(initial, tuple(trace), loop))
+    for number, said in enumerate(steps, 1):
+        trace.append(_followed(at, number, said))
+        at = trace[-1].target
+    return _closed(Trace(initial, tuple(trace), loop, dates=_dates(initial, trace, data["steps"])))
+
+
+def _dates(initial: Configuration, trace: Sequence[Step], said: Sequence[Any]) -> tuple[int, ...]:
+    """Return the dates of a run in ticks, once its clocks allow each; nothing where it has none."""
+    timing = initial.setting.timing
+    if timing is None or not any("at" in each for each in said):
+        return ()
+    from semantics.timing.dated_runs import DatedRun, UntimelyError  # noqa: PLC0415 - geometry takes its time to load
+
+    run, dates = (
+        DatedRun(initial),
+        tuple(_date(number, each, timing.tick) for number, each in enumerate(said, 1)),
+    )
+    for number, (step, date) in enumerate(zip(trace, dates, strict=True), 1):
+        try:
+            run.take(step.label, step.target, date)
+        except UntimelyError as untimely:
+            enabled = sorted({str(each.transition.label) for each in run.situation.steps})
+            raise ReplayError(number, str(step.label), enabled, str(untimely)) from untimely
+    return dates
+
+
+def _date(number: int, said: Any, tick: int) -> int:
+    seconds = said.get("at")
+    known = (
+        isinstance(seconds, int | float) and not isinstance(seconds, bool) and 0 <= seconds <= MOST_SECONDS
+    )
+    milliseconds = round(seconds * 1000) if known else 1
+    if not known or milliseconds % tick:
+        raise ValueError(
+            f"step {number} should be taken 'at' a whole number of ticks of {tick} ms, in seconds"
+        )
+    return milliseconds // tick
+
+
+def follow(before: Configuration, number: int, said: Any) -> Step:
+    """Return the step that plain data describes, taken again by the rules.
+
+    Raises:
+        ReplayError: It is not allowed there, or leads elsewhere.
+        ValueError: The data are no step.
+    """
+    return _followed(before, number, _step(number, said))
+
+
+def _followed(before: Configuration, number: int, said: _Said) -> Step:
+    label, choice, sight, wrote = said
+    same = alike(before, label, sight)
+    if choice >= len(same):
+        enabled = sorted({str(transition.label) for transition in candidates(before, sight)})
+        raise ReplayError(number, label, enabled, _cause(len(same)))
+    taken = same[choice]
+    if wrote is not None and digest_of_step(before, taken.target) != wrote:
+        changes = print_changes(before, taken.target)
+        raise ReplayError(number, label, changes, "it leads to another configuration here")
+    return Step(taken.label, choice, taken.target, sight)
 
 
 def _closed(trace: Trace) -> Trace:
@@ -260,7 +356,11 @@ def _cause(alike: int) -> str:
     return "the mission, its scheduler or its environment may have changed since the trace was written"
 
 
-def _steps(data: Any) -> list[tuple[str, int, Sight | Elsewhere | None, str | None]]:
+_Said = tuple[str, int, Sight | Elsewhere | None, str | None]
+"""What plain data say of a step: its label, which of those with that label, what was observed, what it wrote."""
+
+
+def _steps(data: Any) -> list[_Said]:
     if not isinstance(data, dict) or data.get("schema") != SCHEMA:
         raise ValueError(f"this is no trace: it should be an object with 'schema': '{SCHEMA}'")
     steps = data.get("steps")
@@ -277,7 +377,7 @@ def _loop(data: Any) -> int | None:
     return loop
 
 
-def _step(number: int, step: Any) -> tuple[str, int, Sight | Elsewhere | None, str | None]:
+def _step(number: int, step: Any) -> _Said:
     label, choice = (step.get("label"), step.get("choice", 0)) if isinstance(step, dict) else (None, None)
     if not isinstance(label, str) or isinstance(choice, bool) or not isinstance(choice, int) or choice < 0:
         raise ValueError(f"step {number} should have a 'label' (a text) and a 'choice' (a number from 0)")

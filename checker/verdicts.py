@@ -1,17 +1,23 @@
 """Verdicts: the results of a check, as data."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from enum import Enum
-from typing import SupportsIndex, overload
+from typing import TYPE_CHECKING, SupportsIndex, overload
 
+from bigraphs.notation.spelling import nearest
 from checker.limits import Bound
 from checker.properties.coverage import Coverage
 from checker.traces import Trace
 from semantics.properties.property import Property
 from semantics.state.brief import cut
+
+if TYPE_CHECKING:
+    from checker.properties.critical_path import Leg
+    from checker.properties.schedule import Schedule
 
 
 class Outcome(Enum):
@@ -33,6 +39,7 @@ class Violation:
         details: More lines.
         subject: What it is about, such as a request; empty where the property itself says that.
         alike: How many others there are of that kind that come from the same places in the mission's text.
+        path: The critical path: the steps, one after the other, that its date is made of, and what bounds them.
     """
 
     kind: str
@@ -41,11 +48,13 @@ class Violation:
     details: tuple[str, ...] = ()
     subject: str = ""
     alike: int = 0
+    path: tuple[Leg, ...] = ()
 
     @property
     def told(self) -> tuple[str, ...]:
-        """The details, and how many others are alike."""
-        return (*self.details, *([f"and {self.alike:,} alike"] if self.alike else []))
+        """The details, the critical path, and how many others are alike."""
+        path = ("critical path:", *(f"  {leg}" for leg in self.path)) if self.path else ()
+        return (*self.details, *path, *([f"and {self.alike:,} alike"] if self.alike else []))
 
     def __repr__(self) -> str:
         return f"<Violation {cut(self.kind)} steps={len(self.trace)}: {cut(self.message)}>"
@@ -115,7 +124,7 @@ class Verdicts(tuple[Verdict, ...]):
 
 
 def _instead(name: str, names: list[str]) -> str:
-    near = get_close_matches(cut(name), names, 3)
+    near = nearest(name, names)[:3]
     return (
         f"did you mean {' or '.join(map(repr, near))}?" if near else f"there are {', '.join(names) or 'none'}"
     )
@@ -137,6 +146,7 @@ class Report:
         coverage: What was reached of the mission's text.
         reduced: What let it visit less, by name; then counts are those of what was visited.
         allowed: How many transitions the visited configurations allow, followed or not.
+        schedule: When its flights begin and end, where that was asked for.
     """
 
     verdicts: Verdicts
@@ -150,6 +160,7 @@ class Report:
     coverage: Coverage | None = None
     reduced: tuple[str, ...] = ()
     allowed: int = 0
+    schedule: Schedule | None = None
 
     def __repr__(self) -> str:
         counts = Counter(verdict.outcome.value for verdict in self.verdicts)

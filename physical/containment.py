@@ -17,6 +17,8 @@ from physical.frame import TURN
 from physical.measure import area
 from physical.shape import Geometry, beside, contains, equal, overlaps, planar
 
+_TOUCHING: Final = "share a border: neither is inside the other"
+
 
 @dataclass(frozen=True, slots=True)
 class Place:
@@ -69,11 +71,19 @@ def holds(outer: Place, inner: Place) -> bool:
 
 @dataclass(frozen=True, slots=True, order=True)
 class Conflict:
-    """Two places that do not nest: share space, and neither contains the other."""
+    """Two places that do not nest: share space, and neither contains the other.
+
+    Attributes:
+        first: The one that is first by name.
+        second: The other.
+        reason: Why they do not nest.
+        outer: The one that contains the other but for a common border; may be empty.
+    """
 
     first: str
     second: str
     reason: str
+    outer: str = ""
 
     def __str__(self) -> str:
         """Say what is wrong, naming both."""
@@ -82,7 +92,9 @@ class Conflict:
     @property
     def hint(self) -> str:
         """What to do about it."""
-        return "places must nest or be apart: change one of the two, or allow sharing"
+        if self.outer:
+            return f"what lies inside touches no border: make {self.outer} a little larger"
+        return "places must nest or be apart: change one of the two"
 
 
 def check_places(places: Mapping[str, Place | Geometry]) -> tuple[Conflict, ...]:
@@ -100,7 +112,18 @@ def check_places(places: Mapping[str, Place | Geometry]) -> tuple[Conflict, ...]
     known = {name: _as_place(place) for name, place in places.items()}
     pairs = ((a, b) for a in sorted(known) for b in index.near(known[a].geometry) if a < b)
     reasons = ((a, b, _reason(known[a], known[b])) for a, b in pairs)
-    return tuple(Conflict(a, b, reason) for a, b, reason in reasons if reason)
+    return tuple(
+        Conflict(a, b, reason, _outer(a, b, known) if reason == _TOUCHING else "")
+        for a, b, reason in reasons
+        if reason
+    )
+
+
+def _outer(a: str, b: str, known: Mapping[str, Place]) -> str:
+    """Return the place that covers the other, if one does."""
+    fixed = planar(known[a].geometry)
+    other = beside(fixed, planar(known[b].geometry))
+    return a if fixed.covers(other) else b if other.covers(fixed) else ""
 
 
 def _reason(a: Place, b: Place) -> str:
@@ -111,11 +134,7 @@ def _reason(a: Place, b: Place) -> str:
     if contains(a.geometry, b.geometry) or contains(b.geometry, a.geometry):
         return "nest on the ground, but not in altitude"
     if overlaps(a.geometry, b.geometry):
-        return (
-            "partly overlap"
-            if _cross(a.geometry, b.geometry)
-            else "share border: neither is inside the other"
-        )
+        return "partly overlap" if _cross(a.geometry, b.geometry) else _TOUCHING
     return ""
 
 

@@ -1,7 +1,8 @@
 """GeoJSON (RFC 7946) feature collections, read and written as physical properties.
 
 `properties.name` and `properties.kind` say what a feature is; `altitude` ([low, high], metres), `channels`,
-`carried_by` and, of a Point, `radius_m` (which makes it a circle) may be there. Other members are left alone;
+`carried_by`, of a Point `radius_m` (which makes it a circle) and of a LineString `width_m` (which makes it a
+corridor) may be there. A Multi geometry of one part is that part. Other members are left alone;
 a position's third number is no band of altitudes and is ignored. Edges are straight in longitude and
 latitude, as here (§3.1.1). What crosses the antimeridian is written cut (§3.1.9) and joined again when read.
 A moved polygon is written as its vertices: what it is a placement of is not.
@@ -18,6 +19,7 @@ import shapely
 from shapely.affinity import translate
 
 from physical.altitude import Band
+from physical.corridor import corridor
 from physical.errors import PhysicalError
 from physical.frame import E7, TURN, PositionE7
 from physical.physical_property import PhysicalProperty
@@ -28,8 +30,10 @@ MAX_BYTES: Final = 10_000_000
 MAX_FEATURES: Final = 10_000
 MAX_VERTICES: Final = 100_000
 
-Json = Mapping[str, object]
+MULTI: Final = {"MultiPoint": "Point", "MultiLineString": "LineString", "MultiPolygon": "Polygon"}
+"""What each Multi geometry is made of."""
 
+Json = Mapping[str, object]
 
 _ORDER: Final = "a position of GeoJSON is [longitude, latitude], in degrees, east and north positive"
 
@@ -63,7 +67,7 @@ def reading_geojson(text: str | bytes) -> Iterator[PhysicalProperty]:
     """
     found: list[PhysicalProperty] = []
     problems: list[PhysicalError] = []
-    for index, feature in enumerate(_features(_parsed(text))):
+    for index, feature in enumerate(_features(_parsed(text)), 1):
         try:
             found.append(_property(feature))
         except PhysicalError as problem:
@@ -170,7 +174,7 @@ def _property(feature: object) -> PhysicalProperty:
     return PhysicalProperty(
         entity=_word(properties, "name"),
         kind=_word(properties, "kind"),
-        geometry=_geometry(feature.get("geometry"), properties.get("radius_m")),
+        geometry=_geometry(feature.get("geometry"), properties),
         altitude=_altitude(properties.get("altitude")),
         channels=_channels(properties.get("channels")),
         carried_by=None if properties.get("carried_by") is None else _word(properties, "carried_by"),
@@ -202,23 +206,59 @@ def _channels(value: object) -> tuple[str, ...]:
     return tuple(_word({"channel": channel}, "channel") for channel in value)
 
 
-def _geometry(geometry: object, radius: object) -> Geometry:
-    kind = geometry.get("type") if isinstance(geometry, dict) else None
-    coordinates = geometry.get("coordinates") if isinstance(geometry, dict) else None
-    if kind == "Point":
-        at = _position(coordinates)
-        return point(*at) if radius is None else circle(at, radius)  # type: ignore[arg-type]  # circle checks it
-    if radius is not None:
+def _geometry(geometry: object, properties: Json) -> Geometry:
+    kind, coordinates = _single(geometry)
+    radius, width = properties.get("radius_m"), properties.get("width_m")
+    if radius is not None and kind != "Point":
         _fail("radius", "only a Point can have a radius_m", "leave it out, or write the centre as a Point")
-    if kind == "Polygon":
-        return polygon(_ring(coordinates))
-    if kind == "MultiPolygon":
-        return _joined(_list(coordinates))
+    if width is not None and kind != "LineString":
+        _fail(
+            "width",
+            "only a LineString can have a width_m",
+            "leave it out, or write the middle as a LineString",
+        )
+    match kind:
+        case "Point":
+            at = _position(coordinates)
+            return point(*at) if radius is None else circle(at, radius)  # type: ignore[arg-type]  # circle checks it
+        case "LineString":
+            return _corridor(coordinates, width)
+        case "Polygon":
+            return polygon(_ring(coordinates))
+        case "MultiPolygon":
+            return _joined(_list(coordinates))
+        case None:
+            _fail(
+                "geometry",
+                "the feature has no geometry",
+                "write a Point, a LineString with width_m, or a Polygon",
+            )
     return _fail(
         "geometry",
-        "the feature has no geometry" if kind is None else f"a {kind!s:.40} is neither a Point nor a Polygon",
-        "write one feature for each Point and each Polygon",
+        f"a {kind!s:.40} is not read",
+        "write one feature for each Point, LineString and Polygon",
     )
+
+
+def _single(geometry: object) -> tuple[object, object]:
+    """Return the type and the coordinates of a geometry; of a Multi geometry of one part that part's."""
+    if not isinstance(geometry, dict):
+        return None, None
+    kind, coordinates = geometry.get("type"), geometry.get("coordinates")
+    if isinstance(kind, str) and kind in MULTI and isinstance(coordinates, list) and len(coordinates) == 1:
+        return MULTI[kind], coordinates[0]
+    return kind, coordinates
+
+
+def _corridor(coordinates: object, width: object) -> Geometry:
+    line = [_position(each) for each in _list(coordinates)]
+    if width is None:
+        _fail(
+            "width",
+            "a LineString is no place: nothing can be in it",
+            'write how wide it is into its properties: "width_m", in metres',
+        )
+    return corridor(line, width)  # type: ignore[arg-type]  # corridor checks it
 
 
 def _list(value: object) -> list[object]:

@@ -59,6 +59,18 @@ def land_within(south_west: Position, north_east: Position) -> tuple[tuple[Ring,
     )
 
 
+def land_share(south_west: Position, north_east: Position) -> float:
+    """Return how much of a window is land, between 0 and 1; lakes are water.
+
+    >>> land_share((37.0, -8.7), (37.05, -8.6)), land_share((38.0, -7.6), (38.1, -7.5))
+    (0.0, 1.0)
+    """
+    (south, west), (north, east) = south_west, north_east
+    polygons = (shapely.Polygon(rings[0], rings[1:]) for rings in land_within(south_west, north_east))
+    area = sum(float(polygon.area) for polygon in polygons)
+    return round(area / ((north - south) * (east - west)), 6)
+
+
 def tile_name(west: int, south: int) -> str:
     """Return the name of a tile by its corner.
 

@@ -1,4 +1,4 @@
-"""Wordings that messages of all rooms share: a count with its noun, and how a missing extra is installed."""
+"""Wordings that messages of several rooms share: a count with its noun, and how a missing extra is installed."""
 
 
 def counted(count: int, one: str, many: str = "") -> str:
@@ -11,8 +11,8 @@ def counted(count: int, one: str, many: str = "") -> str:
 
 
 def install_extra(extra: str) -> str:
-    """Return a hint that fits however bigactors was installed: by pip, uv or pipx, by its name or from a clone."""
+    """Return a hint that fits however bigactors was installed, in a clone or from a wheel: no registry has it."""
     return (
-        f"install bigactors as you did, with [{extra}] behind its name or its folder, such as "
-        f"pip install 'bigactors[{extra}]', or pip install -e '.[{extra}]' in a clone"
+        f"install bigactors as you did, with [{extra}] behind its folder or its wheel: "
+        f"pip install '.[{extra}]' in a clone (-e as before), pip install 'FILE.whl[{extra}]'"
     )

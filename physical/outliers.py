@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Iterable, Mapping
-from itertools import product
+from itertools import islice, product
 from typing import Final, TypeVar
 
 from physical.frame import Position
+from physical.land import land_share
 from physical.measure import distance
 from physical.shape import Geometry, point
 
@@ -21,6 +22,19 @@ REMOTE: Final = 1_000_000.0
 
 MOST: Final = 20
 """How many outliers are reported; each is measured against all other entities."""
+
+WIDEST: Final = 5.0
+"""Degrees that a world extends at most of which it is asked whether all of it is in the wrong place."""
+
+ON_DRY_LAND: Final = "stands on land"
+ON_LAND: Final = 0.02
+"""Degrees around a position that are all land where nothing can float."""
+
+FAR_OUT: Final = 1.0
+"""Degrees of latitude to the nearest coast that few missions are away: some 100 km."""
+
+NEAR: Final = 0.2
+"""Degrees to a coast within which most missions at sea are."""
 
 Key = TypeVar("Key", bound=Hashable)
 Cube = tuple[int, ...]
@@ -56,6 +70,40 @@ def is_swapped(geometry: Geometry, rest: Iterable[Geometry], metres: float) -> b
     """Tell whether a distant entity would be near with its latitude and longitude exchanged."""
     latitude, longitude = geometry.vertices[0]
     return abs(longitude) <= 90 and apart(point(longitude, latitude), rest) < metres / 10
+
+
+def all_swapped(geometries: Iterable[Geometry], afloat: Iterable[Geometry]) -> str:
+    """Return why all latitudes and longitudes of a small world seem to be exchanged, nothing where they do not.
+
+    They do where everything that floats stands on dry land, and exchanged would be on water; and where everything is
+    far from any coast, and exchanged would be near one. What is known of coasts is good to a kilometre.
+    """
+    spots = [vertex for geometry in geometries for vertex in geometry.vertices]
+    floating = [geometry.vertices[0] for geometry in islice(afloat, MOST)]
+    if not spots or _extent(spots) > WIDEST or any(abs(longitude) > 89 for _, longitude in spots):
+        return ""
+    exchanged = [(longitude, latitude) for latitude, longitude in spots]
+    if floating and all(_share([spot], ON_LAND) == 1 for spot in floating):
+        return ON_DRY_LAND if all(_share([spot[::-1]], ON_LAND) < 1 for spot in floating) else ""
+    at_sea = _share(spots, FAR_OUT) == 0
+    return (
+        f"is more than {FAR_OUT * 100:.0f} km from any coast"
+        if at_sea and _share(exchanged, NEAR) > 0
+        else ""
+    )
+
+
+def _extent(spots: list[Position]) -> float:
+    latitudes, longitudes = zip(*spots, strict=True)
+    return float(max(max(latitudes) - min(latitudes), max(longitudes) - min(longitudes)))
+
+
+def _share(spots: list[Position], around: float) -> float:
+    """Return how much land there is in a window around positions, with some degrees of latitude on each side."""
+    latitudes, longitudes = zip(*spots, strict=True)
+    wide = around / max(0.1, math.cos(math.radians(max(map(abs, latitudes)))))
+    south_west = max(-90.0, min(latitudes) - around), min(longitudes) - wide
+    return land_share(south_west, (min(90.0, max(latitudes) + around), max(longitudes) + wide))
 
 
 def _parts(geometries: Mapping[Key, Geometry]) -> list[list[Key]]:

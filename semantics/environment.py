@@ -28,6 +28,7 @@ class Drifts:
         names: What each placement is called.
         next: The placements that may follow each; from where it is none of them, `first` may follow.
         first: What may follow where it was at first.
+        within: Whether the placements stand for all of a place, so that it may be anywhere in it.
     """
 
     entity: Name
@@ -35,6 +36,7 @@ class Drifts:
     names: tuple[str, ...]
     next: tuple[tuple[int, ...], ...]
     first: tuple[int, ...]
+    within: bool = False
 
     @property
     def words(self) -> tuple[str, ...]:

@@ -35,11 +35,15 @@ MOST_AGENTS = 64
 
 def linked(c: Configuration, here: Name, there: Name) -> bool:
     """Tell whether two hosts are one node, or share a link in L and in P."""
+    return here == there or any(True for _ in channels_between(c, here, there))
+
+
+def channels_between(c: Configuration, here: Name, there: Name) -> Iterator[Name]:
+    """Yield the links that two hosts share in L and in P."""
     logical, physical = c.structure.logical, c.structure.physical
-    if here == there:
-        return True
-    shared = sorted(set(logical.links(here)).intersection(logical.links(there)))
-    return any(physical.connected(link, here) and physical.connected(link, there) for link in shared)
+    for link in sorted(set(logical.links(here)).intersection(logical.links(there))):
+        if physical.connected(link, here) and physical.connected(link, there):
+            yield link
 
 
 def req_snd(c: Configuration, a: Name) -> Iterator[Transition]:

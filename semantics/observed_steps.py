@@ -4,7 +4,7 @@ Live, nobody computes where a vehicle or a spill is. An observation names cells 
 rules are those that were checked, and say whether it is a step.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -26,6 +26,7 @@ from semantics.state.physical_model import (
 )
 from semantics.state.requests import FLY, Request
 from semantics.state.signature import Name
+from semantics.successors import remembered
 
 WRITABLE = frozenset({"placement", "channels", "left", "down"})
 """What an observation may write: P, and what the environment's clauses remember of it."""
@@ -50,22 +51,23 @@ def happening(c: Configuration, sight: Sight) -> Iterator[Transition]:
     """Yield the `env` of an observation; what is under command is nobody's but `commit`'s to place."""
     there = admitting(c, sight.admits)
     if all(_is_free(there, cell, value) for cell, value in sight.writes.items()):
-        yield from env(there, Observed(sight.words, tuple(sorted(sight.writes.items(), key=_by_cell))))
+        observed = Observed(sight.words, tuple(sorted(sight.writes.items(), key=_by_cell)))
+        yield from (remembered(there, step) for step in env(there, observed))
 
 
 def arriving(c: Configuration, a: Name, sight: Sight) -> Iterator[Transition]:
     """Yield the `commit` of an agent's flight that ends where it was observed."""
-    yield from commit(c, a, reaching(sight.writes))
+    yield from (remembered(c, step) for step in commit(c, a, reaching(sight.writes)))
 
 
-def steps_seen(c: Configuration, sight: Sight | Elsewhere) -> Iterator[Transition]:
-    """Yield all that an observation may mean: what happens, the ends of flights, what passes between stations."""
+def steps_seen(c: Configuration, sight: Sight | Elsewhere, agents: Iterable[Name]) -> Iterator[Transition]:
+    """Yield what an observation may mean: what happens, the ends of agents' flights, what passes between stations."""
     if not isinstance(sight, Sight):
         yield from passing(c, sight)
         return
     yield from happening(c, sight)
     if not sight.admits:
-        for agent in c.alpha.names():
+        for agent in agents:
             yield from arriving(c, agent, sight)
 
 

@@ -82,14 +82,29 @@ class Expansion:
 
 def expand(c: Configuration) -> Expansion:
     """Return everything that a configuration allows: rule by rule, agent by agent, clause by clause."""
-    by_agents = [step for a in c.alpha.names() for step in steps(c, a)]
+    return expand_by(c, c.alpha.names())
+
+
+def expand_by(c: Configuration, agents: Iterable[Name]) -> Expansion:
+    """Return what a configuration allows some agents and the environment."""
+    by_agents = [step for a in agents for step in steps(c, a)]
     return expansion_of(c, by_agents, [t for clause in c.setting.environment for t in by_clause(c, clause)])
 
 
 def by_clause(c: Configuration, clause: Clause) -> Iterator[Transition]:
     """Yield what one clause of the environment allows."""
     for rule in (env, say):
-        yield from rule(c, clause)
+        for transition in rule(c, clause):
+            yield remembered(c, transition)
+
+
+def remembered(c: Configuration, transition: Transition) -> Transition:
+    """Return the transition with what has to be remembered of flights, where a mission says how long they take."""
+    if c.setting.timing is None:
+        return transition
+    from semantics.timing.voyages import remembering  # noqa: PLC0415 - geometry takes its time to load
+
+    return remembering(c, transition)
 
 
 def expansion_of(
@@ -100,7 +115,10 @@ def expansion_of(
     faults = tuple(step for step in steps_found if isinstance(step, Fault))
     found = [step for step in steps_found if not isinstance(step, Fault)]
     found.sort(key=lambda transition: transition.served is None)
-    allowed = tuple(dict.fromkeys(marked(c, transition) for transition in found))
+    marks = (marked(c, transition) for transition in found)
+    allowed = tuple(
+        dict.fromkeys(marks if c.setting.timing is None else (remembered(c, each) for each in marks))
+    )
     waiting: tuple[Transition, ...] = ()
     if c.setting.scheduler is Scheduler.FCFS:
         allowed, waiting = _in_turn(allowed)

@@ -4,9 +4,10 @@
 
 from __future__ import annotations
 
-from lark import Token, Transformer
+from lark import Token
 
 from specs import syntax as s
+from specs.build_timing import BuildTiming
 from specs.building import (
     Children,
     Mistake,
@@ -34,7 +35,7 @@ CONTROL_MODES = ("atomic", "timed")
 FALLBACKS = ("hold", "return", "continue")
 
 
-class BuildWorld(Transformer[Token, s.Mission]):
+class BuildWorld(BuildTiming):
     """Build declarations, beliefs, geometry, environment and checks."""
 
     def mission(self, c: Children) -> s.Mission:
@@ -212,6 +213,12 @@ class BuildWorld(Transformer[Token, s.Mission]):
 
     def steps(self, c: Children) -> s.Steps:
         return s.Steps(tuple(agent(word) for word in c if word is not None), span=cover(c))
+
+    def deadline(self, c: Children) -> s.Deadline:
+        return s.Deadline(c[1], c[2], c[4], span=cover(c))
+
+    def first_time(self, c: Children) -> s.FirstTime:
+        return s.FirstTime(c[1], c[3], span=cover(c))
 
     # --- live runs
 

@@ -16,6 +16,7 @@ RANGES: Final = {
     "LS5": "reaction rules",
     "LS6": "environment, checks and live runs",
     "LS7": "warnings: allowed, but probably not meant",
+    "LS8": "timing",
 }
 
 _FORMS: Final = ", ".join(f"`{command.form}`" for command in COMMANDS.values())
@@ -173,7 +174,8 @@ class Code(Enum):
         "LS118",
         "number without a unit",
         """Lengths are in metres or kilometres: `400 m`, `1.5 km`. Durations are in seconds, minutes or hours: `90 s`,
-        `10 min`, `1.5 h`.""",
+        `10 min`, `1.5 h`, or in milliseconds. Speeds are in metres a second, kilometres an hour or knots: `18 m/s`,
+        `65 km/h`, `35 kn`.""",
     )
     MISPLACED_STATEMENT = (
         "LS119",
@@ -529,6 +531,76 @@ class Code(Enum):
         "LS704",
         "comparison that is always the same",
         """Values of different types are never equal, and a set or an observation has no members of that type.""",
+    )
+
+    NEVER_INSIDE = (
+        "LS706",
+        "containment that the signature forbids",
+        """A formula asks whether one entity is in another, and no entity of the one kind can ever be there: the other
+        kind neither contains nor carries it, nor what could contain it. So the claim is always false.""",
+    )
+
+    PROBABLY_SWAPPED = (
+        "LS705",
+        "probably all swapped",
+        """All of a world seems to have latitude and longitude exchanged: whatever floats (a Vessel, a Boat) stands on
+        land, or everything is far out at sea, and exchanged it would not be. Missions use (latitude, longitude),
+        GeoJSON uses [longitude, latitude]. Coasts and lakes are known to a kilometre, rivers are not.""",
+    )
+
+    BOUNDS_NOTHING = (
+        "LS707",
+        "bound that nothing can keep, or need",
+        """A line of `timing` is about a kind that has no entity; or a vehicle lasts for less than the shortest flight
+        from where it is restored to any other place.""",
+    )
+
+    # --- LS8: timing
+    BAD_DURATION = (
+        "LS801",
+        "duration or speed out of bounds",
+        """Durations in `timing` and deadlines are whole numbers of ticks, and at most a week. A tick is a second unless
+        the section says otherwise, `tick 100 ms`: a whole number of milliseconds. Speeds are above 0 m/s.""",
+    )
+    EMPTY_INTERVAL = (
+        "LS802",
+        "interval that ends before it begins",
+        """The shorter time, or the lower speed, comes first: `takes 1 s to 3 s`, `flies at 18 m/s to 25 m/s`, `after 10
+        min, within 30 min`.""",
+    )
+    NOT_TIMED = (
+        "LS803",
+        "timing of control that takes no time",
+        """With `control atomic` a vehicle is at its destination at once, and no flight takes any time. A mission with
+        `timing` says `control timed`.""",
+    )
+    NO_TIMING = (
+        "LS804",
+        "property of time in a mission without timing",
+        """`within`, `endurance` and `time` ask when something happens. The section `timing` says how long things take.
+        """,
+    )
+    UNTIMED_PROPERTY = (
+        "LS805",
+        "property that is not decided in time",
+        """`ltl`, `ctl`, `progress` and `fairness` are about runs without times. With `timing`, ask for a bounded
+        response, `within 5 min "answered": F leads to G`, or check the mission without that section.""",
+    )
+    NOT_IN_ENVIRONMENT = (
+        "LS806",
+        "time of what the environment never does",
+        """The section `environment` says what may happen, and `timing` how often, or when.""",
+    )
+    NOT_DRIVEN = (
+        "LS807",
+        "motion of what nothing drives",
+        """Speeds and endurance are those of vehicles: of entities of a kind that is declared `driven`.""",
+    )
+    TAKES_ITS_WAY = (
+        "LS808",
+        "time of a flight",
+        """How long a flight takes follows from the distances on the map and from how fast the vehicle is: `UAV flies at
+        18 m/s to 25 m/s`.""",
     )
 
     @property

@@ -7,21 +7,39 @@ table of bad snippets is in the tests.
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Callable, Iterable
 from typing import Final
 
+from bigraphs.notation.spelling import did_you_mean, nearest
 from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS, VIA, WAY
+from semantics.behaviours.durations import UNITS
 from semantics.behaviours.observations import QueryOperator
-from semantics.behaviours.statements import UNITS
 from specs.building import ANGLES
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
-from specs.foreign_words import foreign_operator, foreign_word, operator_first
-from specs.grammar import QUERY_WORDS, RESERVED, SECTIONS, STATEMENTS, first_words
-from specs.parse_error import Situation, Word, is_keyword, line_of, open_brackets, word_before
+from specs.foreign_words import ASKED, foreign_operator, foreign_word, operator_first
+from specs.grammar import (
+    PROPERTY_WORDS,
+    QUERY_WORDS,
+    RESERVED,
+    SECTIONS,
+    STATEMENTS,
+    first_words,
+    grammar_text,
+)
+from specs.parse_error import (
+    LINE_NUMBERS,
+    Situation,
+    Word,
+    is_keyword,
+    line_of,
+    open_brackets,
+    word_at,
+    word_before,
+)
 from specs.syntax.nodes import Span
+from specs.syntax.timing import METRES_PER_SECOND
 
 _GEOMETRIES: Final = frozenset({"point", "box", "polygon", "circle"})
 _QUOTES: Final = "'`\u2018\u2019\u201c\u201d\u201e\u00ab\u00bb"
@@ -30,20 +48,22 @@ _COMPARISONS: Final = frozenset({"==", "!=", "<", "<=", ">", ">=", "in", "not"})
 _UNITS: Final = (
     (("m", "km"), "write 400 m or 1.5 km"),
     (tuple(reversed(UNITS)), "write 90 s, 10 min or 1.5 h"),
+    (tuple(METRES_PER_SECOND), "write 18 m/s, 65 km/h or 35 kn"),
 )
 _HEADER: Final = re.compile(r"^\s*mission\b", re.MULTILINE)
 _DROP: Final = re.compile(r"(\w+(?:[:.\-]\w+)*)\s+(drop\w*|loses?|lost|fails?)(?!\w)")
 _LINKS: Final = frozenset({"drops"})
 _CALLED: Final = frozenset({"observe", "control", "migrate", "display", "spawn", *QueryOperator})
+_THROUGH: Final = re.compile(r"\b((?:for|choose)\s+\w+)\s+in\s+([^{}\[\]]*)")
+_SHORT: Final = 5
+"""Letters of words that are taken for others by chance."""
+
+_IN_FORMULAS: Final = frozenset({"always", "eventually"})
+_QUANTIFIERS: Final = frozenset({"forall", "exists"})
 _GUARDS: Final = frozenset({"and", "or", "&&", "||", "when", "where", "with"})
 _SYMBOL: Final = re.compile(r"[\w\s\"()\[\]{},;:.=<>!&|+\-]")
-_CLOSE: Final = 0.7
 
 FAMILY: Final = "a family is written BigActor patrol[i] for u in UAV hosted_at u with_behavior { ... }"
-
-
-LINE_NUMBERS: Final = "printed line numbers must count on from the line of BigActor"
-"""The hint at a line number that does not: where one is wrong, the others are too."""
 
 
 def misplaced_header(at: Situation) -> Diagnostic | None:
@@ -111,13 +131,19 @@ def unclosed_section(at: Situation) -> Diagnostic | None:
     return Diagnostic(Code.UNCLOSED_BRACKET, Span(opening, opening + 1), message, hint)
 
 
+def begins_property(word: str, *, first: bool) -> bool:
+    """Tell whether a word is what kind a property is, or was meant to be; `first` of its line it may be a formula's."""
+    meant = word in PROPERTY_WORDS or bool(len(word) > _SHORT and nearest(word, PROPERTY_WORDS))
+    return meant or (word in ASKED and (first or word not in _IN_FORMULAS))
+
+
 def misspelt_word(at: Situation) -> Diagnostic | None:
     """`enviroment { ... }`: nearly one of the words that could have stood here."""
     return _misspelt(at.found, at.accepted | (_LINKS if _in_environment(at) else frozenset()))
 
 
 def _in_environment(at: Situation) -> bool:
-    return {"appears", "vanishes"} <= at.accepted
+    return {"appears", "arrives"} <= at.accepted
 
 
 def misspelt_word_before(at: Situation) -> Diagnostic | None:
@@ -125,9 +151,9 @@ def misspelt_word_before(at: Situation) -> Diagnostic | None:
     if at.accepted == {"=", "("}:
         return _misspelt(at.before, STATEMENTS | {"case", "after"})
     if at.accepted == {")"} and at.found.text == "(":
-        return _misspelt(at.before, QUERY_WORDS)
+        return _misspelt(at.before, QUERY_WORDS) or _unknown_query(at)
     if at.accepted == {"("}:
-        return _misspelt(at.before, COMMAND_WORDS)
+        return _misspelt(at.before, COMMAND_WORDS) or _unknown_command(at)
     if at.accepted == {":"}:
         return _misspelt(at.before, {"channel", "from", "linked", "carried", "absent", "altitude"})
     if _in_environment(at):
@@ -135,6 +161,29 @@ def misspelt_word_before(at: Situation) -> Diagnostic | None:
     if {"directly", "hosted_at"} <= at.accepted:
         return _misspelt(at.before, first_words("_claim")) or _claim(at)
     return None
+
+
+def _unknown_query(at: Situation) -> Diagnostic | None:
+    """`observe(NEIGHBOURS(base))`."""
+    opening = word_before(at.prepared.text, at.before.span.start)
+    asked = word_before(at.prepared.text, opening.span.start).text
+    if opening.text != "(" or asked not in QUERY_WORDS | {"observe"}:
+        return None
+    message = f"{at.before.shown} is no query"
+    hint = f"queries are {', '.join(f'{word}(...)' for word in QueryOperator)}, HOST and ALL"
+    return Diagnostic(Code.MISSPELT_KEYWORD, at.before.span, message, hint)
+
+
+def _unknown_command(at: Situation) -> Diagnostic | None:
+    """`control(FLY_TO west0)`."""
+    opening = word_before(at.prepared.text, at.before.span.start)
+    if word_before(at.prepared.text, opening.span.start).text != "control":
+        return None
+    parts = set(at.before.text.upper().split("_"))
+    forms = [each.form for each in COMMANDS.values() if parts & set("_".join(each.words).split("_"))]
+    hint = f"control actions are {', '.join(forms or [each.form for each in COMMANDS.values()])}"
+    message = f"{at.before.shown} is no control action"
+    return Diagnostic(Code.MISSPELT_KEYWORD, at.before.span, message, hint)
 
 
 def _channel(at: Situation) -> Diagnostic | None:
@@ -174,6 +223,14 @@ def misplaced_query(at: Situation) -> Diagnostic | None:
     """`if r0 in CHILDREN(HOST) { ... }`."""
     if at.found.text not in QUERY_WORDS or not at.at_expression:
         return None
+    if at.before.text in COMMAND_WORDS and at.found.text.startswith(QueryOperator.PARENT):
+        opened = word_at(at.prepared.text, at.following.span.end)
+        who = opened.text if at.following.text == "(" and opened.is_name else "HOST"
+        where = f"control({at.before.text} parent({who}, obs))"
+        hint = (
+            f"go where it was seen: observe(ALL) react {{ case obs: Observation if {who} in obs => {where} }}"
+        )
+        return at.mistake(Code.UNEXPECTED, "a query is observed, it has no value of its own", hint)
     hint = f"write observe({at.found.text}...), and ask what is received: react {{ case obs if x in obs => ... }}"
     return at.mistake(Code.UNEXPECTED, "a query is observed, it has no value of its own", hint)
 
@@ -231,12 +288,22 @@ def missing_word(at: Situation) -> Diagnostic | None:
     """`carried vessel0`, `circle (37.0, -8.5) 400 m`, `invariant "x" true`: only one word could have stood here."""
     if len(at.accepted) == 1 == len(at.sorts) and "for" not in at.accepted and at.found.text != ";":
         (word,) = at.accepted
+        if at.instead and word.isalpha() and not at.is_first:
+            return at.mistake(
+                Code.UNEXPECTED, f"expected '{word}', found {at.found.shown}", _instead(at, word)
+            )
         if word.startswith(at.found.text) and word not in "([{":
             return at.mistake(Code.UNEXPECTED, f"expected '{word}', found {at.found.shown}", f"write {word}")
         if word not in "([{":
             message = f"expected '{word}' before {at.found.shown}"
             return at.mistake(Code.UNEXPECTED, message, f"write {word} before it")
     return None
+
+
+def _instead(at: Situation, word: str) -> str:
+    """`vhf drops and comes back`, `boat appears in sea`."""
+    more = at.following.text if at.following.is_name and word == "returns" else ""
+    return f"write {word} instead of {at.found.text} {more}".rstrip()
 
 
 def misplaced_statement(at: Situation) -> Diagnostic | None:
@@ -308,6 +375,9 @@ def missing_unit(at: Situation) -> Diagnostic | None:
 
 def reserved_word(at: Situation) -> Diagnostic | None:
     """`let if = 3`."""
+    if at.found.text == "for" and "forall" in at.accepted:
+        hint = "write forall u: Kind . formula"
+        return at.mistake(Code.MISSPELT_KEYWORD, "'for' is not a word of the language here", hint)
     if (
         at.found.text in RESERVED
         and at.sorts & {"NAME", "CHANNEL"}
@@ -325,6 +395,9 @@ def missing_host(at: Situation) -> Diagnostic | None:
         message = f"expected 'hosted_at' and a host, found {at.found.shown}"
         one = "write BigActor name hosted_at host with_behavior { ... }"
         return at.mistake(Code.MISSING_HOST, message, FAMILY if at.found.text in ("for", "[") else one)
+    if "hosted_at" in at.accepted and not at.accepted & {"directly", "with_behavior"} and at.found.is_name:
+        message = f"expected 'hosted_at' and a host, found {at.found.shown}"
+        return at.mistake(Code.MISSING_HOST, message, FAMILY)
     return None
 
 
@@ -343,6 +416,16 @@ def missing_comma(at: Situation) -> Diagnostic | None:
             Code.MISSING_COMMA, f"expected ',' before {at.found.shown}", "separate items by commas"
         )
     return None
+
+
+def unbracketed_route(at: Situation) -> Diagnostic | None:
+    """`for c in a, b { ... }`."""
+    line = at.prepared.text[at.prepared.text.rfind("\n", 0, at.found.span.start) + 1 :].splitlines()[0]
+    found = _THROUGH.search(line) if at.found.text == "," and "{" in at.accepted else None
+    if found is None:
+        return None
+    hint = f"write {found[1]} in [{found[2].strip()}] {{ ... }}"
+    return at.mistake(Code.UNEXPECTED, "what is gone through stands in brackets", hint)
 
 
 def missing_brace(at: Situation) -> Diagnostic | None:
@@ -418,6 +501,43 @@ def missing_at_most(at: Situation) -> Diagnostic | None:
     return None
 
 
+def missing_dot(at: Situation) -> Diagnostic | None:
+    """`forall u: UAV u in base`, `exists u: UAV: u in base`, `forall u in UAV . u in base`."""
+    word = word_before(at.prepared.text, at.before.span.start)
+    if at.accepted == {":"} and word.text in _QUANTIFIERS:
+        kind, name = at.following.text if at.found.text in ("in", "of") else "Kind", at.before.text
+        if at.found.is_name and not is_keyword(at.found):  # the kind first, as in Java
+            kind, name = at.before.text, at.found.text
+        hint = f"write {word.text} {name}: {kind} . formula"
+        return at.mistake(Code.MISSING_KIND, f"expected ':' and a kind, found {at.found.shown}", hint)
+    if not {".", "with_behavior", "hosted_at"} <= at.accepted:
+        return None
+    start = at.prepared.text.rfind(":", 0, at.found.span.start)
+    variable = word_before(at.prepared.text, start)
+    quantifier = word_before(at.prepared.text, variable.span.start)
+    among = at.prepared.text[start + 1 : at.before.span.end].strip()
+    hint = f"write {quantifier.text} {variable.text}: {among} . formula"
+    return at.mistake(Code.UNEXPECTED, f"expected '.', found {at.found.shown}", hint)
+
+
+def equals_of_places(at: Situation) -> Diagnostic | None:
+    """`actually uav = boat`."""
+    if at.found.text not in ("=", "==", "!=") or at.accepted != {"directly", "in", "linked"}:
+        return None
+    message = f"{at.found.shown} does not compare entities"
+    hint = f"ask where it is: {at.before.text} in place, or of its links: {at.before.text} linked channel"
+    return at.mistake(Code.UNEXPECTED, message, hint)
+
+
+def drift_without_spot(at: Situation) -> Diagnostic | None:
+    """`uav drifts to sea`."""
+    if at.accepted != {"among", "within"}:
+        return None
+    where = at.following.text if at.following.is_name else "place"
+    hint = f"write drifts within {where}, or drifts among {where}, others"
+    return at.mistake(Code.UNEXPECTED, f"expected 'among' or 'within', found {at.found.shown}", hint)
+
+
 def missing_kind(at: Situation) -> Diagnostic | None:
     """`uav0 = point (37.0, -8.5)`."""
     if at.accepted == {":"} and at.before.text in _GEOMETRIES:
@@ -468,23 +588,19 @@ def misspelt_word_after_all(at: Situation) -> Diagnostic | None:
     return _misspelt(at.before, at.accepted)
 
 
-def _letters(word: str) -> list[str]:
-    return sorted(word.lower())
-
-
 def _misspelt(word: Word, candidates: Iterable[str]) -> Diagnostic | None:
     if not word.is_name or is_keyword(word):
         return None
-    possible = sorted(
-        candidate for candidate in candidates if len(candidate) > 1 and candidate.isidentifier()
-    )
-    nearest = difflib.get_close_matches(word.text[:40], possible, n=1, cutoff=_CLOSE)
-    if not nearest:
-        nearest = [candidate for candidate in possible if _letters(candidate) == _letters(word.text)][:1]
-    if not nearest:
+    possible = {each for each in candidates if len(each) > 1 and each.isidentifier()}
+    phrase = word.text.replace("_", '" "')
+    if phrase != word.text and f'"{phrase}"' in grammar_text():  # carried_by
+        meant = f"write {word.text.replace('_', ' ')}"
+    else:
+        meant = did_you_mean(word.text, possible)
+    if not meant:
         return None
     message = f"{word.shown} is not a word of the language here"
-    return Diagnostic(Code.MISSPELT_KEYWORD, word.span, message, f"did you mean '{nearest[0]}'?")
+    return Diagnostic(Code.MISSPELT_KEYWORD, word.span, message, meant)
 
 
 MISTAKES: Final[tuple[Callable[[Situation], Diagnostic | None], ...]] = (
@@ -493,9 +609,11 @@ MISTAKES: Final[tuple[Callable[[Situation], Diagnostic | None], ...]] = (
     unknown_character,
     unclosed_section,
     misplaced_header,
+    equals_of_places,
     single_equals,
     bad_number,
     foreign_word,
+    missing_dot,
     misspelt_word,
     missing_at_most,
     misspelt_word_before,
@@ -515,10 +633,12 @@ MISTAKES: Final[tuple[Callable[[Situation], Diagnostic | None], ...]] = (
     operator_first,
     missing_recipient,
     missing_comma,
+    unbracketed_route,
     missing_kind_word,
     missing_brace,
     missing_equals,
     missing_kind,
+    drift_without_spot,
     missing_quotes,
     missing_word,
     reserved_word,

@@ -12,6 +12,7 @@ from specs.syntax.nodes import Span
 
 _TAB: Final = 4
 _WIDEST: Final = 100  # columns of a line that are shown
+_CUT: Final = "…"
 _BEFORE: Final = 40  # of these, at least so many before the caret where the line is cut
 
 
@@ -89,23 +90,24 @@ def render(diagnostic: Diagnostic, source: Source) -> str:
 
 def _underline(line: str, first: int, span: Span) -> tuple[str, str]:
     last = min(max(first + span.end - span.start, first + 1), max(len(line), first + 1))
-    start, cells = _window(line, first)
-    before = sum(len_ for _, len_ in cells[: first - start])
+    start, cells, more = _window(line, first)
+    before = bool(start) + sum(len_ for _, len_ in cells[: first - start])
     under = sum(len_ for _, len_ in cells[first - start : last - start]) if first < len(line) else 1
-    return "".join(text for text, _ in cells), " " * before + "^" * max(under, 1)
+    shown = "".join(text for text, _ in cells)
+    return f"{_CUT if start else ''}{shown}{_CUT if more else ''}", " " * before + "^" * max(under, 1)
 
 
-def _window(line: str, first: int) -> tuple[int, list[tuple[str, int]]]:
-    """Cut out what is shown around `first`: where it begins, and its characters with their widths."""
+def _window(line: str, first: int) -> tuple[int, list[tuple[str, int]], bool]:
+    """Cut out what is shown around `first`: where it begins, its characters with widths, whether there is more."""
     start = 0 if len(line) <= _WIDEST else max(0, min(first - _BEFORE, len(line) - _WIDEST))
-    cells, width = [], 0
+    cells, width = list[tuple[str, int]](), 0
     for character in line[start:]:
         cell = _cell(character)
         width += cell[1]
         if width > _WIDEST:
-            break
+            return start, cells, True
         cells.append(cell)
-    return start, cells
+    return start, cells, False
 
 
 def _cell(character: str) -> tuple[str, int]:

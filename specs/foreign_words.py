@@ -13,6 +13,7 @@ _BEHAVIOUR: Final = "a behaviour is defined by def name(parameters) = { ... }"
 _ACTOR: Final = "write BigActor name hosted_at host with_behavior { ... }"
 _VARIABLE: Final = "a variable is bound by let x = ..., and given another value by x = ..."
 _REACT: Final = "write react { case obs: Observation => ... case m: Message => ... }"
+_WAIT: Final = "time passes in a react: react { after 10 min => ... }, with cases for what may come earlier"
 _SEND: Final = "write send message to bigActor"
 
 DECLARED: Final[Mapping[str, str]] = {
@@ -25,6 +26,10 @@ DECLARED: Final[Mapping[str, str]] = {
         ("import", "include", "use"), 'entities come from files: world { from "places.geojson" }'
     ),
     **dict.fromkeys(("entities", "places", "map"), "write world { name: Kind = point (37.08, -8.55) }"),
+    **dict.fromkeys(
+        ("times", "time", "timings", "durations", "clock", "clocks"),
+        "write timing { agents react within 1 s }",
+    ),
     **dict.fromkeys(("kinds", "types", "kind", "type"), "write signature { kind UAV driven }"),
 }
 """What other languages begin a declaration with."""
@@ -34,13 +39,14 @@ DONE: Final[Mapping[str, str]] = {
     **dict.fromkeys(("forever", "repeat", "do"), "write loop { ... }, or while condition { ... }"),
     "until": "write while not condition { ... }",
     "foreach": "write for x in collection { ... }",
-    **dict.fromkeys(("receive", "wait", "await", "on", "when", "expect"), _REACT),
+    **dict.fromkeys(("receive", "await", "on", "when", "expect"), _REACT),
+    **dict.fromkeys(("wait", "sleep", "delay", "pause", "timeout"), _WAIT),
     **dict.fromkeys(("switch", "select"), "write match value { case ... => ... }"),
     **dict.fromkeys(
         ("elif", "elseif", "elsif", "otherwise"), "write } else if condition { ... } or } else { ... }"
     ),
     **dict.fromkeys(("print", "println", "log", "echo", "show", "printf"), "write display(value)"),
-    **dict.fromkeys(("emit", "tell", "post", "notify", "publish"), _SEND),
+    **dict.fromkeys(("emit", "tell", "post", "notify", "publish", "broadcast", "say"), _SEND),
     **dict.fromkeys(("move", "goto", "go", "fly"), "write control(MOVE_HOST_TO place)"),
     **dict.fromkeys(("sense", "look", "query"), "write observe(CHILDREN(PARENT(HOST)))"),
     **dict.fromkeys(("pass", "noop", "continue"), "write skip"),
@@ -50,12 +56,17 @@ DONE: Final[Mapping[str, str]] = {
 }
 """What other languages do something with."""
 
-CHOSEN: Final = dict.fromkeys(
-    ("when", "on", "of", "default", "otherwise"), "write case pattern => statements"
-)
+CHOSEN: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("when", "on", "of", "default", "otherwise"), "write case pattern => statements"),
+    **dict.fromkeys(("timeout", "wait", "delay", "within", "until"), "write after 10 min => statements"),
+}
 ASKED: Final[Mapping[str, str]] = {
     **dict.fromkeys(("always", "never", "safety", "assert"), 'write invariant "name": formula'),
-    **dict.fromkeys(("eventually", "sometime", "liveness"), 'write reachable "name": formula'),
+    **dict.fromkeys(("sometime", "possible", "cover"), 'write reachable "name": formula'),
+    **dict.fromkeys(
+        ("eventually", "liveness", "leadsto"),
+        'of some run: reachable "name": formula; of every run: ltl "name": eventually formula',
+    ),
     **dict.fromkeys(("no_races", "races", "race"), "write race_freedom"),
     **dict.fromkeys(("deadlock", "deadlocks", "no_deadlock"), "write deadlock_freedom"),
 }
@@ -63,6 +74,58 @@ OF_A_KIND: Final = dict.fromkeys(
     ("moves", "moving", "mobile", "movable", "drives", "flies"),
     "what controls can move is driven: kind UAV driven",
 )
+
+CLAIMED: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("at", "inside", "within", "on", "contained", "is"), "write in: uav0 in place0"),
+    **dict.fromkeys(("connected", "joined"), "write linked: uav0 linked wifi"),
+}
+"""How other languages ask where an entity is."""
+
+BEGINNING: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("globally", "henceforth", "invariantly"), "write always"),
+    **dict.fromkeys(("finally", "sometime", "future"), "write eventually"),
+    **dict.fromkeys(("distance", "dist", "near", "altitude", "size", "count"), "formulas have no functions"),
+}
+"""What formulas of other languages begin with, where a name could stand too."""
+
+JOINED: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("implies", "then", "if"), "write ->"),
+    **dict.fromkeys(("iff", "equals"), "write <->"),
+    "but": "write and",
+    "unless": "write W",
+    "releases": "write R",
+}
+"""What other languages join formulas by."""
+
+HAPPENING: Final[Mapping[str, str]] = {
+    **dict.fromkeys(
+        ("moves", "wanders", "flows", "floats"), "write drifts within place0, or drifts among place0, place1"
+    ),
+    **dict.fromkeys(("disappears", "dies", "sinks", "crashes"), "write vanishes"),
+    **dict.fromkeys(("enters", "comes", "spawns", "shows"), "write appears at place0"),
+}
+"""What other languages say that entities do."""
+
+WHEREABOUTS: Final = dict.fromkeys(
+    ("in", "at", "on", "inside", "within"),
+    "write = point (37.08, -8.55): where it lies decides in which place it is; or carried by an entity",
+)
+ENTRIES: Final = dict.fromkeys(("link", "network", "radio", "comm", "bus"), "write channel name")
+GEOMETRIES: Final[Mapping[str, str]] = {
+    **dict.fromkeys(
+        ("rect", "rectangle", "square", "bbox", "bounds"),
+        "write box (37.13, -8.5) (37.05, -8.7): two corners",
+    ),
+    **dict.fromkeys(("disc", "disk", "round", "buffer"), "write circle (37.08, -8.55) radius 400 m"),
+    **dict.fromkeys(
+        ("poly", "area", "region", "shape", "ring"), "write polygon (37.1, -8.6) (37.1, -8.5) (37.0, -8.5)"
+    ),
+    **dict.fromkeys(
+        ("pos", "position", "location", "coordinate", "coordinates", "at", "latlon", "gps", "marker"),
+        "write point (37.08, -8.55)",
+    ),
+}
+"""What other languages call geometries."""
 
 OPERATORS: Final[Mapping[str, str]] = {
     **dict.fromkeys(("*", "/", "%", "^"), "numbers are only added and subtracted: + and -"),
@@ -87,16 +150,30 @@ def foreign_word(at: Situation) -> Diagnostic | None:
     for applies, words in _CONTEXTS:
         if applies(at) and at.found.text in words:
             return _instead(at.found, words)
-    named = at.accepted == {"=", "("} and at.before.text in _BEFORE
-    return _instead(at.before, _BEFORE) if named else None
+    for stands_before, words in _NAMED:
+        if stands_before(at) and at.before.text in words:
+            return _instead(at.before, words)
+    return None
 
 
 _BEFORE: Final[Mapping[str, str]] = {**OPERATORS, **DONE}
+
+_NAMED: Final[tuple[tuple[Callable[[Situation], bool], Mapping[str, str]], ...]] = (
+    (lambda at: at.accepted >= {"directly", "linked"}, BEGINNING),
+    (lambda at: at.accepted == {":"}, ENTRIES),
+    (lambda at: at.accepted == {"=", "("}, _BEFORE),
+)
+"""Where a foreign word was taken for a name, and what is wrong is behind it."""
 
 _CONTEXTS: Final[tuple[tuple[Callable[[Situation], bool], Mapping[str, str]], ...]] = (
     (lambda at: at.at_declaration and not at.at_statement, DECLARED),
     (lambda at: {"case", "}"} <= at.accepted and not at.at_statement, CHOSEN),
     (lambda at: "invariant" in at.accepted, ASKED),
+    (lambda at: "polygon" in at.accepted, GEOMETRIES),
+    (lambda at: {"absent", "="} <= at.accepted, WHEREABOUTS),
+    (lambda at: {"directly", "linked"} <= at.accepted, CLAIMED),
+    (lambda at: "<->" in at.accepted, JOINED),
+    (lambda at: "vanishes" in at.accepted, HAPPENING),
     (lambda at: "driven" in at.accepted, OF_A_KIND),
     (lambda at: at.at_statement or at.in_expression, DONE),
 )
@@ -124,7 +201,8 @@ def foreign_operator(at: Situation) -> Diagnostic | None:
     elif found == ":" and behind == "=" and "=" in at.accepted:
         hint = "write ="
     elif found == "=" and at.before.text == "=" and at.before.span.end == at.found.span.start:
-        hint = "a single = gives a value, == compares"
+        hint, both = "a single = gives a value, == compares", at.before.span.to(at.found.span)
+        return Diagnostic(Code.UNKNOWN_CHARACTER, both, "'==' has no meaning here", hint)
     elif not hint or not (symbol or at.in_expression or in_formula or at.accepted & {"=>", "directly"}):
         return None
     return at.mistake(Code.UNKNOWN_CHARACTER if symbol else Code.MISSPELT_KEYWORD, _no_operator(at), hint)

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import re
+from copy import copy
 from functools import cache
 from pathlib import Path
 from typing import Any, Final, Protocol
 
-from lark import Lark, Token
+from lark import Lark, Token, UnexpectedInput
 from lark.lexer import PatternRE, PatternStr, TerminalDef
 
+from bigraphs.notation.parse_tables import parser_with_tables
 from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS, Command
 from semantics.behaviours.observations import QueryOperator
 from semantics.properties.kinds import Asked, asked_by
 from specs.build_behaviour import BuildBehaviour
 from specs.build_world import BuildWorld
-from specs.parse_tables import parser_with_tables
 from specs.syntax import Mission
+
+NAMED_PROPERTIES: Final = asked_by(Asked.BY_DEFAULT, Asked.BY_NAME, Asked.OF_TIMED_MISSIONS)
+"""The properties that are asked for by their names."""
 
 
 @cache
@@ -25,10 +29,9 @@ def grammar_text() -> str:
     text = Path(__file__).with_name("mission.lark").read_text(encoding="utf-8")
     text = text.replace("RELATIONS_OF_HOST", " | ".join(f'"{word}_HOST"' for word in QueryOperator))
     text = text.replace("RELATIONS", " | ".join(f'"{word}"' for word in QueryOperator))
-    standard = " | ".join(f'"{kind}"' for kind in asked_by(Asked.BY_DEFAULT, Asked.BY_NAME))
-    return text.replace("STANDARD", standard).replace(
-        "COMMANDS", "\n       | ".join(map(_rule, COMMANDS.values()))
-    )
+    text = text.replace("STANDARD", " | ".join(f'"{kind}"' for kind in NAMED_PROPERTIES))
+    text = text.replace("COMMAND_NAMES", " | ".join(f'"{name}"' for name in COMMANDS))
+    return text.replace("COMMANDS", "\n       | ".join(map(_rule, COMMANDS.values())))
 
 
 def _rule(command: Command) -> str:
@@ -45,6 +48,7 @@ def first_words(rule: str) -> frozenset[str]:
 
 
 STATEMENTS: Final = first_words("_statement")
+PROPERTY_WORDS: Final = frozenset([*first_words("_property"), "ltl", "ctl", *map(str, NAMED_PROPERTIES)])
 SECTIONS: Final = first_words("_declaration") - STATEMENTS | {"mission"}
 OPERATION_WORDS: Final = frozenset(["in", "not", "and", "or", "of", "true", "false", "HOST", "SELF"])
 QUERY_WORDS: Final = frozenset(["ALL", *QueryOperator, *(f"{word}_HOST" for word in QueryOperator)])
@@ -68,24 +72,32 @@ TABLES: Final = Path(__file__).with_name("mission.tables.json")
 @cache
 def grammar() -> Lark:
     """Return the parser, which builds the syntax tree as it goes, so that depth costs no recursion."""
-    reserved = "|".join(sorted(RESERVED))
-    text = grammar_text().replace("RESERVED", f"(?:{reserved})")
-    made_from = text + Path(__file__).read_text(encoding="utf-8")
-    return parser_with_tables(TABLES, made_from, lambda: make_parser(text), Build())
+    made_from = grammar_text() + Path(__file__).read_text(encoding="utf-8")
+    return parser_with_tables(TABLES, made_from, make_parser, callbacks())
 
 
-def make_parser(text: str) -> Lark:
-    """Return the parser of a grammar, its tables made anew."""
+def make_parser() -> Lark:
+    """Return the parser, its tables made anew."""
     return Lark(
-        text,
+        grammar_text(),
         parser="lalr",
         lexer="contextual",
         start="mission",
         keep_all_tokens=True,
         maybe_placeholders=True,
-        transformer=Build(),
         edit_terminals=_match_whole_words,
+        **callbacks(),
     )
+
+
+def callbacks() -> dict[str, Any]:
+    """Return the options of the parser that say what it does with what it has read."""
+    return {"transformer": Build(), "lexer_callbacks": {"NAME": _no_reserved, "CHANNEL": _no_reserved}}
+
+
+def _no_reserved(word: Token) -> Token:
+    """Take a reserved word for no name; patterns that leave them out would be compiled for each state anew."""
+    return word.update(type="RESERVED") if word in RESERVED else word
 
 
 class Run(Protocol):
@@ -124,6 +136,30 @@ def spellings() -> dict[str, str]:
         else ""
         for terminal in grammar().terminals
     }
+
+
+@cache
+def terminals() -> dict[str, str]:
+    """Return the grammar's names of words and signs."""
+    return {word: name for name, word in spellings().items() if word}
+
+
+def terminal(word: str) -> str:
+    """Return the grammar's name of a word or sign."""
+    return terminals()[word]
+
+
+def may_follow(run: Run, *sorts: str) -> bool:
+    """Tell whether words of these sorts could come next, one after the other; nothing is built of them."""
+    trial = run.copy(deepcopy_values=False)
+    trial.parser_state.parse_conf = copy(trial.parser_state.parse_conf)
+    trial.parser_state.parse_conf.callbacks = {}
+    try:
+        for sort in sorts:
+            trial.feed_token(Token(sort, ""))
+    except UnexpectedInput:
+        return False
+    return True
 
 
 @cache

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from specs import syntax as s
-from specs.writing import constant, decimal, listed, placed, shape, write
+from specs.layout_timing import TIMING_PIECES
+from specs.writing import constant, listed, placed, separated, shape, write
 
 WIDTH: Final = 100
 _STEP: Final = "  "
@@ -132,7 +133,7 @@ def _case(layout: Layout, node: s.Case) -> None:
 
 
 def _after(layout: Layout, node: s.After) -> None:
-    _arrow(layout, node.span, f"after {duration(node.duration)} =>", node.body)
+    _arrow(layout, node.span, f"after {write(node.duration)} =>", node.body)
 
 
 def _react(layout: Layout, node: s.React) -> None:
@@ -204,6 +205,7 @@ _BLOCKS: Final[dict[type[s.Node], Callable[..., None]]] = {
     s.Believes: _block(_head, "beliefs"),
     s.Environment: _block(_head, "clauses"),
     s.Check: _block(_head, "properties"),
+    s.Timing: _block(_head, "bounds"),
     s.Live: _block(_head, "precautions"),
 }
 
@@ -222,14 +224,9 @@ def _kind(node: s.Kind) -> list[str]:
         piece
         for word, kinds in (("contains", node.contains), ("carries", node.carries))
         if kinds
-        for piece in _separated(word, kinds)
+        for piece in separated(word, kinds)
     ]
     return [f"kind {write(node.name)}", *flags, *lists]
-
-
-def _separated(word: str, nodes: Sequence[s.Node]) -> list[str]:
-    texts = [f"{write(node)}," for node in nodes[:-1]] + [write(nodes[-1])]
-    return [f"{word} {texts[0]}", *texts[1:]]
 
 
 def _entity(node: s.Entity) -> list[str]:
@@ -240,7 +237,7 @@ def _entity(node: s.Entity) -> list[str]:
     if node.carrier:
         found.append(f"carried by {write(node.carrier)}")
     if node.channels:
-        found += _separated("linked", node.channels)
+        found += separated("linked", node.channels)
     return [*found, "absent"] if node.absent else found
 
 
@@ -278,8 +275,8 @@ def _says(node: s.Says) -> list[str]:
 
 
 def _appears(node: s.Appears) -> list[str]:
-    links = _separated("linked", node.channels) if node.channels else []
-    return [f"{write(node.entity)} appears", *_separated("at", node.placements), *links]
+    links = separated("linked", node.channels) if node.channels else []
+    return [f"{write(node.entity)} appears", *separated("at", node.placements), *links]
 
 
 def _returning(node: s.Drops | s.Leaves) -> str:
@@ -289,12 +286,7 @@ def _returning(node: s.Drops | s.Leaves) -> str:
 def _time_limit(node: s.TimeLimit) -> str:
     kind = f"{node.request} " if node.request else ""
     who = write(node.agent) if node.agent else "anyone"
-    return f"{kind}{who} within {duration(node.limit)}: {node.fallback}"
-
-
-def duration(node: s.Duration) -> str:
-    """Return the text of a duration."""
-    return f"{decimal(node.value)} {node.unit}"
+    return f"{kind}{who} within {write(node.limit)}: {node.fallback}"
 
 
 def _spawn(node: s.Spawn) -> list[str]:
@@ -331,14 +323,14 @@ _PIECES: Final[dict[type[s.Node], Callable[..., list[str]]]] = {
     s.BelievedIn: lambda node: [f"{write(node.entity)} in {write(node.place) if node.place else 'region'}"],
     s.BelievedUnknown: lambda node: [f"{write(node.entity)} unknown"],
     s.BelievedLinked: lambda node: (
-        [write(node.entity), *_separated("linked", node.channels)]
+        [write(node.entity), *separated("linked", node.channels)]
         if node.channels
         else [f"{write(node.entity)} unlinked"]
     ),
     s.Rule: _rule,
     s.Scheduler: lambda node: [f"scheduler {node.name}"],
     s.ControlMode: lambda node: [f"control {node.name}"],
-    s.DriftsAmong: lambda node: [f"{write(node.entity)} drifts", *_separated("among", node.placements)],
+    s.DriftsAmong: lambda node: [f"{write(node.entity)} drifts", *separated("among", node.placements)],
     s.DriftsWithin: lambda node: [f"{write(node.entity)} drifts within {write(node.place)}"],
     s.Drops: lambda node: [f"{write(node.channel)} drops{_returning(node)}"],
     s.Leaves: lambda node: [f"{write(node.entity)} leaves {write(node.channel)}{_returning(node)}"],
@@ -346,12 +338,15 @@ _PIECES: Final[dict[type[s.Node], Callable[..., list[str]]]] = {
     s.Vanishes: lambda node: [f"{write(node.entity)} vanishes"],
     s.Says: _says,
     s.Arrives: lambda node: [f"{write(node.entity)} arrives"],
+    **TIMING_PIECES,
     s.OnBroken: lambda node: [f"on broken assumption: {node.fallback}"],
     s.TimeLimit: lambda node: [_time_limit(node)],
     s.StandardProperty: lambda node: [node.name],
     s.Invariant: lambda node: [f"invariant {write(node.label)}:", write(node.formula)],
     s.Reachable: lambda node: [f"reachable {write(node.label)}:", write(node.formula)],
     s.TemporalProperty: _temporal,
+    s.Deadline: lambda node: [f"within {write(node.limit)} {write(node.label)}:", write(node.formula)],
+    s.FirstTime: lambda node: [f"time {write(node.label)}:", write(node.formula)],
     s.FairDeadlockFreedom: lambda node: _named("deadlock_freedom", node),
     s.Progress: lambda node: _named("progress", node),
     s.Observe: lambda node: [f"observe({write(node.query)})"],

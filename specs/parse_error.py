@@ -7,9 +7,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
+from lark import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
+
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
-from specs.grammar import keywords, spellings
+from specs.grammar import Run, keywords, may_follow, spellings, terminal, terminals
 from specs.preprocessing import Prepared
 from specs.syntax.nodes import Span
 
@@ -17,6 +19,9 @@ _WORD: Final = re.compile(
     r'[0-9.]{1,30}+\s?[°º][^,()\n]*|"(?:[^"\\\n]|\\.)*+"|\w+|<->|<>|\[\]|=>|==|!=|<=|>=|->|\|\||&&|\S'
 )
 _NAME: Final = re.compile(r"[^\W\d_]\w*")
+LINE_NUMBERS: Final = "printed line numbers must count on from the line of BigActor"
+"""The hint at a line number that does not: where one is wrong, the others are too."""
+
 _SEEN: Final = 200  # characters looked back for the previous word
 
 
@@ -49,13 +54,23 @@ class Word:
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """`accepted` are the words and symbols that could stand there, `sorts` the grammar's names of all that could."""
+    """Where a parse stopped.
+
+    Attributes:
+        found: The word there.
+        before: The word before it.
+        accepted: The words and symbols that could stand there.
+        sorts: The grammar's names of all that could.
+        prepared: The text.
+        instead: Whether one word alone could stand there, in the place of the one found: behind it that doesn't fit.
+    """
 
     found: Word
     before: Word
     accepted: frozenset[str]
     sorts: frozenset[str]
     prepared: Prepared
+    instead: bool = False
 
     @property
     def following(self) -> Word:
@@ -93,12 +108,34 @@ class Situation:
         return Diagnostic(code, self.found.span, message, hint)
 
 
-def situation(prepared: Prepared, offset: int, sorts: frozenset[str]) -> Situation:
-    """Describe a parse that stopped at `offset`, or at the end, where `sorts` were accepted."""
+def offset_of(found: UnexpectedInput, prepared: Prepared) -> int:
+    """Return where a parse stopped."""
+    if isinstance(found, UnexpectedToken):
+        return len(prepared.text) if found.token.type == "$END" else int(found.token.start_pos or 0)
+    if isinstance(found, UnexpectedCharacters):
+        return found.pos_in_stream or 0
+    return len(prepared.text)
+
+
+def situation(prepared: Prepared, offset: int, run: Run) -> Situation:
+    """Describe a parse that stopped at `offset`, or at the end."""
+    sorts = frozenset(run.accepts())
     spelt = frozenset(word for sort in sorts if (word := spellings().get(sort)))
+    found = word_at(prepared.text, offset)
     return Situation(
-        word_at(prepared.text, offset), word_before(prepared.text, offset), spelt, sorts, prepared
+        found,
+        word_before(prepared.text, offset),
+        spelt,
+        sorts,
+        prepared,
+        len(sorts) == 1 and found.is_name and not _fits_behind(run, next(iter(sorts)), found),
     )
+
+
+def _fits_behind(run: Run, sort: str, found: Word) -> bool:
+    """Tell whether a word fits behind one that is missing: not where an item of a list may end between them."""
+    follows = may_follow(run, sort, terminals().get(found.text, "NAME"))
+    return follows and not may_follow(run, sort, terminal(";"))
 
 
 def word_at(text: str, offset: int) -> Word:

@@ -11,7 +11,6 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator
-from copy import copy
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Final
@@ -20,20 +19,18 @@ from lark import Token, Tree, UnexpectedInput
 from lark.parsers.lalr_analysis import Shift
 
 from specs.building import Child, Mistake, span_of
-from specs.common_mistakes import LINE_NUMBERS
 from specs.diagnostics import Diagnostic
-from specs.grammar import SECTIONS, Run, spellings, start
-from specs.parse_error import Word, words_from
+from specs.grammar import SECTIONS, Run, may_follow, spellings, start, terminal, terminals
+from specs.parse_error import LINE_NUMBERS, Word, offset_of, word_at, words_from
 from specs.preprocessing import Prepared
 from specs.syntax import Mission
 from specs.syntax.nodes import Span
-from specs.syntax_errors import explain_syntax_error, offset_of
 
 MOST_MISTAKES: Final = 50
 """After so many the rest of the file is left out."""
 
 _NAMES: Final = frozenset({"NAME", "CHANNEL", "DROPPING"})
-_SECTION: Final = re.compile(
+SECTION: Final = re.compile(
     rf"^[ \t]*(?P<word>(?:{'|'.join(sorted(SECTIONS))})\b)(?=\s*[\w{{])", re.MULTILINE
 )
 
@@ -103,7 +100,7 @@ class _Reading:
         self.stacks = _Stacks(self.run)
         self.mistakes = dict.fromkeys(prepared.mistakes)
         self.unread: list[Span] = []
-        self.sections = [found.start("word") for found in _SECTION.finditer(prepared.text)]
+        self.sections = [found.start("word") for found in SECTION.finditer(prepared.text)]
         self.missing = 0
         self.resumed = -1
 
@@ -129,6 +126,8 @@ class _Reading:
         except Mistake as mistake:
             self.go_on(mistake.diagnostic, at)
         except UnexpectedInput as stopped:
+            from specs.syntax_errors import explain_syntax_error  # noqa: PLC0415 - most texts have no mistake
+
             found = explain_syntax_error(stopped, self.run, self.prepared)
             self.go_on(found, offset_of(stopped, self.prepared))
         else:
@@ -176,7 +175,8 @@ class _Reading:
     def next_item(self, at: int) -> int:
         """Go back to a list, and return where its next item begins, or it ends."""
         depth, balanced = self.stacks.back_to_list(), self.is_balanced(at)
-        for word in words_from(self.text, max(at, self.resumed + 1)):
+        behind = word_at(self.text, at).span.end if at <= self.resumed else at  # no item is looked at twice
+        for word in words_from(self.text, behind):
             place = word.span.start
             if self.is_section(place) and (self.stacks.open_braces() or self.stacks.accepts(word.text)):
                 self.close_lists(place)
@@ -192,8 +192,15 @@ class _Reading:
         return len(self.text)
 
     def is_boundary(self, word: Word) -> bool:
-        """Tell whether an item of the list begins at a word, the first of its line, or the list ends."""
+        """Tell whether an item of the list begins at a word, the first of its line, or the list ends.
+
+        What kind a property is stands nowhere but at its beginning; misspelt it is one all the same.
+        """
+        from specs.common_mistakes import begins_property  # noqa: PLC0415 - most texts have no mistake
+
         line = self.text[self.text.rfind("\n", 0, word.span.start) + 1 : word.span.start]
+        if self.stacks.accepts("invariant") and begins_property(word.text, first=not line.strip()):
+            return True
         return (word.text in ";}" or line.rstrip()[-1:] in ("", ";")) and self.stacks.accepts(word.text)
 
     def close_lists(self, place: int) -> None:
@@ -237,8 +244,6 @@ class _Stacks:
         self.run = run
         self.states = run.parser_state.state_stack
         self.values = run.parser_state.value_stack
-        self._building_nothing = copy(run.parser_state.parse_conf)
-        self._building_nothing.callbacks = {}
 
     def _list(self) -> int:
         """Return the place of the innermost list among the states, but for lists that have ended."""
@@ -283,21 +288,13 @@ class _Stacks:
 
     def accepts(self, word: str) -> bool:
         """Tell whether a word could come next."""
-        name = _terminals().get(word)
-        return any(map(self._accepts, _NAMES if name is None and word[:1].isalpha() else [name or word]))
-
-    def _accepts(self, terminal: str) -> bool:
-        trial = self.run.copy(deepcopy_values=False)
-        trial.parser_state.parse_conf = self._building_nothing
-        try:
-            trial.feed_token(Token(terminal, ""))
-        except UnexpectedInput:
-            return False
-        return True
+        name = terminals().get(word)
+        sorts = _NAMES if name is None and word[:1].isalpha() else [name or word]
+        return any(may_follow(self.run, sort) for sort in sorts)
 
     def feed(self, sign: str, place: int) -> None:
         """Read a sign that the text does not have at a place."""
-        token = Token(_terminals()[sign], sign, start_pos=place, end_pos=place)
+        token = Token(terminal(sign), sign, start_pos=place, end_pos=place)
         try:
             self.run.feed_token(token)
         except Mistake:
@@ -309,13 +306,7 @@ _NONE: Final = (None, None)
 
 @cache
 def _items() -> tuple[str, str]:
-    return _terminals()[";"], _terminals()["case"]
-
-
-@cache
-def _terminals() -> dict[str, str]:
-    """Return the grammar's names of words and signs."""
-    return {word: name for name, word in spellings().items() if word}
+    return terminal(";"), terminal("case")
 
 
 def _braces(values: list[Child]) -> int:

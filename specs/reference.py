@@ -24,7 +24,8 @@ hundred deep.
 
 The grammar of each part is shown in EBNF: words in quotes are literal, `[x]` is optional, `x*` repeats any number of
 times, `x+` at least once. `bigactors fmt` writes a mission in the layout used here. The examples are parts of one
-mission, which [stands whole](#a-whole-mission) at the end of this page.
+mission, which [stands whole](#a-whole-mission) at the end of this page; that of [timing](#timing) is a part of
+`endurance`, which ships.
 """
 
 WHOLE: Final = """\
@@ -200,6 +201,26 @@ check {
 """,
 }
 
+# A mission with times is checked otherwise, so its example is no part of the whole one, but of one that ships.
+TIMED_FRAME: Final = "endurance"
+TIMED_EXAMPLE: Final = """\
+timing {
+  tick 10 s
+  UAV flies at 18 m/s to 25 m/s, climbs at 2 m/s to 5 m/s, circles 80 m
+  uav0 lasts 45 min, restored in airfield0 after 20 min
+  agents react within 10 s
+  sense takes 10 s to 30 s
+  HAND within 10 s
+}
+
+check {
+  endurance
+  within 40 min "home": ended patrol and actually uav0 in airfield0
+  within 5 min "answered": pending OBS patrol leads to not pending OBS patrol
+  time "in the north": actually uav0 in north0
+}
+"""
+
 _RULE_NAME: Final = re.compile(r"^\??(\w+)(?=:)|-> (\w+)$", re.MULTILINE)
 _HEADING: Final = re.compile(r"^//: (.+)$", re.MULTILINE)
 _RULE_CLEANUPS: Final = (
@@ -218,6 +239,8 @@ def language_reference() -> str:
             parts += [f"## {heading}\n", *_constructs(heading), _fenced(rules, "ebnf")]
         if heading == "Signature":
             parts += ["`signature standard` declares:\n", _fenced(STANDARD, "mission")]
+        if heading == "Timing":
+            parts += [f"Example:\n\n<!-- frame: {TIMED_FRAME} -->", _fenced(TIMED_EXAMPLE, "mission")]
         if heading in EXAMPLES:
             parts += ["Example:\n", "<!-- frame: whole.mission -->", _fenced(EXAMPLES[heading], "mission")]
     reserved = ", ".join(f"`{word}`" for word in sorted(RESERVED))

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from typing import Final
 
-from lark import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
+from lark import UnexpectedInput
 
 from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS
-from semantics.properties.kinds import Asked, asked_by
 from specs.codes import Code
 from specs.common_mistakes import FAMILY, MISTAKES
 from specs.diagnostics import Diagnostic
-from specs.grammar import QUERY_WORDS, SECTIONS, STATEMENTS, Run, first_words
-from specs.parse_error import Situation, line_of, situation
+from specs.grammar import NAMED_PROPERTIES, QUERY_WORDS, SECTIONS, STATEMENTS, Run, first_words
+from specs.parse_error import Situation, line_of, offset_of, situation
 from specs.preprocessing import Prepared
 
 # Groups of words that the user knows by one name: a word only they have, that name, their words and sorts.
@@ -23,8 +22,9 @@ _OPERATORS: Final = frozenset(
 _PATHS: Final = frozenset(["[]", "<>", "always", "eventually", "next", "infinitely"])
 _FORMULA: Final = first_words("_claim") | _PATHS | {"forall", "exists", "not", "!", "false", "("}
 _CONNECTIVES: Final = frozenset(["and", "&&", "or", "||", "->", "<->", "U", "R", "W", "until", "leads"])
-_STANDARD: Final = frozenset(asked_by(Asked.BY_DEFAULT, Asked.BY_NAME))
+_STANDARD: Final = frozenset(map(str, NAMED_PROPERTIES))
 _HAPPENINGS: Final = frozenset(["appears", "arrives", "drifts", "leaves", "vanishes"])
+_TAKING: Final = _HAPPENINGS | {"flies", "lasts", "within", "take", "takes"}
 _GROUPS: Final[tuple[tuple[str, str, frozenset[str], frozenset[str]], ...]] = (
     ("observe", "a statement", STATEMENTS, frozenset({"NAME"})),
     ("signature", "a declaration", SECTIONS | {"control"}, frozenset()),
@@ -43,12 +43,51 @@ _GROUPS: Final[tuple[tuple[str, str, frozenset[str], frozenset[str]], ...]] = (
     ("<->", "a connective", _CONNECTIVES, frozenset()),
     ("invariant", "a property", first_words("_property") | _STANDARD, frozenset()),
     (
-        "vanishes",
+        "flies",
+        "what takes time (flies, lasts, within, takes, drifts, leaves, appears, vanishes)",
+        _TAKING,
+        frozenset(),
+    ),
+    (
+        "arrives",
         "what happens (appears, arrives, drifts, drops, leaves, vanishes)",
         _HAPPENINGS,
         frozenset(),
     ),
 )
+_FORMS: Final = (
+    (frozenset({"directly", "linked"}), "a claim is written uav0 in place0, uav0 linked wifi or a.x == 3"),
+    (
+        frozenset({"arrives"}),
+        "what happens is written wifi drops, uav0 leaves wifi, boat0 drifts within place0, boat0 appears at place0",
+    ),
+    (frozenset({"weak", "strong"}), "write under weak fairness of environment, or of the name of a bigActor"),
+    (
+        frozenset({"<->"}),
+        "join formulas by and, or, -> or <->; a property begins with its kind: invariant, ltl",
+    ),
+    (frozenset({"(", "="}), "a behaviour is called by name(...), a variable is given a value by name = ..."),
+    (frozenset({"case", "after"}), "write case pattern => statements, or after 10 min => statements"),
+    (
+        frozenset({"flies"}),
+        "a bound is written UAV flies at 18 m/s to 25 m/s, uav0 lasts 45 min, HAND within 10 s",
+    ),
+    (
+        frozenset({"tick"}),
+        "a bound is written agents react within 1 s, sense within 5 s, messages over wifi take 1 s to 3 s",
+    ),
+    (frozenset({"react", "take"}), "write agents react within 1 s, or agents take 1 s to 2 s"),
+    (frozenset({"within", "takes"}), "write within 5 s, takes 1 s to 3 s or takes at least 2 s"),
+    (frozenset({"over", "on"}), "write messages over wifi, or messages on one host"),
+    (
+        frozenset({"at", "and"}),
+        "write wifi drops at most every 30 min, returns within 5 min, or wifi drops and returns within 5 min",
+    ),
+    (frozenset({"polygon"}), "geometries are point, box, circle and polygon"),
+    (frozenset({"invariant"}), 'write invariant "name": formula, or reachable, ltl, ctl, deadlock_freedom'),
+)
+"""How what could stand somewhere is written, for mistakes that nothing else explains."""
+
 _SORTS: Final = {
     "NAME": "a name",
     "CHANNEL": "a channel",
@@ -62,7 +101,7 @@ _MOST: Final = 8
 
 def explain_syntax_error(found: UnexpectedInput, run: Run, prepared: Prepared) -> Diagnostic:
     """Return why a parse stopped: a bracket, the end, a common mistake, or what was expected."""
-    at = situation(prepared, offset_of(found, prepared), frozenset(run.accepts()))
+    at = situation(prepared, offset_of(found, prepared), run)
     if prepared.unmatched and at.found.span.start >= prepared.unmatched[0]:
         return prepared.unmatched[1]
     if not at.found.text:
@@ -84,15 +123,6 @@ def expected(at: Situation) -> str:
     if len(groups) > _MOST:
         groups = [*groups[:_MOST], "another word"]
     return groups[0] if len(groups) == 1 else f"{', '.join(groups[:-1])} or {groups[-1]}"
-
-
-def offset_of(found: UnexpectedInput, prepared: Prepared) -> int:
-    """Return where a parse stopped."""
-    if isinstance(found, UnexpectedToken):
-        return len(prepared.text) if found.token.type == "$END" else int(found.token.start_pos or 0)
-    if isinstance(found, UnexpectedCharacters):
-        return found.pos_in_stream or 0
-    return len(prepared.text)
 
 
 def _early_end(at: Situation) -> Diagnostic:
@@ -117,4 +147,4 @@ def _hint(at: Situation) -> str:
         return "write hosted_at host with_behavior { ... }"
     if at.found.text == "}" and at.at_expression:
         return f"something is missing behind {at.before.shown}" if at.before.text else ""
-    return ""
+    return next((form for words, form in _FORMS if words <= at.accepted), "")

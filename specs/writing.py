@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import singledispatch
 from typing import Final
 
@@ -371,6 +371,23 @@ def _(node: s.Length) -> str:
     return f"{decimal(node.value)} {node.unit}"
 
 
+@write.register
+def _(node: s.Duration) -> str:
+    return f"{decimal(node.value)} {node.unit}"
+
+
+@write.register
+def _(node: s.Speed) -> str:
+    return f"{decimal(node.value)} {node.unit}"
+
+
+@write.register
+def _(node: s.Speeds) -> str:
+    if node.least == node.greatest:
+        return write(node.least)
+    return f"{write(node.least)} to {write(node.greatest)}"
+
+
 def decimal(value: float) -> str:
     """Return the shortest text that reads as the same number, without a fraction where there is none.
 
@@ -378,6 +395,12 @@ def decimal(value: float) -> str:
     ('400', '37.1', '1e-07')
     """
     return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+
+
+def separated(word: str, nodes: Sequence[s.Node]) -> list[str]:
+    """Return a list behind a word in pieces between which a line may be broken."""
+    texts = [f"{write(node)}," for node in nodes[:-1]] + [write(nodes[-1])]
+    return [f"{word} {texts[0]}", *texts[1:]]
 
 
 def placed(placement: s.Placement) -> list[str]:

@@ -84,11 +84,13 @@ def test_the_maps_name_modules_of_their_folders():
     found = maps()
     assert list(found) == [
         "checker/engines/fast",
+        "checker/engines/zones",
         "checker/engines/cluster",
         "checker/properties/temporal",
         "bigraphs/engine",
         "adapters/live",
         "adapters/stations",
+        "adapters/console",
     ]
     missing = [
         f"{folder}/{name}"

@@ -166,7 +166,7 @@ def test_nothing_has_the_name_of_a_command_more(swapping):
 
 
 def test_a_command_more_that_can_never_be_done_is_found_before_a_run(swapping):
-    assert swapping["place"] == ["LS506: nothing can drive 'west' (a Place); declare it: kind Place driven"]
+    assert swapping["place"] == ["LS506: nothing can drive 'west' (a Place); what is driven moves: u0, u1"]
 
 
 def test_a_command_more_is_hinted_at(swapping):

@@ -27,25 +27,36 @@ MAY_IMPORT = {
 
 # Where a library may be imported: a room, a folder or a file.
 LIBRARIES = {
-    "shapely": ("physical/",),
+    "shapely": ("physical/", "adapters/camera/votes.py", "adapters/simulated/camera.py"),
     "pyproj": ("physical/",),
     "lark": ("specs/", "bigraphs/notation/"),
     "pandas": ("checker/transition_system.py", "checker/engines/contract.py"),  # there for types
     "networkx": ("bigraphs/", "checker/", "specs/elaboration/bodies.py"),  # where a graph is a graph
-    "numpy": ("checker/", "bigactors/big_temporal.py"),  # arrays for the checker
+    "numpy": (
+        "checker/",
+        "bigactors/big_temporal.py",
+        "adapters/camera/",
+        "adapters/ros/messages.py",  # arrays of ROS's messages
+        "adapters/simulated/camera.py",
+        "physical/extents.py",  # arrays of shapely's coordinates
+    ),
+    "cv2": ("adapters/camera/libraries.py",),
+    "rasterio": ("adapters/camera/libraries.py",),
     "numba": ("checker/",),
     "ray": ("checker/engines/cluster/ray_crew.py",),
     "scipy": ("checker/properties/temporal/components.py",),
     "pytest": ("bigactors/pytest_plugin.py",),
+    "jsonschema": ("bigactors/testing.py",),
     "pyais": ("physical/ais_decode.py",),
     "pymavlink": ("adapters/mavlink/codec.py",),
     "aiohttp": ("adapters/web.py",),
     "serial_asyncio_fast": ("adapters/transport.py",),
-    "zenoh": ("adapters/stations/bus.py",),
+    "zenoh": ("adapters/stations/bus.py", "adapters/ros/link.py", "adapters/ros/publisher.py"),
+    "xxhash": ("adapters/ros/wire.py",),
+    "rosbags": ("adapters/ros/",),
     "mcap": ("adapters/recording/mcap_files.py",),
     "zstandard": ("adapters/recording/decompression.py",),
     "lz4": ("adapters/recording/decompression.py",),
-    "nicegui": ("adapters/",),
     "pygls": ("bigactors/lsp/server.py",),  # which nothing imports before it serves
     "lsprotocol": ("bigactors/lsp/server.py",),
     "cryptography": ("bigactors/signatures.py",),
@@ -60,6 +71,8 @@ LIBRARIES = {
 
 # Libraries that take long to load or are extras: imported in the functions that need them, never with the module.
 LAZY = {
+    "cv2",
+    "rasterio",
     "pandas",
     "aiohttp",
     "cryptography",
@@ -68,10 +81,10 @@ LAZY = {
     "pymavlink",
     "serial_asyncio_fast",
     "zenoh",
+    "rosbags",
     "mcap",
     "zstandard",
     "lz4",
-    "nicegui",
     "ray",
 }
 
@@ -230,3 +243,18 @@ def test_the_walk_tells_what_runs_at_import():
         for alias in node.names
     }
     assert found == {"a": True, "b": False, "c": True, "d": False}
+
+
+def test_who_reads_bigraphs_alone_waits_for_no_geometry(tmp_path):
+    (tmp_path / "one.big").write_text(
+        "ctrl A = 0;\nbig s0 = A.1;\nreact r = A.1 --> A.1;\nbegin brs\n  init s0;\n  rules = [{r}];\nend\n",
+        encoding="utf-8",
+    )
+    program = (
+        "import sys; from bigactors.cli import main; main(['big', 'validate', 'one.big']);"
+        "print(sorted({'numpy', 'shapely', 'numba', 'scipy'} & set(sys.modules)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=tmp_path
+    )
+    assert done.stdout.splitlines()[-1] == "[]"

@@ -6,13 +6,13 @@ the loop call the same.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from adapters.live.flying import remember
-from adapters.live.ingest import answer, take_in
+from adapters.live.ingest import take_in
 from adapters.live.limits import check_limits
+from adapters.live.sayings import answer
 from adapters.live.scheduling import in_turn
 from adapters.live.state import Batch, LiveState, Plan, Turn
+from adapters.live.timing import begun
 from adapters.live.turn import Turning
 from semantics.environment import Says
 from semantics.state.configuration import Configuration
@@ -29,11 +29,14 @@ LONG = 5.0
 
 def advance(plan: Plan, state: LiveState, batch: Batch, now: float, most: int = MOST_STEPS) -> Turn:
     """Make one turn: take the world in, then let agents continue until nothing more can be done now."""
+    if plan.first.setting.timing is not None and state.timers is None and not is_parted(state.configuration):
+        state = state.with_(timers=begun(state.configuration, now))
     turning = _taken_in(plan, state, batch, now)
     for said in batch.sayings:
         answer(turning, said)
     turning.go_on(most)
     check_limits(turning)
+    turning.check_times()
     return turning.turn()
 
 
@@ -51,6 +54,12 @@ def _taken_in(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turning
     return turning
 
 
+def obeying(plan: Plan, state: LiveState) -> frozenset[Name]:
+    """Return the vehicles that this station commands: those of others answer nothing that it asks."""
+    turning = Turning(plan, state, 0.0)
+    return frozenset(filter(turning.answers_for, plan.vehicles))
+
+
 def is_over(state: LiveState) -> bool:
     """Tell whether the run is over: all agents have ended, and none of their requests is pending.
 
@@ -59,8 +68,9 @@ def is_over(state: LiveState) -> bool:
     c = state.configuration
     if is_parted(c):
         return False
-    pending = (each.request for each in c.eta.all())
-    return not any(map(c.alpha.code, c.alpha.names())) and all(isinstance(each, READY) for each in pending)
+    if any(map(c.alpha.code, c.alpha.names())):
+        return False
+    return all(isinstance(each.request, READY) for each in c.eta.all())
 
 
 def is_refused(state: LiveState) -> bool:
@@ -69,11 +79,11 @@ def is_refused(state: LiveState) -> bool:
     An operator may give a vehicle back, or say something that the mission allows.
     """
     c = state.configuration
-    if is_parted(c) or state.taken or state.suspended or state.grounded or _may_be_said(c):
-        return False
-    pending = [each.request for each in c.eta.all() if not isinstance(each.request, READY)]
     told = (*state.orders.values(), *state.handing.values())
     refusing = {order.agent for order in told if order.refused}
+    if not refusing or is_parted(c) or state.taken or state.suspended or state.grounded or _may_be_said(c):
+        return False
+    pending = [each.request for each in c.eta.all() if not isinstance(each.request, READY)]
     rest = state.idle | state.failed
     at_rest = all(a in rest or not c.alpha.code(a) for a in c.alpha.names())
     return at_rest and bool(pending) and all(request.agent in refusing for request in pending)
@@ -84,13 +94,10 @@ def _may_be_said(c: Configuration) -> bool:
     return any(c.read(clause.counter) for clause in says)
 
 
-def resumed(
-    plan: Plan, c: Configuration, steps: int, orders: int, now: float, taken: Mapping[Name, str] | None = None
-) -> LiveState:
-    """Return the state that resumes a killed run: its commands to vehicles are outstanding."""
-    state = LiveState(c, number=steps, told=orders, taken=taken or {})
+def resumed(plan: Plan, state: LiveState, now: float) -> LiveState:
+    """Return the state that resumes a killed run from what is known of it: its commands to vehicles are outstanding."""
     turning = Turning(plan, state, now)
-    for pending in in_turn(c):
+    for pending in in_turn(state.configuration):
         remember(turning, pending.request)
     return turning.turn().state
 

@@ -26,11 +26,12 @@ def arrive(turning: Turning, entity: Name) -> bool:
     at = turning.where_seen(entity)
     if transit is None or order is None or at is None:
         return False
-    together = sorted(other for other, told in turning.orders.items() if told.agent == order.agent)
-    obeyed = all(turning.flies(other) and turning.orders[other].obeyed for other in together)
-    if not obeyed or (isinstance(order.command, Follow) and not order.through):
+    if not order.obeyed or (isinstance(order.command, Follow) and not order.through):
         return False
     if transit.to not in turning.around(entity, turning.c.setting.kind(entity), at):
+        return False  # most positions are of vehicles on their way: nothing is asked of the others for them
+    together = sorted(other for other, told in turning.orders.items() if told.agent == order.agent)
+    if not all(turning.flies(other) and turning.orders[other].obeyed for other in together):
         return False
     sight = Sight(
         f"{entity} arrives", {placement_cell(other): turning.where_seen(other) for other in together}

@@ -1,19 +1,18 @@
-"""Take in the world: sightings become `env` and `commit`, reports findings, operator messages `say`."""
+"""Take in the world: sightings become `env` and `commit`, reports findings."""
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable
-from ipaddress import ip_address
 from typing import assert_never
 
 from adapters.live.assumptions import broken_by_place, clause_of_leaving, relations
-from adapters.live.flying import arrive, ask_anew, doubt, obey, refuse, renew
+from adapters.live.flying import arrive, doubt, obey, refuse, renew
 from adapters.live.orders import is_authority
 from adapters.live.other_stations import hear_of
+from adapters.live.sayings import confirm, is_bidden
 from adapters.live.sightings import Refusal, placement_seen, sighting_of
-from adapters.live.state import Answer, Batch, GivingBack, Heard, Said, Saying
+from adapters.live.state import Batch, Heard
 from adapters.live.turn import Turning
 from adapters.live.unannounced import comes_in, place_strangers, remove_strangers
 from adapters.plugin import (
@@ -24,32 +23,25 @@ from adapters.plugin import (
     Delivered,
     Doubted,
     Failed,
-    GiveBack,
     Hosts,
     LinkLost,
     LinkRestored,
-    Rebind,
+    Presence,
     Rejected,
     Report,
+    Status,
+    StatusText,
     TakenOver,
     Trouble,
     Underway,
     entity_of,
 )
-from semantics.behaviours.values import show
-from semantics.environment import Appears, Leaves, Says
-from semantics.extension import say
+from semantics.environment import Appears, Leaves
 from semantics.observed_steps import Sight, happening
 from semantics.rules import env
 from semantics.state.cells import Cell
-from semantics.state.partition import is_here, station_of
 from semantics.state.physical_model import Carried, Placed, Placement, channels_cell, placement_cell
 from semantics.state.signature import REGION, Name
-
-_ADDRESS = re.compile(r"\[?([0-9a-fA-F:.]+)\]?:([0-9]{1,5})")
-"""Where a vehicle sends from: a number, since nobody waits for names."""
-
-MOST_PORT = 65_535
 
 
 def take_in(turning: Turning, batch: Batch) -> None:
@@ -242,7 +234,7 @@ def _on_channel(turning: Turning, entity: Name, channel: Name) -> None:
         )
 
 
-# --- reports and sayings ------------------------------------------------------------------------------
+# --- reports ------------------------------------------------------------------------------------------
 
 
 def note(turning: Turning, report: Report) -> None:
@@ -250,17 +242,16 @@ def note(turning: Turning, report: Report) -> None:
     match report:
         case Accepted(request, entity) | Arrived(request, entity):
             obey(turning, entity, request, through=isinstance(report, Arrived))
+            confirm(turning, entity, request)
         case Delivered() | Underway() | Hosts() | Believes() | Broken():
             hear_of(turning, report)
-        case Rejected(request, entity, _, reason):
-            refuse(turning, entity, request)
-            if entity not in turning.taken:  # else that is what was said
-                message = f"{entity} refuses {request}: {reason}; the request stays pending"
-                turning.find("refused", entity, message)
+        case Rejected():
+            _refuse(turning, report)
         case Doubted(entity):
             doubt(turning, entity)
         case TakenOver(entity, _, reason):
             turning.taken[entity] = reason
+            turning.bidden.pop(entity, None)
             back = f"it gets no commands until `bigactors give-back {entity}`"
             turning.find("taken over", entity, f"{entity} was taken over: {reason}; {back}")
         case LinkLost(entity, _, since):
@@ -272,8 +263,20 @@ def note(turning: Turning, report: Report) -> None:
         case Trouble(source, _, what, detail, count):
             often = f" ({count:,} times)" if count > 1 else ""
             turning.find("trouble", source, f"{source}: {what}{often}{': ' if detail else ''}{detail}")
+        case Status() | StatusText() | Presence():
+            pass  # for people alone
         case _:
             assert_never(report)
+
+
+def _refuse(turning: Turning, rejected: Rejected) -> None:
+    request, entity, reason = rejected.request, rejected.entity, rejected.reason
+    refuse(turning, entity, request)
+    if is_bidden(turning, entity, request):
+        turning.find("refused", entity, f"{entity} refuses the operator's order {request}: {reason}")
+    elif entity not in turning.taken:  # else that is what was said
+        message = f"{entity} refuses {request}: {reason}; the request stays pending"
+        turning.find("refused", entity, message)
 
 
 def _lose(turning: Turning, entity: Name, since: float) -> None:
@@ -297,82 +300,3 @@ def _restore(turning: Turning, entity: Name, *, rebooted: bool) -> None:
     doubt(turning, entity)
     if turning.flies(entity):
         turning.commands.append(order.command)
-
-
-def answer(turning: Turning, said: Said) -> None:
-    """Take what someone outside says, and answer it."""
-    if isinstance(said, Saying):
-        say_to(turning, said)
-    else:
-        turning.answers.append(Answer(said, _hear_operator(turning, said)))
-
-
-def _hear_operator(turning: Turning, said: GivingBack) -> str:
-    """Do what an operator says of a vehicle; return why not, nothing if it is done."""
-    vehicles = turning.plan.vehicles
-    if said.vehicle not in vehicles:
-        return f"there is no vehicle '{said.vehicle:.60}'; there are {', '.join(sorted(vehicles))}"
-    return _rebind(turning, said.vehicle, said.at) if said.at else _give_back(turning, said.vehicle)
-
-
-def _give_back(turning: Turning, entity: Name) -> str:
-    """Command a vehicle again that was taken over or has refused; return why not, or an empty text."""
-    told = (turning.orders.get(entity), turning.handing.get(entity))
-    refused = any(order.refused for order in told if order is not None)
-    if entity not in turning.taken and not refused:
-        return f"{entity} was not taken over here, and has refused nothing"
-    turning.taken.pop(entity, None)
-    turning.quiet = None
-    turning.commands.append(GiveBack(turning.request_of("give-back"), entity))
-    ask_anew(turning, entity)
-    turning.find("given back", entity, f"{entity} was given back, and is commanded again")
-    return ""
-
-
-def say_to(turning: Turning, saying: Saying) -> None:
-    """Put a message into a mailbox, if the environment section allows it, and not too often."""
-    agents = turning.c.alpha
-    if saying.agent in agents and not is_here(turning.c, saying.agent):
-        there = station_of(turning.c, saying.agent)
-        turning.answers.append(
-            Answer(saying, f"{saying.agent} runs at {there or 'no station'}: say it there")
-        )
-        return
-    clauses = [each for each in turning.c.setting.environment if isinstance(each, Says)]
-    for clause in clauses:
-        if clause.agent == saying.agent and saying.message in (clause.message, show(clause.message)):
-            found = tuple(say(turning.c, clause))
-            if found:
-                turning.take(found[0], found)
-                turning.idle.discard(clause.agent)
-                turning.answers.append(Answer(saying))
-                return
-    left = [f"{show(each.message)} to {each.agent}" for each in clauses if turning.c.read(each.counter)]
-    is_vehicle = saying.agent in turning.plan.vehicles
-    nobody = f"there is no bigActor '{saying.agent:.60}'{', which is a vehicle' if is_vehicle else ''}; "
-    who = "" if saying.agent in agents else nobody
-    what = f"what may be said now: {', '.join(left)}" if left else "nothing may be said any more"
-    turning.answers.append(Answer(saying, f"{who}the mission does not say that this is said; {what}"))
-
-
-def _rebind(turning: Turning, entity: Name, at: str) -> str:
-    """Believe a vehicle from another address; return why not, nothing if it is told so."""
-    found = _ADDRESS.fullmatch(at)
-    if found is None or not _is_number(found[1]) or int(found[2]) > MOST_PORT:
-        return (
-            f"'{at:.60}' is no HOST:PORT with HOST as a number, such as 192.168.1.7:14555 or [fd00::7]:14555"
-        )
-    if entity not in turning.lost:
-        return (
-            f"the link to {entity} is not lost; it can be believed elsewhere once it is silent where it was"
-        )
-    turning.commands.append(Rebind(turning.request_of("operator"), entity, at))
-    return ""
-
-
-def _is_number(host: str) -> bool:
-    try:
-        ip_address(host)
-    except ValueError:
-        return False
-    return True

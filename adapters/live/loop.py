@@ -31,6 +31,8 @@ from adapters.plugin import (
     Refused,
     Rejected,
     Report,
+    Seen,
+    Status,
     entity_of,
 )
 from adapters.troubles import Troubles
@@ -100,11 +102,13 @@ class Inbox:
 
     Attributes:
         named: The entities of the mission; a turn takes all of their positions, and a slice of the strangers'.
+        said: What each vehicle said of itself last.
     """
 
     watchers: Watchers
     now: Callable[[], float]
     named: Container[str] = ()
+    said: dict[str, Status] = field(default_factory=dict)
     awake: asyncio.Event = field(default_factory=asyncio.Event)
     heard: dict[tuple[str, str], Heard] = field(default_factory=dict)
     strangers: OrderedDict[tuple[str, str], Heard] = field(default_factory=OrderedDict)
@@ -133,6 +137,10 @@ class Inbox:
         """Take a plugin's report, with texts that can be printed and recorded."""
         report = legible_report(report)
         self.watchers.reported(report, self.now())
+        if isinstance(report, Status):
+            self.said[report.entity] = report
+        if isinstance(report, Seen):
+            return  # no turn comes of it
         self.reports.append(report)
         self.awake.set()
 
@@ -240,6 +248,8 @@ class LiveRun:
             ear = Ear(plugin.name, self.inbox)
             self._tasks.append(asyncio.create_task(plugin.run(ear), name=plugin.name))
         self._tasks.append(asyncio.create_task(self._telling(), name="orders"))
+        for bidden in self.state.bidden.values():  # else what a resumed run finds held looks taken over
+            self._orders.put_nowait(bidden.command)
         return self
 
     async def __aexit__(self, *_: object) -> None:
@@ -286,6 +296,9 @@ class LiveRun:
 
     async def go(self, until: Callable[[LiveState], bool] = is_over, seconds: float | None = None) -> Ending:
         """Turn until the run is over, or for some seconds."""
+        self._listening.looked = (
+            self.clock()
+        )  # since `begin` arrivals were gathered, though there was no turn
         end = None if seconds is None else self.clock() + seconds
         again: float | None = self.clock()
         while True:

@@ -7,19 +7,30 @@ import errno
 import json
 import os
 import stat
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
-from typing import Final
+from types import MappingProxyType
+from typing import Any, Final, NamedTuple
 
-from adapters.live.state import GivingBack, Said, Saying
-from physical import PhysicalError, is_text, read_json
+from adapters.live.state import Acknowledging, Answer, GivingBack, Ordering, Said, Saying
+from physical import PhysicalError, is_text, is_word, read_json
+from semantics.contingencies import Fallback
 
 MOST_BYTES: Final = 16_384
+MOST_ANSWER: Final = 2**20
 PATIENCE: Final = 5.0
 
-Listener = Callable[[Said], Awaitable[str]]
-"""Takes a message, and returns why it was refused, or an empty text."""
+ASKED: Final = b'{"status": true}\n'
+"""The line that asks how a run stands."""
+
+EXPECTED: Final = (
+    "an object with 'agent' and 'message', 'give_back', 'order' (hold or return) and 'vehicle', or 'acknowledge', "
+    "and 'by', in valid Unicode"
+)
+
+Listener = Callable[[Said], Awaitable[Answer]]
+"""Takes a message, and returns the answer to it."""
 
 
 class NobodyListens(Exception):
@@ -27,9 +38,10 @@ class NobodyListens(Exception):
 
 
 @asynccontextmanager
-async def listening(path: Path, listener: Listener) -> AsyncIterator[None]:
+async def listening(path: Path, listener: Listener, describe: Callable[[], str] = str) -> AsyncIterator[None]:
     """Listen at a path that only its user may open; raises OSError if that is impossible.
 
+    `describe` says how the run stands, to who asks.
     The socket of a killed run is replaced; that of a live run is not.
     """
     if await _is_taken(path):
@@ -41,7 +53,7 @@ async def listening(path: Path, listener: Listener) -> AsyncIterator[None]:
         with suppress(OSError, ValueError, TimeoutError, asyncio.IncompleteReadError):
             async with asyncio.timeout(PATIENCE):
                 line = await reader.readuntil()
-            writer.write(json.dumps({"refusal": await _answer(line, listener)}).encode() + b"\n")
+            writer.write(json.dumps(await _answer(line, listener, describe)).encode() + b"\n")
             await writer.drain()
         writer.close()
 
@@ -65,45 +77,114 @@ async def _is_taken(path: Path) -> bool:
     return True
 
 
-async def _answer(line: bytes, listener: Listener) -> str:
+async def _answer(line: bytes, listener: Listener, describe: Callable[[], str]) -> dict[str, object]:
+    if line == ASKED:
+        return {"refusal": "", "status": describe()}
+    said = _said(line)
+    if said is None:
+        return {"refusal": f"this is no saying: {EXPECTED}, was expected"}
+    answer = await listener(said)
+    more = {"left_out": dict(answer.left_out), "notes": [*answer.notes]}
+    return {"refusal": answer.refusal, **{name: each for name, each in more.items() if each}}
+
+
+def _said(line: bytes) -> Said | None:
+    """Return what a line says, None if that is nothing."""
     with suppress(PhysicalError):
         match read_json(line, MOST_BYTES):
-            case {"agent": str(agent), "message": str(message)} if is_text(agent) and is_text(message):
-                return await listener(Saying(agent, message))
-            case {"give_back": str(vehicle), "at": str(at)} if is_text(vehicle) and is_text(at):
-                return await listener(GivingBack(vehicle, at))
-    expected = "an object with 'agent' and 'message', or 'give_back' and 'at', in valid Unicode"
-    return f"this is no saying: {expected}, was expected"
+            case {**said} if (by := said.get("by", "")) == "" or is_word(by):
+                return _said_by(said, by)
+    return None
 
 
-async def say(path: Path, agent: str, message: str) -> str:
+def _said_by(said: Mapping[object, object], by: str) -> Said | None:
+    match said:
+        case {"agent": str(agent), "message": str(message)} if is_text(agent) and is_text(message):
+            return Saying(agent, message, by)
+        case {"give_back": str(vehicle)} if is_text(vehicle) and is_text(at := said.get("at", "")):
+            return GivingBack(vehicle, at, by)
+        case {"order": "hold" | "return" as order, "vehicle": None}:
+            return Ordering(Fallback(order), None, by)
+        case {"order": "hold" | "return" as order, "vehicle": str(vehicle)} if is_text(vehicle):
+            return Ordering(Fallback(order), vehicle, by)
+        case {"acknowledge": int(number)} if not isinstance(number, bool):
+            return Acknowledging(number, by)
+    return None
+
+
+async def say(path: Path, agent: str, message: str, by: str = "") -> str:
     """Send a message to an agent of the run that listens at a path; return why it was refused, or an empty text.
 
     Raises:
         NobodyListens: No run does, or it does not answer.
     """
-    return await _say(path, {"agent": agent, "message": message})
+    return _refusal(await _say(path, {"agent": agent, "message": message, "by": by}))
 
 
-async def give_back(path: Path, vehicle: str, at: str = "") -> str:
+async def give_back(path: Path, vehicle: str, at: str = "", by: str = "") -> str:
     """Give a vehicle back to the run that listens at a path, or say at which HOST:PORT it is now; as `say`."""
-    return await _say(path, {"give_back": vehicle, "at": at})
+    return _refusal(await _say(path, {"give_back": vehicle, "at": at, "by": by}))
 
 
-async def _say(path: Path, said: dict[str, str]) -> str:
+class Outcome(NamedTuple):
+    """What came of what an operator asked for.
+
+    Attributes:
+        refusal: Why it was refused; empty if it was not.
+        left_out: Of an order to all vehicles, why some were not told.
+        notes: What else the operator should know.
+    """
+
+    refusal: str
+    left_out: Mapping[str, str] = MappingProxyType({})
+    notes: tuple[str, ...] = ()
+
+
+async def order(path: Path, what: str, vehicle: str | None, by: str = "") -> Outcome:
+    """Order a vehicle, or all, to `hold` or `return`; as `say`, and return who was left out, too."""
+    answer = await _say(path, {"order": what, "vehicle": vehicle, "by": by})
+    left_out, notes = answer.get("left_out"), answer.get("notes")
+    why = {name: str(each) for name, each in left_out.items()} if isinstance(left_out, dict) else {}
+    return Outcome(_refusal(answer), why, tuple(map(str, notes)) if isinstance(notes, list) else ())
+
+
+async def acknowledge(path: Path, finding: int, by: str = "") -> str:
+    """Say that a finding was seen, by its number; as `say`."""
+    return _refusal(await _say(path, {"acknowledge": finding, "by": by}))
+
+
+async def status(path: Path) -> str:
+    """Return how the run that listens at a path stands, in lines of text; raises NobodyListens."""
+    match await _asked(path, ASKED):
+        case {"status": str(text)}:
+            return text
+    raise NobodyListens(f"the run at {path} is of a version that does not tell how it stands")
+
+
+def _refusal(answer: dict[str, Any]) -> str:
+    refusal: str = answer["refusal"]
+    return refusal
+
+
+async def _say(path: Path, said: dict[str, Any]) -> dict[str, Any]:
     line = json.dumps(said).encode() + b"\n"
     if len(line) > MOST_BYTES:
-        return f"a message of more than {MOST_BYTES:,} bytes"
+        return {"refusal": f"a message of more than {MOST_BYTES:,} bytes"}
+    return await _asked(path, line)
+
+
+async def _asked(path: Path, line: bytes) -> dict[str, Any]:
+    """Return what a run answers to a line; it says at least why it was refused."""
     with suppress(PhysicalError):
-        match read_json(await _exchange(path, line), MOST_BYTES):
-            case {"refusal": str(refusal)}:
-                return refusal
+        answer: Any = read_json(await _exchange(path, line), MOST_ANSWER)
+        if isinstance(answer, dict) and isinstance(answer.get("refusal"), str):
+            return answer
     raise NobodyListens(f"what listens at {path} is no run of bigactors")
 
 
 async def _exchange(path: Path, line: bytes) -> bytes:
     try:
-        reader, writer = await asyncio.open_unix_connection(path, limit=MOST_BYTES)
+        reader, writer = await asyncio.open_unix_connection(path, limit=MOST_ANSWER)
     except OSError as error:
         raise NobodyListens(f"no mission runs at {path}: {error.strerror or error}") from error
     try:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from adapters.plugin import Follow, GoTo, HandOver
+from adapters.plugin import Follow, GoTo, HandOver, Hold, Return
 from physical import waypoint
 from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY, moved, relinked
 from semantics.brr_driver import passed
+from semantics.contingencies import Fallback
 from semantics.control import Realisation, commits
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, Placed, placement_cell
@@ -48,6 +49,11 @@ def renewed(c: Configuration, fly: FLY, told: GoTo | Follow) -> GoTo | Follow | 
         return None
     command = journey(c, found, told.entity, transit.to, told.request)
     return command if command != told else None
+
+
+def stopping(fallback: Fallback, request: str, entity: Name) -> Hold | Return:
+    """Return the command that ends what a vehicle does: hold, or return."""
+    return Hold(request, entity) if fallback is Fallback.HOLD else Return(request, entity)
 
 
 def hand_overs(

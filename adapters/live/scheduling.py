@@ -11,6 +11,7 @@ from semantics.state.configuration import Configuration, Transition
 from semantics.state.eta import Pending
 from semantics.state.requests import CTR, FLY, MGR, OBS, READY, SND
 from semantics.state.signature import Name
+from semantics.successors import remembered
 
 OWN: tuple[Rule, ...] = (fun, req_obs, rcv_obs, req_ctr, req_snd, rcv_msg, req_mgr, spawn)
 """The rules of an agent's own steps; they do not wait in the queue of requests."""
@@ -55,7 +56,7 @@ def served(c: Configuration, pending: Pending) -> tuple[Transition, ...]:
     """Return the transitions that serve a request."""
     rules = SERVING.get(type(pending.request), ())
     found = (transition for rule in rules for transition in rule(c, pending.request.agent))
-    return tuple(dict.fromkeys(t for t in found if t.served == pending))
+    return tuple(dict.fromkeys(remembered(c, t) for t in found if t.served == pending))
 
 
 def flights(c: Configuration) -> Iterator[FLY]:

@@ -6,9 +6,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from adapters.plugin import Command, Follow, GoTo, HandOver, Published, Report
+from adapters.live.timing import Timers
+from adapters.plugin import Command, Follow, GoTo, HandOver, Hold, Published, Report, Return
 from physical import PhysicalProperty
-from semantics.contingencies import Precautions
+from semantics.contingencies import Fallback, Precautions
 from semantics.observed_steps import Sight
 from semantics.state.cells import Cell
 from semantics.state.configuration import Configuration, Transition
@@ -67,6 +68,41 @@ class Order:
 
 
 @dataclass(frozen=True, slots=True)
+class Bidden:
+    """An operator's order to a vehicle, which stands until the vehicle is given back or taken over.
+
+    Attributes:
+        command: What it was told.
+        by: Who said so, empty if unknown.
+        confirmed: Whether the vehicle has shown that it does it.
+    """
+
+    command: Hold | Return
+    by: str = ""
+    confirmed: bool = False
+
+    @property
+    def reason(self) -> str:
+        """Why the mission does not command the vehicle."""
+        how = "held" if isinstance(self.command, Hold) else "sent home"
+        return f"{how} by {operator(self.by)}"
+
+    @property
+    def does(self) -> str:
+        """What the vehicle does then."""
+        return "holds" if isinstance(self.command, Hold) else "returns"
+
+
+def operator(by: str) -> str:
+    """Name an operator for people.
+
+    >>> operator("Ana"), operator("")
+    ('the operator (Ana)', 'the operator')
+    """
+    return f"the operator ({by})" if by else "the operator"
+
+
+@dataclass(frozen=True, slots=True)
 class Waiting:
     """The request at the head of an agent's line: since when, and which limits it has exceeded."""
 
@@ -94,7 +130,9 @@ class LiveState:
         orders: The order of each vehicle in flight.
         handing: The unconfirmed hand-over of each vehicle.
         lost: Vehicles whose link is lost.
-        taken: Vehicles that were taken over, and how: they get no commands until an operator gives them back.
+        taken: Vehicles that were taken over, also by an operator's order, and how: they get no commands until an
+            operator gives them back.
+        bidden: The operator's order that stands for each vehicle; all of them are taken.
         idle: Agents without own steps: they wait for an observation, a message, or for ever.
         due: When each agent at a `react` with an `after` branch stops waiting.
         quiet: The configuration in which nothing more could be served, None if that is not known.
@@ -108,7 +146,9 @@ class LiveState:
         last: The agent that took the last step: the next turn begins with the one after it.
         number: How many steps were taken.
         told: How many orders were given.
+        findings: How many findings were reported: the number of the last one.
         shares: How many strangers were admitted from each plugin, and how many of them are places.
+        timers: Since when everything runs that the mission times; None before the start, and where it times nothing.
     """
 
     configuration: Configuration
@@ -118,6 +158,7 @@ class LiveState:
     handing: Mapping[Name, Order] = field(default_factory=dict)
     lost: frozenset[Name] = frozenset()
     taken: Mapping[Name, str] = field(default_factory=dict)
+    bidden: Mapping[Name, Bidden] = field(default_factory=dict)
     idle: frozenset[Name] = frozenset()
     due: Mapping[Name, float] = field(default_factory=dict)
     quiet: Configuration | None = None
@@ -131,7 +172,9 @@ class LiveState:
     last: Name = ""
     number: int = 0
     told: int = 0
+    findings: int = 0
     shares: Mapping[str, tuple[int, int]] = field(default_factory=dict)
+    timers: Timers | None = None
 
     def with_(self, **changes: object) -> LiveState:
         """Return the state with some of its attributes changed."""
@@ -142,7 +185,8 @@ class LiveState:
         seen = {name: replace(each, until=each.until + seconds) for name, each in self.seen.items()}
         heads = {name: replace(each, since=each.since + seconds) for name, each in self.heads.items()}
         due = {agent: at + seconds for agent, at in self.due.items()}
-        return self.with_(seen=seen, expires=self.expires + seconds, heads=heads, due=due)
+        timers = None if self.timers is None else self.timers.later(seconds)
+        return self.with_(seen=seen, expires=self.expires + seconds, heads=heads, due=due, timers=timers)
 
 
 # --- what comes in ------------------------------------------------------------------------------------
@@ -158,16 +202,17 @@ class Heard:
 
 @dataclass(frozen=True, slots=True)
 class Saying:
-    """A message from outside to an agent; `number` identifies it in the answer."""
+    """A message from outside to an agent, and who says it; `number` identifies it in the answer."""
 
     agent: Name
     message: str
+    by: str = ""
     number: int = 0
 
     @property
     def texts(self) -> tuple[str, ...]:
         """What in it came from outside."""
-        return self.agent, self.message
+        return self.agent, self.message, self.by
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,20 +222,58 @@ class GivingBack:
     Attributes:
         vehicle: Which.
         at: HOST:PORT where it is heard now; empty where it may be commanded again.
+        by: Who says so.
         number: Names the word in the answer.
     """
 
     vehicle: Name
     at: str = ""
+    by: str = ""
     number: int = 0
 
     @property
     def texts(self) -> tuple[str, ...]:
         """What in it came from outside."""
-        return self.vehicle, self.at
+        return self.vehicle, self.at, self.by
 
 
-Said = Saying | GivingBack
+@dataclass(frozen=True, slots=True)
+class Ordering:
+    """An operator's order: to hold, or to return.
+
+    Attributes:
+        fallback: Which of the two.
+        vehicle: Which vehicle; None for all that this station commands.
+        by: Who says so.
+        number: Names the order in the answer.
+    """
+
+    fallback: Fallback
+    vehicle: Name | None = None
+    by: str = ""
+    number: int = 0
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """What in it came from outside."""
+        return self.vehicle or "", self.by
+
+
+@dataclass(frozen=True, slots=True)
+class Acknowledging:
+    """An operator has seen a finding: the number that it has in the recording, from 1, and who."""
+
+    finding: int
+    by: str = ""
+    number: int = 0
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """What in it came from outside."""
+        return (self.by,)
+
+
+Said = Saying | GivingBack | Ordering | Acknowledging
 """What is said to a run from outside."""
 
 
@@ -233,8 +316,9 @@ class Finding:
     """A message to the operator.
 
     Attributes:
-        kind: `broken assumption`, `refused`, `taken over`, `given back`, `lost link`, `link restored`, `late`,
-            `blocked`, `failed` (a computation, the recording, a plugin), `trouble`.
+        kind: `broken assumption`, `refused`, `taken over`, `given back`, `ordered`, `confirmed` (an operator's order),
+            `lost link`, `link restored`, `late`, `blocked`, `failed` (a computation, the recording, a plugin),
+            `trouble`.
         about: The entity or agent.
         message: One line.
         time: When.
@@ -257,10 +341,21 @@ def is_breach(finding: Finding) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The answer to a message: an empty text if it was accepted, else the reason for refusing it."""
+    """The answer to a message.
+
+    Attributes:
+        saying: The message.
+        refusal: Empty if it was accepted, else the reason for refusing it.
+        requests: Of an order, the request of each vehicle that was told.
+        left_out: Of an order to all, why the others were not told.
+        notes: Of an order, what else its operator should know.
+    """
 
     saying: Said
     refusal: str = ""
+    requests: Mapping[Name, str] = field(default_factory=dict)
+    left_out: Mapping[Name, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

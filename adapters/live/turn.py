@@ -7,11 +7,12 @@ from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import replace
 
-from adapters.live.orders import hand_overs, is_authority, is_done, journey, unshown
+from adapters.live.orders import hand_overs, is_authority, is_done, journey, stopping, unshown
 from adapters.live.scheduling import PATIENCE, STEPS_PER_SECOND, in_turn, own_steps, refilled, served
 from adapters.live.sightings import Fences, placement_seen
 from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Outgoing, Pace, Plan, Turn
-from adapters.plugin import Command, HandOver, Hold, Return
+from adapters.live.timing import next_end, stepped, too_late, too_soon
+from adapters.plugin import Command, HandOver
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.statements import React
 from semantics.behaviours.stepping import next_statement
@@ -54,6 +55,7 @@ class Turning:
         self.handing = dict(state.handing)
         self.lost = set(state.lost)
         self.taken = dict(state.taken)
+        self.bidden = dict(state.bidden)
         self.idle = set(state.idle)
         self.due = dict(state.due)
         self.heads = dict(state.heads)
@@ -65,6 +67,7 @@ class Turning:
         self.reported = set(state.reported)
         self.told = state.told
         self.shares = dict(state.shares)
+        self.timers = state.timers
         self.coming: set[Name] = set()  # strangers that are about to be admitted
         self.quiet = state.quiet
         self.last = state.last
@@ -88,6 +91,7 @@ class Turning:
             self.handing,
             frozenset(self.lost),
             self.taken,
+            self.bidden,
             frozenset(self.idle),
             self.due,
             self.quiet,
@@ -101,7 +105,9 @@ class Turning:
             self.last,
             self.before.number + len(self.steps),
             self.told,
+            self.before.findings + len(self.findings),
             self.shares,
+            self.timers,
         )
         gathered = (tuple(self.steps), tuple(self.commands), tuple(self.findings), tuple(self.answers))
         again = None if self.again == math.inf else self.again
@@ -149,10 +155,32 @@ class Turning:
         if transition.label.rule == "spawn":
             self.idle.discard(str(request))
         self.c = transition.target
+        self._time(transition)
         if is_parted(self.c):
             self._forward(request.to if isinstance(request, SND) else agent)
             if transition.label.rule == "spawn":
                 self._forward(str(request))
+
+    def _time(self, transition: Transition) -> None:
+        """Let the mission's clocks go on over a step; one that is too soon breaks an assumption."""
+        if self.timers is None:
+            return
+        before, self.timers = self.timers, stepped(self.timers, transition, self.now)
+        for about, message in too_soon(before, transition, self.timers, self.now):
+            self._untimely(about, message)
+
+    def check_times(self) -> None:
+        """Report what takes longer than the mission says, and look again when the next bound is due."""
+        if self.timers is None:
+            return
+        for about, message in too_late(self.timers, self.now):
+            self._untimely(about, message)
+        self.wake(next_end(self.timers, self.now))
+
+    def _untimely(self, about: Name, message: str) -> None:
+        """Report what time breaks, but of vehicles that were taken over: they are not held to it."""
+        if about not in self.taken:
+            self.breaks(message, about)
 
     def _forward(self, a: Name | None) -> None:
         """Send what is here of an agent that runs at another station."""
@@ -371,12 +399,13 @@ class Turning:
             return
         for entity in filter(self.answers_for, entities):
             if entity in self.taken:
-                what = f"{entity} is not told to {fallback.value}: it was taken over"
+                why = "it was taken over" if entity not in self.bidden else f"it is {self.taken[entity]}"
+                what = f"{entity} is not told to {fallback.value}: {why}"
                 self.find("taken over", entity, what, once=True)
                 continue
-            request = self.request_of("fallback")
-            told = Hold(request, entity) if fallback is Fallback.HOLD else Return(request, entity)
-            self.commands.append(told)
+            self.commands.append(stopping(fallback, self.request_of("fallback"), entity))
+            if self.handing.pop(entity, None) is not None:  # that ends it; who is served still tells it again
+                self.quiet = None
 
     def answers_for(self, entity: Name) -> bool:
         """Tell whether this station commands a vehicle and reports on it, and no other does."""

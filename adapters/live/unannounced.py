@@ -7,10 +7,8 @@ admits all strangers of a turn: a step's cost grows with the number of entities.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 
 from adapters.live.flying import renew
-from adapters.live.sightings import placement_seen
 from adapters.live.state import Sighting
 from adapters.live.turn import Turning
 from semantics.observed_steps import Sight, happening
@@ -33,7 +31,7 @@ def comes_in(turning: Turning, plugin: str, found: Sighting) -> bool:
     entity, kind, c = found.property.entity, found.property.kind, turning.c
     if entity in turning.coming:
         return True
-    at = _placed(turning, found)
+    at = _placed(found)
     if kind not in c.setting.signature.kinds or not turning.around(entity, kind, at):
         return False
     is_place = not at.geometry.is_point and bool(c.setting.signature[kind].contains)
@@ -58,7 +56,7 @@ def place_strangers(turning: Turning, entities: Iterable[Name]) -> None:
     placed: list[tuple[Name, str]] = []
     for entity in entities:
         sighting = turning.seen[entity]
-        here, seen = physical.placement(entity), _placed(turning, sighting)
+        here, seen = physical.placement(entity), _placed(sighting)
         if sighting.until <= turning.now or here == seen or _grows(here, seen):
             continue
         kind = kinds.get(entity, sighting.property.kind)
@@ -101,12 +99,9 @@ def remove_strangers(turning: Turning, entities: Iterable[Name]) -> None:
     _happen(turning, Sight(_together([f"{entity} vanishes" for entity in sorted(gone)]), writes))
 
 
-def _placed(turning: Turning, sighting: Sighting) -> Placed:
+def _placed(sighting: Sighting) -> Placed:
     """Return where a stranger is; a report that it is carried is ignored, since it cannot be checked."""
-    alone = replace(sighting, property=replace(sighting.property, carried_by=None))
-    at = placement_seen(turning.c, None, alone)
-    assert isinstance(at, Placed)
-    return at
+    return Placed(sighting.property.geometry)
 
 
 def _grows(here: Placement | None, seen: Placed) -> bool:

@@ -8,6 +8,9 @@ from typing import Protocol
 from adapters.live.state import Heard, Turn
 from adapters.plugin import Failed, Report
 
+TOLD = frozenset({"env", "say", "command", "commit", "actuate", "migrate", "spawn"})
+"""The rules whose steps are shown to the operator; the recording has the others too."""
+
 
 class Watcher(Protocol):
     """A watcher: a terminal, a recording, a test. Called in the loop's thread, in this order for each turn."""
@@ -52,4 +55,4 @@ class Watchers:
                 tell(watcher)
             except (OSError, ValueError) as error:
                 self._watchers.remove(watcher)
-                self._failures.append(Failed.by(error, "the recording", now))
+                self._failures.append(Failed.by(error, getattr(watcher, "name", "the recording"), now))

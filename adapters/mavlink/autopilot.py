@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import asyncio
 from collections import OrderedDict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import Any, Final
 
 from adapters.addresses import parse_address
 from adapters.listening import Listening
@@ -21,13 +21,30 @@ from adapters.mavlink.objections import impassable, remarks, unfit
 from adapters.mavlink.pilot import Outcome, Pilot
 from adapters.mavlink.roster import Roster
 from adapters.mavlink.signing import Verdict
-from adapters.plugin import Aged, Command, Failed, GoTo, LinkLost, Rebind, Refused, Report, World
+from adapters.plugin import (
+    Aged,
+    Command,
+    Failed,
+    GoTo,
+    LinkLost,
+    Rebind,
+    Refused,
+    Report,
+    Status,
+    StatusText,
+    World,
+)
 from adapters.ration import Ration
 from adapters.transport import Port, Remote, open_port
 from adapters.troubles import Troubles
 from physical import Geometry, PhysicalError
 
 TICK: Final = 0.2
+"""Seconds between two looks of a pilot at the clock."""
+
+AT_ONCE: Final = 8
+"""So many pilots look at it one after the other; then the loop serves others."""
+
 HEARTBEAT: Final = 1.0
 MAX_REMOTES: Final = 64
 """How many remote addresses have a parser; of those without a vehicle the one unheard for longest is dropped."""
@@ -35,7 +52,11 @@ MAX_REMOTES: Final = 64
 MOST_LOGGED: Final = 1_000
 """Packets heard that are logged in a second."""
 
+MOST_TEXTS: Final = 10
+"""Texts of a vehicle that are reported in a second."""
+
 Tap = Callable[[float, bytes], None]
+Listener = Callable[[str, Mapping[str, Any], float], None]
 """Who wants every frame heard and said, with its time: a tlog. Of a flood it gets so many a second."""
 
 
@@ -49,11 +70,12 @@ class Autopilot:
         stations: The stations that may command them.
         keeper: The signing key, if packets are signed; then unsigned ones are ignored.
         tap: Receives every frame.
+        listeners: Told of each message that is believed of a vehicle, and of our time.
 
     Raises PhysicalError if two vehicles cannot be distinguished.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913, PLR0917 - each is one thing that a link has
         self,
         name: str,
         address: str,
@@ -61,8 +83,10 @@ class Autopilot:
         stations: Stations | None = None,
         keeper: Keeper | None = None,
         tap: Tap | None = None,
+        listeners: Mapping[str, Listener] | None = None,
     ) -> None:
         self._stations = stations or Stations()
+        self._own = frozenset(self._stations.ids[name] for name in self._stations.own)
         _check_crafts(crafts, self._stations)
         self._name = name
         self._address = parse_address(address)
@@ -71,10 +95,13 @@ class Autopilot:
             for craft in crafts
         }
         self._roster = Roster()
+        self._systems: dict[int, str] = {}
         self._strangers: set[int] = set()
         self._keeper = keeper
         self._tap = tap
+        self._listeners = listeners or {}
         self._logged: Ration[None] = Ration(MOST_LOGGED)
+        self._texts: Ration[str] = Ration(MOST_TEXTS)
         self._decoders: OrderedDict[Remote, Decoder] = OrderedDict()
         self._encoders: dict[int, Encoder] = {}
         self._routes: dict[int, Remote] = {}
@@ -101,6 +128,12 @@ class Autopilot:
     def local(self) -> Remote | None:
         """Where it listens, once it does."""
         return self._port.local if self._port else None
+
+    @property
+    def fences(self) -> dict[str, Geometry]:
+        """The fence of each vehicle that has one."""
+        crafts = (pilot.craft for pilot in self._pilots.values())
+        return {craft.entity: craft.fence for craft in crafts if craft.fence is not None}
 
     def objection(self, entity: str, place: Geometry, name: str) -> str | None:
         """Return why a vehicle can't stay at a place, as far as its kind is known; None if it can."""
@@ -188,12 +221,14 @@ class Autopilot:
         if message.system in self._stations.ids.values() or message.fields.get("type") == GROUND_STATION:
             self._overheard(message)
             return
-        now = self._listened()
-        pilot = self._pilot_of(message, remote, now)
+        listened = self._listening.look(now)
+        pilot = self._pilot_of(message, remote, listened)
         if pilot is None or not self._is_for_us(message) or not self._is_its_source(pilot, remote):
             return
         self._routes[pilot.system] = remote
-        self._take(pilot.craft.entity, piloting.hear(pilot, message, now))
+        self._take(pilot.craft.entity, piloting.hear(pilot, message, listened))
+        if (listener := self._listeners.get(pilot.craft.entity)) is not None:
+            listener(message.name, message.fields, now)
 
     def _is_its_source(self, pilot: Pilot, remote: Remote) -> bool:
         """Tell whether a vehicle is believed from an address: without signatures only from its first one."""
@@ -227,15 +262,18 @@ class Autopilot:
 
     def _overheard(self, message: Message) -> None:
         """Report that another ground station sends to a vehicle of ours; its messages are ignored here."""
-        ours = {self._stations.ids[name] for name in self._stations.own}
-        if message.system not in ours and message.target in {pilot.system for pilot in self._pilots.values()}:
+        if message.system not in self._own and message.target in {
+            pilot.system for pilot in self._pilots.values()
+        }:
             self._troubles.note("second ground station", f"system {message.system} says {message.name}")
 
     def _is_for_us(self, message: Message) -> bool:
-        return message.target in (0, *(self._stations.ids[name] for name in self._stations.own))
+        return not message.target or message.target in self._own
 
     def _pilot_of(self, message: Message, remote: Remote, now: float) -> Pilot | None:
-        found = rosters.find(self._roster, self._pilots.values(), message, now)
+        known = self._systems.get(message.system)
+        possible = self._pilots.values() if known is None else (self._pilots[known],)
+        found = rosters.find(self._roster, possible, message, now)
         self._roster = found.roster
         if found.question is not None:
             for name in self._stations.own:  # it may obey any of them, and only that
@@ -259,12 +297,26 @@ class Autopilot:
         """Carry out the results of an input; publications get the world's time."""
         assert self._world is not None
         self._pilots[entity], missed = outcome.pilot, self._listening.missed
+        if outcome.pilot.system:
+            self._systems[outcome.pilot.system] = entity
         for published in outcome.published:
             self._world.publish(_later(published, missed))
         for report in outcome.reports:
             self._world.report(_reported_later(report, missed))
+        for seen in outcome.seen:
+            self._show(seen, missed)
         for message in outcome.sent:
             self._send(message, self._routes.get(outcome.pilot.system))
+
+    def _show(self, seen: Status | StatusText, missed: float) -> None:
+        """Report what a vehicle says, unless it says too much."""
+        assert self._world is not None
+        if isinstance(seen, Status):
+            heard = None if seen.heard is None else seen.heard + missed
+            seen = replace(seen, plugin=self._name, heard=heard)
+        elif not self._texts.takes(seen.entity, seen.time):
+            return
+        self._world.report(replace(seen, time=seen.time + missed))
 
     def _send(self, message: Message, remote: Remote | None) -> None:
         assert self._world is not None
@@ -294,9 +346,14 @@ class Autopilot:
 
     async def _ticking(self, world: World) -> None:
         while True:
-            await asyncio.sleep(TICK)
-            for entity, pilot in self._pilots.items():
-                self._take(entity, piloting.tick(pilot, self._listened()))
+            for some in (groups := _groups([*self._pilots])):
+                await asyncio.sleep(TICK / len(groups))
+                for entity in some:
+                    self._take(entity, piloting.tick(self._pilots[entity], self._listened()))
+            for entity, count in self._texts.left_out(self._listened()):
+                self._troubles.note(
+                    f"texts of {entity} left out", f"{count:,} texts, over {MOST_TEXTS} in a second"
+                )
             self._troubles.report(world)
 
     async def _beating(self) -> None:
@@ -307,6 +364,11 @@ class Autopilot:
                 for remote in dict.fromkeys(self._routes.values()) or [None]:
                     self._send(beat, remote)
             await asyncio.sleep(HEARTBEAT)
+
+
+def _groups(entities: Sequence[str]) -> list[Sequence[str]]:
+    """Return the vehicles in groups whose pilots look at the clock together; an empty one if there are none."""
+    return [entities[first : first + AT_ONCE] for first in range(0, len(entities), AT_ONCE)] or [()]
 
 
 def _shown(remote: Remote) -> str:

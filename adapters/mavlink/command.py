@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
-from adapters.mavlink.constants import Cmd, Result
+from adapters.mavlink.constants import Cmd, Frame, Result
 from adapters.mavlink.message import Message, say
 
 AGAIN: Final = 1.5
@@ -89,8 +89,14 @@ NAN: Final = float("nan")
 """One object: two would differ, and so would two equal messages."""
 
 
-def reposition(system: int, x: int, y: int, height: float, circle: float, *, enters: bool) -> Message:
-    """Return the command to go to a point (1e-7 degree, metres above home), and circle there.
+ANYWHERE: Final = 2**31 - 1
+"""The coordinate in COMMAND_INT that means none."""
+
+
+def reposition(
+    system: int, x: int, y: int, height: tuple[float, Frame], circle: float, *, enters: bool
+) -> Message:
+    """Return the command to go to a point (1e-7 degree, metres in a frame), and circle there.
 
     In another mode than guided it is refused, unless it `enters` guided mode.
     """
@@ -98,7 +104,7 @@ def reposition(system: int, x: int, y: int, height: float, circle: float, *, ent
         "COMMAND_INT",
         target_system=system,
         target_component=1,
-        frame=3,
+        frame=int(height[1]),
         command=int(Cmd.REPOSITION),
         current=0,
         autocontinue=0,
@@ -108,8 +114,27 @@ def reposition(system: int, x: int, y: int, height: float, circle: float, *, ent
         param4=NAN,  # the vehicle's own heading
         x=x,
         y=y,
-        z=height,
+        z=height[0],
     )
+
+
+def stop(system: int) -> Message:
+    """Return the command to stay where it is: the target is left out."""
+    return reposition(system, ANYWHERE, ANYWHERE, (NAN, Frame.SEA_LEVEL), NAN, enters=True)
+
+
+def take_off(system: int, height: tuple[float, Frame]) -> Message:
+    """Return the command to take off where it is, to a height in a frame."""
+    metres, frame = height
+    rest = 0.0 if frame is Frame.HOME else NAN  # PX4 would take off towards (0, 0)
+    return long(Cmd.TAKEOFF, system, *(6 * [rest]), metres)
+
+
+def begin_with(system: int, index: int, *, by_command: bool) -> Message:
+    """Return the message that makes an item of the mission the current one."""
+    if by_command:
+        return long(Cmd.SET_MISSION_CURRENT, system, index)
+    return say("MISSION_SET_CURRENT", target_system=system, target_component=1, seq=index)
 
 
 def set_parameter(system: int, name: str, value: float) -> Message:

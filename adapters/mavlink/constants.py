@@ -13,6 +13,12 @@ GROUND_COMPONENT: Final = 190
 ARDUPILOT: Final = 3
 """MAV_AUTOPILOT_ARDUPILOTMEGA."""
 
+PX4: Final = 12
+"""MAV_AUTOPILOT_PX4."""
+
+INTEGERS: Final = range(1, 7)
+"""MAV_PARAM_TYPE of numbers without a fraction, of at most 32 bits."""
+
 NO_AUTOPILOT: Final = 8
 ACTIVE: Final = 4
 """MAV_STATE_ACTIVE: in the air, for what flies."""
@@ -47,6 +53,29 @@ class Frame(IntEnum):
 
     SEA_LEVEL = 0
     HOME = 3
+    SEA_LEVEL_INT = 5
+    HOME_INT = 6
+
+
+class Landed(IntEnum):
+    """MAV_LANDED_STATE."""
+
+    UNDEFINED = 0
+    ON_GROUND = 1
+    IN_AIR = 2
+    TAKEOFF = 3
+    LANDING = 4
+
+
+class FenceAction(IntEnum):
+    """What PX4 does at its fences: the values of GF_ACTION (navigator/geofence_params.yaml)."""
+
+    NONE = 0
+    WARN = 1
+    HOLD = 2
+    RETURN = 3
+    TERMINATE = 4
+    LAND = 5
 
 
 class MissionType(IntEnum):
@@ -113,5 +142,10 @@ STREAMS: Final = {
     "MISSION_CURRENT": (42, 1.0),
     "POSITION_TARGET_GLOBAL_INT": (87, 1.0),
     "HOME_POSITION": (242, 5.0),
+    "EXTENDED_SYS_STATE": (245, 1.0),
+    "ATTITUDE": (30, 0.2),
 }
-"""The messages that a vehicle is asked to send regularly: number, and every how many seconds."""
+"""The messages that a vehicle may be asked to send regularly: number, and every how many seconds."""
+
+REGULAR: Final = tuple(name for name in STREAMS if name != "ATTITUDE")
+"""Those that each vehicle is asked for; its attitude only who has to know how its camera lies."""

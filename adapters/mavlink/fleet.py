@@ -27,6 +27,7 @@ class Craft:
         height: Its default height in metres above home; its kind's if None.
         time_to_live: Seconds for which a position of it counts.
         serial: Its autopilot's serial number in hexadecimal digits: then no other vehicle is taken for it.
+        streams: Messages that it is asked to send beside the regular ones.
     """
 
     entity: str
@@ -38,6 +39,7 @@ class Craft:
     height: float | None = None
     time_to_live: float = 30.0
     serial: str | None = None
+    streams: tuple[str, ...] = ()
 
     def height_of(self, profile: Profile) -> float:
         """Return the height at which it travels."""
@@ -64,6 +66,11 @@ class Stations:
     def name_of(self, system: int | None) -> str | None:
         """Return the station that has a system id."""
         return next((name for name, number in self.ids.items() if number == system), None)
+
+    def obeyed(self, authority: int | None, profile: Profile | None) -> int | None:
+        """Return the system id of a vehicle's station; of one that obeys all stations, the mission's first."""
+        obeys_all = profile is not None and not profile.dialect.authority
+        return next(iter(self.ids.values())) if obeys_all else authority
 
     def speaker(self, authority: int | None) -> int:
         """Return the system id for messages to a vehicle: its authority's, if that is ours."""

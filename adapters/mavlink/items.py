@@ -30,6 +30,9 @@ class Item:
 
 Items = tuple[Item, ...]
 
+_SAME_FRAME: Final[dict[int, int]] = {Frame.SEA_LEVEL_INT: Frame.SEA_LEVEL, Frame.HOME_INT: Frame.HOME}
+"""PX4 reads back the frames for coordinates of type integer (mavlink/mavlink_mission.cpp)."""
+
 
 def e7(at: Geometry) -> tuple[int, int]:
     """Return the latitude and longitude of a point in 1e-7 degree."""
@@ -38,10 +41,10 @@ def e7(at: Geometry) -> tuple[int, int]:
 
 
 @lru_cache(maxsize=256)
-def route(path: tuple[Geometry, ...], height: float, *, takeoff: bool) -> Items:
+def route(path: tuple[Geometry, ...], height: float, *, takeoff: bool, home: bool = True) -> Items:
     """Return the mission that visits points at a height above home and stays at the last.
 
-    Item 0 stands for home, which the vehicle overwrites.
+    Where `home` is an item, it is item 0, which the vehicle overwrites.
     """
     ways = [Item(Cmd.WAYPOINT, *e7(at), height) for at in path[:-1]]
     stay = Item(Cmd.LOITER_UNLIMITED, *e7(path[-1]), height)
@@ -50,7 +53,8 @@ def route(path: tuple[Geometry, ...], height: float, *, takeoff: bool) -> Items:
         if takeoff
         else []
     )
-    return (Item(Cmd.WAYPOINT, *e7(path[0]), 0.0, Frame.SEA_LEVEL), *first, *ways, stay)
+    zeroth = [Item(Cmd.WAYPOINT, *e7(path[0]), 0.0, Frame.SEA_LEVEL)] if home else []
+    return (*zeroth, *first, *ways, stay)
 
 
 @lru_cache(maxsize=256)
@@ -72,14 +76,14 @@ def fence(polygon: Geometry) -> Items:
 
 def same(ours: Items, theirs: Items, kind: MissionType) -> bool:
     """Tell whether the items on board are those wanted: all of a fence, all but home of a mission."""
-    first = 1 if kind is MissionType.MISSION else 0
+    # Of a mission, only home is above sea level.
+    first = 1 if kind is MissionType.MISSION and ours and ours[0].frame == Frame.SEA_LEVEL else 0
     return len(ours) == len(theirs) and all(map(_alike, ours[first:], theirs[first:]))
 
 
 def _alike(a: Item, b: Item) -> bool:
-    return (a.command, a.frame, a.x, a.y) == (b.command, b.frame, b.x, b.y) and abs(
-        a.z - b.z
-    ) <= HEIGHT_TOLERANCE
+    here, there = ((each.command, _SAME_FRAME.get(each.frame, each.frame), each.x, each.y) for each in (a, b))
+    return here == there and abs(a.z - b.z) <= HEIGHT_TOLERANCE
 
 
 def item_message(item: Item, index: int, kind: int, system: int, component: int = 1) -> Message:

@@ -11,12 +11,12 @@ def circle(craft: Craft, profile: Profile, known: Telemetry) -> float:
     """Return the radius in metres at which it circles: the mission's, else its own."""
     if craft.circle is not None:
         return craft.circle
-    return abs(known.parameters.get("WP_LOITER_RAD", 0.0)) or profile.circle
+    return abs(known.parameters.get(profile.dialect.circle, 0.0)) or profile.circle
 
 
 def home_circle(craft: Craft, profile: Profile, known: Telemetry) -> float:
     """Return the radius in metres at which it circles its home when it returns."""
-    return abs(known.parameters.get("RTL_RADIUS", 0.0)) or circle(craft, profile, known)
+    return abs(known.parameters.get(profile.dialect.home_circle, 0.0)) or circle(craft, profile, known)
 
 
 def room(craft: Craft, profile: Profile, known: Telemetry) -> float:
@@ -29,5 +29,6 @@ def described(craft: Craft, profile: Profile, known: Telemetry) -> str:
     radius, needed = circle(craft, profile, known), room(craft, profile, known)
     if needed == radius:
         return f"a circle of {radius:g} m"
-    whose = " (WP_LOITER_RAD)" if craft.circle is None and "WP_LOITER_RAD" in known.parameters else ""
+    name = profile.dialect.circle
+    whose = f" ({name})" if craft.circle is None and name in known.parameters else ""
     return f"a circle of {needed:g} m: it circles at {radius:g} m{whose}, and wind carries it farther out"

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from adapters.mavlink import command as to
-from adapters.mavlink.constants import AUTHORITY_PARAMETERS, Cmd, Fence, MissionType
+from adapters.mavlink.constants import AUTHORITY_PARAMETERS, Cmd, Fence, Frame, MissionType
 from adapters.mavlink.items import Items, e7, fence, route
 from adapters.mavlink.message import Message
 from adapters.mavlink.profiles import Profile, TakeOff
@@ -20,9 +20,6 @@ from physical import Band, Geometry, contains, distance, point, waypoint
 
 TARGET_METRES = 5.0
 """Metres by which the vehicle's reported target may differ from the commanded one."""
-
-TAKEOFF_HEIGHT = 10.0
-"""The take-off height of a copter in metres, before it is sent anywhere."""
 
 CLIMBING = 0.2
 """Metres a second."""
@@ -110,7 +107,7 @@ def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
         case HandOver():
             return _hand_over(station, vehicle)
         case Hold():
-            return _in_mode(vehicle, vehicle.profile.hold) or Underway(done=True)
+            return _in_mode(vehicle, vehicle.profile.hold) or _stopped(vehicle) or Underway(done=True)
         case Return():
             return _in_mode(vehicle, vehicle.profile.home) or Underway(done=_is_home(vehicle))
         case GiveBack() | Rebind():
@@ -121,16 +118,27 @@ def _prepared(vehicle: Vehicle) -> Step | None:
     """Yield what is missing until the vehicle has a position, accepts missions, and has its fence."""
     if vehicle.known.position is None:
         return Wait("it has no position yet")
+    dialect = vehicle.profile.dialect
+    if dialect.above_sea and vehicle.known.ground is None:
+        return Wait("it has no home yet")
     if not vehicle.known.armed and vehicle.known.healthy is not True:
-        return Wait("it is not ready to be armed yet")
+        return _ready(vehicle)
     if vehicle.fence is None:
         return None
     load = _loaded(vehicle, fence(vehicle.fence), MissionType.FENCE)
-    if load is None and not (vehicle.known.fenced and vehicle.known.polygon):
+    if load is None and not dialect.fence_action and not (vehicle.known.fenced and vehicle.known.polygon):
         # Without the polygon's bit all its fences come on, such as a circle of 300 m around home.
         command = to.long(Cmd.FENCE_ENABLE, vehicle.system, 1, Fence.POLYGON)
         return Tell("to keep within its fence", command)
     return load
+
+
+def _ready(vehicle: Vehicle) -> Step:
+    """Wait until it could be armed; where that depends on its mode, in one from which it may take off."""
+    unfit = vehicle.profile.climb is not None and vehicle.known.mode != vehicle.profile.climb
+    return (_in_mode(vehicle, vehicle.profile.hold) if unfit else None) or Wait(
+        "it is not ready to be armed yet"
+    )
 
 
 def _loaded(vehicle: Vehicle, items: Items, kind: MissionType) -> Load | None:
@@ -150,6 +158,8 @@ def _off_the_ground(vehicle: Vehicle, at: Geometry) -> Step | None:
     """Get the vehicle moving: a plane by a mission that begins with a take-off, the others in guided mode."""
     if vehicle.profile.takeoff is TakeOff.MISSION:
         return _mission_takeoff(vehicle, at)
+    if vehicle.profile.climb is not None:
+        return _mode_takeoff(vehicle, vehicle.profile.climb)
     ready = None if vehicle.known.flying else _in_mode(vehicle, vehicle.profile.guided) or _armed(vehicle)
     if ready or vehicle.profile.takeoff is TakeOff.NONE:
         return ready
@@ -158,11 +168,30 @@ def _off_the_ground(vehicle: Vehicle, at: Geometry) -> Step | None:
 
 def _copter_takeoff(vehicle: Vehicle) -> Step | None:
     if not vehicle.known.flying:
-        command = to.long(Cmd.TAKEOFF, vehicle.system, 0, 0, 0, 0, 0, 0, TAKEOFF_HEIGHT)
-        return Tell("to take off", command)
+        return _told_to_take_off(vehicle)
     position = _position(vehicle)
-    low = position.height < 0.8 * TAKEOFF_HEIGHT
+    low = position.height < 0.8 * vehicle.profile.rise
     return Wait("it climbs") if low and position.climb > CLIMBING else None
+
+
+def _mode_takeoff(vehicle: Vehicle, mode: int) -> Step | None:
+    """Take off in a mode of its own, which the vehicle leaves by itself once it is high enough."""
+    known = vehicle.known
+    if known.flying:
+        return Wait("it climbs") if known.mode == mode else None
+    return (_told_to_take_off(vehicle) if known.mode != mode else _armed(vehicle)) or Wait("it takes off")
+
+
+def _told_to_take_off(vehicle: Vehicle) -> Step:
+    return Tell("to take off", to.take_off(vehicle.system, _height(vehicle, vehicle.profile.rise)))
+
+
+def _height(vehicle: Vehicle, height: float) -> tuple[float, Frame]:
+    """Return a height above home as the vehicle takes it in commands."""
+    if not vehicle.profile.dialect.above_sea:
+        return height, Frame.HOME
+    assert vehicle.known.ground is not None, "plans begin with a home"
+    return round(height + vehicle.known.ground, 1), Frame.SEA_LEVEL
 
 
 def _mission_takeoff(vehicle: Vehicle, at: Geometry) -> Step | None:
@@ -193,8 +222,19 @@ def _sent(vehicle: Vehicle, at: Geometry) -> Step | None:
     enters = known.mode != vehicle.profile.guided
     if not enters and _targets(known, at):
         return None
-    where = x, y, vehicle.height, vehicle.circle
-    return Tell("to go there", to.reposition(vehicle.system, *where, enters=enters))
+    enters = enters or vehicle.profile.dialect.enters
+    height = _height(vehicle, vehicle.height)
+    return Tell("to go there", to.reposition(vehicle.system, x, y, height, vehicle.circle, enters=enters))
+
+
+def _stopped(vehicle: Vehicle) -> Step | None:
+    """Let it stay here, where the mode in which it holds is also that in which it goes to a target."""
+    known, profile = vehicle.known, vehicle.profile
+    if profile.hold != profile.guided or known.target is None or known.position is None:
+        return None
+    away = distance(point(*known.target), _spot(vehicle))
+    near = away <= profile.drift * vehicle.circle + profile.reach
+    return None if near else Tell("to stay where it is", to.stop(vehicle.system))
 
 
 def _targets(known: Telemetry, at: Geometry) -> bool:
@@ -203,14 +243,15 @@ def _targets(known: Telemetry, at: Geometry) -> bool:
 
 def _follow(command: Follow, vehicle: Vehicle) -> Step:
     profile, path = vehicle.profile, tuple(map(waypoint, command.path))
-    items = route(path, vehicle.height, takeoff=profile.takeoff is not TakeOff.NONE)
+    takeoff, home = profile.takeoff in (TakeOff.MISSION, TakeOff.COMMAND), profile.dialect.home_is_item
+    items = route(path, vehicle.height, takeoff=takeoff, home=home)
     # A flying vehicle need not take off again: it begins with the point after the take-off.
-    first = 2 if profile.takeoff is not TakeOff.NONE and vehicle.known.flying else 1
+    first = home + (takeoff and vehicle.known.flying)
     if vehicle.resumes:
         first = vehicle.known.current or first
     return (
         _loaded(vehicle, items, MissionType.MISSION)
-        or (_off_the_ground(vehicle, path[0]) if profile.takeoff is TakeOff.COMMAND else None)
+        or (None if profile.takeoff in (TakeOff.MISSION, TakeOff.NONE) else _off_the_ground(vehicle, path[0]))
         or _begun(vehicle, first)
         or _in_mode(vehicle, profile.auto)
         or _armed(vehicle)
@@ -220,9 +261,10 @@ def _follow(command: Follow, vehicle: Vehicle) -> Step:
 
 def _begun(vehicle: Vehicle, first: int) -> Step | None:
     """Make a mission begin at its start, not at the item of an earlier one."""
-    if vehicle.begun:
+    by_command = vehicle.profile.dialect.begins_by_command
+    if vehicle.begun or (vehicle.resumes and not by_command):  # it keeps its item when a mission changes
         return None
-    return Tell("to begin its mission", to.long(Cmd.SET_MISSION_CURRENT, vehicle.system, first))
+    return Tell("to begin its mission", to.begin_with(vehicle.system, first, by_command=by_command))
 
 
 def _at_the_end(command: Follow, items: Items, vehicle: Vehicle) -> bool:
@@ -241,7 +283,8 @@ def _in_mode(vehicle: Vehicle, mode: int) -> Step | None:
     if vehicle.known.mode == mode:
         return None
     why = f"to change to {vehicle.profile.mode_name(mode)}"
-    return Tell(why, to.long(Cmd.DO_SET_MODE, vehicle.system, 1, mode))
+    numbers = vehicle.profile.dialect.mode_parameters(mode)
+    return Tell(why, to.long(Cmd.DO_SET_MODE, vehicle.system, 1, *numbers))
 
 
 def _armed(vehicle: Vehicle) -> Step | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 from adapters.mavlink.fencing import beyond, keeps_no_polygon, own_fences
 from adapters.mavlink.fleet import Craft, Stations
@@ -12,6 +13,9 @@ from adapters.mavlink.profiles import Profile
 from adapters.mavlink.telemetry import Telemetry
 from adapters.plugin import Command, Follow, GoTo, HandOver
 from physical import Geometry, circle, contains, point, waypoint
+
+NEEDS_MORE: Final[dict[float, str]] = {1: "a take-off", 2: "a landing", 3: "a take-off and a landing"}
+"""What PX4 demands of each mission (MIS_TKO_LAND_REQ, navigator/mission_params.yaml); 4 and 5 are met by a path."""
 
 MAX_PATH = 500
 """Points of a path: fewer than the items that every autopilot holds."""
@@ -28,6 +32,8 @@ def _objections(command: Command, craft: Craft, stations: Stations, known: Telem
         yield foreign
     if isinstance(command, HandOver):
         yield from _of_hand_over(command, stations, known)
+    if isinstance(command, Follow):
+        yield from _of_landing(known)
     if isinstance(command, Follow) and not 0 < len(command.path) <= MAX_PATH:
         yield f"a path has 1 to {MAX_PATH} points, this one {len(command.path)}"
         return
@@ -69,18 +75,31 @@ def _of_place(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]
 
 def not_ours(stations: Stations, known: Telemetry) -> str | None:
     """Return the station that a vehicle obeys, if it is certainly not ours."""
-    name = stations.name_of(known.authority)
-    if known.authority is None or name in stations.own:
+    authority = stations.obeyed(known.authority, known.profile)
+    name = stations.name_of(authority)
+    if authority is None or name in stations.own:
         return None
-    return f"it obeys {name or f'system {known.authority}'}, not {' or '.join(stations.own)}"
+    return f"it obeys {name or f'system {authority}'}, not {' or '.join(stations.own)}"
 
 
 def _of_hand_over(command: HandOver, stations: Stations, known: Telemetry) -> Iterator[str]:
+    if known.profile is not None and not known.profile.dialect.authority:
+        name = known.profile.dialect.name
+        yield f"{name} obeys every station on its link: control of it can't be handed over"
     if stations.station_of(command.join) is None:
         yield f"{command.join} is no control channel of a known station"
     leaves = stations.station_of(command.leave)
     if leaves is None or (known.authority is not None and stations.name_of(known.authority) != leaves):
         yield f"it is not on {command.leave}"
+
+
+def _of_landing(known: Telemetry) -> Iterator[str]:
+    """Object to a path where the vehicle takes only missions with a take-off or a landing: a path has neither."""
+    rule = "" if known.profile is None else known.profile.dialect.landing_rule
+    demanded = known.parameters.get(rule, 0)
+    if demanded in NEEDS_MORE:
+        what = NEEDS_MORE[demanded]
+        yield f"it takes no path without {what}: its {rule} is {demanded:g}; set it to 0"
 
 
 def _of_fence(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]:

@@ -11,20 +11,21 @@ from typing import Final
 
 from adapters.mavlink import next_step, streams, takeover
 from adapters.mavlink import task as tasks
+from adapters.mavlink.changed import changed
 from adapters.mavlink.command import long, read_parameter
-from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, Cmd, MissionType
+from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, REGULAR, Cmd, MissionType
 from adapters.mavlink.fleet import CONTROL, Craft, Stations
 from adapters.mavlink.items import Items
 from adapters.mavlink.link import Link, watch
 from adapters.mavlink.loiter_radius import circle, home_circle
 from adapters.mavlink.message import Message
 from adapters.mavlink.objections import not_ours, objection
-from adapters.mavlink.profiles import Profile
+from adapters.mavlink.profiles import Profile, unknown_kind
 from adapters.mavlink.streams import Streams
 from adapters.mavlink.sync import Sync
 from adapters.mavlink.takeover import Helm
 from adapters.mavlink.task import Progress, Task
-from adapters.mavlink.telemetry import Position, Telemetry, absorb, property_of
+from adapters.mavlink.telemetry import Position, Telemetry, absorb, property_of, waited
 from adapters.plugin import (
     Accepted,
     Aged,
@@ -34,8 +35,12 @@ from adapters.plugin import (
     GiveBack,
     GoTo,
     HandOver,
+    Hold,
     Refused,
     Report,
+    Return,
+    Status,
+    StatusText,
     TakenOver,
     Trouble,
 )
@@ -43,6 +48,7 @@ from adapters.plugin import (
 AUTHORITY_UNKNOWN: Final = 10.0
 """Seconds after which a vehicle is published although its authority is unknown."""
 
+STATUS_EVERY: Final = 1.0
 ASK_AUTHORITY: Final = 1.0
 CHECK_AUTHORITY: Final = 5.0
 
@@ -69,7 +75,7 @@ Shown = tuple[Position | None, int | None, bool]
 """What the last publication depended on: position, authority, whether the link was lost."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)  # no slots: `changed`
 class Pilot:
     """A ground station's state of one vehicle.
 
@@ -90,6 +96,7 @@ class Pilot:
         questions: How often its parameters were requested since it booted.
         since: Since when it has a position.
         shown: What the last publication depended on.
+        status: What was last reported of what it says of itself.
     """
 
     craft: Craft
@@ -108,22 +115,24 @@ class Pilot:
     questions: int = 0
     since: float | None = None
     shown: Shown = (None, None, False)
+    status: Status | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)  # no slots: `changed`
 class Outcome:
-    """The results of one input."""
+    """The results of one input; `seen` are reports for people alone."""
 
     pilot: Pilot
     sent: tuple[Message, ...] = ()
     reports: tuple[Report, ...] = ()
     published: tuple[Aged, ...] = ()
+    seen: tuple[Status | StatusText, ...] = ()
 
 
 def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     """Take on a command; raises Refused if it is known to be impossible."""
     if isinstance(told, GiveBack):
-        return Outcome(replace(pilot, helm=takeover.given_back(pilot.known), moving=None))
+        return Outcome(changed(pilot, helm=takeover.given_back(pilot.known), moving=None))
     if pilot.helm.taken:
         raise Refused(f"it was taken over: {pilot.helm.taken}", "an operator may give it back")
     reason = objection(told, pilot.craft, pilot.stations, pilot.known)
@@ -134,10 +143,12 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     if isinstance(told, HandOver):
         station = pilot.stations.ids[told.join.removeprefix(CONTROL)]
         return Outcome(
-            replace(pilot, handing=Task(told, station, since=now, boots=pilot.known.boots, checked=checked))
+            changed(pilot, handing=Task(told, station, since=now, boots=pilot.known.boots, checked=checked))
         )
+    if isinstance(told, Hold | Return):
+        pilot = changed(pilot, handing=None)  # where it stops it stays ours
     task = Task(told, since=now, boots=pilot.known.boots, checked=checked)
-    return Outcome(replace(pilot, moving=_continued(pilot.moving, task)))
+    return Outcome(changed(pilot, moving=_continued(pilot.moving, task)))
 
 
 def _check_not_rejected(before: Task | None, told: Command) -> None:
@@ -162,25 +173,34 @@ def _continued(before: Task | None, task: Task) -> Task:
 
 def hear(pilot: Pilot, message: Message, now: float) -> Outcome:
     """Take a message of the vehicle to us, or to all."""
+    return _with_its_words(_heard(pilot, message, now), now)
+
+
+def _heard(pilot: Pilot, message: Message, now: float) -> Outcome:
     known = absorb(pilot.known, message, now)
     if known.boots != pilot.known.boots:
-        pilot = replace(pilot, on_board={}, questions=0)
-    pilot = replace(pilot, known=known, streams=streams.hear(pilot.streams, message, now))
+        pilot = changed(pilot, on_board={}, questions=0)
+    pilot = changed(pilot, known=known, streams=streams.hear(pilot.streams, message, now))
     answered: tuple[Message, ...] = ()
     if message.name in _ANSWERS and pilot.moving is not None and not pilot.moving.over:
         heard = tasks.hear(pilot.moving, message, now)
-        pilot, answered = replace(pilot, moving=heard.task), heard.sent
+        pilot, answered = changed(pilot, moving=heard.task), heard.sent
     elif message.name != "HEARTBEAT":  # a take-over shows at once
         pilot, published, trouble = _publication(pilot, now)
         return Outcome(pilot, reports=trouble, published=published)  # tasks continue at the next tick
     outcome = _advance(pilot, now)
-    return replace(outcome, sent=_spoken(pilot, (*answered, *outcome.sent)))
+    return changed(outcome, sent=_spoken(pilot, (*answered, *outcome.sent)))
 
 
 def tick(pilot: Pilot, now: float) -> Outcome:
     """Let time pass."""
+    pilot = changed(pilot, known=waited(pilot.known, now))
+    return _with_its_words(_ticked(pilot, now), now)
+
+
+def _ticked(pilot: Pilot, now: float) -> Outcome:
     link, change = watch(pilot.link, pilot.craft.entity, pilot.known, now)
-    pilot = replace(pilot, link=link)
+    pilot = changed(pilot, link=link)
     questions: tuple[Message, ...] = ()
     before = pilot.unanswered
     if pilot.known.heard is not None and not link.lost:
@@ -189,27 +209,65 @@ def tick(pilot: Pilot, now: float) -> Outcome:
     reports = outcome.reports if change is None else (change, *outcome.reports)
     if before < UNANSWERED <= pilot.unanswered and pilot.known.signs and not pilot.signs:
         reports = (*reports, Trouble(pilot.craft.entity, now, "no answer", _deaf(pilot)))
-    return replace(outcome, sent=_spoken(pilot, (*questions, *outcome.sent)), reports=reports)
+    return changed(outcome, sent=_spoken(pilot, (*questions, *outcome.sent)), reports=reports)
+
+
+def _with_its_words(outcome: Outcome, now: float) -> Outcome:
+    """Add what the vehicle says: its texts, and its status once a second while it is heard."""
+    pilot, known = outcome.pilot, outcome.pilot.known
+    entity, before = pilot.craft.entity, pilot.status
+    seen: list[Status | StatusText] = [
+        StatusText(entity, now, each.text, each.severity) for each in known.texts
+    ]
+    if known.texts:
+        pilot = changed(pilot, known=replace(known, texts=()))
+    if known.heard is not None and (before is None or now - before.time >= STATUS_EVERY):
+        status = _status(pilot, now)
+        if before is None or replace(status, time=before.time) != before:
+            pilot, seen = changed(pilot, status=status), [*seen, status]
+    return changed(outcome, pilot=pilot, seen=tuple(seen)) if seen else outcome
+
+
+def _status(pilot: Pilot, now: float) -> Status:
+    known, authority = pilot.known, _authority(pilot)
+    profile = None if known.mode is None else known.profile
+    station = pilot.stations.name_of(authority) or f"system {authority}"
+    return Status(
+        pilot.craft.entity,
+        now,
+        heard=known.heard,
+        mode=None if profile is None else profile.mode_name(known.mode),
+        armed=known.armed,
+        battery=known.battery,
+        heading=known.heading,
+        authority=() if authority is None else (station,),
+        height=None if known.position is None else known.position.height,
+        home=known.home,
+        returning=None if profile is None else known.mode == profile.home,
+    )
 
 
 def _asked(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
     """Request missing messages, the vehicle's authority, and its parameters."""
-    flow, missing = streams.tick(pilot.streams, pilot.system, now)
-    pilot = replace(pilot, streams=flow)
-    unsure = pilot.known.authority is None or (pilot.handing is not None and not pilot.handing.over)
-    more = () if pilot.known.authority is None else tuple(_untold(pilot))
+    profile = pilot.known.profile
+    wanted = REGULAR if profile is None else profile.dialect.streams
+    flow, missing = streams.tick(pilot.streams, pilot.system, now, (*wanted, *pilot.craft.streams))
+    pilot = changed(pilot, streams=flow)
+    unsure = _authority(pilot) is None or (pilot.handing is not None and not pilot.handing.over)
+    more = () if _authority(pilot) is None else tuple(_untold(pilot))
     every = ASK_AUTHORITY if unsure or more else CHECK_AUTHORITY
     if pilot.asked is not None and now - pilot.asked < every:
         return pilot, missing
-    unanswered = pilot.unanswered + 1 if pilot.known.authority is None else 0
-    pilot = replace(pilot, asked=now, unanswered=unanswered, questions=pilot.questions + bool(more))
+    unanswered = pilot.unanswered + 1 if _authority(pilot) is None else 0
+    pilot = changed(pilot, asked=now, unanswered=unanswered, questions=pilot.questions + bool(more))
     return pilot, (*missing, *_who_commands(pilot), *more)
 
 
 def _who_commands(pilot: Pilot) -> tuple[Message, ...]:
     """Ask as each station: a vehicle may answer only the one that it obeys, and its last answer may be lost."""
-    known = pilot.known.authority_parameter
-    names = AUTHORITY_PARAMETERS if known is None else (known,)
+    known, profile = pilot.known.authority_parameter, pilot.known.profile
+    possible = AUTHORITY_PARAMETERS if profile is None else profile.dialect.authority
+    names = possible if known is None else (known,)
     asked = (read_parameter(pilot.system, name) for name in names)
     return tuple(
         replace(each, system=pilot.stations.ids[name]) for each in asked for name in pilot.stations.own
@@ -235,7 +293,7 @@ def is_known(pilot: Pilot) -> bool:
 
 
 def _spoken(pilot: Pilot, sent: tuple[Message, ...]) -> tuple[Message, ...]:
-    speaker = pilot.stations.speaker(pilot.known.authority)
+    speaker = pilot.stations.speaker(_authority(pilot))
     return tuple(message if message.system else replace(message, system=speaker) for message in sent)
 
 
@@ -249,7 +307,7 @@ def _advance(pilot: Pilot, now: float) -> Outcome:
         if task is None or task.over:
             continue
         progress = _progress(pilot, task, now)
-        pilot = replace(pilot, on_board={**pilot.on_board, **(progress.on_board or {})})
+        pilot = changed(pilot, on_board={**pilot.on_board, **(progress.on_board or {})})
         pilot = _onwards(pilot, slot, progress.task)
         sent += progress.sent
         reports += [progress.report] if progress.report else []
@@ -263,10 +321,10 @@ def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
     if profile is None:
         return pilot, ()
     if not _is_ours(pilot):
-        return replace(pilot, helm=Helm(boots=known.boots)), ()
+        return changed(pilot, helm=Helm(boots=known.boots)), ()
     command = None if pilot.moving is None else pilot.moving.command
     helm = takeover.watch(pilot.helm, known, profile, command, _undone(pilot, profile))
-    before, pilot = pilot.helm, replace(pilot, helm=helm)
+    before, pilot = pilot.helm, changed(pilot, helm=helm)
     if helm.taken and not before.taken:
         return _taken_over(pilot, now)
     return pilot, tuple(_changes(pilot, before, now))
@@ -293,7 +351,7 @@ def _undone(pilot: Pilot, profile: Profile) -> str:
 def _taken_over(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
     """End the vehicle's commands: what it does from now on is not our doing."""
     reason = pilot.helm.taken + pilot.known.last_words(now)
-    pilot = replace(pilot, helm=replace(pilot.helm, taken=reason))
+    pilot = changed(pilot, helm=replace(pilot.helm, taken=reason))
     reports: list[Report] = [TakenOver(pilot.craft.entity, now, reason)]
     for slot in _SLOTS:
         task: Task | None = getattr(pilot, slot)
@@ -304,16 +362,20 @@ def _taken_over(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
     return pilot, tuple(reports)
 
 
+def _authority(pilot: Pilot) -> int | None:
+    return pilot.stations.obeyed(pilot.known.authority, pilot.known.profile)
+
+
 def _is_ours(pilot: Pilot) -> bool:
     """Tell whether we report on a vehicle; if its authority is unknown, only if we have commanded it."""
-    stations, authority = pilot.stations, pilot.known.authority
+    stations, authority = pilot.stations, _authority(pilot)
     if authority is None:
         return set(stations.own) == set(stations.ids) or bool(pilot.helm.modes)
     return stations.name_of(authority) in stations.own
 
 
 def _onwards(pilot: Pilot, slot: str, task: Task) -> Pilot:
-    return replace(pilot, handing=task) if slot == "handing" else replace(pilot, moving=task)
+    return changed(pilot, handing=task) if slot == "handing" else changed(pilot, moving=task)
 
 
 def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
@@ -346,14 +408,14 @@ def _vehicle(pilot: Pilot, task: Task, profile: Profile) -> next_step.Vehicle:
         height=task.height or 0.0,
         begun=task.begun,
         resumes=task.resumes,
-        speaker=pilot.stations.speaker(pilot.known.authority),
+        speaker=pilot.stations.speaker(_authority(pilot)),
         deaf=_deaf(pilot),
     )
 
 
 def _deaf(pilot: Pilot) -> str:
     """Return why a vehicle seems not to hear us, if it does."""
-    if pilot.known.authority is not None:
+    if _authority(pilot) is not None:
         return ""
     if pilot.known.signs and not pilot.signs:
         return "it asks for signed packets: give its key, --key FILE"
@@ -361,9 +423,10 @@ def _deaf(pilot: Pilot) -> str:
 
 
 def _unknown(pilot: Pilot, task: Task, now: float) -> Progress:
-    if pilot.known.mode is None or now - task.since <= takeover.STRANGE:
+    sort = pilot.known.sort
+    if pilot.known.mode is None or sort is None or now - task.since <= takeover.STRANGE:
         return Progress(task)
-    return tasks.rejected(task, "it is no vehicle with ArduPilot, and only those are known here", now)
+    return tasks.rejected(task, unknown_kind(*sort), now)
 
 
 def _with_height(pilot: Pilot, task: Task) -> Task:
@@ -377,32 +440,32 @@ def _with_height(pilot: Pilot, task: Task) -> Task:
 
 def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Aged, ...], tuple[Report, ...]]:
     """Publish the vehicle if anything published has changed."""
-    position, authority = pilot.known.position, pilot.known.authority
+    position, authority = pilot.known.position, _authority(pilot)
     if position is None or pilot.known.profile is None:  # a run begins when the kinds are known
-        return replace(pilot, since=None), (), ()
+        return changed(pilot, since=None), (), ()
     if pilot.since is None:
-        pilot = replace(pilot, since=now)
+        pilot = changed(pilot, since=now)
     shown = (position, authority, pilot.link.lost)
     untold = authority is None and not pilot.link.lost
     if shown == pilot.shown or (untold and now - (pilot.since or now) < AUTHORITY_UNKNOWN):
         return pilot, (), ()
-    changed = pilot.shown[1:] != shown[1:]
-    trouble = _authority_trouble(pilot, now) if changed and not pilot.link.lost else ()
+    differs = pilot.shown[1:] != shown[1:]
+    trouble = _authority_trouble(pilot, now) if differs and not pilot.link.lost else ()
     said = property_of(pilot.craft, position, _channels(pilot))
     published = Aged(said, pilot.craft.time_to_live, pilot.known.placed or None)
-    return replace(pilot, shown=shown), (published,), trouble
+    return changed(pilot, shown=shown), (published,), trouble
 
 
 def _channels(pilot: Pilot) -> tuple[str, ...]:
     """Return the channels that it is on: none while it is not heard."""
     if pilot.link.lost:
         return ()
-    station = pilot.stations.name_of(pilot.known.authority)
+    station = pilot.stations.name_of(_authority(pilot))
     return (*pilot.craft.channels, *([] if station is None else [CONTROL + station]))
 
 
 def _authority_trouble(pilot: Pilot, now: float) -> tuple[Report, ...]:
-    authority = pilot.known.authority
+    authority = _authority(pilot)
     if pilot.stations.name_of(authority) is not None:
         return ()
     entity = pilot.craft.entity

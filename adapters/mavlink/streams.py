@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Final
 
 from adapters.mavlink.command import long
-from adapters.mavlink.constants import STREAMS, Cmd
+from adapters.mavlink.constants import REGULAR, STREAMS, Cmd
 from adapters.mavlink.message import Message
 
 MISSED: Final = 5.0
@@ -25,14 +26,16 @@ class Streams:
 
 def hear(streams: Streams, message: Message, now: float) -> Streams:
     """Note that a message came."""
-    return replace(streams, came={**streams.came, message.name: now}) if message.name in STREAMS else streams
+    return Streams({**streams.came, message.name: now}, streams.asked) if message.name in STREAMS else streams
 
 
-def tick(streams: Streams, system: int, now: float) -> tuple[Streams, tuple[Message, ...]]:
-    """Request all messages that did not come for a while."""
+def tick(
+    streams: Streams, system: int, now: float, wanted: Iterable[str] = REGULAR
+) -> tuple[Streams, tuple[Message, ...]]:
+    """Request all wanted messages that did not come for a while."""
     if streams.asked is not None and now - streams.asked < ASK_EVERY:
         return streams, ()
-    missing = [name for name, (_, period) in STREAMS.items() if _missed(streams.came.get(name), period, now)]
+    missing = [name for name in wanted if _missed(streams.came.get(name), STREAMS[name][1], now)]
     return replace(streams, asked=now), tuple(_question(name, system) for name in missing)
 
 

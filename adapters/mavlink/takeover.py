@@ -64,13 +64,14 @@ def given_back(known: Telemetry) -> Helm:
 
 def modes_of(command: Command | None, profile: Profile) -> frozenset[int]:
     """Return the modes that a vehicle goes through while it carries out a command."""
+    rises = frozenset() if profile.climb is None else frozenset({profile.climb})
     match command:
         case GoTo() if profile.takeoff is not TakeOff.MISSION:
-            return frozenset({profile.guided})
-        case Follow() if profile.takeoff is not TakeOff.COMMAND:
+            return rises | {profile.guided}
+        case Follow() if profile.takeoff not in (TakeOff.COMMAND, TakeOff.MODE):
             return frozenset({profile.auto})
         case GoTo() | Follow():
-            return frozenset({profile.guided, profile.auto})
+            return rises | {profile.guided, profile.auto}
         case Hold():
             return frozenset({profile.hold})
         case Return():

@@ -150,7 +150,10 @@ def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
 
 def _begins(task: Task, vehicle: Vehicle) -> bool:
     """Tell whether the vehicle is at the commanded item; if it was there before, only its answer shows this."""
-    asked = task.step.message.fields if isinstance(task.step, Tell) else {}
+    message = task.step.message if isinstance(task.step, Tell) else None
+    if message is not None and message.name == "MISSION_SET_CURRENT":
+        return bool(vehicle.known.current == message["seq"])
+    asked = {} if message is None else message.fields
     if asked.get("command") != Cmd.SET_MISSION_CURRENT:
         return False
     if task.resumes:

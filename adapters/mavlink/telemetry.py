@@ -7,25 +7,31 @@ order of messages and a reboot.
 from __future__ import annotations
 
 import math
+import struct
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, Final
 
+from adapters.mavlink.changed import changed
 from adapters.mavlink.constants import (
     ACTIVE,
     AUTHORITY_PARAMETERS,
     AUTOPILOT_COMPONENT,
     FIX_3D,
     GEOFENCE,
+    INTEGERS,
     PREARM_HEALTHY,
     Cmd,
+    Landed,
     ModeFlag,
     Result,
 )
 from adapters.mavlink.fleet import Craft
 from adapters.mavlink.message import Message
 from adapters.mavlink.profiles import Profile, profile_of
+from adapters.mavlink.texts import Chunks, Joined, Text, give_up, join
+from adapters.plugin import Battery
 from physical import Band, PhysicalProperty, Velocity, point
 
 FIX_SECONDS: Final = 10.0
@@ -33,6 +39,9 @@ FIX_SECONDS: Final = 10.0
 
 BACKWARDS: Final = 5_000
 """Milliseconds by which the vehicle's clock must go back to mean a reboot: less is a late packet."""
+
+UNKNOWN: Final = 65_535
+"""How MAVLink says that a voltage or a heading is not known."""
 
 LARGEST: Final = 1e6
 """The largest valid radius, height or set of fences."""
@@ -61,13 +70,14 @@ class Position:
     time: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)  # no slots: `changed`
 class Telemetry:
     """The state of a vehicle as its own messages show it; None is *not reported yet*.
 
     Attributes:
         heard: When its last message came.
         profile: The profile of its kind.
+        sort: Its MAV_TYPE and its MAV_AUTOPILOT.
         mode: Its mode's number.
         armed: Whether its motors may turn.
         active: Whether it reports that it flies (or drives).
@@ -77,6 +87,7 @@ class Telemetry:
         current: The number of its current mission item.
         target: Its target in degrees.
         home: Its home in degrees.
+        ground: Its home's altitude in metres above sea level.
         fenced: Whether a fence is active, its own or ours.
         polygon: Whether it has reported that the polygon is active.
         authority: The system id of the station that it obeys.
@@ -89,11 +100,16 @@ class Telemetry:
         placed: Its clock when its position was measured.
         boots: How many reboots were seen.
         words: Its last warnings or worse, with their times.
+        chunks: What has come of a long text.
+        texts: Its texts that were not taken from here yet.
+        battery: Its battery.
+        heading: Where its nose points, in degrees from true north.
         beat: When its last heartbeat came.
     """
 
     heard: float | None = None
     profile: Profile | None = None
+    sort: tuple[int, int] | None = None
     mode: int | None = None
     armed: bool | None = None
     active: bool | None = None
@@ -103,6 +119,7 @@ class Telemetry:
     current: int | None = None
     target: tuple[float, float] | None = None
     home: tuple[float, float] | None = None
+    ground: float | None = None
     fenced: bool | None = None
     polygon: bool = False
     authority: int | None = None
@@ -113,6 +130,10 @@ class Telemetry:
     clock: int | None = None
     boots: int = 0
     words: tuple[tuple[float, str], ...] = ()
+    chunks: Chunks | None = None
+    texts: tuple[Text, ...] = ()
+    battery: Battery | None = None
+    heading: float | None = None
     beat: float | None = None
     suspect: int | None = None
     placed: int | None = None
@@ -134,7 +155,7 @@ def absorb(known: Telemetry, message: Message, now: float) -> Telemetry:
         return known
     known = _clocked(known, message.fields.get("time_boot_ms"), now)
     if known.signs != message.signed:
-        known = replace(known, signs=message.signed)
+        known = changed(known, signs=message.signed)
     reader = _READERS.get(message.name)
     return known if reader is None else reader(known, message.fields, now)
 
@@ -156,32 +177,40 @@ def property_of(craft: Craft, at: Position, channels: tuple[str, ...]) -> Physic
 def _clocked(known: Telemetry, clock: int | None, now: float) -> Telemetry:
     """Note that it is heard, and follow its clock; two successive messages far behind mean a reboot."""
     if not clock:  # messages without, and those from before its clock began
-        return replace(known, heard=now)
+        return changed(known, heard=now)
     if known.clock is None or clock > known.clock - BACKWARDS:
-        return replace(known, heard=now, clock=max(clock, known.clock or 0), suspect=None)
+        return changed(known, heard=now, clock=max(clock, known.clock or 0), suspect=None)
     if known.suspect is None or not 0 <= clock - known.suspect <= BACKWARDS:
-        return replace(known, heard=now, suspect=clock)
+        return changed(known, heard=now, suspect=clock)
     return Telemetry(heard=now, profile=known.profile, clock=clock, boots=known.boots + 1)
 
 
 def _heartbeat(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
-    profile = profile_of(said["type"], said["autopilot"])
+    sort = said["type"], said["autopilot"]
+    profile = profile_of(*sort)
     mode = said["custom_mode"] if said["base_mode"] & ModeFlag.CUSTOM_MODE else None
     armed = bool(said["base_mode"] & ModeFlag.ARMED)
-    return replace(
-        known, profile=profile, mode=mode, armed=armed, active=said["system_status"] >= ACTIVE, beat=now
-    )
+    elsewhere = profile is not None and profile.dialect.lands_by_state
+    active = known.active if elsewhere else said["system_status"] >= ACTIVE
+    return changed(known, profile=profile, sort=sort, mode=mode, armed=armed, active=active, beat=now)
+
+
+def _landed(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
+    if known.profile is None or not known.profile.dialect.lands_by_state:
+        return known
+    return changed(known, active=said["landed_state"] > Landed.ON_GROUND)
 
 
 def _fix(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
-    return replace(known, fix_time=now if said["fix_type"] >= FIX_3D else None)
+    return changed(known, fix_time=now if said["fix_type"] >= FIX_3D else None)
 
 
 def _position(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
+    heading = None if said["hdg"] == UNKNOWN else said["hdg"] / 100
     late = known.placed is not None and said["time_boot_ms"] < known.placed
     fixed = known.fix_time is not None and now - known.fix_time <= FIX_SECONDS
     if late or not fixed or not _somewhere(said["lat"] / 1e7, said["lon"] / 1e7):
-        return known
+        return changed(known, heading=heading)
     north, east = said["vx"] / 100, said["vy"] / 100
     position = Position(
         said["lat"] / 1e7,
@@ -193,7 +222,7 @@ def _position(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetr
         -said["vz"] / 100,
         now,
     )
-    return replace(known, position=position, placed=said["time_boot_ms"])
+    return changed(known, heading=heading, position=position, placed=said["time_boot_ms"])
 
 
 def _somewhere(latitude: float, longitude: float) -> bool:
@@ -203,56 +232,87 @@ def _somewhere(latitude: float, longitude: float) -> bool:
 
 def _status(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
     healthy = bool(said["onboard_control_sensors_health"] & PREARM_HEALTHY)
-    return replace(known, healthy=healthy, fenced=bool(said["onboard_control_sensors_enabled"] & GEOFENCE))
+    known = changed(known, healthy=healthy, fenced=bool(said["onboard_control_sensors_enabled"] & GEOFENCE))
+    return _charged(known, said["battery_remaining"], said["voltage_battery"])
+
+
+def _battery(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
+    if said["id"] != 0:  # the first is the one that SYS_STATUS has, too
+        return known
+    cells = (each for each in said["voltages"] if each != UNKNOWN)
+    return _charged(known, said["battery_remaining"], sum(cells))
+
+
+def _charged(known: Telemetry, percent: int, millivolts: int) -> Telemetry:
+    """Note what a battery's monitor tells; what it does not measure stays as another message said."""
+    before = known.battery or Battery()
+    battery = Battery(
+        percent if 0 <= percent <= 100 else before.percent,
+        millivolts / 1000 if millivolts not in (0, UNKNOWN) else before.volts,
+    )
+    return known if battery == before else changed(known, battery=battery)
 
 
 def _home(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
     at = said["latitude"] / 1e7, said["longitude"] / 1e7
-    return replace(known, home=at) if _somewhere(*at) else known
+    return changed(known, home=at, ground=said["altitude"] / 1000) if _somewhere(*at) else known
 
 
 def _current(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
-    return replace(known, current=said["seq"])
+    return changed(known, current=said["seq"])
 
 
 def _target(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
     if known.clock is not None and said["time_boot_ms"] < known.clock - 1000:
         return known
-    return replace(known, target=(said["lat_int"] / 1e7, said["lon_int"] / 1e7))
+    return changed(known, target=(said["lat_int"] / 1e7, said["lon_int"] / 1e7))
 
 
 def _parameter(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
     name, value = said["param_id"], said["param_value"]
+    if known.profile is not None and known.profile.dialect.typed and said["param_type"] in INTEGERS:
+        value = float(int.from_bytes(struct.pack("<f", value), "little", signed=True))
     if name in AUTHORITY_PARAMETERS and 0 < value < 256:
-        return replace(known, authority=round(value), authority_parameter=name)
+        return changed(known, authority=round(value), authority_parameter=name)
     if known.profile is None or name not in known.profile.parameters or not abs(value) <= LARGEST:
         return known
-    return replace(known, parameters={**known.parameters, name: value})
+    return changed(known, parameters={**known.parameters, name: value})
 
 
 def _answer(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
     fenced = said["command"] == Cmd.FENCE_ENABLE and said["result"] == Result.ACCEPTED
-    return replace(known, polygon=True) if fenced else known
+    return changed(known, polygon=True) if fenced else known
 
 
 def _version(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
     number = said["flight_sw_version"]
-    return replace(known, version=(number >> 24 & 255, number >> 16 & 255))
+    return changed(known, version=(number >> 24 & 255, number >> 16 & 255))
 
 
 def _text(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
-    text = "".join(filter(str.isprintable, said["text"])).strip()
-    if said["severity"] > WARNING or not text:
-        return known
-    return replace(known, words=(*known.words, (now, text))[-MOST_WORDS:])
+    return _said(known, join(known.chunks, said, now), now)
+
+
+def waited(known: Telemetry, now: float) -> Telemetry:
+    """Return the state after a time in which the rest of a long text may not have come."""
+    return known if known.chunks is None else _said(known, give_up(known.chunks, now), now)
+
+
+def _said(known: Telemetry, joined: Joined, now: float) -> Telemetry:
+    chunks, texts = joined
+    grave = tuple((now, each.text) for each in texts if each.severity <= WARNING)
+    words = (*known.words, *grave)[-MOST_WORDS:]
+    return changed(known, chunks=chunks, words=words, texts=(*known.texts, *texts))
 
 
 _READERS: Final[Mapping[str, Callable[[Telemetry, Mapping[str, Any], float], Telemetry]]] = MappingProxyType(
     {
         "HEARTBEAT": _heartbeat,
+        "EXTENDED_SYS_STATE": _landed,
         "GPS_RAW_INT": _fix,
         "GLOBAL_POSITION_INT": _position,
         "SYS_STATUS": _status,
+        "BATTERY_STATUS": _battery,
         "HOME_POSITION": _home,
         "MISSION_CURRENT": _current,
         "POSITION_TARGET_GLOBAL_INT": _target,

@@ -4,8 +4,8 @@ The vehicle requests item after item, again after a second, and gives up after e
 timer. ArduPlane sends MISSION_REQUEST, others MISSION_REQUEST_INT: both get MISSION_ITEM_INT. An ACK is not believed:
 `adapters.mavlink.sync` reads back what is on board.
 
-A vehicle takes one upload at a time, from one system id. It answers other uploads with DENIED until that one is over.
-So DENIED is final only once it has lasted longer than a vehicle waits.
+A vehicle takes one upload at a time, from one system id. It answers others with DENIED (ArduPilot) or ERROR (PX4)
+until that one is over. So these are final only once they have lasted longer than a vehicle waits.
 """
 
 from __future__ import annotations
@@ -24,11 +24,12 @@ GIVEN_UP: Final = 9.0
 """Seconds of silence during an upload after which the vehicle, too, has given it up."""
 
 BUSY: Final = 25.0
-"""Seconds for which another's upload may cause DENIED: three times a vehicle's timeout, by its own clock."""
+"""Seconds for which another's upload may cause a refusal: three times a vehicle's timeout, by its own clock."""
 
 ACK_LOST: Final = 3.0
 """Seconds of silence after the last item, after which its ACK must have been lost."""
 
+_BUSY: Final = {MissionResult.DENIED, MissionResult.ERROR}
 _NOT_FINAL: Final = {MissionResult.INVALID_SEQUENCE, MissionResult.NO_SPACE, MissionResult.CANCELLED}
 
 
@@ -43,7 +44,7 @@ class Upload:
         counted: When the count was sent last.
         asked: When an item was requested last; None before the first.
         wanted: The items requested so far.
-        denied: Since when the vehicle has answered DENIED, and requested nothing.
+        denied: Since when the vehicle has answered that it is busy, and requested nothing.
         over: Whether it has ended, with or without success.
         refusal: The vehicle's final refusal, if any.
     """
@@ -110,6 +111,6 @@ def _answered(upload: Upload, result: int, now: float) -> Upload:
     if result in _NOT_FINAL:  # booting, or out of step with lost items: the count comes again by timer
         return upload if result == MissionResult.INVALID_SEQUENCE else replace(upload, asked=None)
     since = now if upload.denied is None else upload.denied
-    if result == MissionResult.DENIED and now - since <= BUSY:
+    if result in _BUSY and now - since <= BUSY:
         return replace(upload, asked=None, denied=since)
     return replace(upload, over=True, refusal=result)

@@ -5,8 +5,17 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from adapters.live.state import Finding, Heard, LiveStep
-from adapters.plugin import Aged, Command, Gone, Report
+from adapters.live.state import (
+    Acknowledging,
+    Answer,
+    Finding,
+    GivingBack,
+    Heard,
+    LiveStep,
+    Ordering,
+    Saying,
+)
+from adapters.plugin import Aged, Battery, Command, Gone, Presence, Report, Seen, Status, StatusText
 from physical import Band, Geometry, PhysicalProperty
 from semantics.state.canonical import digest_of_step
 from semantics.state.observation_serialization import sight_json
@@ -64,6 +73,34 @@ def report_json(report: Report) -> dict[str, Any]:
     return {"report": type(report).__name__, **_fields(report)}
 
 
+def seen_json(seen: Seen) -> tuple[str, dict[str, Any]]:
+    """Return the topic of a report for people alone, and the report as plain data."""
+    data = {each.name: _plain(getattr(seen, each.name)) for each in fields(seen)}
+    match seen:
+        case Status():
+            return "status", data
+        case StatusText():
+            return "said", data
+        case Presence():
+            return "stations", data
+
+
+def answer_json(answer: Answer) -> tuple[str, dict[str, Any]] | None:
+    """Return the topic and the data of what was said from outside, None for a refused acknowledgement."""
+    said, refusal = answer.saying, {"refusal": answer.refusal}
+    match said:
+        case Saying(agent, message, by):
+            return "sayings", {"agent": agent, "message": message, "by": by, **refusal}
+        case GivingBack(vehicle, at, by):
+            return "given_back", {"vehicle": vehicle, **({"at": at} if at else {}), "by": by, **refusal}
+        case Ordering(order, vehicle, by):
+            more = {"left_out": dict(answer.left_out), "notes": answer.notes}
+            told = {"requests": dict(answer.requests), **{name: each for name, each in more.items() if each}}
+            return "orders", {"order": order.value, "vehicle": vehicle, "by": by, **told, **refusal}
+        case Acknowledging(finding, by):
+            return None if answer.refusal else ("acknowledged", {"finding": finding, "by": by})
+
+
 def finding_json(finding: Finding, verdicts: tuple[str, ...] = ()) -> dict[str, Any]:
     """Return what the operator was told as plain data."""
     return {**_fields(finding), **({"verdicts": verdicts} if verdicts else {})}
@@ -82,6 +119,8 @@ def _plain(value: Any) -> Any:
             return value.ring
         case Band():
             return [value.low, value.high]
+        case Battery(percent, volts):
+            return {"percent": percent, "volts": volts}
         case tuple():
             return [_plain(each) for each in value]
         case _:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import Any, BinaryIO, Final
+from typing import Any, BinaryIO, Final, NamedTuple
 
 from adapters.recording.decompression import opened
 from adapters.written_files import open_private, writing
@@ -44,28 +44,41 @@ class RecordingError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One message: its topic, when it was written (seconds since 1970 UTC), and its data."""
+    """One message: its topic, when it was written (seconds since 1970 UTC), and its data, None where it is unread."""
 
     topic: str
     time: float
     data: Any
 
 
+Schema = tuple[str, dict[str, Any]]
+"""The name of a schema, and the schema."""
+
+
 class McapWriter:
     """Writes messages; without chunks, so that nothing is lost that was flushed."""
 
-    def __init__(self, path: Path, schemas: Mapping[str, tuple[str, dict[str, Any]]]) -> None:
-        """Begin a file; `schemas` gives each topic the name of its schema, and the schema."""
+    def __init__(self, path: Path, schemas: Mapping[str, Schema]) -> None:
+        """Begin a file; `schemas` gives each topic its schema."""
         self._path = path
         self._file: BinaryIO = open_private(path, "xb")
         self._writer = _writer()(self._file, use_chunking=False, use_statistics=True)
         self._writer.start(profile="", library="bigactors")
         self._channels: dict[str, int] = {}
-        for topic, (name, schema) in schemas.items():
-            data = json.dumps(schema, ensure_ascii=False).encode()
-            number = self._writer.register_schema(name, "jsonschema", data)
-            self._channels[topic] = self._writer.register_channel(topic, "json", number)
+        self._schemas: dict[str, int] = {}
+        for topic, schema in schemas.items():
+            self.declare(topic, schema)
         self.flush()
+
+    def declare(self, topic: str, schema: Schema) -> None:
+        """Add a topic, unless it is there."""
+        if topic in self._channels:
+            return
+        name, data = schema[0], json.dumps(schema[1], ensure_ascii=False).encode()
+        with writing(self._path):
+            if name not in self._schemas:
+                self._schemas[name] = self._writer.register_schema(name, "jsonschema", data)
+            self._channels[topic] = self._writer.register_channel(topic, "json", self._schemas[name])
 
     def write(self, topic: str, time: float, data: Any) -> None:
         """Write a message; `flush` makes it last. Bytes of a path that are no UTF-8 are written as JSON's escapes."""
@@ -87,60 +100,120 @@ class McapWriter:
                 self._writer.finish()
 
 
-@dataclass(slots=True)
-class Reading:
-    """A file being read.
+class Place(NamedTuple):
+    """Where reading goes on.
 
     Attributes:
-        torn: Whether the file ends amid a record, or without its index: the run was killed.
+        offset: At which byte of the file, between two records; 0 where nothing was read.
+        within: After how many messages, if a chunk is there.
+        room: How many bytes chunks may yield beyond those that they take.
     """
 
-    torn: bool = False
+    offset: int = 0
+    within: int = 0
+    room: int = SPARE
 
-    def messages(self, path: Path) -> Iterator[Message]:
-        """Yield the messages of a file in the order written.
+
+class McapReader:
+    """Reads the messages of a file, which may still be written: what is torn at its end is not written yet.
+
+    Attributes:
+        place: After the last message that was read.
+        ended: Whether the file's footer was read: nothing follows.
+    """
+
+    def __init__(self, path: Path, *, unread: tuple[str, ...] = ()) -> None:
+        """Read nothing yet; the data of topics that begin as one of `unread` will not be parsed."""
+        self.place = Place()
+        self.ended = False
+        self._path = path
+        self._unread = unread
+        self._topics: dict[int, str] = {}
+        self._size = -1  # at which nothing was left to be read
+
+    def grows(self) -> bool:
+        """Tell whether the file is other than when all of it had been read; raises OSError."""
+        return self._path.stat().st_size != self._size
+
+    def going_on(self, place: Place) -> McapReader:
+        """Return another reader of the file, which goes on at a place that this one has passed."""
+        other = McapReader(self._path, unread=self._unread)
+        other.place, other._topics = place, self._topics
+        return other
+
+    def messages(self) -> Iterator[Message]:
+        """Yield the messages that are there as a whole, from `place` on, in the order written.
 
         Raises:
             RecordingError: It is no MCAP file, or a message of it is no JSON.
+            OSError: It cannot be opened.
         """
-        topics: dict[int, str] = {}
-        self.torn = True
-        with open_file(path) as file:
-            if file.read(len(MAGIC)) != MAGIC:
-                raise RecordingError("this is no recording: it does not begin as MCAP")
-            for kind, content in _unchunked(file):
-                try:
-                    if kind == CHANNEL:
-                        topics[_number(content)] = _topic(content)
-                    elif kind == MESSAGE:
-                        yield _message(content, topics)
-                except (struct.error, KeyError, UnicodeDecodeError) as error:
-                    raise RecordingError(
-                        f"this is no recording: a record is damaged: {error!s:.100}"
-                    ) from error
+        with open_file(self._path) as file:
+            if not self.place.offset and not self._begins(file):
+                return
+            size = os.fstat(file.fileno()).st_size
+            if size < self.place.offset:
+                raise RecordingError("it has become shorter than it was")
+            file.seek(self.place.offset)
+            for kind, content in _records(file, size):
+                after = self.place._replace(offset=self.place.offset + RECORD.size + len(content))
+                if kind == CHUNK:
+                    yield from self._unpacked(content, after)
+                elif (message := self._taken(kind, content)) is not None:
+                    self.place = after
+                    yield message
+                else:
+                    self.place = after
                 if kind == FOOTER:
-                    self.torn = False
+                    self.ended = True
                     return
+            self._size = size
 
+    def _begins(self, file: BinaryIO) -> bool:
+        """Tell whether a file has begun as MCAP does; raises RecordingError for another one."""
+        begin = file.read(len(MAGIC))
+        if not MAGIC.startswith(begin):
+            raise RecordingError("this is no recording: it does not begin as MCAP")
+        if begin == MAGIC:
+            self.place = Place(len(MAGIC))
+        return begin == MAGIC
 
-def _unchunked(file: BinaryIO) -> Iterator[tuple[int, bytes]]:
-    """Yield whole records, those of chunks too: which may yield so many times the bytes that they take."""
-    left = SPARE
-    for kind, content in _records(file, os.fstat(file.fileno()).st_size):
-        if kind != CHUNK:
-            yield kind, content
-            continue
+    def _unpacked(self, content: bytes, after: Place) -> Iterator[Message]:
+        """Yield the messages of a chunk; all together yield so many times the bytes that they take at the most."""
         try:
             found = _opened(content)
         except (struct.error, ValueError) as error:
             raise RecordingError(f"this is no recording: a chunk is damaged: {error!s:.150}") from error
-        left += MOST_TIMES * len(content) - len(found)
-        if left < 0:
+        room = after.room + MOST_TIMES * len(content) - len(found)
+        if room < 0:
             raise RecordingError(f"its chunks yield more than {MOST_TIMES} times the bytes that they take")
         inner = BytesIO(found)
-        yield from _records(inner, len(found))
+        taken = (self._taken(kind, inside) for kind, inside in _records(inner, len(found)))
+        messages = (message for message in taken if message is not None)
+        for number, message in enumerate(messages, 1):
+            if number > self.place.within:
+                self.place = self.place._replace(within=number)
+                yield message
         if inner.tell() != len(found):
             raise RecordingError("this is no recording: a chunk ends amid a record")
+        self.place = Place(after.offset, 0, room)
+
+    def _taken(self, kind: int, content: bytes) -> Message | None:
+        """Return the message that a record is, None for any other; and remember the topics of channels."""
+        try:
+            if kind == MESSAGE:
+                return self._message(content)
+            if kind == CHANNEL:
+                self._topics[_number(content)] = _topic(content)
+        except (struct.error, KeyError, UnicodeDecodeError) as error:
+            raise RecordingError(f"this is no recording: a record is damaged: {error!s:.100}") from error
+        return None
+
+    def _message(self, content: bytes) -> Message:
+        channel, _, time, _ = SAID.unpack_from(content)
+        topic = self._topics[channel]
+        data = None if topic.startswith(self._unread) else _parsed(content[SAID.size :])
+        return Message(topic, time / NANOSECONDS, data)
 
 
 def _records(file: BinaryIO, size: int) -> Iterator[tuple[int, bytes]]:
@@ -179,11 +252,6 @@ def _topic(content: bytes) -> str:
     """Return the topic of a channel, after its number and its schema's."""
     (length,) = struct.unpack_from("<I", content, 4)
     return content[8 : 8 + length].decode()
-
-
-def _message(content: bytes, topics: Mapping[int, str]) -> Message:
-    channel, _, time, _ = SAID.unpack_from(content)
-    return Message(topics[channel], time / NANOSECONDS, _parsed(content[SAID.size :]))
 
 
 def _parsed(data: bytes) -> Any:

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from adapters.recording.mcap_files import MAGIC, Message, Reading, RecordingError
+from adapters.recording.foxglove import OTHERS
+from adapters.recording.mcap_files import MAGIC, McapReader, Message, RecordingError
 from adapters.recording.schemas import VERSION
 from physical import open_file
 
@@ -19,7 +20,8 @@ class Recording:
 
     Attributes:
         run: What was flown.
-        messages: All others, in the order written; arrivals only where they were asked for.
+        messages: All others, in the order written; arrivals only where they were asked for, and nothing of what follows
+            from the others and is there for other programs.
         torn: Whether it has no end: the run was killed.
     """
 
@@ -55,22 +57,23 @@ def is_recording(path: str) -> bool:
 
 def read_recording(path: Path, *, arrivals: bool = False) -> Recording:
     """Return what a file holds; raises RecordingError for one that is no recording of a run, OSError."""
-    reading = Reading()
+    reader = McapReader(path)
     run: dict[str, Any] | None = None
     kept: list[Message] = []
-    for number, message in enumerate(reading.messages(path)):
+    for number, message in enumerate(reader.messages()):
         if number > MOST_MESSAGES:
             raise RecordingError(f"it has more than {MOST_MESSAGES:,} messages")
         if not isinstance(message.data, dict):
             raise RecordingError(f"a message of '{message.topic:.40}' is no object")
         if message.topic == "run" and run is None:
             run = message.data
-        elif arrivals or message.topic != "arrivals":
+        elif (arrivals or message.topic != "arrivals") and not message.topic.startswith(OTHERS):
             kept.append(message)
-    return Recording(_checked(run), tuple(kept), reading.torn)
+    return Recording(checked_run(run), tuple(kept), not reader.ended)
 
 
-def _checked(run: dict[str, Any] | None) -> dict[str, Any]:
+def checked_run(run: dict[str, Any] | None) -> dict[str, Any]:
+    """Return what was flown; raises RecordingError where it does not say so."""
     if run is None:
         raise RecordingError("it records no run of a mission")
     if run.get("schema") != f"bigactors.run/{VERSION}":

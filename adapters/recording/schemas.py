@@ -8,6 +8,9 @@ VERSION: Final = 1
 
 _TEXT: Final = {"type": "string"}
 _NUMBER: Final = {"type": "number"}
+_OPTIONAL: Final = {"type": ["string", "null"]}
+_BY: Final = {**_TEXT, "description": "Who said so; empty if unknown."}
+_TIME: Final = {**_NUMBER, "description": "In seconds since 1970 UTC."}
 _TEXTS: Final = {"type": "array", "items": _TEXT}
 _RING: Final = {
     "type": "array",
@@ -50,7 +53,7 @@ def _object(description: str, required: tuple[str, ...], **properties: Any) -> d
 RUN: Final = _object(
     "The run: its mission, its verdict and its vehicles.",
     ("schema", "mission", "text", "digest", "version", "verified", "vehicles"),
-    schema={"const": f"bigactors.run/{VERSION}"},
+    schema={"type": "string", "const": f"bigactors.run/{VERSION}"},
     mission={**_TEXT, "description": "The mission's file or name, as it was given."},
     text={**_TEXT, "description": "The mission."},
     folder={**_TEXT, "description": "The folder of the files that the mission names."},
@@ -64,7 +67,28 @@ RUN: Final = _object(
         "description": "Whether other requests waited while vehicles confirmed hand-overs.",
     },
     vehicles={"type": "object", "description": "For each vehicle its plugin."},
+    fences={"type": "object", "description": "For each vehicle that has a fence its ring."},
+    limits={
+        "type": "array",
+        "description": "How long requests may stand at the head of a line, and what happens then.",
+        "items": {
+            "type": "object",
+            "required": ["request", "agent", "seconds", "fallback"],
+            "properties": {
+                "request": {**_OPTIONAL, "description": "OBS, CTR, FLY, SND or MGR; null for any."},
+                "agent": {**_OPTIONAL, "description": "Null for anyone's."},
+                "seconds": _NUMBER,
+                "fallback": {"enum": ["hold", "return", "continue"]},
+            },
+        },
+    },
     resumes={"type": ["string", "null"], "description": "The recording that the run continues."},
+    rate={
+        "type": ["number", "null"],
+        "exclusiveMinimum": 0,
+        "description": "Seconds of the run in one of the clock on the wall: 1 unless time is simulated, null for "
+        "as many as can be computed.",
+    },
     station={
         "type": ["object", "null"],
         "description": "The station's part of the mission, if there are several stations.",
@@ -88,7 +112,7 @@ ARRIVAL: Final = _object(
     time={**_NUMBER, "description": "When it was observed, in seconds since 1970 UTC."},
     velocity={"type": "array", "items": _NUMBER, "description": "Metres a second, degrees from true north."},
     time_to_live=_NUMBER,
-    gone={"const": True},
+    gone={"type": "boolean", "const": True},
 )
 
 LEFT_OUT: Final = _object(
@@ -111,10 +135,23 @@ STEP: Final = _object(
     digest={**_TEXT, "description": "Of the cells that it wrote, with their values."},
 )
 
+DEADLINE: Final = _object(
+    "Until when an agent at a `react` with an `after` branch waits: written when that changes.",
+    ("agent", "until"),
+    agent=_TEXT,
+    until={
+        "type": ["number", "null"],
+        "description": "In seconds since 1970 UTC; null once it waits no longer.",
+    },
+)
+
 COMMAND: Final = _object(
     "A command to a vehicle: written before it is sent.",
     ("command", "request", "entity"),
-    command={"enum": ["GoTo", "Follow", "HandOver", "Hold", "Return", "GiveBack", "Rebind"]},
+    command={
+        "type": "string",
+        "enum": ["GoTo", "Follow", "HandOver", "Hold", "Return", "GiveBack", "Rebind"],
+    },
     request=_TEXT,
     entity=_TEXT,
     ring=_RING,
@@ -144,7 +181,7 @@ REPORTS: Final = (
 REPORT: Final = _object(
     "A plugin's report on a request, a link or its input.",
     ("report",),
-    report={"enum": [*REPORTS]},
+    report={"type": "string", "enum": [*REPORTS]},
     request=_TEXT,
     entity=_TEXT,
     reason=_TEXT,
@@ -168,6 +205,7 @@ SAYING: Final = _object(
     ("agent", "message", "refusal"),
     agent=_TEXT,
     message=_TEXT,
+    by=_BY,
     refusal=_TEXT,
 )
 
@@ -177,7 +215,81 @@ GIVEN_BACK: Final = _object(
     ("vehicle", "refusal"),
     vehicle=_TEXT,
     at={**_TEXT, "description": "Where it is heard from now on; it is not given back by that."},
+    by=_BY,
     refusal=_TEXT,
+)
+
+ORDER: Final = _object(
+    "An operator ordered a vehicle, or all, to hold or to return. The commands have the same requests, and a report "
+    "`Accepted` or `Arrived` of such a request confirms it, `Rejected` says why not.",
+    ("order", "vehicle", "by", "requests", "refusal"),
+    order={"type": "string", "enum": ["hold", "return"]},
+    vehicle={**_OPTIONAL, "description": "Null for all."},
+    by=_BY,
+    requests={"type": "object", "description": "The request of each vehicle that was told."},
+    left_out={"type": "object", "description": "Why each other vehicle was not told, of an order to all."},
+    notes={**_TEXTS, "description": "What else its operator should know, such as who was overruled."},
+    refusal=_TEXT,
+)
+
+ACKNOWLEDGED: Final = _object(
+    "An operator has seen a finding.",
+    ("finding", "by"),
+    finding={"type": "integer", "minimum": 1, "description": "Its number among the messages of `findings`."},
+    by=_BY,
+)
+
+STATUS: Final = _object(
+    "What a vehicle says of itself, at most once a second; null is not told.",
+    ("plugin", "entity", "time", "mode", "armed", "battery", "heading", "authority", "heard"),
+    plugin=_TEXT,
+    entity=_TEXT,
+    time=_TIME,
+    mode=_OPTIONAL,
+    armed={"type": ["boolean", "null"]},
+    battery={
+        "type": ["object", "null"],
+        "required": ["percent", "volts"],
+        "properties": {"percent": {"type": ["integer", "null"]}, "volts": {"type": ["number", "null"]}},
+    },
+    heading={"type": ["number", "null"], "description": "Degrees from true north."},
+    authority={**_TEXTS, "description": "The stations that it obeys."},
+    heard={"type": ["number", "null"], "description": "When its last message came."},
+    height={"type": ["number", "null"], "description": "Metres above its home."},
+    home={
+        "type": ["array", "null"],
+        "items": {"type": "number"},
+        "minItems": 2,
+        "maxItems": 2,
+        "description": "The latitude and longitude of its home, in degrees.",
+    },
+    returning={
+        "type": ["boolean", "null"],
+        "description": "Whether it is in the mode in which it flies home.",
+    },
+)
+
+STATUS_TEXT: Final = _object(
+    "A text that a vehicle has said.",
+    ("entity", "time", "text", "severity"),
+    entity=_TEXT,
+    time=_TIME,
+    text=_TEXT,
+    severity={
+        "type": "integer",
+        "minimum": 0,
+        "maximum": 7,
+        "description": "From 0 (emergency) to 7 (debug).",
+    },
+)
+
+PRESENCE: Final = _object(
+    "Whether another station is reached, when that changes, and at most every 2 seconds.",
+    ("station", "time", "reached", "heard"),
+    station=_TEXT,
+    time=_TIME,
+    reached={"type": ["boolean", "null"], "description": "Null while that is not known yet."},
+    heard={"type": ["number", "null"], "description": "When it answered last."},
 )
 
 FINDING: Final = _object(
@@ -197,11 +309,17 @@ SCHEMAS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
     "arrivals": (f"bigactors.arrival/{VERSION}", ARRIVAL),
     "left_out": (f"bigactors.left_out/{VERSION}", LEFT_OUT),
     "steps": (f"bigactors.step/{VERSION}", STEP),
+    "deadlines": (f"bigactors.deadline/{VERSION}", DEADLINE),
     "commands": (f"bigactors.command/{VERSION}", COMMAND),
     "reports": (f"bigactors.plugin_report/{VERSION}", REPORT),
     "sayings": (f"bigactors.saying/{VERSION}", SAYING),
     "given_back": (f"bigactors.given_back/{VERSION}", GIVEN_BACK),
+    "orders": (f"bigactors.order/{VERSION}", ORDER),
     "findings": (f"bigactors.finding/{VERSION}", FINDING),
+    "acknowledged": (f"bigactors.acknowledged/{VERSION}", ACKNOWLEDGED),
+    "status": (f"bigactors.status/{VERSION}", STATUS),
+    "said": (f"bigactors.status_text/{VERSION}", STATUS_TEXT),
+    "stations": (f"bigactors.presence/{VERSION}", PRESENCE),
     "end": (f"bigactors.end/{VERSION}", END),
 }
 """The name and the schema of each topic's messages."""

@@ -2,84 +2,141 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable
+from collections import defaultdict
+from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
-from adapters.live.state import Answer, Finding, GivingBack, Heard, Turn
-from adapters.plugin import Report, entity_of
-from adapters.ration import Ration
-from adapters.recording.encoding import arrival_json, command_json, finding_json, report_json, step_json
+from adapters.live.state import Finding, Heard, Turn
+from adapters.plugin import Report, Seen, entity_of
+from adapters.ration import Ration, Turns
+from adapters.recording.encoding import (
+    answer_json,
+    arrival_json,
+    command_json,
+    finding_json,
+    report_json,
+    seen_json,
+    step_json,
+)
+from adapters.recording.foxglove import Showing, Shown, simplified
 from adapters.recording.mcap_files import McapWriter, Message
 from adapters.recording.schemas import RUN, SCHEMAS
+from physical import PhysicalProperty
+from semantics.state.signature import Name
 
 MOST_ARRIVALS: Final = 100
 """Arrivals that are written in a second, of each entity of the mission, and of all others that one plugin tells of."""
+
+AT_MOST: Final = 0.1
+"""Seconds for which what comes in is kept from who reads the recording as it grows."""
 
 
 class Recorder:
     """Writes what comes in and what follows from it; a turn's commands are on file before they are sent.
 
     Of a flood of arrivals so many are written, and how many were left out; steps say what they were taken for, and are
-    written all.
+    written all. Beside its messages it writes what other programs show of them (`foxglove`).
     """
 
-    def __init__(self, path: Path, run: dict[str, Any], now: float, names: Container[str] = ()) -> None:
-        """Begin a recording; `names` are the entities of the mission."""
+    def __init__(
+        self,
+        path: Path,
+        run: dict[str, Any],
+        now: float,
+        names: Collection[str] = (),
+        fixed: Iterable[PhysicalProperty] = (),
+    ) -> None:
+        """Begin a recording; `names` are the entities of the mission, `fixed` its places that never move."""
         self._names = names
+        self._showing = Showing(names)
+        self._newest = now
         self._ration: Ration[tuple[str, str]] = Ration(MOST_ARRIVALS)
-        self._file = McapWriter(path, SCHEMAS)
-        self._file.write("run", now, {"schema": RUN["properties"]["schema"]["const"], **run})
-        self._file.flush()
+        self._turns: defaultdict[str, Turns[str]] = defaultdict(lambda: Turns(MOST_ARRIVALS))
+        self._due: dict[Name, float | None] = {}
+        self._file = McapWriter(path, {topic: simplified(schema) for topic, schema in SCHEMAS.items()})
+        self._put("run", now, {"schema": RUN["properties"]["schema"]["const"], **run})
+        self._show(now, self._showing.places(fixed, run.get("fences", {})))
+        self._flush(now)
 
     def arrival(self, heard: Heard, now: float) -> None:
         """Write what a plugin published, unless that is too much."""
-        entity = entity_of(heard.published)
-        if self._ration.takes((heard.plugin, entity if entity in self._names else ""), now):
-            self._file.write("arrivals", now, arrival_json(heard))
+        if self._takes(heard.plugin, entity_of(heard.published), now):
+            self._write("arrivals", now, arrival_json(heard))
+
+    def _takes(self, plugin: str, entity: str, now: float) -> bool:
+        """Tell whether an arrival is written; of entities that the mission does not name each in its turn."""
+        if entity in self._names:
+            return self._ration.takes((plugin, entity), now)
+        if self._turns[plugin].takes(entity, now):
+            return True
+        self._ration.leave_out((plugin, ""))
+        return False
 
     def report(self, report: Report, now: float) -> None:
         """Write what a plugin reported."""
-        self._file.write("reports", now, report_json(report))
+        topic, data = seen_json(report) if isinstance(report, Seen) else ("reports", report_json(report))
+        self._write(topic, now, data)
 
     def turn(self, turn: Turn, now: float, verdicts: Callable[[Finding], tuple[str, ...]]) -> None:
         """Write what a turn came to, and hand it to the system if there is anything that must not be lost."""
         self._account(now, self._ration.left_out(now))
         for step in turn.steps:
-            self._file.write("steps", step.time, step_json(step))
+            self._put("steps", step.time, step_json(step))
+        self._deadlines(turn.state.due, now)
         for command in turn.commands:
-            self._file.write("commands", now, command_json(command))
+            self._put("commands", now, command_json(command))
         for finding in turn.findings:
-            self._file.write("findings", now, finding_json(finding, verdicts(finding)))
+            self._put("findings", now, finding_json(finding, verdicts(finding)))
         for answer in turn.answers:
-            self._file.write(*_answer_json(answer, now))
-        if turn.steps or turn.commands or turn.findings or turn.answers:
-            self._file.flush()
+            if (written := answer_json(answer)) is not None:
+                self._put(written[0], now, written[1])
+        if turn.steps or turn.commands or turn.findings or turn.answers or now - self._flushed >= AT_MOST:
+            self._flush(now)
+
+    def _deadlines(self, due: Mapping[Name, float], now: float) -> None:
+        """Write until when agents wait, where that has changed."""
+        for agent in sorted(due.keys() | self._due.keys()):
+            if (until := due.get(agent)) != self._due.get(agent):
+                self._put("deadlines", now, {"agent": agent, "until": until})
+        self._due = dict(due)
 
     def copy(self, messages: Iterable[Message]) -> None:
         """Write the messages of another recording: this one stands by itself."""
         for message in messages:
-            self._file.write(message.topic, message.time, message.data)
+            self._put(message.topic, message.time, message.data)
+            match message:
+                case Message("deadlines", _, {"agent": str(agent), "until": until}):
+                    self._due[agent] = until
         self._file.flush()
 
-    def flush(self) -> None:
-        """Hand what was written to the system."""
+    def _write(self, topic: str, now: float, data: Any) -> None:
+        """Write what came in, and hand it to the system if none was for a while: others may read it as it grows."""
+        self._put(topic, now, data)
+        if now - self._flushed >= AT_MOST:
+            self._flush(now)
+
+    def _put(self, topic: str, time: float, data: dict[str, Any]) -> None:
+        """Write a message, and beside it what other programs show of it."""
+        self._newest = max(self._newest, time)
+        self._file.write(topic, time, data)
+        self._show(time, self._showing.of(topic, time, data))
+
+    def _show(self, time: float, shown: Iterable[Shown]) -> None:
+        for topic, schema, data in shown:
+            self._file.declare(topic, schema)
+            self._file.write(topic, time, data)
+
+    def _flush(self, now: float) -> None:
         self._file.flush()
+        self._flushed = now
 
     def close(self, reason: str, now: float) -> None:
-        """End the recording."""
+        """End the recording: after all that is in it, by whatever clock it was flown."""
         self._account(now, self._ration.left_out())
-        self._file.write("end", now, {"reason": reason})
+        self._put("end", max(now, self._newest), {"reason": reason})
         self._file.close()
 
     def _account(self, now: float, left_out: Iterable[tuple[tuple[str, str], int]]) -> None:
         for (plugin, entity), count in left_out:
-            self._file.write("left_out", now, {"plugin": plugin, "entity": entity, "arrivals": count})
-
-
-def _answer_json(answer: Answer, now: float) -> tuple[str, float, dict[str, Any]]:
-    said = answer.saying
-    if isinstance(said, GivingBack):
-        where = {"at": said.at} if said.at else {}
-        return "given_back", now, {"vehicle": said.vehicle, **where, "refusal": answer.refusal}
-    return "sayings", now, {"agent": said.agent, "message": said.message, "refusal": answer.refusal}
+            self._put("left_out", now, {"plugin": plugin, "entity": entity, "arrivals": count})

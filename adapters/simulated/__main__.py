@@ -28,7 +28,9 @@ def arguments() -> argparse.ArgumentParser:
     parser.add_argument(
         "--to", default="udpout:127.0.0.1:14550", help="the ground station (default %(default)s)"
     )
-    parser.add_argument("--kind", default="plane", choices=[kind.name.lower() for kind in Kind])
+    kinds = [kind.name.lower() for kind in Kind if not kind.name.startswith("PX4_")]
+    parser.add_argument("--kind", default="plane", choices=kinds)
+    parser.add_argument("--autopilot", default="ardupilot", choices=["ardupilot", "px4"])
     parser.add_argument(
         "--home", default="37.0,-8.6,20", type=home, metavar="LAT,LON,ALT", help="default %(default)s"
     )
@@ -51,9 +53,13 @@ def arguments() -> argparse.ArgumentParser:
 
 def main() -> None:
     """Fly until interrupted."""
-    options = arguments().parse_args()
+    parser = arguments()
+    options = parser.parse_args()
+    name = {"px4": "PX4_"}.get(options.autopilot, "") + options.kind.upper()
+    if name not in Kind.__members__:
+        parser.error(f"there is no simulated {options.kind} with PX4: take a plane or a copter")
     signed = Signing(load(options.key).key) if options.key else None
-    vehicle = Vehicle(Kind[options.kind.upper()], options.home, options.system, signing=signed)
+    vehicle = Vehicle(Kind[name], options.home, options.system, signing=signed)
     vehicle.serial = options.serial[:18]
     disturbance = Disturbance(options.loss, delay=(0.0, options.delay))
     simulator = Simulator(options.to, [vehicle], disturbance, epoch=time.time())

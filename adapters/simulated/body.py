@@ -12,6 +12,9 @@ from typing import Final
 
 METRES_PER_DEGREE: Final = 111_194.9
 
+EASES: Final = 1.0
+"""Seconds in which a turn is taken up, and a plane banks for it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Limits:
@@ -32,7 +35,7 @@ ROVER: Final = Limits(5.0, 60.0, 0.0, 0.0, 2.0, must_move=False)
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """Where it is and how it moves: degrees, metres above home, m/s, degrees true."""
+    """Where it is and how it moves: degrees, metres above home, m/s, degrees true, m/s upwards, degrees a second."""
 
     latitude: float
     longitude: float
@@ -40,6 +43,7 @@ class Body:
     course: float = 0.0
     speed: float = 0.0
     climb: float = 0.0
+    turn: float = 0.0
 
 
 def metres_to(body: Body, latitude: float, longitude: float) -> tuple[float, float]:
@@ -84,6 +88,7 @@ def moved(body: Body, limits: Limits, course: float, speed: float, height: float
         course=turned,
         speed=speed,
         climb=rise / seconds,
+        turn=body.turn + (turn / seconds - body.turn) * min(1.0, seconds / EASES),
     )
 
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
+import struct
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Final
 
-from adapters.mavlink.constants import AUTOPILOT_VERSION, STREAMS, Cmd, Fence, MissionType, Result
+from adapters.mavlink.command import ANYWHERE
+from adapters.mavlink.constants import AUTOPILOT_VERSION, INTEGERS, STREAMS, Cmd, Fence, MissionType, Result
 from adapters.mavlink.message import Message, is_for, say
-from adapters.mavlink.profiles import TakeOff
+from adapters.mavlink.profiles import TakeOff, mode_number
 from adapters.mavlink.signing import EPOCH, UNITS, Signing, Verdict, check
 from adapters.simulated.body import metres_to
 from adapters.simulated.reporting import Reporter, parameter_value
@@ -39,8 +42,11 @@ def hear(vehicle: Vehicle, reporter: Reporter, message: Message, now: float) -> 
     """Answer a message, if it is accepted, addressed to this vehicle, and from the station that it obeys."""
     if not _believed(vehicle, message) or not is_for(message, vehicle.system):
         return []
-    stranger = vehicle.enforce and message.system != round(vehicle.parameters[vehicle.authority_parameter])
-    if stranger:
+    enforces = vehicle.enforce and vehicle.kind.profile.dialect.authority
+    if enforces and message.system != round(vehicle.parameters[vehicle.authority_parameter]):
+        return []
+    if message.name == "MISSION_SET_CURRENT":
+        _make_current(vehicle, message["seq"])
         return []
     if message.name.startswith("MISSION_"):
         return vehicle.store.hear(message, ready=vehicle.ready, now=now)
@@ -70,19 +76,22 @@ def _read_parameter(vehicle: Vehicle, _reporter: Reporter, message: Message) -> 
 
 
 def _set_parameter(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Answer:
-    name = message["param_id"]
-    if name not in vehicle.parameters or not abs(message["param_value"]) <= LARGEST:
+    name, value = message["param_id"], message["param_value"]
+    if vehicle.kind.profile.dialect.typed and message["param_type"] in INTEGERS:
+        value = float(int.from_bytes(struct.pack("<f", value), "little", signed=True))
+    if name not in vehicle.parameters or not abs(value) <= LARGEST:
         return []
-    switched = name == "FENCE_ENABLE" and message["param_value"] != vehicle.parameters[name]
-    vehicle.parameters[name] = message["param_value"]
+    switched = name == "FENCE_ENABLE" and value != vehicle.parameters[name]
+    vehicle.parameters[name] = value
     if switched:
-        vehicle.switch_fences(~Fence.ALT_MIN, on=bool(message["param_value"]))
+        vehicle.switch_fences(~Fence.ALT_MIN, on=bool(value))
     return [parameter_value(vehicle, name)]
 
 
 def _command(vehicle: Vehicle, reporter: Reporter, message: Message) -> Answer:
     try:
-        carry_out = _COMMANDS[Cmd(message["command"])]
+        known = _PX4_COMMANDS if vehicle.kind.profile.dialect.typed else _COMMANDS
+        carry_out = known[Cmd(message["command"])]
     except (ValueError, KeyError):
         return [_ack(message, Result.UNSUPPORTED)]
     result = carry_out(vehicle, reporter, message)
@@ -125,12 +134,12 @@ def _set_mode(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result
 
 def _arm(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
     if message["param1"] < 0.5:
-        vehicle.armed = vehicle.flies and vehicle.kind.profile.takeoff is not TakeOff.NONE
+        vehicle.arm(armed=vehicle.flies and vehicle.kind.profile.takeoff is not TakeOff.NONE)
         return Result.FAILED if vehicle.armed else Result.ACCEPTED
     if not vehicle.ready:
         reporter.text("PreArm: not ready")
         return Result.FAILED
-    vehicle.armed = True
+    vehicle.arm(armed=True)
     return Result.ACCEPTED
 
 
@@ -178,11 +187,13 @@ def _keep_fence(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Resu
 
 
 def _set_current(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
-    count = len(vehicle.store.items.get(MissionType.MISSION, ()))
-    if message["param1"] not in range(count):
-        return Result.FAILED
-    vehicle.current = int(message["param1"])
-    return Result.ACCEPTED
+    return Result.ACCEPTED if _make_current(vehicle, message["param1"]) else Result.FAILED
+
+
+def _make_current(vehicle: Vehicle, index: float) -> bool:
+    there = index in range(len(vehicle.store.items.get(MissionType.MISSION, ())))
+    vehicle.current = int(index) if there else vehicle.current
+    return there
 
 
 def _start_mission(vehicle: Vehicle, _reporter: Reporter, _message: Message) -> Result:
@@ -219,6 +230,81 @@ _COMMANDS: Final[Mapping[Cmd, Callable[[Vehicle, Reporter, Message], Result]]] =
         Cmd.SET_MESSAGE_INTERVAL: _set_interval,
         Cmd.SET_MISSION_CURRENT: _set_current,
         Cmd.TAKEOFF: _take_off,
+    }
+)
+
+
+# --- PX4's commands, as commander/Commander.cpp and navigator/navigator_main.cpp take them -----------
+
+
+def _px4_set_mode(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
+    main, sub = message["param2"], message["param3"]
+    if not (0 <= main < 256 and 0 <= sub < 256):
+        return Result.TEMPORARILY_REJECTED
+    mode = mode_number(int(main), int(sub))
+    if mode not in vehicle.kind.profile.modes:
+        return Result.TEMPORARILY_REJECTED
+    if mode == vehicle.kind.profile.hold and vehicle.mode != mode:
+        vehicle.stay()
+    vehicle.mode = mode
+    return Result.ACCEPTED
+
+
+def _px4_arm(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
+    arms = message["param1"] > 0.5
+    if arms and not vehicle.ready:
+        reporter.text("Arming denied: Resolve system health failures first")
+    if (arms and not vehicle.ready) or (not arms and vehicle.flies):
+        return Result.TEMPORARILY_REJECTED
+    vehicle.arm(armed=arms)
+    return Result.ACCEPTED
+
+
+def _px4_take_off(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
+    altitude = message["param7"]
+    height = vehicle.parameters["MIS_TAKEOFF_ALT"] if math.isnan(altitude) else altitude - vehicle.home[2]
+    if not abs(height) <= HIGHEST:
+        return Result.DENIED
+    assert vehicle.kind.profile.climb is not None, "PX4 has a mode for it"
+    if not vehicle.flies:
+        vehicle.mode = vehicle.kind.profile.climb
+        vehicle.target = Target(vehicle.body.latitude, vehicle.body.longitude, height, vehicle.circle)
+    return Result.ACCEPTED
+
+
+def _px4_reposition(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
+    """Go to a target above sea level; without the flag PX4 1.14 to 1.17 do not know the command."""
+    flags = message["param2"]
+    if message.name != "COMMAND_INT" or not 0 <= flags <= FLAGS or not int(flags) & CHANGE_MODE:
+        return Result.UNSUPPORTED
+    if not vehicle.armed:
+        vehicle.mode = vehicle.kind.profile.hold
+        return Result.ACCEPTED  # without a target
+    if message["x"] == message["y"] == ANYWHERE:
+        vehicle.stay()
+        return Result.ACCEPTED
+    latitude, longitude, height = message["x"] / 1e7, message["y"] / 1e7, message["z"] - vehicle.home[2]
+    circle = message["param3"] if abs(message["param3"]) > 0 else vehicle.circle
+    far = metres_to(vehicle.body, latitude, longitude)[0] > FARTHEST
+    if far or not abs(height) <= HIGHEST or not abs(circle) <= FARTHEST:
+        return Result.DENIED
+    vehicle.mode = vehicle.kind.profile.guided
+    if vehicle.holds(latitude, longitude, height):
+        vehicle.target = Target(latitude, longitude, height, circle)
+    else:
+        reporter.text("Reposition is outside geofence")  # it is accepted nevertheless
+    return Result.ACCEPTED
+
+
+_PX4_COMMANDS: Final[Mapping[Cmd, Callable[[Vehicle, Reporter, Message], Result]]] = MappingProxyType(
+    {
+        Cmd.ARM_DISARM: _px4_arm,
+        Cmd.DO_SET_MODE: _px4_set_mode,
+        Cmd.MISSION_START: _start_mission,
+        Cmd.REPOSITION: _px4_reposition,
+        Cmd.REQUEST_MESSAGE: _request_message,
+        Cmd.SET_MESSAGE_INTERVAL: _set_interval,
+        Cmd.TAKEOFF: _px4_take_off,
     }
 )
 

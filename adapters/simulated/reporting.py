@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+import struct
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, Final
 
-from adapters.mavlink.constants import ARDUPILOT, GEOFENCE, PREARM_HEALTHY, MissionType, ModeFlag
+from adapters.mavlink.constants import GEOFENCE, PREARM_HEALTHY, Landed, MissionType, ModeFlag
 from adapters.mavlink.message import Message, say
-from adapters.simulated.vehicle import Vehicle
+from adapters.mavlink.texts import CHUNK
+from adapters.simulated.vehicle import WARNING, Vehicle
 
 DEFAULT: Final = {
     "HEARTBEAT": 1.0,
@@ -19,6 +21,9 @@ DEFAULT: Final = {
     "MISSION_CURRENT": 1.0,
 }
 """The default seconds between two messages of a kind."""
+
+WHOLE: Final = ("COM_LOW_BAT_ACT", "GF_ACTION", "MIS_TKO_LAND_REQ")
+"""PX4's parameters that are integers: their four bytes are sent as if they were a float's."""
 
 SHORTEST: Final = 0.05
 CAPABILITIES: Final = 2 | 4 | 8 | 8192 | 16384
@@ -34,6 +39,7 @@ class Reporter:
         self._texts: list[str] = []
         self._once: list[str] = []
         self._mode: int | None = None
+        self._chunked = 0
 
     def every(self, name: str, seconds: float) -> None:
         """Say a message at another interval; none if it isn't positive."""
@@ -58,8 +64,8 @@ class Reporter:
         names = [name for name, period in self._every.items() if self._is_due(name, period, vehicle.uptime)]
         if vehicle.mode != self._mode:  # a change is said at once
             names, self._mode = ["HEARTBEAT", *names], vehicle.mode
-        words = [*self._texts, *vehicle.words]
-        texts = [say("STATUSTEXT", severity=4, text=text.encode()[:50]) for text in words]
+        words = [*((WARNING, text) for text in self._texts), *vehicle.words]
+        texts = [message for severity, text in words for message in self._chunks(severity, text.encode())]
         reached = [say("MISSION_ITEM_REACHED", seq=index) for index in vehicle.reached]
         names += self._once
         self._texts.clear()
@@ -67,6 +73,18 @@ class Reporter:
         vehicle.reached.clear()
         vehicle.words.clear()
         return [*(_MESSAGES[name](vehicle) for name in names), *texts, *reached]
+
+    def _chunks(self, severity: int, text: bytes) -> list[Message]:
+        """Return the messages of a text; a long one has a number, and ends with a chunk that is not full."""
+        if len(text) <= CHUNK:
+            return [say("STATUSTEXT", severity=severity, text=text)]
+        self._chunked = self._chunked % 65_535 + 1
+        return [
+            say(
+                "STATUSTEXT", severity=severity, text=text[at : at + CHUNK], id=self._chunked, chunk_seq=index
+            )
+            for index, at in enumerate(range(0, len(text) + 1, CHUNK))
+        ]
 
     def _is_due(self, name: str, period: float, uptime: float) -> bool:
         last = self._said.get(name)
@@ -79,12 +97,13 @@ class Reporter:
 
 def parameter_value(vehicle: Vehicle, name: str) -> Message:
     """Return the message that tells a parameter."""
-    names = list(vehicle.parameters)
+    names, value = list(vehicle.parameters), vehicle.parameters[name]
+    whole = vehicle.kind.profile.dialect.typed and name in WHOLE
     return say(
         "PARAM_VALUE",
         param_id=name.encode(),
-        param_value=float(vehicle.parameters[name]),
-        param_type=9,
+        param_value=struct.unpack("<f", struct.pack("<i", round(value)))[0] if whole else float(value),
+        param_type=6 if whole else 9,
         param_count=len(names),
         param_index=names.index(name),
     )
@@ -95,12 +114,23 @@ def _heartbeat(vehicle: Vehicle) -> Message:
     return say(
         "HEARTBEAT",
         type=vehicle.kind.value[0],
-        autopilot=ARDUPILOT,
+        autopilot=vehicle.kind.profile.dialect.number,
         base_mode=int(flags),
         custom_mode=vehicle.mode,
-        system_status=5 if vehicle.failed_safe else 4 if vehicle.flies else 3,
+        system_status=5 if vehicle.failed_safe else 4 if _is_active(vehicle) else 3,
         mavlink_version=3,
     )
+
+
+def _is_active(vehicle: Vehicle) -> bool:
+    """Tell whether it calls itself active: PX4 does as soon as it is armed (mavlink/streams/HEARTBEAT.hpp)."""
+    return vehicle.armed if vehicle.kind.profile.dialect.lands_by_state else vehicle.flies
+
+
+def _extended(vehicle: Vehicle) -> Message:
+    rises = vehicle.mode == vehicle.kind.profile.climb
+    landed = (Landed.TAKEOFF if rises else Landed.IN_AIR) if vehicle.flies else Landed.ON_GROUND
+    return say("EXTENDED_SYS_STATE", vtol_state=0, landed_state=int(landed))
 
 
 def _status(vehicle: Vehicle) -> Message:
@@ -116,7 +146,11 @@ def _status(vehicle: Vehicle) -> Message:
         0,
     )
     return say(
-        "SYS_STATUS", **sensors, voltage_battery=round(vehicle.voltage * 1000), battery_remaining=90, **rest
+        "SYS_STATUS",
+        **sensors,
+        voltage_battery=round(vehicle.volts * 1000),
+        battery_remaining=round(100 * vehicle.charge),
+        **rest,
     )
 
 
@@ -152,6 +186,13 @@ def _position(vehicle: Vehicle) -> Message:
         vz=round(-where.climb * 100),
         hdg=round(where.course * 100) % 36_000,
     )
+
+
+def _attitude(vehicle: Vehicle) -> Message:
+    roll, pitch = map(math.radians, vehicle.tilt)
+    yaw = math.remainder(math.radians(vehicle.body.course), math.tau)
+    rates = {"rollspeed": 0.0, "pitchspeed": 0.0, "yawspeed": math.radians(vehicle.body.turn)}
+    return say("ATTITUDE", time_boot_ms=_milliseconds(vehicle), roll=roll, pitch=pitch, yaw=yaw, **rates)
 
 
 def _time(vehicle: Vehicle) -> Message:
@@ -224,5 +265,7 @@ _MESSAGES: Final[Mapping[str, Callable[[Vehicle], Message]]] = MappingProxyType(
         "POSITION_TARGET_GLOBAL_INT": _target,
         "HOME_POSITION": _home,
         "AUTOPILOT_VERSION": _version,
+        "EXTENDED_SYS_STATE": _extended,
+        "ATTITUDE": _attitude,
     }
 )

@@ -1,7 +1,7 @@
-"""The vehicle's side of mission upload and download, as ArduPilot does it.
+"""The vehicle's side of mission upload and download, as ArduPilot does it, and PX4 in a manner of its own.
 
-It requests item after item, again after a second, and gives up after eight. It answers an item that it did not request
-with INVALID_SEQUENCE, and overwrites item 0 by home. It serves one ground station at a time: others that upload
+ArduPilot requests item after item, again after a second, and gives up after eight. It answers an item that it did not
+request with INVALID_SEQUENCE, and overwrites item 0 by home. It serves one ground station at a time: others that upload
 meanwhile, and all that download, get DENIED.
 """
 
@@ -14,10 +14,34 @@ from adapters.mavlink.constants import Cmd, Frame, MissionResult, MissionType
 from adapters.mavlink.items import Item, Items, item_message, item_of
 from adapters.mavlink.message import Message, say
 
-ASK_AGAIN: Final = 1.0
-GIVE_UP: Final = 8.0
 MAX_ITEMS: Final = 700
 HIGHEST: Final = 1e5
+
+
+@dataclass(frozen=True, slots=True)
+class Manner:
+    """What makes of autopilot do differently in an upload.
+
+    Attributes:
+        ask_again: Seconds before it requests an item again.
+        give_up: Seconds of silence after which it cancels.
+        busy: Its answer to others that upload meanwhile.
+        out_of_turn: Its answer to an item that it did not request, None if it ignores it.
+        home_is_item: Whether it overwrites item 0 of a mission by home.
+    """
+
+    ask_again: float
+    give_up: float
+    busy: MissionResult
+    out_of_turn: MissionResult | None
+    home_is_item: bool
+
+
+ARDUPILOT_MANNER: Final = Manner(
+    1.0, 8.0, MissionResult.DENIED, MissionResult.INVALID_SEQUENCE, home_is_item=True
+)
+PX4_MANNER: Final = Manner(0.25, 5.0, MissionResult.ERROR, None, home_is_item=False)
+"""As mavlink/mavlink_mission.cpp and mavlink_mission.h have it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +64,7 @@ class Store:
     `request` is how it asks for items: planes with MISSION_REQUEST.
     """
 
+    manner: Manner = ARDUPILOT_MANNER
     request: str = "MISSION_REQUEST"
     home: tuple[int, int, float] = (0, 0, 0.0)
     items: dict[MissionType, Items] = field(default_factory=dict)
@@ -52,7 +77,7 @@ class Store:
             case "MISSION_COUNT" if kind is not None:
                 return self._count(message, kind, ready=ready, now=now)
             case "MISSION_REQUEST_LIST" | "MISSION_REQUEST_INT" if self._receives(kind):
-                return [_answer(message, kind, MissionResult.DENIED)]
+                return [_answer(message, kind, self.manner.busy)]
             case "MISSION_ITEM_INT" if self.receiving is not None and kind is self.receiving.kind:
                 return self._item(self.receiving, message, now)
             case "MISSION_REQUEST_LIST" if kind is not None:
@@ -70,10 +95,10 @@ class Store:
         going = self.receiving
         if going is None:
             return []
-        if now - going.heard >= GIVE_UP:
+        if now - going.heard >= self.manner.give_up:
             self.receiving = None
             return [_ack(going, MissionResult.CANCELLED)]
-        return self._ask(going, now) if now - going.asked >= ASK_AGAIN else []
+        return self._ask(going, now) if now - going.asked >= self.manner.ask_again else []
 
     def _count(self, message: Message, kind: MissionType, *, ready: bool, now: float) -> list[Message]:
         going = Receiving(message.system, message.component, kind, message["count"], heard=now)
@@ -81,12 +106,13 @@ class Store:
         if not ready or going.count > MAX_ITEMS:
             return [_ack(going, MissionResult.NO_SPACE)]
         if busy:
-            return [_ack(going, MissionResult.DENIED)]
+            return [_ack(going, self.manner.busy)]
         return self._ask(going, now) if going.count else self._complete(going)
 
     def _item(self, going: Receiving, message: Message, now: float) -> list[Message]:
         if message["seq"] != len(going.items):
-            return [_answer(message, going.kind, MissionResult.INVALID_SEQUENCE)]
+            wrong = self.manner.out_of_turn
+            return [] if wrong is None else [_answer(message, going.kind, wrong)]
         if (message.system, message.component) != (going.station, going.component):
             return [_answer(message, going.kind, MissionResult.DENIED)]
         item = item_of(message.fields)
@@ -108,7 +134,7 @@ class Store:
 
     def _all(self, kind: MissionType) -> Items:
         items = self.items.get(kind, ())
-        if kind is not MissionType.MISSION or not items:
+        if kind is not MissionType.MISSION or not items or not self.manner.home_is_item:
             return items
         x, y, z = self.home
         return (Item(Cmd.WAYPOINT, x, y, z, Frame.SEA_LEVEL), *items[1:])

@@ -11,21 +11,35 @@ from enum import Enum
 from functools import lru_cache
 from typing import Final
 
-from adapters.mavlink.constants import AUTHORITY_PARAMETERS, Cmd, Fence, MissionType
+from adapters.mavlink.constants import Cmd, Fence, FenceAction, MissionType
 from adapters.mavlink.items import Item
-from adapters.mavlink.profiles import BOAT, COPTER, PLANE, ROVER, Profile, TakeOff
+from adapters.mavlink.profiles import BOAT, COPTER, PLANE, PX4_COPTER, PX4_PLANE, ROVER, Profile, TakeOff
 from adapters.mavlink.signing import Signing
 from adapters.simulated import body as bodies
 from adapters.simulated.body import Body, Limits, astray, metres_to, moved, towards
-from adapters.simulated.store import Store
+from adapters.simulated.store import ARDUPILOT_MANNER, PX4_MANNER, Store
 from physical import Geometry, PhysicalError, contains, point, polygon
 
 WAYPOINT_RADIUS: Final = 50.0
 """Metres from a waypoint at which a plane takes the next."""
 
+GRAVITY: Final = 9.81
 FIX_AFTER: Final = 10.0
 READY_AFTER: Final = 19.0
 """Seconds after boot at which it has a fix, and could be armed; before, it says that it is near (0, 0)."""
+
+WARNING: Final = 4
+INFO: Final = 6
+"""MAV_SEVERITY_WARNING and MAV_SEVERITY_INFO."""
+
+ITEMS: Final[dict[int, str]] = {Cmd.TAKEOFF: "Takeoff", Cmd.WAYPOINT: "WP", Cmd.LOITER_UNLIMITED: "LoitUnlim"}
+"""What ArduPilot calls the items of a mission when it begins them."""
+
+ENDURANCE: Final = 7_200.0
+"""Seconds for which a full battery lasts."""
+
+SAG: Final = 1.8
+"""Volts that it loses over the second half of its charge; that alone is not low yet."""
 
 NO_FENCE: Final = Fence(0)
 STOPS_BEFORE: Final = 4.0
@@ -48,6 +62,23 @@ OF_KINDS: Final = {
 """What ArduPilot 4.6 has by default, but for the radius of a plane's circle, which its simulator sets."""
 
 
+OF_PX4: Final = {
+    "BAT_CRIT_THR": 0.07,
+    "COM_LOW_BAT_ACT": 0.0,
+    "GF_ACTION": 2.0,
+    "GF_MAX_HOR_DIST": 0.0,
+    "GF_MAX_VER_DIST": 0.0,
+    "MIS_TAKEOFF_ALT": 2.5,
+    "MIS_TKO_LAND_REQ": 0.0,
+    "NAV_LOITER_RAD": 80.0,
+    "RTL_LOITER_RAD": 80.0,
+}
+"""What PX4 has by default, but for a plane's MIS_TKO_LAND_REQ of 2, with which it takes no path."""
+
+LOW_BATTERY_RETURNS: Final = 3.0
+"""PX4's COM_LOW_BAT_ACT with which it returns at a critical charge."""
+
+
 class Kind(Enum):
     """A kind of vehicle: MAV_TYPE, profile, limits, radius around a waypoint, how it asks for mission items."""
 
@@ -55,6 +86,8 @@ class Kind(Enum):
     COPTER = (2, COPTER, bodies.COPTER, 2.0, "MISSION_REQUEST_INT")
     ROVER = (10, ROVER, bodies.ROVER, 2.0, "MISSION_REQUEST_INT")
     BOAT = (11, BOAT, bodies.ROVER, 4.0, "MISSION_REQUEST_INT")
+    PX4_PLANE = (1, PX4_PLANE, bodies.PLANE, WAYPOINT_RADIUS, "MISSION_REQUEST_INT")
+    PX4_COPTER = (2, PX4_COPTER, bodies.COPTER, 2.0, "MISSION_REQUEST_INT")
 
     @property
     def profile(self) -> Profile:
@@ -101,12 +134,16 @@ class Vehicle:
         fixed: Whether its receiver has satellites.
         fences: Which of its fences are on.
         version: Of its firmware: before 4.6 all fences were switched at once.
+        slowed: What part of its kind's speed it makes over the ground, as against a head wind.
         wind: Metres a second to the north and to the east: it carries a plane out of its circle.
         serial: Its autopilot's serial number: at most 18 bytes.
-        voltage: Its battery's; when it is low for a while, the fail-safe acts once.
+        voltage: Its battery's when it is full; when it is low for a while, the fail-safe acts once.
+        charge: How much of its battery is left, from 1 to 0.
         low: Since when it is low.
         failed_safe: Whether the fail-safe has acted since it booted.
-        words: What it has to say.
+        words: What it has to say, with its severity.
+        told: The item of its mission that it has said it begins.
+        breached: Whether it was outside a fence when it last looked.
     """
 
     kind: Kind
@@ -125,6 +162,7 @@ class Vehicle:
     fences: Fence = NO_FENCE
     version: tuple[int, int, int] = (4, 6, 3)
     wind: tuple[float, float] = (0.0, 0.0)
+    slowed: float = 1.0
     parameters: dict[str, float] = field(default_factory=dict)
     signing: Signing | None = None
     serial: bytes = b""
@@ -134,24 +172,50 @@ class Vehicle:
     voltage: float = 12.6
     low: float | None = None
     failed_safe: bool = False
-    words: list[str] = field(default_factory=list)
+    charge: float = 1.0
+    words: list[tuple[int, str]] = field(default_factory=list)
+    told: int | None = None
+    breached: bool = False
 
     def __post_init__(self) -> None:
         latitude, longitude, altitude = self.home
-        defaults = PARAMETERS | OF_KINDS[self.kind.profile.takeoff] | {self.authority_parameter: 255.0}
-        self.parameters = defaults | self.parameters
+        dialect = self.kind.profile.dialect
+        defaults = OF_PX4 if dialect.typed else PARAMETERS | OF_KINDS[self.kind.profile.takeoff]
+        authority = {self.authority_parameter: 255.0} if dialect.authority else {}
+        self.parameters = defaults | authority | self.parameters
+        self.mode = self.mode or self.first_mode
         self.body = Body(latitude, longitude)
-        self.store = Store(self.kind.value[4], (round(latitude * 1e7), round(longitude * 1e7), altitude))
+        manner = ARDUPILOT_MANNER if dialect.home_is_item else PX4_MANNER
+        self.store = Store(
+            manner, self.kind.value[4], (round(latitude * 1e7), round(longitude * 1e7), altitude)
+        )
 
     @property
     def authority_parameter(self) -> str:
         """The name of its authority parameter."""
-        return AUTHORITY_PARAMETERS[self.version >= (4, 7, 0)]
+        return self.kind.profile.dialect.authority[self.version >= (4, 7, 0)]
+
+    @property
+    def speed(self) -> float:
+        """The speed over the ground that it flies at, in m/s."""
+        return self.kind.limits.speed * self.slowed
+
+    @property
+    def first_mode(self) -> int:
+        """The mode in which it boots."""
+        return self.kind.profile.hold if self.kind.profile.climb is not None else 0
+
+    @property
+    def fence_action(self) -> FenceAction | None:
+        """What it does at its fences, which need no switch; None where they are switched."""
+        action = self.parameters.get(self.kind.profile.dialect.fence_action)
+        return None if action is None else FenceAction(int(action))
 
     @property
     def fence(self) -> Geometry | None:
         """The polygon that it keeps within."""
-        return self.polygon if Fence.POLYGON in self.fences else None
+        acts = self.fence_action is not None and self.fence_action > FenceAction.WARN
+        return self.polygon if acts or Fence.POLYGON in self.fences else None
 
     @property
     def polygon(self) -> Geometry | None:
@@ -161,7 +225,7 @@ class Vehicle:
     @property
     def configured(self) -> Fence:
         """Which fences it would keep within if they were on."""
-        configured = Fence(int(self.parameters["FENCE_TYPE"]))
+        configured = Fence(int(self.parameters.get("FENCE_TYPE", 0)))
         return configured if self.polygon is not None else configured & ~Fence.POLYGON
 
     def switch_fences(self, fences: Fence, *, on: bool) -> None:
@@ -172,14 +236,24 @@ class Vehicle:
     @property
     def circle(self) -> float:
         """The radius at which it circles where it is told none."""
-        return (
-            abs(self.parameters["WP_LOITER_RAD"]) if self.kind.limits.must_move else self.kind.profile.circle
-        )
+        profile = self.kind.profile
+        return abs(self.parameters[profile.dialect.circle]) if self.kind.limits.must_move else profile.circle
 
     @property
     def home_circle(self) -> float:
         """The radius at which it circles its home; counter-clockwise if negative."""
-        return self.parameters.get("RTL_RADIUS") or self.circle
+        return self.parameters.get(self.kind.profile.dialect.home_circle) or self.circle
+
+    @property
+    def volts(self) -> float:
+        """Its battery's voltage now."""
+        return self.voltage - SAG * max(0.0, 1.0 - 2.0 * self.charge)
+
+    def arm(self, *, armed: bool) -> None:
+        """Arm or disarm it, and say so."""
+        if armed != self.armed:
+            self.words.append((INFO, f"Throttle {'armed' if armed else 'disarmed'}"))
+        self.armed = armed
 
     @property
     def flies(self) -> bool:
@@ -197,6 +271,15 @@ class Vehicle:
         return self.fixed and self.uptime >= FIX_AFTER
 
     @property
+    def tilt(self) -> tuple[float, float]:
+        """Roll and pitch in degrees: a plane banks as its turn takes it, the others stay level."""
+        body = self.body
+        if not self.kind.limits.must_move or body.speed < 1.0:
+            return 0.0, 0.0
+        bank = math.atan(body.speed * math.radians(body.turn) / GRAVITY)
+        return math.degrees(bank), math.degrees(math.atan2(body.climb, body.speed))
+
+    @property
     def ready(self) -> bool:
         """Whether it could be armed, and takes missions."""
         return self.uptime >= READY_AFTER
@@ -206,11 +289,11 @@ class Vehicle:
         self.booted = self.time
         self.armed = armed and self.armed
         self.current, self.target = 0, None
-        self.mode = self.mode if self.armed else 0
+        self.mode = self.mode if self.armed else self.first_mode
         self.store.receiving = None
         self.low, self.failed_safe = None, False
         self.fences = NO_FENCE
-        if self.parameters["FENCE_ENABLE"]:
+        if self.parameters.get("FENCE_ENABLE"):
             self.switch_fences(~Fence.ALT_MIN, on=True)
 
     def restart(self) -> None:
@@ -225,11 +308,15 @@ class Vehicle:
         seconds, self.time = now - self.time, now
         if not self.armed or seconds <= 0:
             return
+        self.charge = max(0.0, self.charge - seconds / ENDURANCE)
         self._keep_fence()
         self._watch_battery()
         profile = self.kind.profile
+        self.told = self.told if self.mode == profile.auto else None
         if self.mode == profile.auto:
             self._follow(seconds)
+        elif self.mode == profile.climb:
+            self._climb(seconds)
         elif self.mode == profile.guided and self.target:
             self._go(self.target, seconds)
         elif self.mode == profile.home:
@@ -238,10 +325,28 @@ class Vehicle:
             self._idle(seconds)
 
     def _keep_fence(self) -> None:
-        """Return as soon as it is outside a fence; what drives has stopped before its circle."""
+        """Return, or stop, as soon as it is outside a fence; what drives has stopped before its circle."""
         here = self.body
-        if not self.holds(here.latitude, here.longitude, here.height):
+        outside = not self.holds(here.latitude, here.longitude, here.height)
+        if outside and self.fence_action is FenceAction.HOLD:
+            if not self.breached:
+                self.words.append((WARNING, "Geofence violation: holding"))
+                self.stay()
+        elif outside:
             self.mode = self.kind.profile.home
+        self.breached = outside
+
+    def stay(self) -> None:
+        """Hold where it is."""
+        self.mode = self.kind.profile.hold
+        self.target = Target(self.body.latitude, self.body.longitude, self.body.height, self.circle)
+
+    def _climb(self, seconds: float) -> None:
+        """Take off in the mode for it, and hold once it is high enough."""
+        height = self.target.height if self.target else 0.0
+        self._take_off(height, seconds)
+        if self.body.height >= height - 1.0:
+            self.stay()
 
     def holds(self, latitude: float, longitude: float, height: float) -> bool:
         """Tell whether somewhere is inside all fences that are on."""
@@ -256,23 +361,39 @@ class Vehicle:
 
     def _watch_battery(self) -> None:
         """Return once the battery is low, if the parameters say so; who sends it on after that has overruled it."""
-        if self.voltage >= self.parameters["BATT_LOW_VOLT"] or self.failed_safe:
+        if self.kind.profile.dialect.typed:
+            self._watch_charge()
+            return
+        if self.volts >= self.parameters["BATT_LOW_VOLT"] or self.failed_safe:
             self.low = None
             return
         self.low = self.time if self.low is None else self.low
         if self.time - self.low < self.parameters["BATT_LOW_TIMER"]:
             return
         self.failed_safe = True
-        self.words.append(f"Battery 1 is low {self.voltage:.2f}V used 0 mAh")
+        self.words.append((WARNING, f"Battery 1 is low {self.volts:.2f}V used 0 mAh"))
         if self.parameters["BATT_FS_LOW_ACT"] == self.kind.returns:
+            self.mode = self.kind.profile.home
+
+    def _watch_charge(self) -> None:
+        """Return once the charge is critical, if COM_LOW_BAT_ACT says so."""
+        if self.charge > self.parameters["BAT_CRIT_THR"] or self.failed_safe:
+            return
+        self.failed_safe = True
+        self.words.append((WARNING, "Critical battery, return"))
+        if self.parameters["COM_LOW_BAT_ACT"] == LOW_BATTERY_RETURNS:
             self.mode = self.kind.profile.home
 
     def _follow(self, seconds: float) -> None:
         items = self.store.items.get(MissionType.MISSION, ())
-        if len(items) < 2:
+        first = int(self.kind.profile.dialect.home_is_item)
+        if len(items) <= first:
             return
-        self.current = max(1, min(self.current, len(items) - 1))
+        self.current = max(first, min(self.current, len(items) - 1))
         item = items[self.current]
+        if self.told != self.current:
+            self.told = self.current
+            self.words.append((INFO, f"Mission: {self.current} {ITEMS.get(item.command, item.command)}"))
         if item.command == Cmd.TAKEOFF:
             self._take_off(item.z, seconds)
         else:
@@ -281,6 +402,9 @@ class Vehicle:
             self._go(Target(item.x / 1e7, item.y / 1e7, item.z, circle), seconds)
         if self._done(item) and self.current < len(items) - 1:
             self.reached.append(self.current)
+            if item.command == Cmd.WAYPOINT:
+                away = metres_to(self.body, item.x / 1e7, item.y / 1e7)[0]
+                self.words.append((INFO, f"Reached waypoint #{self.current} dist {away:.0f}m"))
             self.current += 1
 
     def _done(self, item: Item) -> bool:
@@ -291,7 +415,7 @@ class Vehicle:
 
     def _take_off(self, height: float, seconds: float) -> None:
         limits = self.kind.limits
-        speed = limits.speed if limits.must_move else 0.0
+        speed = self.speed if limits.must_move else 0.0
         rising = height if not limits.must_move or self.body.speed > 0.6 * speed else self.body.height
         self.body = moved(self.body, limits, self.body.course, speed, rising, seconds)
 
@@ -301,10 +425,10 @@ class Vehicle:
             _, bearing = metres_to(self.body, target.latitude, target.longitude)
             circle = target.circle * astray(bearing, self.wind)
             course = towards(self.body, target.latitude, target.longitude, circle)
-            self.body = moved(self.body, limits, course, limits.speed, target.height, seconds)
+            self.body = moved(self.body, limits, course, self.speed, target.height, seconds)
             return
         distance, course = metres_to(self.body, target.latitude, target.longitude)
-        speed = min(limits.speed, distance)  # slows down over the last second
+        speed = min(self.speed, distance)  # slows down over the last second
         if limits.climb == 0 and Fence.CIRCLE in self.fences:
             speed = min(speed, max(0.0, self._before_the_circle(course)))
         height = target.height if limits.climb else 0.0
@@ -322,7 +446,7 @@ class Vehicle:
         limits = self.kind.limits
         if limits.must_move and self.flies:
             circling = self.body.course + limits.turn * seconds * 0.5
-            self.body = moved(self.body, limits, circling, limits.speed, self.body.height, seconds)
+            self.body = moved(self.body, limits, circling, self.speed, self.body.height, seconds)
         elif not limits.must_move:
             self.body = moved(self.body, limits, self.body.course, 0.0, self.body.height, seconds)
 

@@ -1,4 +1,4 @@
-"""The transport between stations: broadcast, and requests to one. By Zenoh; the only file that imports it.
+"""The transport between stations: broadcast, and requests to one. By Zenoh, which no other file here imports.
 
 Endpoints are explicit: no discovery, no multicast, no gossip. Each station writes under keys of its own. With mutual
 TLS the common name of its certificate enforces this.

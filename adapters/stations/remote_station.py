@@ -5,10 +5,15 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Final
 
+from adapters.plugin import Presence
 from adapters.stations.entries import Posted
 from adapters.stations.messages import Message
 from adapters.stations.skew import Skew
+
+SELDOM: Final = 2.0
+"""Seconds between two reports of when a station was heard."""
 
 
 @dataclass(slots=True)
@@ -24,6 +29,8 @@ class Other:
         answered: When it answered last.
         reached: Whether it answers; None if that is not known yet.
         skewed: Whether its clock is off by more than the bound.
+        met: When it answered last, by the run's clock; None if it never did.
+        shown: What the run was last told of its presence.
         awake: Set if it must be asked at once.
     """
 
@@ -35,7 +42,18 @@ class Other:
     answered: float = 0.0
     reached: bool | None = None
     skewed: bool = False
+    met: float | None = None
+    shown: Presence | None = None
     awake: asyncio.Event = field(default_factory=asyncio.Event)
+
+    def presence(self, station: str, now: float) -> Presence | None:
+        """Return what the run should know of its presence: whether it is reached at once, when it was heard seldom."""
+        found, before = Presence(station, now, self.reached, self.met), self.shown
+        same = before is not None and before.reached == found.reached
+        if same and before is not None and (before.heard == found.heard or now - before.time < SELDOM):
+            return None
+        self.shown = found
+        return found
 
     def follow(self, message: Message, *, whole: bool) -> bool:
         """Count the entries of a message; return whether no earlier ones are missing."""

@@ -432,6 +432,9 @@ class Sharing:
             for entity in sorted(self._ahead - early):
                 self._show(world, entity)
             self._ahead &= early
+            for station, other in self.others.items():
+                if (presence := other.presence(station, world.now())) is not None:
+                    world.report(presence)
             self._troubles.report(world)
 
     def _silent(self, world: World, station: str, other: Other) -> None:
@@ -448,7 +451,7 @@ class Sharing:
         now = world.now()
         if other.reached is False:
             world.report(Trouble(NAME, now, f"{station} is reached again"))
-        other.reached, other.answered = True, self._listening.look(now)
+        other.reached, other.answered, other.met = True, self._listening.look(now), now
         other.skew.add(measured(asked, theirs, now))
         best = other.skew.best
         skewed = best is not None and best.exceeds(MOST_SKEW)

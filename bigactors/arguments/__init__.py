@@ -20,9 +20,19 @@ from bigactors.mistakes import Mistake, suggestion
 __all__ = ["FORMATS", "NAMES", "Command", "Parser", "make_parser", "parse_arguments", "parser_of"]
 
 GROUPS: Final = {
-    "write and check missions": ("new", "check", "simulate", "show", "replay", "fmt", "lsp", "explain"),
-    "fly them": ("run", "say", "give-back", "keygen"),
-    "places and bigraphs": ("world", "big"),
+    "write and check missions": (
+        "new",
+        "check",
+        "simulate",
+        "show",
+        "replay",
+        "export",
+        "fmt",
+        "lsp",
+        "explain",
+    ),
+    "fly them": ("run", "console", "status", "say", "hold", "return", "give-back", "plugins", "keygen"),
+    "places and bigraphs": ("world", "detect", "big"),
     "begin": ("demo", "completion"),
 }
 """The commands, as the help lists them."""

@@ -111,6 +111,12 @@ def _report(parser: Parser) -> None:
         help="show at most N different violations of each property, each with a shortest trace; count the others "
         "(default 5)",
     )
+    group.add_argument(
+        "--times",
+        action="store_true",
+        help="say how long each flight of a mission with timing takes, when it begins and ends, and when each time "
+        "property is first true: from the earliest moment to the latest; every tick is counted for it",
+    )
     group.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
 
 

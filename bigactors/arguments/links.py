@@ -8,7 +8,7 @@ from bigactors.arguments.parser import Parser
 from bigactors.arguments.values import corners, named, seconds
 
 FILTERED: Final = ("ais", "detections")
-LIVING: Final = {"ais": 600.0, "detections": 600.0, "locations": 60.0, "vehicles": 30.0}
+LIVING: Final = {"ais": 600.0, "detections": 600.0, "locations": 60.0, "ros": 60.0, "vehicles": 30.0}
 """For how many seconds a position counts that nothing newer follows, if nothing else is said."""
 
 

@@ -4,9 +4,11 @@ import argparse
 import re
 from typing import Final
 
+from bigactors.arguments.cameras import fill_cameras
 from bigactors.arguments.common import MISSION
 from bigactors.arguments.links import fill_links
 from bigactors.arguments.parser import Command, Parser
+from bigactors.arguments.serving import ANYWHERE, add_serving, place
 from bigactors.arguments.values import identity, named, seconds, substitute
 
 DESCRIPTION: Final = """\
@@ -32,7 +34,9 @@ def fill(parser: Parser) -> None:
         action="append",
         default=[],
         type=vehicle,
-        help=f"the vehicle NAME, with its MAVLink system id, is at ADDRESS, such as uav0={ADDRESS}; may be repeated",
+        help=f"the vehicle NAME, with its MAVLink system id, is at ADDRESS, such as uav0={ADDRESS}; "
+        "a robot of ROS 2: uav0=ros:tcp:HOST:PORT (docs/how-to/ros.md); `bigactors plugins` lists the schemes; "
+        "may be repeated",
     )
     parser.add_argument(
         "--feed",
@@ -41,7 +45,14 @@ def fill(parser: Parser) -> None:
         default=[],
         type=feed,
         help="positions come from ADDRESS, such as ais=udp:10110 or ais=file:harbour.nmea; the kinds are ais, "
-        "places, detections and locations; may be repeated",
+        "places, detections, locations, ros, and those of installed plugins (`bigactors plugins`); may be repeated",
+    )
+    parser.add_argument(
+        "--publish",
+        metavar="ros=ADDRESS",
+        type=published,
+        help="publish what P and L hold for ROS 2, through the Zenoh router at ADDRESS (tcp:HOST:PORT[?domain=N]; "
+        "docs/how-to/ros.md)",
     )
     parser.add_argument(
         "--station",
@@ -74,6 +85,7 @@ def fill(parser: Parser) -> None:
         help="the name of a source in the mission: a transponder (mmsi:244660274=drifter0), a vehicle by its system id "
         "(mavlink:3=uav0) or by its autopilot's serial number (serial:2F003B=uav0); may be repeated",
     )
+    fill_cameras(parser)
     fill_links(parser)
     parser.add_argument(
         "--record",
@@ -81,6 +93,16 @@ def fill(parser: Parser) -> None:
         type=named,
         help="record everything into FILE (MCAP), and every MAVLink frame into a tlog beside it",
     )
+    parser.add_argument(
+        "--console",
+        metavar="[HOST:]PORT",
+        nargs="?",
+        const=ANYWHERE,
+        type=place,
+        help="serve the operator's console in the browser (default: on this machine only, port 8765 or a free one); "
+        "the links are printed",
+    )
+    add_serving(parser)
     parser.add_argument(
         "--resume",
         metavar="FILE",
@@ -105,7 +127,9 @@ def fill(parser: Parser) -> None:
         default=60.0,
         help="wait at most SECONDS until every vehicle is heard (default 60)",
     )
-    parser.add_argument("--socket", metavar="FILE", type=named, help="where `bigactors say` reaches it")
+    parser.add_argument(
+        "--socket", metavar="FILE", type=named, help="where `bigactors say`, `hold` and others reach it"
+    )
     parser.add_argument(
         "--source",
         metavar="NAME=FILE",
@@ -138,6 +162,18 @@ def feed(word: str) -> tuple[str, str]:
     if not (kind and address):
         raise argparse.ArgumentTypeError(f"'{word:.60}' is not KIND=ADDRESS, such as ais=udp:10110")
     return kind, address
+
+
+def published(word: str) -> str:
+    """Read ros=ADDRESS.
+
+    >>> published("ros=tcp:127.0.0.1:7447")
+    'tcp:127.0.0.1:7447'
+    """
+    way, _, address = word.partition("=")
+    if way != "ros" or not address:
+        raise argparse.ArgumentTypeError(f"'{word:.60}' is not ros=ADDRESS, such as ros=tcp:127.0.0.1:7447")
+    return address
 
 
 def station(word: str) -> tuple[str, int | None]:

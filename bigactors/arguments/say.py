@@ -1,5 +1,7 @@
 """The arguments of `bigactors say`."""
 
+from getpass import getuser
+
 from bigactors.arguments.parser import Command, Parser
 from bigactors.arguments.values import named
 
@@ -8,7 +10,23 @@ def fill(parser: Parser) -> None:
     """Add the arguments of `bigactors say`."""
     parser.add_argument("agent", metavar="AGENT", help="a bigActor of the running mission")
     parser.add_argument("message", metavar="MESSAGE", help="what its environment section says may be said")
+    add_by(parser)
     add_socket(parser)
+
+
+def add_by(parser: Parser) -> None:
+    """Add the option that says who speaks."""
+    parser.add_argument(
+        "--by", metavar="NAME", default=_login(), help="who says so, as it is recorded (default: your login)"
+    )
+
+
+def _login() -> str:
+    """Return the user's login, empty if it is not known."""
+    try:
+        return getuser()
+    except (OSError, KeyError):
+        return ""
 
 
 def add_socket(parser: Parser) -> None:
@@ -26,6 +44,6 @@ COMMAND = Command(
     "say something to a bigActor of a running mission",
     "Put a message into the mailbox of a bigActor, as the mission's environment section says that someone may:\n"
     "what it does not say is refused, with what may be said instead.",
-    ("bigactors say op handover",),
+    ("bigactors say op handover", "bigactors say op handover --by Ana"),
     fill,
 )

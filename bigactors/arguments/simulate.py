@@ -23,6 +23,11 @@ def fill(parser: Parser) -> None:
         help="take no more than N steps (default 100)",
     )
     parser.add_argument(
+        "--choose",
+        action="store_true",
+        help="choose each step: what is enabled is listed, and answers are read from standard input (? says which)",
+    )
+    parser.add_argument(
         "--json",
         metavar="FILE",
         type=named,
@@ -34,10 +39,11 @@ def fill(parser: Parser) -> None:
 COMMAND = Command(
     "simulate",
     "run a mission once",
-    "Take one run of a mission, chosen by a seed, and print it in the paper's notation.",
+    "Take one run of a mission, chosen by a seed or step by step, and print it in the paper's notation.",
     (
         "bigactors simulate oil_spill.mission --seed 7",
         "bigactors simulate oil_spill.mission --steps 20 --json run.json",
+        "bigactors simulate oil_spill.mission --choose",
     ),
     fill,
 )

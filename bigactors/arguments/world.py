@@ -31,7 +31,12 @@ def fill(parser: Parser) -> None:
         help="take only what is in this box, in degrees",
     )
     parser.add_argument("--kinds", metavar="KIND,...", help="only entities of these kinds")
-    parser.add_argument("--output", metavar="FILE", type=named, help="draw it too: a picture, .svg or .png")
+    parser.add_argument(
+        "--output",
+        metavar="FILE",
+        type=named,
+        help="draw it too: a picture, .svg or .png; or write it for other programs as GeoJSON, .geojson (RFC 7946)",
+    )
 
 
 COMMAND = Command(
@@ -42,6 +47,7 @@ COMMAND = Command(
         "bigactors world harbour.geojson --output harbour.svg",
         "bigactors world harbour.geojson vessels.nmea --at 2020-04-07T21:42:00Z --kinds Vessel,Harbour",
         "bigactors world survey.plan harbour.geojson",
+        "bigactors world vessels.nmea --at 2020-04-07T21:42:00Z --output vessels.geojson",
         "bigactors world vessels.nmea --within 52.83,5.66,52.87,5.72",
     ),
     fill,

@@ -1,7 +1,8 @@
 """`bigactors big`: systems of bigraphs, without missions."""
 
 from argparse import Namespace
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, Final
 
@@ -36,9 +37,13 @@ def run(options: Namespace) -> Exit:
 
 def read_file(options: Namespace) -> System:
     """Return the system in a file, or of an example that ships."""
+    constants = dict(options.const)
     if options.file in example_names() and not Path(options.file).exists():
-        return read_system(example_text(options.file), constants=dict(options.const))
-    return load_system(options.file, constants=dict(options.const))
+        return read_system(example_text(options.file), constants=constants)
+    found = load_system(options.file, constants=constants)
+    for warning in found.warnings:
+        tell(f"warning: {warning.render(options.file)}")
+    return found
 
 
 def explored(options: Namespace, system: System) -> TransitionSystem:
@@ -152,10 +157,15 @@ def validate(options: Namespace) -> Exit:
     say(f"  initial state: {write_big(system.initial)}")
     for each in system.classes:
         how = "at once" if each.instantaneous else "one at a time"
-        say(f"  a class, {how}: {', '.join(rule.label for rule in each.rules) or 'no rule'}")
+        say(f"  a class, {how}: {_instances(rule.name for rule in each.rules) or 'no rule'}")
     if system.predicates:
-        say(f"  predicates: {', '.join(predicate.label for predicate in system.predicates)}")
+        say(f"  predicates: {_instances(predicate.name for predicate in system.predicates)}")
     return Exit.HOLDS
+
+
+def _instances(names: Iterable[str]) -> str:
+    """List names, each once, with how many instances its parameters make."""
+    return ", ".join(name if times == 1 else f"{name} ({times:,})" for name, times in Counter(names).items())
 
 
 def show(options: Namespace) -> Exit:

@@ -21,7 +21,7 @@ from checker import Cluster, Engine, Interruption, Keeping, Limits, Reduction, r
 from checker.engines.fast.loading import ALONE
 from checker.reports.report import MARKS, coverage_text
 from checker.reports.results import caution_text
-from checker.verdicts import Outcome
+from checker.verdicts import Outcome, Report
 from physical.messages import counted
 from semantics.successors import rules_of
 
@@ -44,13 +44,15 @@ def run(options: Namespace) -> Exit:
     """Check missions, with `--watch` at each save; print the reports and write what was asked for."""
     ALONE.set(True)
     limits = limits_of(options)
+    if options.times and options.engine not in (None, "reference"):
+        raise Mistake("--times is of the reference explorer", "leave --engine out")
     if options.trace:
         make_folder(options.trace)
     key = _check_verdict(options)
     outputs = outputs_of(options)
     engine = options.engine and Engine(options.engine)
     reductions = tuple(map(Reduction, options.reduce))
-    how = How(engine, options.violations, reductions, keeping_of(options), cluster_of(options))
+    how = How(engine, options.violations, reductions, keeping_of(options), cluster_of(options), options.times)
     variation = variation_of(options)
 
     def check(interruption: Interruption) -> Iterator[Checked | Failed]:
@@ -159,6 +161,8 @@ def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
     if isinstance(result, Failed):
         return
     report = result.report
+    for caution in cautions_of(result.mission):
+        yield from caution_text(result.name, caution)
     yield from report_text(result.name, report, traces=traces)
     silent = [
         rule.__name__
@@ -168,10 +172,22 @@ def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
     if silent:
         when = "never used" if report.complete and not report.reduced else "not used so far"
         yield f"  rules {when}: {', '.join(silent)}"
-    for caution in cautions_of(result.mission):
-        yield from caution_text(result.name, caution)
+    if not report.complete:
+        yield f"  to decide more: {remedies(report, is_timed=result.mission.setting.timing is not None)}"
     if report.coverage is not None:
         yield from coverage_text(result.name, report.coverage, result.mission.source.text)
+
+
+def remedies(report: Report, *, is_timed: bool = False) -> str:
+    """Return what may let an exploration that was cut off come to its end."""
+    less: tuple[str, ...] = ()
+    if is_timed:
+        larger = "give timing a larger tick, of which all durations are whole numbers"
+        less = (f"{larger}, or leave out --times, which counts every tick" if report.schedule else larger,)
+    elif not report.reduced:
+        less = ("visit less with --reduce por,symmetry (docs/explanation/reduction.md)",)
+    smaller = "name fewer entities and places, or let fewer bigActors act at once"
+    return "; ".join((*less, smaller, "or raise the limit that stopped it: --max-configurations, --max-time"))
 
 
 def summary(results: list[Checked | Failed]) -> Iterator[str]:

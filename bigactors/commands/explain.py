@@ -3,8 +3,9 @@
 from argparse import Namespace
 
 from bigactors.exits import Exit
-from bigactors.mistakes import Mistake, suggestion
+from bigactors.mistakes import Mistake
 from bigactors.terminal import say
+from bigraphs.notation.spelling import did_you_mean
 from checker.reports.glossary import ALL, find_word
 from specs import Code, explain, find_code
 
@@ -24,7 +25,7 @@ def run(options: Namespace) -> Exit:
     elif word is not None:
         say(f"{word[0]}\n\n{word[1]}")
     else:
-        hint = suggestion(asked, ALL)
+        hint = did_you_mean(asked, ALL)
         raise Mistake(
             f"there is no code and no word '{asked:.40}'", hint or "bigactors explain lists them all"
         )

@@ -3,20 +3,18 @@
 from argparse import Namespace
 
 from adapters.live.operator_socket import give_back
-from bigactors.commands.say import heard_at
+from bigactors.commands.say import check_texts, heard_at
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say
-from physical import is_text
 
 
 def run(options: Namespace) -> Exit:
     """Give it back, and print what came of it."""
     vehicle, at = options.vehicle, options.at or ""
-    if not (is_text(vehicle) and is_text(at)):
-        raise Mistake("a vehicle and an address have to be text in valid Unicode")
-    refusal = heard_at(options.socket, lambda path: give_back(path, vehicle, at))
+    check_texts("a vehicle or an address", vehicle, options.by, at)
+    refusal = heard_at(options.socket, lambda path: give_back(path, vehicle, at, options.by))
     if refusal:
-        raise Mistake(refusal, "the terminal of the run says which vehicles were taken over, or are silent")
+        raise Mistake(refusal, "`bigactors status` says which vehicles were taken over, or are silent")
     say(f"{vehicle} is believed at {at} from now on" if at else f"{vehicle} is given back")
     return Exit.HOLDS

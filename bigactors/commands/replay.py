@@ -33,11 +33,15 @@ Open = Callable[[str], ElaboratedMission]
 
 @dataclass(frozen=True, slots=True)
 class Replayed:
-    """A trace, replayed, with the mission that it is of and the recording that it was read from, if it was one."""
+    """A trace, replayed, with the mission that it is of and the recording that it was read from, if it was one.
+
+    `times` are those of its steps, in seconds; empty for a trace that has none.
+    """
 
     mission: ElaboratedMission
     trace: Trace
     recording: Recording | None = None
+    times: tuple[float, ...] = ()
 
 
 def run(options: Namespace) -> Exit:
@@ -52,8 +56,7 @@ def run(options: Namespace) -> Exit:
     trace, recording = found.trace, found.recording
     if recording is not None:
         _introduce(recording)
-    times = () if recording is None else tuple(message.time for message in recording.of("steps"))
-    for line in paced(trace, times, options.speed, stepwise=options.step):
+    for line in paced(trace, found.times, options.speed, stepwise=options.step):
         say(line)
     say(f"c{len(trace)} = {print_configuration(trace.configurations[-1])}")
     again = f", and {print_loop(trace)}" if trace.loop is not None else ""
@@ -112,7 +115,7 @@ def read_trace(
         return _read_recording(path, mission_file, open_mission)
     if is_foreign(path):
         mission, shown = _watched(path, mission_file, open_mission, names or {})
-        return Replayed(mission, shown.trace)
+        return Replayed(mission, shown.trace, times=shown.times)
     data = read_json(path)
     named = data.get("mission") if isinstance(data, dict) else None
     if mission_file is None and not isinstance(named, str):
@@ -130,7 +133,8 @@ def _read_recording(path: str, mission_file: str | None, open_mission: Open) -> 
     recording = open_recording(path)
     mission = mission_of(recording) if mission_file is None else open_mission(mission_file)
     _warn_of_another(path, recording.run, mission, mission_file or str(recording.run["mission"]))
-    return Replayed(mission, trace_of(recording, mission), recording)
+    times = tuple(message.time for message in recording.of("steps"))
+    return Replayed(mission, trace_of(recording, mission), recording, times)
 
 
 def _introduce(recording: Recording) -> None:

@@ -7,32 +7,36 @@ import sys
 import time
 from argparse import Namespace
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import AsyncExitStack, contextmanager
+from contextlib import AsyncExitStack, ExitStack, closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from adapters.live.core import resumed, started
+from adapters.live.core import obeying, resumed, started
 from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, settle
 from adapters.live.operator_socket import listening
-from adapters.live.state import Finding, LiveState, Plan, Said
+from adapters.live.state import Finding, LiveState, Plan
 from adapters.live.watchers import Watcher
 from adapters.plugin import Plugin
 from adapters.recording.mcap_files import RecordingError
 from adapters.recording.writing import Recorder
+from adapters.ros import RosSending
 from bigactors import __version__
+from bigactors.console_beside import console_beside, recorded
 from bigactors.exits import Exit
-from bigactors.missions import checkable, digest_of, locate, open_mission
+from bigactors.missions import checkable, digest_of, fixed_places, locate, open_mission
 from bigactors.mistakes import Mistake, unreadable
-from bigactors.plugins import plugins_of
+from bigactors.plugins import fences_of, plugins_of
 from bigactors.preflight import check_flyable, check_places, get_to_know
 from bigactors.recordings import Resumed, resume
 from bigactors.signatures import load_trusted
 from bigactors.sockets import socket_of
 from bigactors.stations import Company, company_of, parting_json
 from bigactors.terminal import paint, say, tell
+from bigactors.vehicle_lines import situation
 from bigactors.verdict_files import Licence, find_verdict, licence_for
 from bigactors.watchers import Log, Tape, Terminal
+from physical import PhysicalError
 from semantics.state.setting import Control, Scheduler
 from specs.elaboration import ElaboratedMission, Variation
 
@@ -51,6 +55,7 @@ class Flight:
         resumed: The run that it goes on from.
         log: What takes every frame.
         company: The station that it is among others, None where it is the only one.
+        rate: How fast its clock runs beside that on the wall; None for as fast as can be computed.
     """
 
     options: Namespace
@@ -62,6 +67,7 @@ class Flight:
     resumed: Resumed | None
     log: Log | None = None
     company: Company | None = None
+    rate: float | None = 1.0
 
     def resting(self, finding: Finding) -> tuple[str, ...]:
         """Return the properties whose verdicts rest on a broken assumption: all that were decided by exploring."""
@@ -72,13 +78,21 @@ class Flight:
 def run(options: Namespace) -> Exit:
     """Fly a mission, if there is a verdict that everything holds."""
     flight = prepare(options)
-    terminal = Terminal(flight.resting)
+    terminal = Terminal(flight.resting, tuple(flight.plan.vehicles))
     if flight.resumed is not None:
         terminal.goes_on(flight.resumed.broken, flight.resumed.taken)
     try:
-        with record(flight) as tape:
-            lookers = (terminal, tape, flight.company and flight.company.sharing)  # recorded first, then said
-            ending = asyncio.run(fly(flight, tuple(looker for looker in lookers if looker)))
+        with record(flight) as tape, _published(options.publish) as ros:
+            lookers = (
+                terminal,
+                tape,
+                flight.company and flight.company.sharing,
+                ros,
+            )  # recorded first, then said
+            try:
+                ending = asyncio.run(fly(flight, tuple(looker for looker in lookers if looker)))
+            finally:
+                terminal.ends()
     except (NotAsAssumed, NotHeard, PluginFailed) as error:
         return _not_begun(error)
     except KeyboardInterrupt:
@@ -119,7 +133,15 @@ def prepare(options: Namespace) -> Flight:
         plan, plugins = company.plan(plan, mission), company.plugins(plugins)
     state = started(plan)
     if before is not None:
-        state = resumed(plan, before.configuration, before.steps, before.orders, time.time(), before.taken)
+        known = LiveState(
+            before.configuration,
+            taken=before.taken,
+            bidden=before.bidden,
+            number=before.steps,
+            told=before.orders,
+            findings=len(before.broken),
+        )
+        state = resumed(plan, known, time.time())
     return Flight(options, mission, licence, plan, state, plugins, before, log, company)
 
 
@@ -142,11 +164,38 @@ def _licence(options: Namespace, mission: ElaboratedMission) -> Licence | None:
 
 @contextmanager
 def record(flight: Flight) -> Iterator[Tape | None]:
-    """Record what happens inside, and how it ended, if a recording is asked for."""
-    tape = _tape(flight)
+    """Record what happens inside, and how it ended, if a recording or a console, which reads one, is asked for."""
+    options = flight.options
+    with recorded(options) as path, ExitStack() as stack:
+        if flight.log is not None:
+            stack.callback(flight.log.close)
+        tape = None if path is None else _tape(flight, path)
+        stack.enter_context(console_beside(options, path, socket_of(flight.mission.name, options.socket)))
+        if tape is not None:
+            stack.enter_context(_ending(tape))
+        yield tape
+
+
+@contextmanager
+def _published(address: str | None) -> Iterator[RosSending | None]:
+    """Publish for ROS what is watched inside, if that is asked for."""
+    if address is None:
+        yield None
+        return
+    try:
+        sending = RosSending(address)
+    except PhysicalError as problem:
+        raise Mistake(problem.message, problem.hint or "", f"--publish ros={address:.100}") from problem
+    with closing(sending):
+        yield sending
+
+
+@contextmanager
+def _ending(tape: Tape) -> Iterator[None]:
+    """Record how it ended."""
     reason = "the run has ended"
     try:
-        yield tape
+        yield
     except KeyboardInterrupt:
         reason = "interrupted"
         raise
@@ -154,25 +203,20 @@ def record(flight: Flight) -> Iterator[Tape | None]:
         reason = str(error) or type(error).__name__
         raise
     finally:
-        if tape is not None:
-            try:
-                tape.recorder.close(reason, time.time())
-            except OSError as error:
-                tell(f"the recording has no end: {error.strerror}", f"{error.filename}:")
-        if flight.log is not None:
-            flight.log.close()
+        try:
+            tape.recorder.close(reason, time.time())
+        except OSError as error:
+            tell(f"the recording has no end: {error.strerror}", f"{error.filename}:")
 
 
-def _tape(flight: Flight) -> Tape | None:
-    path = flight.options.record
-    if path is None:
-        return None
+def _tape(flight: Flight, path: Path) -> Tape:
     try:
-        recorder = Recorder(Path(path), run_json(flight), time.time(), flight.mission.setting.kinds)
+        kinds, fixed = flight.mission.setting.kinds, fixed_places(flight.mission)
+        recorder = Recorder(path, run_json(flight), time.time(), kinds, fixed)
     except RecordingError as error:
-        raise Mistake(str(error), place=path) from error
+        raise Mistake(str(error), place=str(path)) from error
     except OSError as error:
-        raise unreadable(path, error) from error
+        raise unreadable(str(path), error) from error
     if flight.resumed is not None:
         recorder.copy(flight.resumed.messages)
     return Tape(recorder, flight.resting)
@@ -192,7 +236,18 @@ def run_json(flight: Flight) -> dict[str, Any]:
         "verdict": None if flight.licence is None else flight.licence.data,
         "strict": flight.plan.strict,
         "vehicles": dict(flight.plan.vehicles),
+        "fences": fences_of(flight.plugins),
+        "limits": [
+            {
+                "request": limit.request,
+                "agent": limit.agent,
+                "seconds": limit.seconds,
+                "fallback": limit.fallback.value,
+            }
+            for limit in mission.precautions.limits
+        ],
         "resumes": options.resume,
+        "rate": flight.rate,
         "station": None if flight.company is None else parting_json(flight.company.parting),
     }
 
@@ -203,19 +258,19 @@ async def fly(flight: Flight, watchers: Sequence[Watcher]) -> Ending:
     async with AsyncExitStack() as stack:
         live = await stack.enter_async_context(LiveRun(flight.plan, flight.state, flight.plugins, watchers))
 
-        async def listener(said: Said) -> str:
-            return (await live.inbox.say(said)).refusal
+        def describe() -> str:
+            return situation(flight.plan, live.state, live.inbox.said, live.clock())
 
         path = socket_of(flight.mission.name, options.socket)
         try:
-            await stack.enter_async_context(listening(path, listener))
+            await stack.enter_async_context(listening(path, live.inbox.say, describe))
         except OSError as error:
             raise Mistake(error.strerror or str(error), "give another with --socket", str(path)) from error
         await live.begin(options.wait, forced=options.unverified)
-        await get_to_know(flight.plugins)
+        await get_to_know(flight.plugins, obeying(flight.plan, live.state))
         check_places(flight.mission, flight.plugins)
         settle()
-        say(f"{flight.mission.name} begins; bigactors say AGENT MESSAGE reaches it at {path}")
+        say(f"{flight.mission.name} begins; bigactors status, say, hold and return reach it at {path}")
         return await live.go(seconds=options.duration)
 
 

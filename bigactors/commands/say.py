@@ -4,7 +4,7 @@ import asyncio
 from argparse import Namespace
 from collections.abc import Callable, Coroutine
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from adapters.live.operator_socket import NobodyListens
 from adapters.live.operator_socket import say as send
@@ -12,22 +12,31 @@ from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.sockets import only_socket
 from bigactors.terminal import say
-from physical import is_text
+from physical import is_text, is_word
+
+Heard = TypeVar("Heard")
 
 
 def run(options: Namespace) -> Exit:
     """Say it, and print what came of it."""
-    if not (is_text(options.agent) and is_text(options.message)):
-        raise Mistake("what is said has to be text in valid Unicode, of at most 2,000 characters")
-    refusal = heard_at(options.socket, lambda path: send(path, options.agent, options.message))
+    check_texts("what is said", options.agent, options.by, options.message)
+    refusal = heard_at(options.socket, lambda path: send(path, options.agent, options.message, options.by))
     if refusal:
         raise Mistake(refusal, "the environment section of the mission says what may be said")
     say(f"said to {options.agent}: {options.message}")
     return Exit.HOLDS
 
 
-def heard_at(socket: str | None, saying: Callable[[Path], Coroutine[Any, Any, str]]) -> str:
-    """Say something to the mission that listens at a socket, or to the only one that runs; return its refusal."""
+def check_texts(what: str, name: str, by: str, *more: str) -> None:
+    """Refuse what is no text, and a name of who speaks that cannot be printed; raises Mistake."""
+    if not all(map(is_text, (name, *more))):
+        raise Mistake(f"{what} has to be text in valid Unicode, of at most 2,000 characters")
+    if by and not is_word(by):
+        raise Mistake("--by has to be a name of 1 to 200 characters that can be printed")
+
+
+def heard_at(socket: str | None, saying: Callable[[Path], Coroutine[Any, Any, Heard]]) -> Heard:
+    """Say something to the mission that listens at a socket, or to the only one that runs; return what it answers."""
     path = only_socket(socket)
     try:
         return asyncio.run(saying(path))

@@ -4,37 +4,96 @@ import shutil
 from argparse import Namespace
 from pathlib import Path
 
+from adapters.recording.reading import is_recording
 from bigactors.commands.replay import read_trace
-from bigactors.drawings import draw, draw_lanes, write_page
+from bigactors.drawings import draw, draw_lanes, draw_schedule, write_page
 from bigactors.exits import Exit
 from bigactors.files import file_stem
 from bigactors.missions import open_mission, opening, variation_of
 from bigactors.mistakes import Mistake
+from bigactors.pages import Story
 from bigactors.terminal import say, tell
-from checker import ReplayError, Trace, print_loop
+from bigactors.tracks import write_recorded, write_traced
+from checker import Limits, ReplayError, Trace, print_loop
 from checker.reports.comparison import comparison_text
 from checker.reports.lanes import lanes_of_trace, lanes_text
+from checker.reports.times import times_text
+from physical.messages import counted
+from physical.place_files import GEOJSON
 from semantics.state.printing import print_configuration
 
 PAGES = (".html", ".htm")
+MOST_CONFIGURATIONS = 2_000_000
+"""How many configurations are visited at most for a timeline."""
+
 NARROW, WIDE = 40, 200
 """The least and the most columns of a terminal that lanes are laid out for."""
 
 
 def run(options: Namespace) -> Exit:
     """Print and draw the initial configuration of a mission, or what is asked for of a trace."""
+    if options.timeline:
+        return _show_timeline(options)
     try:
         if options.against is not None:
             return _compare(options)
-        name, trace, step = _chosen(options)
+        if options.output and Path(options.output).suffix.lower() in GEOJSON:
+            return _write_tracks(options)
+        name, trace, times, step = _chosen(options)
     except ReplayError as error:
         tell(f"{options.trace}: {error}")
         return Exit.VIOLATED
     if options.lanes:
-        _show_lanes(trace)
+        _show_lanes(trace, unfolded=options.all)
     else:
         _show_configuration(trace, step)
-    _write(options, name, trace, step)
+    _write(options, name, trace, times, step)
+    return Exit.HOLDS
+
+
+def _show_timeline(options: Namespace) -> Exit:
+    """Explore a mission, print its times and draw them; the exit code is that of a picture, not of the verdicts."""
+    if options.file is None:
+        raise Mistake("a timeline is of all runs of a mission", "give the mission")
+    if options.trace is not None or options.step is not None or options.lanes or options.against is not None:
+        hint = "leave out --trace, --step, --lanes and --against; --lanes shows the dates of one run"
+        raise Mistake("a timeline is of all runs of a mission", hint)
+    from bigactors.checking import Failed, How, check_mission  # noqa: PLC0415 - only a timeline explores
+
+    if open_mission(options.file, variation_of(options)).setting.timing is None:
+        hint = "write a section timing { ... }: docs/explanation/time.md"
+        raise Mistake("it has no times: nothing says how long anything takes", hint, options.file)
+    limits = Limits(MOST_CONFIGURATIONS)
+    checked = check_mission(options.file, limits, variation_of(options), How(times=True))
+    if isinstance(checked, Failed):
+        return checked.exit
+    schedule, name = checked.report.schedule, checked.mission.name
+    if schedule is None:
+        return Exit.MISTAKE
+    for bound in checked.report.bounds:
+        say(f"  {bound.effect}")
+    for line in times_text(schedule):
+        say(line)
+    output = options.output or f"{file_stem(name)}-timeline.svg"
+    draw_schedule(schedule, output, f"{name}: who flies when")
+    tell(f"picture written to {output}")
+    return Exit.HOLDS
+
+
+def _write_tracks(options: Namespace) -> Exit:
+    """Write where everything was in a recording or a trace, and when; of a recording every position."""
+    if options.trace is None:
+        raise Mistake("tracks are those of a trace", "give the trace with --trace", options.output)
+    if options.step is not None or options.lanes or options.against is not None:
+        raise Mistake(
+            "tracks are those of a whole trace", "leave out --step, --lanes and --against", options.output
+        )
+    if is_recording(options.trace):
+        count = write_recorded(options.trace, options.output)
+    else:
+        _, trace, times, _ = _chosen(options)
+        count = write_traced(trace, times, options.output)
+    tell(f"{counted(count, 'track')} written to {options.output}")
     return Exit.HOLDS
 
 
@@ -50,9 +109,9 @@ def _compare(options: Namespace) -> Exit:
     return Exit.HOLDS
 
 
-def _show_lanes(trace: Trace) -> None:
+def _show_lanes(trace: Trace, *, unfolded: bool) -> None:
     columns = min(max(shutil.get_terminal_size((100, 24)).columns, NARROW), WIDE)
-    for line in lanes_text(lanes_of_trace(trace), columns):
+    for line in lanes_text(lanes_of_trace(trace), columns, unfolded=unfolded):
         say(line)
 
 
@@ -64,16 +123,19 @@ def _show_configuration(trace: Trace, step: int) -> None:
         say(print_loop(trace))
 
 
-def _write(options: Namespace, name: str, trace: Trace, step: int) -> None:
+def _write(options: Namespace, name: str, trace: Trace, times: tuple[float, ...], step: int) -> None:
     """Write what the name of the output says: a page, the lanes as a picture, or the picture of a configuration."""
     output = options.output
     if output is not None and Path(output).suffix.lower() in PAGES:
-        write_page(trace, output, name, step if options.step is not None else 0)
+        start = step if options.step is not None else 0
+        left_out = write_page(Story(name, "", False, trace, start, times=times, unfolded=options.all), output)
         tell(f"page written to {output}")
+        for line in left_out:
+            tell(line)
         return
     if options.lanes:
         if output is not None:
-            draw_lanes(trace, output, name)
+            draw_lanes(trace, output, name, unfolded=options.all)
             tell(f"picture written to {output}")
         return
     output = output or f"{file_stem(name)}{f'-c{step}' if step else ''}.svg"
@@ -86,16 +148,22 @@ def _write(options: Namespace, name: str, trace: Trace, step: int) -> None:
     tell(f"picture written to {output}")
 
 
-def _chosen(options: Namespace) -> tuple[str, Trace, int]:
-    """Return the mission's name, a trace of it, and which configuration of it to show."""
+def _chosen(options: Namespace) -> tuple[str, Trace, tuple[float, ...], int]:
+    """Return the mission's name, a trace of it, when its steps were taken, and which configuration of it to show."""
     if options.trace is None:
         if options.file is None:
             raise Mistake("there is nothing to show", "give a mission, or a trace with --trace")
-        if options.step is not None or options.lanes:
-            word = "--lanes shows" if options.lanes else "--step is a step of"
+        if options.step is not None or options.lanes or options.all:
+            word = (
+                "--lanes shows"
+                if options.lanes
+                else "--step is a step of"
+                if options.step is not None
+                else "--all is all of"
+            )
             raise Mistake(f"{word} a trace", "give the trace with --trace")
         mission = open_mission(options.file, variation_of(options))
-        return mission.name, Trace(mission.initial), 0
+        return mission.name, Trace(mission.initial), (), 0
     found = read_trace(options.trace, options.file, opening(variation_of(options)), dict(options.name))
     trace = found.trace
     step = len(trace) if options.step is None else options.step
@@ -105,4 +173,4 @@ def _chosen(options: Namespace) -> tuple[str, Trace, int]:
             f"give --step 0 to {len(trace)}",
             options.trace,
         )
-    return found.mission.name, trace, step
+    return found.mission.name, trace, found.times, step

@@ -1,83 +1,95 @@
-"""`bigactors simulate`: one run of a mission, chosen by a seed."""
+"""`bigactors simulate`: one run of a mission, chosen by a seed or step by step."""
 
 import random
+import sys
 from argparse import Namespace
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 
+from bigactors.choosing import Walk
 from bigactors.exits import Exit
 from bigactors.files import json_text, write_json
 from bigactors.missions import digest_of, open_mission, variation_of
+from bigactors.mistakes import Mistake
+from bigactors.one_run import OneRun, nothing_more, print_step
 from bigactors.terminal import say, say_text, tell
-from checker import Step, Trace, to_json
+from checker import to_json
 from physical.messages import counted
 from semantics.state.configuration import Configuration
-from semantics.state.printing import print_changes, print_configuration
-from semantics.successors import Expansion, expand
+from semantics.state.printing import print_configuration
+from specs.elaboration import ElaboratedMission
+
+PROMPT = "> "
+LONGEST_ANSWER = 1_000
 
 
 def run(options: Namespace) -> Exit:
     """Print one run; write it as a trace if asked."""
+    if options.choose and options.json == "-":
+        raise Mistake("--choose talks on standard output", "write the trace to a file: --json FILE")
     mission = open_mission(options.file, variation_of(options))
-    simulation = simulate(mission.initial, options.seed, options.steps)
-    if options.json != "-":
-        for line in print_simulation(simulation):
+    if options.choose:
+        run = chosen(mission, options.seed)
+    else:
+        simulation = simulate(mission.initial, options.seed, options.steps)
+        run = simulation.run
+        for line in print_simulation(simulation) if options.json != "-" else ():
             say(line)
     if options.json:
-        data = to_json(simulation.trace, options.file, digest_of(mission))
+        data = to_json(run.trace, options.file, digest_of(mission))
         say_text(json_text(data)) if options.json == "-" else write_json(options.json, data)
     if options.json not in (None, "-"):
         tell(f"trace written to {options.json}")
     return Exit.HOLDS
 
 
+def chosen(mission: ElaboratedMission, seed: int) -> OneRun:
+    """Let the user choose each step; the answers of a pipe are printed where those of a terminal stand."""
+    walk = Walk(OneRun(mission.initial), mission.properties, random.Random(seed))
+    for line in walk.lines(_answers()):
+        say(line)
+    return walk.run
+
+
+def _answers() -> Iterator[str]:
+    """Yield the lines of standard input; a terminal is asked for them."""
+    if not sys.stdin.isatty():
+        while answer := sys.stdin.readline(LONGEST_ANSWER):
+            say(f"{PROMPT}{answer.rstrip()}")
+            yield answer
+        return
+    with suppress(EOFError):
+        while True:
+            yield input(PROMPT)
+    say("")
+
+
 @dataclass(frozen=True, slots=True)
 class Simulation:
-    """One run.
+    """One run, and why it ended there."""
 
-    Attributes:
-        trace: Its steps.
-        shown: What `display` showed in each.
-        end: Why it ended there.
-    """
-
-    trace: Trace
-    shown: tuple[tuple[str, ...], ...]
+    run: OneRun
     end: str
 
 
 def simulate(initial: Configuration, seed: int, steps: int) -> Simulation:
-    """Take one run of at most so many steps, each transition as likely as any other."""
+    """Take one run of at most so many steps, each as likely as any other, and with times each of its moments."""
     chance = random.Random(seed)  # a simulation, no secret
-    taken: list[Step] = []
-    shown: list[tuple[str, ...]] = []
-    at = initial
-    while True:
-        expansion = expand(at)
-        if not expansion.transitions or len(taken) == steps:
-            return Simulation(Trace(initial, tuple(taken)), tuple(shown), _end(expansion, steps))
-        chosen = chance.choice(expansion.transitions)
-        alike = [each.target for each in expansion.transitions if each.label == chosen.label]
-        taken.append(Step(chosen.label, alike.index(chosen.target), chosen.target))
-        shown.append(chosen.shown)
-        at = chosen.target
-
-
-def _end(expansion: Expansion, steps: int) -> str:
-    if expansion.transitions:
-        return f"stopped after {counted(steps, 'step')}"
-    reasons = "".join(f"; {fault.agent}: {fault}" for fault in expansion.faults)
-    return f"nothing more is enabled{reasons}"
+    run = OneRun(initial)
+    while run.choices():
+        if len(run.taken) == steps:
+            return Simulation(run, f"stopped after {counted(steps, 'step')}")
+        run.take_by_chance(chance)
+    return Simulation(run, nothing_more(run))
 
 
 def print_simulation(simulation: Simulation) -> Iterator[str]:
     """Print a run in the paper's notation: its first configuration, its steps, its last configuration."""
-    trace = simulation.trace
-    yield f"c0 = {print_configuration(trace.initial)}"
-    for number, (step, source) in enumerate(zip(trace.steps, trace.configurations, strict=False)):
-        yield f"c{number} --{step.label}--> c{number + 1}"
-        yield from (f"      {line}" for line in print_changes(source, step.target))
-        yield from (f"      displayed: {text}" for text in simulation.shown[number])
-    if trace.steps:
-        yield f"c{len(trace)} = {print_configuration(trace.configurations[-1])}"
+    run = simulation.run
+    yield f"c0 = {print_configuration(run.initial)}"
+    for number in range(len(run.taken)):
+        yield from print_step(run, number)
+    if run.taken:
+        yield f"c{len(run.taken)} = {print_configuration(run.at)}"
     yield simulation.end

@@ -5,9 +5,14 @@ from pathlib import Path
 
 from bigactors.drawings import draw
 from bigactors.exits import Exit
+from bigactors.files import write_text
 from bigactors.terminal import say, tell
 from bigactors.worlds import census, configuration_of, read_world
 from bigraphs import draw_text
+from physical import write_geojson
+from physical.messages import counted
+
+GEOJSON = (".geojson", ".json")
 
 
 def run(options: Namespace) -> Exit:
@@ -24,7 +29,10 @@ def run(options: Namespace) -> Exit:
         tell(
             f"warning: {conflict}; what is in both is put into the smaller one, and a mission would refuse them"
         )
-    if options.output:
+    if options.output and Path(options.output).suffix.lower() in GEOJSON:
+        write_text(options.output, write_geojson(world.properties))
+        tell(f"{counted(len(world.properties), 'feature')} written to {options.output}")
+    elif options.output:
         draw(configuration, options.output, title=", ".join(Path(path).name for path in options.files))
         tell(f"picture written to {options.output}")
     return Exit.HOLDS

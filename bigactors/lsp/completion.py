@@ -14,11 +14,12 @@ from specs.build_behaviour import PATTERN_TYPES
 from specs.build_world import CONTROL_MODES, FALLBACKS, SCHEDULERS
 from specs.diagnostics import MissionError, Source
 from specs.elaboration.expressions import FUNCTIONS
+from specs.elaboration.names import AGENTS
 from specs.elaboration.temporal import EACH, RULES
 from specs.preprocessing import prepare
 from specs.recovery import Expected, expected_behind
 from specs.standard_signature import standard_kinds
-from specs.syntax import Signature, Span
+from specs.syntax import Family, Signature, Span
 
 _BEGUN: Final = re.compile(r"\w+(?:[:.\-]\w+)*\Z|\Z")
 _WORD: Final = re.compile(r"\w+")
@@ -60,10 +61,14 @@ _FIXED: Final[Mapping[str, tuple[str, ...]]] = {
     "scheduler": SCHEDULERS,
     "control": CONTROL_MODES,
     "fallback": FALLBACKS,
+    "all": (AGENTS,),
 }
 _BEHIND: Final = {".": "field", "scheduler": "scheduler", "control": "control"}
 _SORTS_BEHIND_COLON: Final = {"case": "type", "live": "fallback"}
 _COLONS: Final = frozenset(["world", "rule", "case", "live", "forall", "exists"])
+_AMONG: Final = ("kind", "all", "family")
+"""What quantifiers go through."""
+
 _VALUES: Final = ("variable", "entity", "agent")
 
 _NEW: Final = frozenset(
@@ -138,6 +143,8 @@ def _seen_at(text: str, offset: int) -> int:
 
 
 def _declared(reading: Reading, sort: str) -> tuple[str, ...]:
+    if sort == "family":
+        return tuple(sorted(family.name.text for family in reading.mission.each(Family)))
     sections = reading.mission.each(Signature)
     if sort == "kind" and (not sections or any(section.standard for section in sections)):
         standard = {kind.name.text for kind in standard_kinds()}
@@ -158,7 +165,8 @@ def _sorts(expected: Expected, words: list[str]) -> tuple[str, ...]:
     if "actually" in expected.words:
         return (*_CLAIMS, "variable")
     if last == ":":
-        return (_SORTS_BEHIND_COLON.get(words[_opening(words)], "kind"),)
+        opening = words[_opening(words)]
+        return _AMONG if opening in ("forall", "exists") else (_SORTS_BEHIND_COLON.get(opening, "kind"),)
     if last in _BEHIND:
         return (_BEHIND[last],)
     if last == "of":

@@ -39,6 +39,8 @@ def _declaration(node: s.Declaration, reading: Reading) -> Part:
             return _section(node, "environment", _lines(clauses, reading))
         case s.Believes(beliefs):
             return _section(node, "believes", _lines(beliefs, reading))
+        case s.Timing(bounds):
+            return _section(node, "timing", _lines(bounds, reading))
         case s.Live(precautions):
             return _section(node, "live", _lines(precautions, reading))
         case s.Rule():

@@ -4,7 +4,7 @@ Everything that is not markup of ours is escaped, nothing is loaded from anywher
 to the browser. Without scripts a page shows everything at once.
 """
 
-from bigactors.pages.story import MOST_PICTURES, Story
-from bigactors.pages.trace_page import trace_page
+from bigactors.pages.story import MOST_PICTURES, Story, Telling, telling
+from bigactors.pages.trace_page import page_of, trace_page
 
-__all__ = ["MOST_PICTURES", "Story", "trace_page"]
+__all__ = ["MOST_PICTURES", "Story", "Telling", "page_of", "telling", "trace_page"]

@@ -2,16 +2,17 @@
 
 import base64
 import hashlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from importlib.resources import files as resources
+from itertools import pairwise
 from typing import Final
 
 from bigactors.pages.markup import element, text
-from bigactors.pages.story import Frame, Story, frames_of, latest
+from bigactors.pages.story import Frame, Story, Telling, telling
 from bigactors.pictures import Look, Picture, channels_of, look_of, shown_names
-from bigraphs import draw_text
+from bigraphs import Bigraph, draw_text
 from bigraphs.drawing import HIGHLIGHT
-from checker.reports.lanes import Lanes, LaneStep, lanes_of_trace
+from checker.reports.lanes import Lanes, LaneStep, Repetition, Row
 from physical.map_style import MARK
 from physical.messages import counted
 from semantics.state.printing import print_agent
@@ -28,15 +29,18 @@ NARROWEST: Final = 7
 
 UNSCRIPTED: Final = (
     "[hidden], .unscripted { display: revert !important; } "
-    ".controls, .hint, #missing { display: none !important; }"
+    ".controls, .hint, .several button, #missing { display: none !important; }"
 )
 """What a page without scripts looks like: everything is there at once."""
 
 
 def trace_page(story: Story) -> str:
+    """Return the page of a story."""
+    return page_of(telling(story))
+
+
+def page_of(told: Telling) -> str:
     """Return the page."""
-    story = latest(story)
-    frames, lanes = frames_of(story), lanes_of_trace(story.trace)
     script, style = _resource("trace.js"), _resource("trace.css")
     allowed = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     policy = (
@@ -48,47 +52,76 @@ def trace_page(story: Story) -> str:
         '<meta charset="utf-8">',
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
-        element("title", text(story.title)),
+        element("title", text(told.story.title)),
         element("style", style),
         element("noscript", element("style", UNSCRIPTED)),
     )
-    main = element("main", _stage(frames, story.first), _run(lanes, story.first))
-    start = {"data_start": story.start, "data_first": story.first, "data_loop": story.trace.loop}
-    body = element("body", _header(story), main, element("script", script), **start)
+    main = element("main", _stage(told), _run(told), **_steps(told))
+    start = {"data_start": told.story.start, "data_loop": told.story.trace.loop}
+    body = element("body", _header(told), main, element("script", script), **start)
     return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
+
+
+def _steps(told: Telling) -> dict[str, str | None]:
+    """Return what the script reads: the frame of each configuration, and the tenths of a second to it from the last."""
+    order = " ".join("" if frame is None else str(frame) for frame in told.order)
+    tenths = [round(10 * second) for second in told.seconds]
+    gaps = (str(max(0, after - before)) for before, after in pairwise([0, *tenths]))
+    return {"data_order": order, "data_tenths": " ".join(gaps) or None}
 
 
 def _resource(name: str) -> str:
     return (resources("bigactors.pages") / name).read_text(encoding="utf-8")
 
 
-def _header(story: Story) -> str:
-    steps = len(story.trace) + story.first
+def _header(told: Telling) -> str:
+    story = told.story
     return element(
         "header",
         element("h1", text(story.title)),
         element("p", text(story.about), class_="violated" if story.violated else None) if story.about else "",
         *(element("p", text(line)) for line in story.details),
-        element("p", text(f"{counted(steps, 'step')}. {story.note}"), class_="quiet"),
+        element("p", text(f"{counted(len(story.trace), 'step')}. {story.note}"), class_="quiet"),
+        *(element("p", text(line), class_="violated") for line in told.left_out),
     )
 
 
 # --- lanes ----------------------------------------------------------------------------------------------------
 
 
-def _run(lanes: Lanes, first: int) -> str:
+def _run(told: Telling) -> str:
+    lanes = told.lanes
     heads = (element("th", text(name), scope="col") for name in lanes.names)
     head = element("thead", element("tr", element("th", text("c"), scope="col"), *heads))
-    start = _row(first, [element("td")] * len(lanes.names))
-    steps = (_row(first + step.number, list(_cells(step, lanes))) for step in lanes.steps)
-    body = element("tbody", start, *steps)
+    body = element("tbody", *_rows(told))
     foot = element("tfoot", element("tr", _end(lanes))) if lanes.end else ""
     return element(
         "section",
         element("table", head, body, foot, style=f"min-width: {4 + NARROWEST * len(lanes.names)}em"),
+        element("template", *_others(told), id="others"),
         class_="run",
         aria_label="The run, a lane for each agent",
     )
+
+
+def _rows(told: Telling) -> Iterator[str]:
+    """Yield the rows: of the first configuration, of steps, and of several steps that are folded."""
+    seconds = told.seconds
+    yield _row(0, told.lanes, None, seconds, data_row=0, data_frame_row=told.order[0])
+    for row in told.rows:
+        if isinstance(row, Repetition):
+            yield _row(row.number, told.lanes, row, seconds, data_from=row.number, data_to=row.last)
+        else:
+            place = told.order[row.number]
+            yield _row(row.number, told.lanes, row, seconds, data_row=row.number, data_frame_row=place)
+
+
+def _others(told: Telling) -> Iterator[str]:
+    """Yield a row of each frame that has none in the table: the script takes them for what is folded."""
+    shown = {told.order[row.number] for row in told.rows if isinstance(row, LaneStep)}
+    for place, frame in enumerate(told.frames):
+        if place not in shown and frame.step is not None:
+            yield _row(frame.number, told.lanes, frame.step, (), data_frame_row=place)
 
 
 def _end(lanes: Lanes) -> str:
@@ -96,15 +129,18 @@ def _end(lanes: Lanes) -> str:
     return element("td", link, colspan=len(lanes.names) + 1)
 
 
-def _row(number: int, cells: Sequence[str]) -> str:
+def _row(number: int, lanes: Lanes, row: Row | None, seconds: Sequence[float], **data: object) -> str:
     link = element("a", text(f"c{number}"), href=f"#c{number}")
-    return element("tr", element("th", link, scope="row"), *cells, data_row=number)
+    time = element("small", text(f"{seconds[number]:.1f} s")) if seconds else ""
+    cells = [element("td")] * len(lanes.names) if row is None else _cells(row, lanes)
+    return element("tr", element("th", link, time, scope="row"), *cells, **data)
 
 
-def _cells(step: LaneStep, lanes: Lanes) -> Iterator[str]:
+def _cells(row: Row, lanes: Lanes) -> Iterator[str]:
     for lane in range(len(lanes.names)):
-        if lane == step.lane:
-            yield element("td", _step(step), class_=_side(lane, len(lanes.names)))
+        if lane == row.lane:
+            box = _several(row) if isinstance(row, Repetition) else _step(row)
+            yield element("td", box, class_=_side(lane, len(lanes.names)))
         else:
             yield element("td")
 
@@ -131,31 +167,51 @@ def _step(step: LaneStep) -> str:
     )
 
 
+def _several(row: Repetition) -> str:
+    return element(
+        "div",
+        element("b", text(row.heading)),
+        element("div", text(row.about), class_="about"),
+        element("div", "", class_="now"),
+        element(
+            "button", text("unfold"), type="button", aria_expanded="false", hidden=True, data_scripted=True
+        ),
+        class_="step several",
+    )
+
+
 # --- the stage ------------------------------------------------------------------------------------------------
 
 
-def _stage(frames: Sequence[Frame], first: int) -> str:
-    pictures = {
-        picture.key: picture
-        for frame in frames
-        for picture in (frame.logical, frame.physical)
-        if picture is not None
-    }
+def _stage(told: Telling) -> str:
+    frames = told.frames
+    drawn = (picture for frame in frames for picture in (frame.logical, frame.physical))
+    pictures = dict(sorted((picture.key, picture) for picture in drawn if picture is not None))
     models = element(
         "div",
         _model("L", "the logical model: what is believed", [p for p in pictures.values() if p.key[0] == "L"]),
         _model("P", "the physical model: what is", [p for p in pictures.values() if p.key[0] == "P"]),
         class_="models",
     )
-    hint = "This configuration is not drawn: bigactors show --trace draws it."
+    believed = dict.fromkeys(frame.c.structure.logical.bigraph() for frame in frames)
+    words = {bigraph: place for place, bigraph in enumerate(believed)}
     return element(
         "section",
-        _controls(len(frames) - 1),
+        _controls(len(told.order) - 1),
         element("p", "", class_="caption", id="caption", aria_live="polite"),
         element("p", "", id="names", role="status", hidden=True),
         models,
-        element("p", text(hint), class_="quiet", id="missing", hidden=True),
-        *(_frame(number, frame) for number, frame in enumerate(frames, first)),
+        element("p", "", class_="quiet", id="missing", hidden=True),
+        *(_frame(place, frame, words) for place, frame in enumerate(frames)),
+        element(
+            "details",
+            element("summary", text("L in words")),
+            *(
+                element("pre", text(draw_text(bigraph)), tabindex="0", data_words=place, hidden=True)
+                for bigraph, place in words.items()
+            ),
+            id="words",
+        ),
         _legend(frames),
         class_="stage",
         aria_label="One configuration",
@@ -213,7 +269,7 @@ def _svg(picture: Picture, name: str, width: float, height: float) -> str:
     )
 
 
-def _frame(number: int, frame: Frame) -> str:
+def _frame(place: int, frame: Frame, words: Mapping[Bigraph, int]) -> str:
     agents = [print_agent(frame.c, a) for a in frame.c.alpha.names()]
     requests = [str(each.request) for each in frame.c.eta.all()]
     before = frame.before
@@ -226,16 +282,16 @@ def _frame(number: int, frame: Frame) -> str:
         _list("η", "pending requests", requests or ["∅"], {"∅", *(requests if first else asked)}),
         class_="lists",
     )
-    words = element("pre", text(draw_text(frame.c.structure.logical.bigraph())), tabindex="0")
+    again = f", and {frame.count - 1:,} times more" if frame.count > 1 else ""
     return element(
         "div",
-        element("h2", text(f"c{number}: {frame.label}"), class_="unscripted"),
+        element("h2", text(f"c{frame.number}: {frame.label}{again}"), class_="unscripted"),
         lists,
-        element("details", element("summary", text("L in words")), words),
-        data_frame=number,
+        data_frame=place,
         data_label=frame.label,
         data_l="" if frame.logical is None else frame.logical.key,
         data_p="" if frame.physical is None else frame.physical.key,
+        data_in_words=words[frame.c.structure.logical.bigraph()],
         hidden=True,
     )
 
@@ -260,7 +316,7 @@ def _legend(frames: Sequence[Frame]) -> str:
         _entry("changed in this step", "glow", HIGHLIGHT),
         _entry("L and P differ", "mark", MARK),
     ]
-    keys = "keys: ← → one step, Home End first and last, space plays, / finds"
+    keys = "keys: ← → one step, j k one row, Home End first and last, space plays, / finds"
     hint = element("li", text(keys), class_="hint")
     return element("ul", *entries, hint, class_="legend")
 

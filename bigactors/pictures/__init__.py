@@ -5,7 +5,7 @@ Nothing is decided here: what is believed, what is actual and what changed is as
 
 from bigactors.pictures.configuration import Look, draw_configuration, look_of
 from bigactors.pictures.page import PictureError
-from bigactors.pictures.panels import Panels, Picture
+from bigactors.pictures.panels import Panels, Picture, logical_svg
 from bigactors.pictures.scene import channels_of, shown_names
 from bigactors.pictures.trace import draw_overview, draw_trace
 
@@ -18,6 +18,7 @@ __all__ = [
     "draw_configuration",
     "draw_overview",
     "draw_trace",
+    "logical_svg",
     "look_of",
     "shown_names",
 ]

@@ -16,6 +16,7 @@ from bigactors.pictures.scene import (
     palette_of,
     shown_names,
 )
+from bigraphs.bigraph import Bigraph
 from bigraphs.drawing import MARGIN as BIGRAPH_MARGIN
 from bigraphs.drawing import draw_layout
 from bigraphs.layout import Layout, layout
@@ -143,7 +144,7 @@ def _write_line(page: Page, x: float, y: float, line: str) -> None:
 
 def _draw_logical(page: Page, c: Configuration, top: float, look: Look) -> None:
     page.heading(MARGIN, top + 8, "L", "the logical model: what is believed")
-    plan = logical_layout(c, look)
+    plan = logical_layout(c.structure.logical.bigraph(), look)
     width, height = plan.width + 2 * BIGRAPH_MARGIN, plan.height + 2 * BIGRAPH_MARGIN
     scale = min(PANEL / width, PANEL_HEIGHT / height, LARGEST)
     left = MARGIN + (PANEL - width * scale) / 2
@@ -151,9 +152,9 @@ def _draw_logical(page: Page, c: Configuration, top: float, look: Look) -> None:
     draw_logical(page.panel(left, above, width * scale, height * scale), plan, scale, look)
 
 
-def logical_layout(c: Configuration, look: Look) -> Layout:
+def logical_layout(bigraph: Bigraph, look: Look) -> Layout:
     """Return the layout of L, in which all that glows or is marked has a box of its own."""
-    return layout(c.structure.logical.bigraph(), look.glowing | look.marked)
+    return layout(bigraph, look.glowing | look.marked)
 
 
 def draw_logical(axes: "Axes", plan: Layout, scale: float, look: Look) -> None:

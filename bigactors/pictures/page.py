@@ -20,6 +20,9 @@ FORMATS: Final = ("svg", "png")
 RESOLUTION: Final = 144
 """Dots an inch of a PNG."""
 
+MOST_DOTS: Final = 65_535
+"""How high the renderer draws a PNG."""
+
 
 class PictureError(ValueError):
     """A picture that cannot be written as asked."""
@@ -45,7 +48,7 @@ class Page:
             width / self.width,
             height / self.height,
         )
-        return self.figure.add_axes(frame)
+        return self.figure.add_axes(frame, xticks=(), yticks=())
 
     def write(self, x: float, baseline: float, text: str, size: float = 8.0, **style: Any) -> None:
         """Write a line of text; `width` cuts it, `bold` and `ink` are how it looks."""
@@ -74,7 +77,7 @@ class Page:
         """Write the page as the name says, `.svg` or `.png`.
 
         Raises:
-            PictureError: The name ends otherwise.
+            PictureError: The name ends otherwise, or the page is too high for a PNG.
         """
         form = path.suffix.lower().lstrip(".")
         if form not in FORMATS:
@@ -82,6 +85,9 @@ class Page:
         if form == "svg":
             path.write_text(svg_file(self.figure, title), encoding="utf-8")
         else:
+            if (dots := int(self.height * RESOLUTION / 72)) > MOST_DOTS:
+                told = f"it would be {dots:,} dots high, and a .png has at most {MOST_DOTS:,}"
+                raise PictureError(f"{told}: name it .svg or .html")
             about = {"Software": None, "Title": title}
             self.figure.savefig(path, format=form, dpi=RESOLUTION, metadata=about)
 

@@ -1,13 +1,14 @@
 """The two models of a configuration as separate pictures, for a page that steps through a run."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
 from bigactors.pictures.configuration import Look, draw_logical, logical_layout, look_of
 from bigactors.pictures.page import Page, plain_style
 from bigactors.pictures.scene import map_entities
-from bigactors.pictures.vector import svg_of
+from bigactors.pictures.vector import svg_file, svg_of
+from bigraphs.bigraph import Bigraph
 from bigraphs.drawing import MARGIN as BIGRAPH_MARGIN
 from physical.drawing import MapEntity, draw_map
 from physical.shape import Geometry
@@ -36,46 +37,49 @@ class Panels:
 
     Attributes:
         within: All that the maps of the run have to have room for.
-        pictures: The pictures, by what they show.
+        most: How many pictures are drawn of each model.
+        logicals: The pictures of L, by what they show.
+        physicals: The maps of P, by what they show.
     """
 
     within: tuple[Geometry, ...]
-    pictures: dict[tuple[object, ...], Picture] = field(default_factory=dict)
+    most: int
+    logicals: dict[Hashable, Picture] = field(default_factory=dict)
+    physicals: dict[Hashable, Picture] = field(default_factory=dict)
 
     @staticmethod
-    def of(configurations: Sequence[Configuration]) -> "Panels":
+    def of(configurations: Sequence[Configuration], most: int) -> "Panels":
         """Return the panels of a run, with nothing drawn yet."""
-        entities = (entity for c in configurations for entity in map_entities(c))
+        entities = (entity for c in dict.fromkeys(configurations) for entity in map_entities(c))
         seen = (place for entity in entities for place in _places(entity))
-        return Panels(tuple(dict.fromkeys(seen)))
+        return Panels(tuple(dict.fromkeys(seen)), most)
 
-    def logical(self, c: Configuration, before: Configuration | None) -> Picture:
-        """Return the picture of L, what changed since the configuration before glowing."""
+    def logical(self, c: Configuration, before: Configuration | None) -> Picture | None:
+        """Return the picture of L, what changed since the configuration before glowing; None where there are enough."""
         look, bigraph = look_of(c, before), c.structure.logical.bigraph()
         shown = (bigraph, look.glowing, look.marked)
-        if shown not in self.pictures:
-            key = f"L{len(self.pictures)}"
-            plan = logical_layout(c, look)
-            width = (plan.width + 2 * BIGRAPH_MARGIN) * MAGNIFIED
-            height = (plan.height + 2 * BIGRAPH_MARGIN) * MAGNIFIED
-            with plain_style():
-                page = Page(width, height)
-                axes = page.panel(0.0, 0.0, width, height)
-                draw_logical(axes, plan, MAGNIFIED, look)
-                self.pictures[shown] = Picture(key, width, height, svg_of(page.figure, key))
-        return self.pictures[shown]
+        if shown not in self.logicals and len(self.logicals) < self.most:
+            self.logicals[shown] = self._logical(bigraph, look, f"L{len(self.logicals)}")
+        return self.logicals.get(shown)
 
-    def physical(self, c: Configuration, before: Configuration | None) -> Picture:
-        """Return the map of P, what changed since the configuration before glowing."""
+    def physical(self, c: Configuration, before: Configuration | None) -> Picture | None:
+        """Return the map of P, what changed since the configuration before glowing; None where there are enough."""
         look, entities = look_of(c, before), map_entities(c)
         shown = (entities, look.glowing, look.marked)
-        if shown not in self.pictures:
-            key = f"P{len(self.pictures)}"
-            with plain_style():
-                page = Page(*MAP)
-                self._draw(page, entities, look)
-                self.pictures[shown] = Picture(key, *MAP, svg_of(page.figure, key))
-        return self.pictures[shown]
+        if shown not in self.physicals and len(self.physicals) < self.most:
+            self.physicals[shown] = self._physical(entities, look, f"P{len(self.physicals)}")
+        return self.physicals.get(shown)
+
+    def _logical(self, bigraph: Bigraph, look: Look, key: str) -> Picture:
+        with plain_style():
+            page = logical_page(bigraph, look)
+            return Picture(key, page.width, page.height, svg_of(page.figure, key))
+
+    def _physical(self, entities: Sequence[MapEntity], look: Look, key: str) -> Picture:
+        with plain_style():
+            page = Page(*MAP)
+            self._draw(page, entities, look)
+            return Picture(key, *MAP, svg_of(page.figure, key))
 
     def _draw(self, page: Page, entities: Sequence[MapEntity], look: Look) -> None:
         axes = page.panel(LATITUDES, 6.0, MAP[0] - LATITUDES - 6.0, MAP[1] - LONGITUDES - 6.0)
@@ -88,6 +92,22 @@ class Panels:
             channel_colours=look.palette.channels,
             within=self.within,
         )
+
+
+def logical_page(bigraph: Bigraph, look: Look) -> Page:
+    """Return the picture of a bigraph of L on a page of its own."""
+    plan = logical_layout(bigraph, look)
+    width = (plan.width + 2 * BIGRAPH_MARGIN) * MAGNIFIED
+    height = (plan.height + 2 * BIGRAPH_MARGIN) * MAGNIFIED
+    page = Page(width, height)
+    draw_logical(page.panel(0.0, 0.0, width, height), plan, MAGNIFIED, look)
+    return page
+
+
+def logical_svg(bigraph: Bigraph, look: Look, title: str) -> str:
+    """Return the picture of a bigraph of L as the text of an SVG file."""
+    with plain_style():
+        return svg_file(logical_page(bigraph, look).figure, title)
 
 
 def _places(entity: MapEntity) -> Iterator[Geometry]:

@@ -8,7 +8,7 @@ from typing import Final
 
 from bigactors.pictures.configuration import draw_configuration
 from bigactors.pictures.page import Page, plain_style, wrapped
-from checker.reports.lanes import Lanes, LaneStep, lanes_of
+from checker.reports.lanes import Lanes, LaneStep, Repetition, bounded, folded, lanes_of
 from physical.map_style import INK, QUIET
 from semantics.state.configuration import Configuration, Label
 
@@ -18,26 +18,33 @@ LANE: Final = 168.0
 CHANGES: Final = 300.0
 GUTTER: Final = 14.0
 HEAD: Final = 30.0
+MOST_ROWS: Final = 2_000
+"""The most rows of an overview."""
+
 MOST_LINES: Final = 6
 """Lines that are shown of what one step changed."""
 
 SERVED: Final = ("#e9f7ee", "#4fa672")
 AROUND: Final = ("#fdf1e3", "#d08a3c")
 AGENT: Final = ("#e8f1fd", "#4f86c6")
+AGAIN: Final = ("#f4f6f8", "#9fadbb")
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One step of the overview.
+    """One step of the overview, or several that repeat others.
 
     Attributes:
+        number: The number of the configuration after it, or after the first of several.
         lane: Where its box stands: the rank of its lane.
-        colours: Its fill and its border: of an agent's own step, of one that serves a request, or of the environment's.
+        colours: Its fill and its border: of an agent's own step, of one that serves a request, of the
+            environment's, or of several.
         rule: The rule, as the box's heading.
         words: What else its label says, in lines.
         changes: What changed, in lines.
     """
 
+    number: int
     lane: int
     colours: tuple[str, str]
     rule: str
@@ -80,41 +87,44 @@ def draw_trace(
         heading = " ".join(part for part in (title, Path(name).stem, caption) if part)
         draw_configuration(c, folder / name, title=heading, changed=before)
     overview = folder / "trace.svg"
-    draw_overview(configurations, labels, overview, title=title, links=names[1:], loop=loop)
+    draw_overview(lanes_of(configurations, labels, loop), overview, title=title, links=names[1:])
     return (*(folder / name for name in names), overview)
 
 
 def draw_overview(
-    configurations: Sequence[Configuration],
-    labels: Sequence[Label],
+    lanes: Lanes,
     path: str | Path,
     *,
     title: str | None = None,
     links: Sequence[str] = (),
-    loop: int | None = None,
+    unfolded: bool = False,
 ) -> None:
     """Write one picture of a trace: the steps in their lanes, from top to bottom, with what each changed.
 
-    `links` are what the boxes lead to in an SVG, one for each step; `loop` is from where the run repeats for ever.
+    `links` are what the boxes lead to in an SVG, one for each step. Steps in a row that only repeat others are one
+    box, unless `unfolded`.
 
     Raises:
-        PictureError: The name of the file ends in neither `.svg` nor `.png`.
+        PictureError: The name of the file ends in neither `.svg` nor `.png`, or it is too high for a PNG.
         OSError: The file cannot be written.
     """
-    lanes = lanes_of(configurations, labels, loop)
+    rows = rows_of(lanes, unfolded=unfolded)
     with plain_style():
-        _page(lanes, title and title.rstrip(":"), links).save(Path(path), title or "trace")
+        _page(lanes, rows, title and title.rstrip(":"), links).save(Path(path), title or "trace")
 
 
-def rows_of(lanes: Lanes) -> tuple[Row, ...]:
-    """Return the steps of a trace as rows of its overview."""
-    return tuple(map(_row, lanes.steps))
+def rows_of(lanes: Lanes, *, unfolded: bool = False) -> tuple[Row, ...]:
+    """Return the steps of a trace as rows of its overview; of a trace that is too long for one its ends."""
+    rows = lanes.steps if unfolded else tuple(folded(lanes.steps))
+    return tuple(map(_row, bounded(rows, MOST_ROWS)))
 
 
-def _row(step: LaneStep) -> Row:
-    colours = SERVED if step.serves else AROUND if step.label.agent is None else AGENT
+def _row(step: LaneStep | Repetition) -> Row:
     words = wrapped(step.about, LANE - 26.0, 7.0, 3)
-    return Row(step.lane, colours, step.label.rule, words, _changes(step))
+    if isinstance(step, Repetition):
+        return Row(step.number, step.lane, AGAIN, step.heading, words, ())
+    colours = SERVED if step.serves else AROUND if step.label.agent is None else AGENT
+    return Row(step.number, step.lane, colours, step.label.rule, words, _changes(step))
 
 
 def _changes(step: LaneStep) -> tuple[str, ...]:
@@ -127,8 +137,7 @@ def _changes(step: LaneStep) -> tuple[str, ...]:
     )
 
 
-def _page(lanes: Lanes, title: str | None, links: Sequence[str]) -> Page:
-    rows = rows_of(lanes)
+def _page(lanes: Lanes, rows: Sequence[Row], title: str | None, links: Sequence[str]) -> Page:
     starts = [MARGIN + NUMBERS + rank * (LANE + GUTTER) for rank in range(len(lanes.names))]
     end = MARGIN + NUMBERS + len(starts) * (LANE + GUTTER)
     top = MARGIN + (24.0 if title else 0.0) + HEAD
@@ -141,10 +150,10 @@ def _page(lanes: Lanes, title: str | None, links: Sequence[str]) -> Page:
     for name, start in zip(lanes.names, starts, strict=True):
         _draw_lane(page, name, start, (top - HEAD, tops[-1]))
     page.heading(end, top - HEAD + 15, "changed", "by each step")
-    for number, (row, y) in enumerate(zip(rows, tops, strict=False)):
+    for row, y in zip(rows, tops, strict=False):
         page.rule(MARGIN, page.width - MARGIN, y - 2.0)
-        page.write(MARGIN, y + 14.0, f"c{number + 1}", 8.0, ink=QUIET)
-        _draw_row(page, row, starts[row.lane], y + 3.0, links[number] if links else None)
+        page.write(MARGIN, y + 14.0, f"c{row.number}", 8.0, ink=QUIET)
+        _draw_row(page, row, starts[row.lane], y + 3.0, links[row.number - 1] if links else None)
         for rank, line in enumerate(row.changes):
             page.write(end, y + 12.5 + rank * 10.5, line, 7.0)
     return page

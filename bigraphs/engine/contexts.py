@@ -83,7 +83,7 @@ class ConditionCheck:
 
 def occurs(matcher: Matcher, state: State, allowed: int = -1) -> bool:
     """Say whether a pattern is anywhere among the allowed slots, in active places or not."""
-    if not matcher.pattern.wide():
+    if not matcher.wide:
         return bool(matcher.find(state, allowed, once=True))
     around = Surroundings(state, passive=False)
     return any(around.admits(matcher.pattern, found) for found in matcher.find(state, allowed))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Final, NamedTuple
@@ -10,20 +11,23 @@ from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph
 from bigraphs.canonical import canonical
 from bigraphs.engine.contexts import occurs, without_idle
-from bigraphs.engine.decoding import history_free
 from bigraphs.engine.labelling import Labelling
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.patterns import compile_pattern
+from bigraphs.engine.outlines import Outlines
+from bigraphs.engine.patterns import check_size, compile_pattern
 from bigraphs.engine.reactions import Reaction
+from bigraphs.engine.rule_index import ReactionIndex, RuleIndex, numbers_in
 from bigraphs.engine.search import Matcher
 from bigraphs.engine.search_state import Occurrence
 from bigraphs.engine.state import Key, State, make_state
-from bigraphs.engine.world import World, has_sharing
+from bigraphs.engine.world import World, has_edges, has_sharing
 from bigraphs.errors import BigraphError
 from bigraphs.system import Rule, System
 
 MOST_INSTANTANEOUS: Final = 100_000
 """How many instantaneous reactions may follow one another."""
+MANY_INSTANTANEOUS: Final = 100
+"""After how many of them states are compared: a sequence that returns to one never ends."""
 
 
 class Step(NamedTuple):
@@ -51,7 +55,7 @@ class Machine:
         if initial.sites or initial.inner_links:
             hint = "fill its sites, and close or rename its inner names"
             raise BigraphError("target", f"the initial state is not ground: it has {initial.inner}", hint)
-        rules = [_canonical_rule(rule) for rule in system.rules() if rule.weight != 0]
+        rules = [rule for rule in system.rules() if rule.weight != 0]
         sides = [side for rule in rules for side in (rule.redex, rule.reactum)]
         self.system = system
         self.pause = pause
@@ -60,40 +64,56 @@ class Machine:
             initial.outer_names,
             initial.regions,
             sharing=any(map(has_sharing, [initial, *sides])),
-            edges=any(side.edges for side in [initial, *(rule.reactum for rule in rules)]),
+            edges=any(has_edges(side) for side in [initial, *(rule.reactum for rule in rules)]),
         )
         self.world.pause = pause
         self.labelling = Labelling(self.world)
-        self.reactions = [Reaction(self.world, rule, number) for number, rule in enumerate(rules)]
+        self.outlines = Outlines(self.world)
+        self.reactions = [
+            Reaction(self.world, rule, number, _canonical_rule) for number, rule in enumerate(rules)
+        ]
+        self.index = ReactionIndex(self.reactions)
         self.classes = self._classes()
         self.instantaneous = any(instant for _, instant in self.classes)
-        self.predicates = [
-            Matcher(self.world, compile_pattern(self.world, without_idle(predicate.pattern)))
-            for predicate in system.predicates
-        ]
+        self.predicate_index = RuleIndex([self._needs(predicate.pattern) for predicate in system.predicates])
+        self.predicates: dict[int, Matcher] = {}
         self.initial = initial
 
-    def _classes(self) -> list[tuple[list[Reaction], bool]]:
-        waiting = iter(self.reactions)
+    def _classes(self) -> list[tuple[int, bool]]:
+        """Return for each class of priority the mask of its rules, and whether it is instantaneous."""
+        waiting = iter(range(len(self.reactions)))
         return [
-            ([next(waiting) for rule in each.rules if rule.weight != 0], each.instantaneous)
+            (sum(1 << next(waiting) for rule in each.rules if rule.weight != 0), each.instantaneous)
             for each in self.system.classes
         ]
 
     def start(self) -> tuple[Spot, int]:
         """Return the initial state after the instantaneous rules, and how many of their reactions that took."""
-        return self.settle(Spot(make_state(self.world, self.initial), len(self.reactions)))
+        return self.settle(Spot(make_state(self.world, self.initial), self.index))
 
-    def holds(self, predicate: int, state: State) -> bool:
-        """Say whether a predicate occurs in a state."""
-        return occurs(self.predicates[predicate], state)
+    def holding(self, state: State) -> set[int]:
+        """Return the numbers of the predicates that occur in a state."""
+        possible = numbers_in(self.predicate_index.possible(state))
+        return {number for number in possible if occurs(self._predicate(number), state)}
+
+    def _needs(self, pattern: Bigraph) -> Counter[int]:
+        check_size(pattern)
+        self.world.know(pattern)
+        return Counter(self.world.controls[node.control] for node in pattern.nodes)
+
+    def _predicate(self, number: int) -> Matcher:
+        """Return what finds a predicate; it is compiled when a state first has the nodes for it."""
+        if number not in self.predicates:
+            pattern = without_idle(self.system.predicates[number].pattern)
+            self.predicates[number] = Matcher(self.world, compile_pattern(self.world, pattern))
+        return self.predicates[number]
 
     def steps(self, spot: Spot) -> Iterator[Step]:
         """Yield all that can happen: every occurrence in the first class of priority that has any."""
-        for reactions, instant in self.classes:
+        for rules, instant in self.classes:
             if instant:
                 continue
-            enabled = [(reaction, found) for reaction in reactions for found in spot.live(reaction)]
+            enabled = [(reaction, found) for reaction, live in spot.enabled(rules) for found in live]
             settled: set[Key] = set()
             for reaction, found in enabled:
                 result = spot.after(reaction.apply(spot.state, found)[0])
@@ -127,40 +147,47 @@ class Machine:
 
     def _settle_once(self, spot: Spot, seen: set[Key], count: int) -> tuple[Spot, int] | None:
         """Run the first instantaneous class that is enabled to its end; None if there is none."""
-        for reactions, instant in self.classes:
+        for rules, instant in self.classes:
             if not instant:
-                if any(spot.live(reaction) for reaction in reactions):
+                if any(True for _ in spot.enabled(rules)):
                     return None
                 continue
             before = count
-            while (target := self._instant(spot, reactions)) is not None:
+            while (target := self._instant(spot, rules)) is not None:
                 spot, count = target, count + 1
                 self._check_progress(spot, seen, count)
             if count > before:
                 return spot, count
         return None
 
-    def _instant(self, spot: Spot, reactions: list[Reaction]) -> Spot | None:
+    def _instant(self, spot: Spot, rules: int) -> Spot | None:
         """Apply the first rule that can be; of its results the one with the least canonical form."""
-        for reaction in reactions:
-            live = spot.live(reaction)
-            if live:
-                results: dict[Key, Spot] = {}
-                for found in live:
-                    target = spot.after(reaction.apply(spot.state, found)[0])
-                    target.lost |= spot.lost
-                    results.setdefault(self.labelling.canonical(target.state), target)
-                if len(results) == 1:
-                    return next(iter(results.values()))
-                return min(results.values(), key=lambda target: history_free(target.state))
+        for reaction, live in spot.enabled(rules):
+            targets = [spot.after(reaction.apply(spot.state, found)[0]) for found in live]
+            for target in targets:
+                target.lost |= spot.lost
+            if len(targets) == 1:
+                return targets[0]
+            results: dict[Key, Spot] = {}
+            for target in targets:
+                results.setdefault(self.labelling.canonical(target.state), target)
+            targets = list(results.values())
+            return targets[self.outlines.least([target.state for target in targets])]
         return None
 
     def _check_progress(self, spot: Spot, seen: set[Key], count: int) -> None:
         self.pause()
+        if count < MANY_INSTANTANEOUS:
+            return
         key = self.labelling.canonical(spot.state)
         if key in seen or count > MOST_INSTANTANEOUS:
             names = sorted(
-                {reaction.rule.label for rules, instant in self.classes if instant for reaction in rules}
+                {
+                    self.reactions[number].label
+                    for rules, instant in self.classes
+                    if instant
+                    for number in numbers_in(rules)
+                }
             )
             raise BigraphError(
                 "instantaneous",

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 
 from bigraphs.engine.contexts import Surroundings
 from bigraphs.engine.draft import Draft
 from bigraphs.engine.reactions import Reaction
+from bigraphs.engine.rule_index import ReactionIndex, numbers_in
 from bigraphs.engine.search_state import Occurrence
 from bigraphs.engine.state import State
 
@@ -17,49 +18,91 @@ class Spot:
     What a rewrite did not touch occurs as before; so of the state before only those occurrences are dropped that
     have a touched node, and only those are searched that have one. A node is touched if its places or links
     changed; for a rule that wants it to hold certain nodes and no others, also if what is in it changed; for a rule
-    with edges, also if something else on one of its links changed.
+    with edges, also if something else on one of its links changed. An index tells which rules that is about: only
+    they are asked again.
 
     Attributes:
         state: The state.
-        found: For each rule its occurrences, if they were asked for.
+        known: The mask of the rules whose occurrences are known.
+        found: The occurrences of each rule that is known to have any, by its number.
         lost: The slots whose nodes are not the same ones as before the last step.
     """
 
-    __slots__ = ("_around", "_before", "_changed", "_emptied", "_linked", "found", "lost", "state")
+    __slots__ = (
+        "_around",
+        "_before",
+        "_changed",
+        "_emptied",
+        "_index",
+        "_known_before",
+        "_linked",
+        "_possible",
+        "found",
+        "known",
+        "lost",
+        "state",
+    )
 
-    def __init__(self, state: State, rules: int) -> None:
+    def __init__(self, state: State, index: ReactionIndex) -> None:
         self.state = state
-        self.found: list[list[Occurrence] | None] = [None] * rules
-        self._before: Sequence[list[Occurrence] | None] = self.found
+        self.known = self._known_before = 0
+        self.found: dict[int, list[Occurrence]] = {}
+        self._before = self.found
+        self._index = index
+        self._possible = -1
         self._changed = self._emptied = self._linked = 0
         self._around: Surroundings | None = None
         self.lost = 0
 
     def after(self, draft: Draft) -> Spot:
         """Return the state that a rewrite of this one has made."""
-        spot = Spot(draft.finish(), len(self.found))
-        spot._before = self.found
+        spot = Spot(draft.finish(), self._index)
+        spot._before, spot._known_before = self.found, self.known
         spot._changed, spot._emptied = draft.changed, draft.emptied
         spot._linked = draft.touched_by_links()
         spot.lost = draft.removed
+        spot._carry(self.state)
         return spot
+
+    def _carry(self, before: State) -> None:
+        """Take over the occurrences of the rules that the last step does not concern."""
+        concerned = self._index.concerned(before, self.state, self._changed, self._emptied, self._linked)
+        self.known = self._known_before & ~concerned
+        self.found = {number: found for number, found in self._before.items() if self.known >> number & 1}
+
+    def enabled(self, rules: int) -> Iterator[tuple[Reaction, list[Occurrence]]]:
+        """Yield those of the rules in a mask that may act, in order, and where they may."""
+        if self._possible < 0:
+            self._possible = self._index.possible(self.state)
+            self.known |= self._index.all & ~self._possible
+        having = sum(1 << number for number in self.found)
+        for number in numbers_in(rules & self._possible & (~self.known | having)):
+            reaction = self._index.reactions[number]
+            if live := self.live(reaction):
+                yield reaction, live
 
     def occurrences(self, reaction: Reaction) -> list[Occurrence]:
         """Return every occurrence of a rule, wherever it is, one of each that its symmetries make equal."""
         number = reaction.number
-        found = self.found[number]
-        if found is None:
-            before = self._before[number]
-            if before is None:
-                fresh, found = reaction.matcher.find(self.state), []
-            else:
-                touched = self._touched(reaction)
-                fresh = reaction.matcher.find_at(self.state, touched)
-                found = [each for each in before if not each.mask & touched]
-            if fresh:
-                found += reaction.representatives.choose(fresh)
-            self.found[number] = found
-        return found
+        if not self.known >> number & 1:
+            self.state.world.pause()
+            found = self._carried(reaction) if self._known_before >> number & 1 else self._fresh(reaction)
+            self.known |= 1 << number
+            if found:
+                self.found[number] = sorted(found)  # so their order does not tell how they were found
+        return self.found.get(number, [])
+
+    def _fresh(self, reaction: Reaction) -> list[Occurrence]:
+        found = reaction.matcher.find(self.state)
+        return reaction.representatives.choose(found) if found else found
+
+    def _carried(self, reaction: Reaction) -> list[Occurrence]:
+        if reaction.matcher.unplanned():
+            return self._fresh(reaction)
+        touched = self._touched(reaction)
+        fresh = reaction.matcher.find_at(self.state, touched)
+        found = [each for each in self._before.get(reaction.number, ()) if not each.mask & touched]
+        return found + reaction.representatives.choose(fresh) if fresh else found
 
     def live(self, reaction: Reaction) -> list[Occurrence]:
         """Return the occurrences where the rule may act and its conditions hold."""

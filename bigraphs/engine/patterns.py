@@ -78,9 +78,7 @@ class Pattern:
 
 def compile_pattern(world: World, bigraph: Bigraph) -> Pattern:
     """Return a pattern; raises BigraphError if it is too large."""
-    if len(bigraph.nodes) > MOST_NODES:
-        message = f"a pattern of {len(bigraph.nodes)} nodes; {MOST_NODES} are the most"
-        raise BigraphError("too-large", message, "look for a part of it")
+    check_size(bigraph)
     number: dict[int | str, int] = {name: link for link, name in enumerate(bigraph.outer_names)}
     fixed, inside = len(bigraph.outer_names), children(bigraph)
     labels = [world.label(node.control, node.name) for node in bigraph.nodes]
@@ -124,6 +122,13 @@ def _twins(
     return tuple(tuple(group) for group in groups.values() if len(group) > 1)
 
 
+def check_size(bigraph: Bigraph) -> None:
+    """Raise BigraphError if a pattern is too large."""
+    if len(bigraph.nodes) > MOST_NODES:
+        message = f"a pattern of {len(bigraph.nodes)} nodes; {MOST_NODES} are the most"
+        raise BigraphError("too-large", message, "look for a part of it")
+
+
 def check_solid(redex: Bigraph, what: str) -> None:
     """Raise BigraphError unless each occurrence of a redex takes a state apart in one way (Milner's solid redexes)."""
     inhabited = {place for node in redex.nodes for place in node.parents}
@@ -153,4 +158,4 @@ def check_solid(redex: Bigraph, what: str) -> None:
         )
 
 
-__all__ = ["Pattern", "check_solid", "compile_pattern"]
+__all__ = ["Pattern", "check_size", "check_solid", "compile_pattern"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,13 +11,13 @@ from typing import TypeAlias
 from bigraphs.engine.automorphisms import Representatives, symmetries
 from bigraphs.engine.contexts import ConditionCheck
 from bigraphs.engine.draft import Draft
-from bigraphs.engine.patterns import check_solid, compile_pattern
+from bigraphs.engine.patterns import Pattern, check_size, check_solid, compile_pattern
 from bigraphs.engine.search import Matcher
 from bigraphs.engine.search_state import Occurrence
 from bigraphs.engine.sharing import region_places, site_contents
 from bigraphs.engine.state import State, bits
 from bigraphs.engine.tracking import top_down, traced, track, track_edges
-from bigraphs.engine.world import World
+from bigraphs.engine.world import World, has_edges
 from bigraphs.errors import BigraphError
 from bigraphs.system import Rule
 
@@ -48,62 +49,111 @@ class SiteChange:
 
 
 class Reaction:
-    """A rule of one world: its matcher, and what it changes.
+    """A rule of one world: its matcher, and what it changes; both are made when they are first asked for.
 
     Attributes:
+        label: The name of the rule, with its parameters.
+        controls: How many nodes of each control the redex has.
         wide: Whether an occurrence may have to be refused for where its regions are.
         exact: The controls of the nodes of the redex that have no site.
         closed: Whether the redex has edges.
     """
 
-    def __init__(self, world: World, rule: Rule, number: int) -> None:
+    def __init__(
+        self, world: World, rule: Rule, number: int, tidy: Callable[[Rule], Rule] = lambda rule: rule
+    ) -> None:
+        self.world, self.number, self.label = world, number, rule.label
+        self._given, self._tidy = rule, tidy
         check_solid(rule.redex, f"the redex of rule '{rule.label}'")
-        self.world, self.rule, self.number = world, rule, number
-        self.pattern = compile_pattern(world, rule.redex)
-        self.matcher = Matcher(world, self.pattern)
-        self.conditions = tuple(ConditionCheck(world, condition) for condition in rule.conditions)
-        self.wide = world.passive or self.pattern.wide()
-        self.exact = frozenset(
-            control
-            for control, sited in zip(self.pattern.controls, self.pattern.sited, strict=True)
-            if not sited
-        )
-        self.closed = rule.redex.edges > 0
-        self._compile()
+        for pattern in (rule.redex, *(condition.pattern for condition in rule.conditions)):
+            check_size(pattern)
+            world.know(pattern)
+        world.know(rule.reactum)
+        controls = [world.controls[node.control] for node in rule.redex.nodes]
+        sited = {place for parents in rule.redex.sites for place in parents}
+        self.controls = Counter(controls)
+        self.exact = frozenset(control for node, control in enumerate(controls) if node not in sited)
+        self.closed = has_edges(rule.redex)
+
+    @cached_property
+    def rule(self) -> Rule:
+        """The rule, tidy."""
+        return self._tidy(self._given)
+
+    @cached_property
+    def pattern(self) -> Pattern:
+        """The redex, compiled."""
+        return compile_pattern(self.world, self.rule.redex)
+
+    @cached_property
+    def matcher(self) -> Matcher:
+        """What finds the redex."""
+        return Matcher(self.world, self.pattern)
+
+    @cached_property
+    def wide(self) -> bool:
+        """Whether an occurrence may have to be refused for where its regions are."""
+        return self.world.passive or self.matcher.wide
+
+    @cached_property
+    def conditions(self) -> tuple[ConditionCheck, ...]:
+        """The conditions, compiled."""
+        return tuple(ConditionCheck(self.world, condition) for condition in self.rule.conditions)
 
     @cached_property
     def representatives(self) -> Representatives:
         """What chooses among occurrences that are one; made when the rule has an occurrence."""
         return Representatives(self.pattern, symmetries(self.rule, self.pattern))
 
-    def _compile(self) -> None:
-        rule, world = self.rule, self.world
-        reactum = rule.reactum
-        self.tracked = track(rule.redex, reactum)
-        self.edges = track_edges(rule.redex, reactum, self.tracked)
-        self.labels = [world.label(node.control, node.name) for node in reactum.nodes]
+    @cached_property
+    def tracked(self) -> tuple[int, ...]:
+        """For each node of the reactum the node of the redex that it is, or -1."""
+        return track(self.rule.redex, self.rule.reactum)
+
+    @cached_property
+    def edges(self) -> tuple[int, ...]:
+        """For each edge of the reactum the edge of the redex that it is, or -1."""
+        return track_edges(self.rule.redex, self.rule.reactum, self.tracked)
+
+    @cached_property
+    def labels(self) -> list[int]:
+        """The label of each node of the reactum."""
+        return [self.world.label(node.control, node.name) for node in self.rule.reactum.nodes]
+
+    @cached_property
+    def removed(self) -> tuple[int, ...]:
+        """The nodes of the redex that are none of the reactum."""
         kept = set(self.tracked)
-        self.removed = tuple(node for node in range(self.pattern.size) if node not in kept)
-        changes = [self._node_change(number) for number in top_down(reactum)]
-        self.created = tuple(change for change in changes if change.old < 0)
-        self.kept = tuple(
-            change
-            for change in changes
-            if change.old >= 0 and (change.places is not None or change.links is not None)
-        )
-        self.sites = tuple(
-            change
-            for site in range(len(rule.redex.sites))
-            if not (change := self._site_change(site)).stays or len(change.uses) != 1
-        )
-        self.placed = any(
-            place < 0
-            for places in (
-                *(change.places or () for change in changes),
-                *(use for change in self.sites for use in change.uses),
-            )
-            for place in places
-        )
+        return tuple(node for node in range(self.pattern.size) if node not in kept)
+
+    @cached_property
+    def changes(self) -> tuple[NodeChange, ...]:
+        """What becomes of each node of the reactum, those first that others are in."""
+        return tuple(self._node_change(number) for number in top_down(self.rule.reactum))
+
+    @cached_property
+    def created(self) -> tuple[NodeChange, ...]:
+        """The changes of new nodes."""
+        return tuple(change for change in self.changes if change.old < 0)
+
+    @cached_property
+    def kept(self) -> tuple[NodeChange, ...]:
+        """The changes of nodes that are there already, and are put or linked otherwise."""
+        old = (change for change in self.changes if change.old >= 0)
+        return tuple(change for change in old if change.places is not None or change.links is not None)
+
+    @cached_property
+    def sites(self) -> tuple[SiteChange, ...]:
+        """What becomes of what the sites hold, where that does not just stay."""
+        changes = map(self._site_change, range(len(self.rule.redex.sites)))
+        return tuple(change for change in changes if not change.stays or len(change.uses) != 1)
+
+    @cached_property
+    def placed(self) -> bool:
+        """Whether something is put directly into a region."""
+        nodes = [change.places or () for change in self.changes]
+        uses = [use for change in self.sites for use in change.uses]
+        return any(place < 0 for places in (*nodes, *uses) for place in places)
 
     def _node_change(self, number: int) -> NodeChange:
         node, old = self.rule.reactum.nodes[number], self.tracked[number]

@@ -19,6 +19,8 @@ from bigraphs.engine.sharing import shared_places_fit
 from bigraphs.engine.state import State, bits
 from bigraphs.engine.world import World
 
+_SELDOM: Final = 8
+"""Up to how many searches a pattern is looked for everywhere, and not where a state was touched."""
 _OFTEN: Final = 0x3FF
 """After how many steps, less one, a search pauses."""
 
@@ -29,7 +31,9 @@ class Matcher:
     def __init__(self, world: World, pattern: Pattern) -> None:
         self.world = world
         self.pattern = pattern
+        self.wide = pattern.wide()
         self._plans: list[Placing | None] = [None] * pattern.size
+        self._searches = 0
 
     def plan(self, first: int) -> Placing:
         """Return what places the whole pattern from one node on; it is made when it is first asked for."""
@@ -38,8 +42,13 @@ class Matcher:
             found = self._plans[first] = _plan(self.world, self.pattern, first)
         return found
 
+    def unplanned(self) -> bool:
+        """Say whether it has searched so seldom that to look everywhere costs less than to plan from each node."""
+        return self._searches < _SELDOM
+
     def find(self, state: State, allowed: int = -1, *, once: bool = False) -> list[Occurrence]:
         """Return every occurrence within the allowed slots, or one of them."""
+        self._searches += 1
         pattern, run = self.pattern, Run(state, self.pattern, allowed, once=once)
         if not pattern.size:
             return [Occurrence((), tuple(run.links), 0)]
@@ -77,19 +86,23 @@ def _plan(world: World, pattern: Pattern, first: int) -> Placing:
 
 def _order(pattern: Pattern, first: int) -> list[int]:
     """Return the nodes so that each is as near to those before as can be."""
-    order = [first]
-    while len(order) < pattern.size:
-        left = [node for node in range(pattern.size) if node not in order]
-        order.append(max(left, key=lambda node: (_nearness(pattern, node, order), -node)))
+    order, left = [first], set(range(pattern.size)) - {first}
+    near = dict.fromkeys(left, 0)
+    while left:
+        for node in left:
+            near[node] |= _nearness(pattern, node, order[-1])
+        order.append(max(left, key=lambda node: (near[node], -node)))
+        left.remove(order[-1])
     return order
 
 
-def _nearness(pattern: Pattern, node: int, placed: list[int]) -> tuple[bool, ...]:
+def _nearness(pattern: Pattern, node: int, placed: int) -> int:
+    """Return how much a placed node says about another one, as bits, the highest for what says most."""
     return (
-        any(child in placed for child in pattern.kids[node]),
-        any(other in placed for link in pattern.ports[node] for other in pattern.on[link]),
-        any(parent in placed for parent in pattern.parents[node]),
-        any(_beside(pattern, node, other) for other in placed),
+        8 * (placed in pattern.kids[node])
+        + 4 * any(placed in pattern.on[link] for link in pattern.ports[node])
+        + 2 * (placed in pattern.parents[node])
+        + _beside(pattern, node, placed)
     )
 
 

@@ -71,6 +71,11 @@ class World:
             self.name_of.append(name)
         return found
 
+    def know(self, bigraph: Bigraph) -> None:
+        """Give each node's control and name a label."""
+        for node in bigraph.nodes:
+            self.label(node.control, node.name)
+
     def code(self, row: Row) -> int:
         """Return the code of a row, a new one if it has not been seen."""
         found = self.codes.get(row)
@@ -81,6 +86,11 @@ class World:
             alone = row[3] == 0 and all(0 <= link < fixed for link in row[1])
             self.bare.append(alone and all(self.bare[kid] for kid in row[2]))
         return found
+
+
+def has_edges(bigraph: Bigraph) -> bool:
+    """Say whether a node is on an edge."""
+    return bigraph.edges > 0 and any(isinstance(link, int) for node in bigraph.nodes for link in node.ports)
 
 
 def has_sharing(bigraph: Bigraph) -> bool:

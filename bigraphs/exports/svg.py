@@ -12,7 +12,7 @@ from bigraphs.drawing import INK, KINDS, LINKS, MARGIN
 from bigraphs.exports.dot import describe
 from bigraphs.folding import Folded
 from bigraphs.layout import FONT, HEADER, PAD, SMALL, Box, Item, layout
-from bigraphs.routing import Route, route
+from bigraphs.link_curves import Route, route
 from bigraphs.transitions import TransitionSystem
 
 RADIUS: Final = 15.0

@@ -9,6 +9,7 @@ from checker.engines.contract import (
     Cluster,
     CompilerError,
     Engine,
+    EngineError,
     Exploration,
     Inspect,
     Keeping,
@@ -49,7 +50,13 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
 
 
 def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
-    """Visit everything that is reachable as options say."""
+    """Visit everything that is reachable as options say.
+
+    Raises:
+        EngineError: The mission says how long things take, of which the engine, or its checkpoints, know nothing.
+    """
+    if initial.setting.timing is not None:
+        return _explore_in_time(initial, inspect, options)
     match options.engine:
         case Engine.REFERENCE:
             return explore_one_by_one(initial, inspect, options)
@@ -61,6 +68,21 @@ def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Op
             return explore_with_ray(initial, inspect, options)
         case _:
             assert_never(options.engine)
+
+
+def _explore_in_time(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
+    if options.engine is Engine.RAY:
+        raise EngineError("the engine 'ray' does not explore missions with a section 'timing' yet")
+    if options.engine is Engine.FAST:
+        if options.keeping != Keeping() or options.limits.spill is not None:
+            raise EngineError("missions with a section 'timing' are explored in memory, without checkpoints")
+        load_numba()
+        from checker.engines.zones.explorer import explore_in_zones  # noqa: PLC0415  # numba takes its time to load
+
+        return explore_in_zones(initial, inspect, options)
+    from checker.engines.ticks import explore_in_ticks  # noqa: PLC0415 - few missions speak of time
+
+    return explore_in_ticks(initial, inspect, options)
 
 
 def _explore_fast(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:

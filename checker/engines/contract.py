@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from checker.engines.graph import Bools, Graph, Numbers
+    from checker.engines.times import Times
     from checker.reduction.reducer import Reduced
 
 
@@ -31,6 +32,10 @@ class MachineError(Exception):
 
 class CompilerError(Exception):
     """The loops cannot be compiled here."""
+
+
+class EngineError(Exception):
+    """An engine that cannot explore a mission."""
 
 
 class CheckpointError(Exception):
@@ -179,6 +184,7 @@ class Exploration:
         allowed: How many transitions the visited configurations allow; more than `transitions` where it was reduced.
         reducer: What made it visit less, None where it visited everything.
         start: What it started from, where another configuration stands for it.
+        times: When everything may be done, where the mission says how long things take.
     """
 
     configurations: Sequence[Configuration]
@@ -195,6 +201,7 @@ class Exploration:
     allowed: int = 0
     reducer: Reduced | None = None
     start: Configuration | None = None
+    times: Times | None = None
 
     def __repr__(self) -> str:
         return (

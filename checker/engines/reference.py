@@ -6,13 +6,14 @@ It visits each configuration once, in the order of its distance from the first, 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from checker.engines.contract import Exploration, Inspect, Options, Progress, sample
 from checker.engines.edges import Edges
 from checker.engines.estimate import estimate
 from checker.limits import Bound, BoundMet, Part, Stop, bounded, is_full, look
+from checker.reduction.paths import Paths
 from semantics.state.configuration import Configuration, Transition
 from semantics.successors import Expansion, expand
 
@@ -50,12 +51,14 @@ class _Explorer:
         self.options = options
         self.limits = options.limits
         self.represent: Callable[[Configuration], Configuration] = _itself
+        self.paths = Paths()
 
     def reduce_by(self, reducer: Reduced) -> None:
         self.found.reducer, self.found.start = reducer, self.configurations[0]
         self.configurations[0] = reducer.representative(self.configurations[0])
         self.numbers = {self.configurations[0]: 0}
         self.represent = reducer.representative
+        self.paths = reducer.paths()
 
     def run(self) -> Exploration:
         started = time.monotonic()
@@ -90,22 +93,29 @@ class _Explorer:
             self.missing(number)
         else:
             self.found.allowed += len(expansion.transitions)
-            chosen = self.chosen(number, configuration, expansion)
-            if len(chosen) < len(expansion.transitions):
-                self.missing(number)
-            for transition in chosen:
-                self.follow(number, transition)
+            if self.found.reducer is None:
+                self.follow_all(number, expansion.transitions)
+            else:
+                self.reduced(number, configuration, expansion, self.found.reducer)
         if self.found.edges is not None:
             self.found.edges.close()
 
-    def chosen(self, number: int, c: Configuration, expansion: Expansion) -> tuple[Transition, ...]:
-        """Return the transitions to be followed. Expansion is in the order of numbers: the later has the greater."""
-        if self.found.reducer is None:
-            return expansion.transitions
-        numbers, represent = self.numbers, self.represent
-        return self.found.reducer.choose(
-            c, expansion, lambda each: numbers.get(represent(each.target), number + 1) > number
-        )
+    def reduced(self, number: int, c: Configuration, expansion: Expansion, reducer: Reduced) -> None:
+        """Follow the transitions that are chosen, and note where one of them leads on."""
+        followed = reducer.choose(c, expansion, number, self.reached, self.paths)
+        if len(followed.steps) < len(expansion.transitions):
+            self.missing(number)
+        self.follow_all(number, followed.steps)
+        if followed.onward is not None and (target := self.reached(followed.onward)) is not None:
+            self.paths.lead(number, target, followed.taken)
+
+    def reached(self, transition: Transition) -> int | None:
+        """Return the number of the configuration that a transition leads to, None if it is new."""
+        return self.numbers.get(self.represent(transition.target))
+
+    def follow_all(self, number: int, transitions: Iterable[Transition]) -> None:
+        for transition in transitions:
+            self.follow(number, transition)
 
     def follow(self, number: int, transition: Transition) -> None:
         found, label = self.found, transition.label
@@ -123,6 +133,7 @@ class _Explorer:
             self.configurations.append(reached)
             self.origins.append(number)
             self.depths.append(self.depths[number] + 1)
+            self.paths.movers[target] = label.agent
             self.count(self.depths[-1])
         if found.edges is not None:
             found.edges.add(label, target)

@@ -10,6 +10,7 @@ from semantics.behaviours.statements import React, Send
 from semantics.behaviours.stepping import next_statement
 from semantics.behaviours.values import Value, show
 from semantics.control import obstacle
+from semantics.environment import Drops, Leaves
 from semantics.extension import linked
 from semantics.state.agents import written
 from semantics.state.configuration import Configuration
@@ -56,7 +57,7 @@ def _apart(c: Configuration, here: Name, there: Name, who: str) -> str:
     """Return why two hosts are not linked, empty if they are."""
     if linked(c, here, there):
         return ""
-    return f"{who}, {here} and {there}, share no link{_missing(c, here, there)}"
+    return f"{who}, {here} and {there}, share no link{_missing(c, here, there)}{_promise(c, here, there)}"
 
 
 def _missing(c: Configuration, here: Name, there: Name) -> str:
@@ -73,6 +74,17 @@ def _missing(c: Configuration, here: Name, there: Name) -> str:
     if both and not believed.intersection(both):
         return f" in L: P has both on {' and '.join(each for each in both if each not in down)}"
     return ": P has both on none" if believed else ""
+
+
+def _promise(c: Configuration, here: Name, there: Name) -> str:
+    """Return how to count on a link of theirs that the environment may give back; empty where it gives none back."""
+    physical = c.structure.physical
+    for clause in c.setting.environment:
+        dropped = isinstance(clause, Drops) and clause.returns and physical.is_down(clause.channel)
+        left = isinstance(clause, Leaves) and clause.returns and clause.entity in (here, there)
+        if dropped or left:
+            return "; it may return: deadlock_freedom under weak fairness of environment counts on that"
+    return ""
 
 
 # --- what an agent waits for ----------------------------------------------------------------------------------

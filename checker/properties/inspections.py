@@ -1,6 +1,7 @@
 """Inspections of single configurations: local consistency, deadlock, invariants, reachability, computation."""
 
 from collections.abc import Callable, Iterable, Iterator
+from enum import Enum, auto
 from functools import partial
 from itertools import chain
 from operator import itemgetter
@@ -46,6 +47,17 @@ class Excerpt(NamedTuple):
     steps: Expansion
 
 
+class InTime(Enum):
+    """What an inspection is shown of a configuration of a mission with timing."""
+
+    ENABLED = auto()
+    """Everything that the rules allow there, whenever it may be done."""
+    TAKEN = auto()
+    """What is done there at some time."""
+    TOGETHER = auto()
+    """Two controls that may be served at one moment, pair by pair."""
+
+
 class Inspection:
     """Looks at configurations one by one, and collects what it sees of one property.
 
@@ -56,12 +68,14 @@ class Inspection:
         alone: The rules whose steps tell what is seen of an agent (`seen`); none where nothing is.
         together: The rules whose steps tell whether an agent must move (`still`); none where that doesn't matter.
         in_turn: Whether it is only about what is in its turn: of that no agent alone tells.
+        in_time: What it is shown where a mission says how long things take.
         collected: What was found.
     """
 
     alone: ClassVar[tuple[Rules, ...]] = ()
     together: ClassVar[tuple[Rules, ...]] = ()
     in_turn: ClassVar[bool] = False
+    in_time: ClassVar[InTime] = InTime.ENABLED
 
     def __init__(self, most: int = MOST_VIOLATIONS) -> None:
         self.collected = Collected(most)
@@ -184,7 +198,18 @@ class Arrival(Inspection):
 
 def is_unfair(c: Configuration, transition: Transition) -> bool:
     """Tell whether a transition is the end of a flight of which the mission doesn't say that it arrives."""
-    return transition.served is not None and never_ends(c.setting, transition.served.request)
+    if transition.served is None or not never_ends(c.setting, transition.served.request):
+        return False
+    return not arrives_in_time(c, transition.served.request)
+
+
+def arrives_in_time(c: Configuration, request: object) -> bool:
+    """Tell whether a request is a flight that takes no longer than some time."""
+    if c.setting.timing is None or not isinstance(request, FLY):
+        return False
+    from semantics.timing.flight_times import interval_of_flight  # noqa: PLC0415 - geometry takes its time to load
+
+    return interval_of_flight(c, request).hi is not None
 
 
 def never_ends(setting: Setting, request: object) -> bool:
@@ -269,15 +294,16 @@ class Invariant(Inspection):
 
     WRONG: ClassVar[Key] = ("invariant", "")
 
-    def __init__(self, formula: Proposition, most: int = MOST_VIOLATIONS) -> None:
+    def __init__(self, formula: Proposition, shown: str = "", most: int = MOST_VIOLATIONS) -> None:
         super().__init__(most)
         self.formula = formula
+        self.shown = shown or str(formula)
         self.valuations = Valuations(formula)
 
     def seen(self, of: Excerpt) -> Iterator[Seen]:
         """Yield the configuration, which is one thing."""
         good = self.valuations.holds(of.c)
-        yield Seen() if good else Seen(self.WRONG, None, f"not true here: {self.formula}")
+        yield Seen() if good else Seen(self.WRONG, None, f"not true here: {self.shown}")
 
 
 class Reachability(Inspection):

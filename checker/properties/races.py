@@ -6,7 +6,7 @@ from typing import Final
 
 from checker.properties.control_sites import common_sites
 from checker.properties.findings import Seen
-from checker.properties.inspections import Excerpt, Inspection
+from checker.properties.inspections import Excerpt, Inspection, InTime
 from semantics.control import applicable
 from semantics.races.monitor import CONTROLS, slots_used, stale_tests
 from semantics.races.provenance import EVERYTHING, Dependency
@@ -22,6 +22,8 @@ from semantics.successors import served
 
 class ControlRaces(Inspection):
     """Two enabled controls, where serving one disables the other, or the two orders end differently."""
+
+    in_time = InTime.TOGETHER
 
     def seen(self, of: Excerpt) -> Iterator[Seen]:
         """Yield every pair of controls that are enabled, apart from the scheduler's turn."""
@@ -121,6 +123,7 @@ class StaleObservationRaces(Inspection):
 
     alone = (served,)
     in_turn = True
+    in_time = InTime.TAKEN
 
     def seen(self, of: Excerpt) -> Iterator[Seen]:
         """Yield every control that is served; the configuration must be monitored."""

@@ -8,8 +8,9 @@ computed once more: a computation depends on nothing but its agent's code, varia
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
+from checker.properties.inspections import InTime
 from semantics.behaviours.computation import Passage, Process, compute, first_fitting
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.statements import React, at_internal
@@ -57,7 +58,10 @@ class Visited:
         passed: What computations passed over, as far as it is known without their moments.
         happened: The words of what the environment did and said.
         known: The cells of agents that were met, so that no moment is made twice.
+        in_time: What it is shown where a mission says how long things take.
     """
+
+    in_time: ClassVar[InTime] = InTime.TAKEN
 
     codes: dict[Name, set[Code]] = field(default_factory=dict)
     moments: set[Moment] = field(default_factory=set)

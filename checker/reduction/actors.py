@@ -9,7 +9,7 @@ does a bound of all its later steps.
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import product
 from math import prod
 from typing import NamedTuple
@@ -91,10 +91,10 @@ class Actors:
         self.marks = Marks(self.footprints)
         self._known_agent = lru_cache(maxsize=1 << 16)(self._agent)
         self._of_request = lru_cache(maxsize=1 << 16)(self._request)
-        self._of_statement = lru_cache(maxsize=1 << 14)(self._statement)
+        self._of_statement = cache(self._statement)  # as many as agents times statements
         self._of_code = lru_cache(maxsize=1 << 14)(self._code)
         self._of_reaction = lru_cache(maxsize=1 << 14)(self._reaction)
-        self.clause = lru_cache(maxsize=None)(self.footprints.clause)
+        self.clause = cache(self.footprints.clause)
 
     def _lives(self, c: Configuration) -> Iterator[Footprint]:
         for agent in self.roles.agents:

@@ -4,47 +4,71 @@ Independent steps of different actors are followed in one order only. docs/expla
 sound, and for which properties it is refused.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from enum import Enum
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from checker.properties.inspections import is_unfair
 from checker.reduction.actors import Acting, Actor, Actors
+from checker.reduction.paths import Parts, Paths, part_of, parts_of
 from checker.reduction.visible import Eyes
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition
+from semantics.state.signature import Name
 from semantics.successors import Expansion, by_clause
 
-Later = Callable[[Transition], bool]
-"""Whether the configuration that a transition leads to is expanded after the one that it starts from."""
+Reached = Callable[[Transition], int | None]
+"""The number of the configuration that a transition leads to, None if it is new."""
 
 
-class Proviso(Enum):
-    """The proviso against postponing a step for ever."""
+class Persistent(NamedTuple):
+    """A persistent set of actors, and their steps."""
 
-    SOME = "some"
-    """One of the followed steps leads to a configuration that is expanded later: enough for safety properties."""
+    actors: frozenset[Actor]
+    steps: tuple[Transition, ...]
 
-    ALL = "all"
-    """All of them do, so every cycle has a fully expanded configuration, as LTL without next needs."""
+
+class Followed(NamedTuple):
+    """The steps to be followed, what is taken by them, and the one that leads on; None where no step is ignored."""
+
+    steps: tuple[Transition, ...]
+    taken: Parts = frozenset()
+    onward: Transition | None = None
 
 
 class Ample:
     """Chooses ample sets within one mission."""
 
-    def __init__(
-        self, initial: Configuration, formulas: Iterable[Proposition] = (), proviso: Proviso = Proviso.SOME
-    ) -> None:
+    def __init__(self, initial: Configuration, formulas: Iterable[Proposition] = ()) -> None:
         self.actors = Actors(initial)
         self.eyes = Eyes(initial, formulas)
-        self.enough = any if proviso is Proviso.SOME else all
 
-    def choose(self, c: Configuration, expansion: Expansion, later: Later) -> tuple[Transition, ...]:
-        """Return the transitions to follow: an ample set, or all if none is known."""
-        everything = expansion.transitions
-        for chosen in self.candidates(c, expansion):
-            if self.is_ample(c, chosen) and self.enough(map(later, chosen)):
-                return chosen
-        return everything
+    def choose(
+        self, c: Configuration, expansion: Expansion, number: int, reached: Reached, paths: Paths
+    ) -> Followed:
+        """Return the steps of an ample set, or of several, or all.
+
+        Where every step leads back to here, another set joins, with an actor that is ignored on the way.
+        """
+        acting, owners = self.actors.of(c), self.owners(c, expansion)
+        inside: frozenset[Actor] = frozenset()
+        taken: Parts = frozenset()
+        for found in self.candidates(expansion, acting, owners, paths.movers.get(number)):
+            ignored = (each for each in found.actors.intersection(owners) if each not in inside)
+            if all(part_of(each) in taken for each in ignored) or not self.is_ample(c, found.steps):
+                continue
+            inside |= found.actors
+            taken |= parts_of(found.actors, acting)
+            steps = tuple(
+                step for step, owner in zip(expansion.transitions, owners, strict=True) if owner in inside
+            )
+            for step in found.steps:
+                end = paths.end(reached(step))
+                if end.to != number:
+                    return Followed(steps, taken, step)
+                taken |= end.taken
+            if all(each in inside or part_of(each) in taken for each in owners):
+                return Followed(steps, taken)
+        return Followed(expansion.transitions)
 
     def is_ample(self, c: Configuration, chosen: tuple[Transition, ...]) -> bool:
         """Tell whether the steps are invisible to all properties, and one of them must be taken eventually."""
@@ -52,23 +76,34 @@ class Ample:
             return False
         return any(each.label.agent is not None and not is_unfair(c, each) for each in chosen)
 
-    def candidates(self, c: Configuration, expansion: Expansion) -> list[tuple[Transition, ...]]:
-        """Return the steps of persistent sets of actors that omit some step, the smallest first."""
-        if len(expansion.transitions) < 2:
-            return []
-        movable = dict.fromkeys(self.actors.actor_of(each.label) for each in expansion.by_agents)
-        sets = dict.fromkeys(persistent(self.actors.of(c), movable))
-        found = (self.steps_of(c, expansion, actors) for actors in sets)
-        return sorted((each for each in found if len(each) < len(expansion.transitions)), key=len)
+    def candidates(
+        self,
+        expansion: Expansion,
+        acting: Mapping[Actor, Acting],
+        owners: Sequence[Actor],
+        mover: Name | None,
+    ) -> Iterator[Persistent]:
+        """Yield the persistent sets that omit some step: those around who moved last, then others, by their size."""
+        found: set[frozenset[Actor]] = set()
+        allowed = list(zip(expansion.transitions, owners, strict=True))
+        movable = dict.fromkeys(owners[: len(expansion.by_agents)])
+        for seeds in ([a for a in movable if a.owner == mover], [a for a in movable if a.owner != mover]):
+            sets = [each for each in dict.fromkeys(persistent(acting, seeds)) if each not in found]
+            found.update(sets)
+            steps = (tuple(step for step, owner in allowed if owner in each) for each in sets)
+            several = [each for each in map(Persistent, sets, steps) if len(each.steps) < len(allowed)]
+            yield from sorted(several, key=lambda each: len(each.steps))
 
-    def steps_of(
-        self, c: Configuration, expansion: Expansion, actors: frozenset[Actor]
-    ) -> tuple[Transition, ...]:
-        """Return the transitions of some actors, in the order of the expansion."""
-        clauses = (c.setting.environment[int(each.owner)] for each in actors if each.kind == "clause")
-        around = {step for clause in clauses for step in by_clause(c, clause)}
-        ours = [step for step in expansion.by_agents if self.actors.actor_of(step.label) in actors]
-        return (*ours, *(step for step in expansion.by_environment if step in around))
+    def owners(self, c: Configuration, expansion: Expansion) -> tuple[Actor, ...]:
+        """Return whose each transition is; what several clauses allow is the first one's."""
+        environment = c.setting.environment if expansion.by_environment else ()
+        clauses = {
+            step: Actor("clause", number)
+            for number, clause in reversed(list(enumerate(environment)))
+            for step in by_clause(c, clause)
+        }
+        ours = (self.actors.actor_of(step.label) for step in expansion.by_agents)
+        return (*ours, *(clauses[step] for step in expansion.by_environment))
 
 
 def persistent(acting: Mapping[Actor, Acting], seeds: Iterable[Actor]) -> Iterator[frozenset[Actor]]:

@@ -38,6 +38,8 @@ class Bounds:
         self.above: Callable[[Name], Names] = cache(
             lambda name: reached(self.believable(name), self.believable)
         )
+        self.inside: Callable[[Name], Names] = cache(self._inside)
+        self.believed_inside: Callable[[Name], Names] = cache(self._believed_inside)
         self.cyclic: Names = frozenset(name for name in self.names if name in self.above(name))
 
     def _carriers(self, name: Name) -> Names:
@@ -73,11 +75,11 @@ class Bounds:
             {believed} & self.names if believed not in (None, REGION) else frozenset()
         )
 
-    def inside(self, place: Name) -> Names:
+    def _inside(self, place: Name) -> Names:
         """Return the possible children of a place, or of the region, in A(P)."""
         return frozenset(name for name in self.names if place == REGION or place in self.holders(name))
 
-    def believed_inside(self, place: Name) -> Names:
+    def _believed_inside(self, place: Name) -> Names:
         """Return the possible children of a place in L."""
         return frozenset(name for name in self.names if place in self.believable(name))
 

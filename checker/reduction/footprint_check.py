@@ -138,7 +138,7 @@ def recorded(actors: Actors, c: Configuration) -> tuple[Asked, Configuration]:
     """Return what will have been asked of a configuration, and that to be asked: of nothing that never varies."""
     assert isinstance(c.state, Row)
     recorder = Recorder(_Whole(c.state), c.state, lambda cell: varies(actors, cell), frozenset())
-    return recorder.scopes[0], Configuration(c.setting, recorder)
+    return recorder.scopes[0].asked, Configuration(c.setting, recorder)
 
 
 class _Whole(Source):

@@ -5,6 +5,7 @@ a run was seen to read. Each function names the rule whose reads and writes it b
 """
 
 from collections.abc import Iterable, Iterator
+from functools import cache
 from typing import assert_never
 
 from checker.reduction.bounds import Bounds, Names
@@ -36,6 +37,7 @@ class Footprints:
         self.bounds = bounds
         self.roles = roles
         self.slots = Slots()
+        self._where = cache(self._decides_where)
         self.wakes = wakes(bounds.setting.program)
         statements = enumerate(bounds.setting.program.statements)
         self.reacts = tuple(number for number, each in statements if isinstance(each, React))
@@ -44,20 +46,22 @@ class Footprints:
 
     # --- what rules ask of P and L ----------------------------------------------------------------------------
 
-    def where(self, names: Iterable[Name]) -> Iterator[Slot]:
-        """Yield what decides where entities are, and what holds them."""
-        for name in names:
-            yield from (("placement", each) for each in self.bounds.around(name))
+    def where(self, names: Iterable[Name]) -> int:
+        """Return what decides where entities are, and what holds them."""
+        return self._where(frozenset(names))
 
-    def there(self, names: Iterable[Name]) -> Iterator[Slot]:
-        """Yield what decides whether entities have an image in P."""
-        return (("present", name) for name in names)
+    def there(self, names: Iterable[Name]) -> int:
+        """Return what decides whether entities have an image in P."""
+        return self.slots.of("present", names)
 
-    def connected(self, names: Iterable[Name]) -> Iterator[Slot]:
-        """Yield what decides on which links entities are in A(P)."""
-        for name in names:
-            yield from (("channels", name), ("present", name))
-        yield from (("down", channel) for channel in self.bounds.channels)
+    def connected(self, names: Iterable[Name]) -> int:
+        """Return what decides on which links entities are in A(P)."""
+        several = frozenset(names)
+        here = self.slots.of("channels", several) | self.slots.of("present", several)
+        return here | self.slots.of("down", self.bounds.channels)
+
+    def _decides_where(self, names: Names) -> int:
+        return self.slots.of("placement", frozenset[Name]().union(*map(self.bounds.around, names)))
 
     def linked(self, hosts: Iterable[Name], others: Iterable[Name]) -> Footprint:
         """Bound `extension.linked`: whether one of some hosts shares a link with one of others, in L and in P."""
@@ -65,17 +69,17 @@ class Footprints:
         if len(ours) == 1 and ours == theirs:
             return NOTHING
         both = ours | theirs
-        return self.slots.footprint((*self.connected(both), *(("links", name) for name in both)))
+        return Footprint(self.connected(both) | self.slots.of("links", both))
 
     # --- rules ------------------------------------------------------------------------------------------------
 
     def sense(self, query: Query) -> Footprint:
         """Bound `sense`: what a query looks at, and what of L ⊕ L_q it may change."""
         looking = _Looking(self, query)
-        merges = self.slots.bits(looking.merges) & ~self.settled
-        cyclic = self.slots.bits(("parent", name) for name in self.bounds.cyclic)
+        merges = looking.merges & ~self.settled
+        cyclic = self.slots.of("parent", self.bounds.cyclic)
         breaking = cyclic if merges & cyclic else 0
-        return Footprint(self.slots.bits(looking.reads) | breaking, breaking, merges & ~breaking)
+        return Footprint(looking.reads | breaking, breaking, merges & ~breaking)
 
     def control(self, agent: Name, reaction: Reaction) -> Footprint:
         """Bound `actuate`, `command` and `commit` of a reaction, and `control.obstacle`."""
@@ -142,19 +146,19 @@ class Footprints:
                 return self.slots.footprint([("present", entity), *own], own)
             case Appears(entity, placements):
                 by = (placement.by for placement in placements if isinstance(placement, Carried))
-                return self.slots.footprint(self.there([entity, *by]), self._all_of([entity]))
+                return Footprint(self.there([entity, *by]), self._all_of([entity]))
             case Vanishes(entity):
                 gone = {entity, *self.bounds.aboard(entity)}
-                return self.slots.footprint((*self.there([entity]), *self.where(gone)), self._all_of(gone))
+                return Footprint(self.there([entity]) | self.where(gone), self._all_of(gone))
             case Says(message, agent):
                 reads = [AGENTS] if self.roles.may_come(agent) else []
                 return self.slots.footprint(reads, merges=self.mail(agent, Known(message)))
             case _:
                 assert_never(clause)
 
-    def _all_of(self, names: Iterable[Name]) -> Iterator[Slot]:
-        for name in names:
-            yield from (("placement", name), ("present", name), ("channels", name))
+    def _all_of(self, names: Iterable[Name]) -> int:
+        several = frozenset(names)
+        return self.slots.of("placement", several) | self.there(several) | self.slots.of("channels", several)
 
     # --- what never changes -----------------------------------------------------------------------------------
 
@@ -168,14 +172,14 @@ class Footprints:
         for name in self.bounds.names & self.bounds.known:
             if name not in physical:
                 continue
-            place: Slot = ("parent", name)
+            place = self.slots.of("parent", [name])
             agree = logical.parent(name) == physical.abstract_parent(name) and name not in self.bounds.cyclic
-            if agree and not everything.writes & self.slots.bits([place, *self.where([name])]):
-                self.settled |= self.slots.bits([place])
-            links: Slot = ("links", name)
+            if agree and not everything.writes & (place | self.where([name])):
+                self.settled |= place
+            links = self.slots.of("links", [name])
             agree = logical.links(name) == physical.links(name)
-            if agree and not everything.writes & self.slots.bits([links, *self.connected([name])]):
-                self.settled |= self.slots.bits([links])
+            if agree and not everything.writes & (links | self.connected([name])):
+                self.settled |= links
 
 
 class _Looking:
@@ -184,19 +188,19 @@ class _Looking:
     def __init__(self, of: Footprints, query: Query) -> None:
         self.of = of
         self.bounds = of.bounds
-        self.reads: set[Slot] = set()
-        self.merges: set[Slot] = set()
+        self.slots = of.slots
+        self.reads = self.merges = 0
         self.show(self.ask(query))
 
     def show(self, names: Iterable[Name]) -> None:
         """Let what is shown and was no node of L become one."""
-        for name in set(names) - self.bounds.known - {REGION}:
-            self.merges |= {("parent", name), ("known", name)}
+        new = frozenset(names) - self.bounds.known - {REGION}
+        self.merges |= self.slots.of("parent", new) | self.slots.of("known", new)
 
     def ask(self, query: Query) -> Names:
         """Return all that a query may denote."""
         if isinstance(query, Nodes):
-            self.reads.update(self.of.there(query.names))
+            self.reads |= self.of.there(query.names)
             return frozenset(query.names) & self.bounds.names
         if isinstance(query, All):
             self.everything()
@@ -219,7 +223,7 @@ class _Looking:
                 assert_never(operator)
 
     def everything(self) -> None:
-        self.reads.update(self.of.there(self.bounds.names))
+        self.reads |= self.of.there(self.bounds.names)
         for name in (REGION, *sorted(self.bounds.names)):
             self.children(name)
             self.linked_to(name)
@@ -227,29 +231,29 @@ class _Looking:
     def parent(self, name: Name) -> Names:
         if name == REGION:
             return frozenset({REGION})
-        self.reads.update((*self.of.where([name]), *self.of.there([name])))
-        self.merges.add(("parent", name))
+        self.reads |= self.of.where([name]) | self.of.there([name])
+        self.merges |= self.slots.of("parent", [name])
         places = self.bounds.holders(name)
         self.show({name, *places})
         return places | {REGION}
 
     def children(self, place: Name) -> Names:
         inside = self.bounds.inside(place)
-        self.reads.update((*self.of.where(inside), *self.of.there(inside)))
-        self.merges.update(("parent", name) for name in inside | self.bounds.believed_inside(place))
+        self.reads |= self.of.where(inside) | self.of.there(inside)
+        self.merges |= self.slots.of("parent", inside | self.bounds.believed_inside(place))
         self.show(inside | {place})
         return inside | {place}
 
     def linked_to(self, name: Name) -> Names:
         if name == REGION:
             return frozenset({REGION})
-        self.reads.update(self.of.connected(self.bounds.names))
-        self.merges.update(("links", each) for each in self.bounds.names)
+        self.reads |= self.of.connected(self.bounds.names)
+        self.merges |= self.slots.of("links", self.bounds.names)
         self.show(self.bounds.names)
         return self.bounds.names
 
     def hosted_at(self, _: Name) -> Names:
-        self.reads.update([AGENTS, *(("host", agent) for agent in self.of.roles.agents)])
+        self.reads |= self.slots.bits([AGENTS]) | self.slots.of("host", self.of.roles.agents)
         return frozenset()
 
 
@@ -261,15 +265,15 @@ class _Reacting:
         self.bounds = of.bounds
         self.reaction, self.redex, self.reactum = reaction, reaction.redex, reaction.reactum
         self.nodes = frozenset[Name]().union(*map(self.nodes_of, (*self.redex.nodes, *self.reactum.nodes)))
-        self.reads: set[Slot] = set()
-        self.writes: set[Slot] = set()
+        self.slots = of.slots
+        self.reads = self.writes = 0
 
     def footprint(self) -> Footprint:
         """Return it."""
         self.matching()
         self.placing()
         self.relinking()
-        return self.of.slots.footprint(self.reads, self.writes)
+        return Footprint(self.reads, self.writes)
 
     def nodes_of(self, term: NodeTerm) -> Names:
         """Return the nodes that a term may stand for."""
@@ -288,8 +292,7 @@ class _Reacting:
 
     def matching(self) -> None:
         """Bound `matches`, `is_active`, `is_full` and consistency: what R uses, in L and in P."""
-        self.reads.update(("known", name) for name in self.nodes)
-        self.reads.update(self.of.there(self.nodes))
+        self.reads |= self.slots.of("known", self.nodes) | self.of.there(self.nodes)
         for pattern in (self.redex, self.reactum):
             for term, place in pattern.parents:
                 self.parents(term, place)
@@ -299,24 +302,22 @@ class _Reacting:
                 self.full(self.nodes_of(closed))
         if self.bounds.passive:
             above = frozenset[Name]().union(*map(self.bounds.above, self.nodes & self.bounds.names))
-            self.reads.update(("parent", name) for name in self.nodes | above)
+            self.reads |= self.slots.of("parent", self.nodes | above)
 
     def parents(self, term: NodeTerm, place: PlaceTerm) -> None:
         for node in self.nodes_of(term) & self.bounds.names:
-            self.reads.add(("parent", node))
             places = self.places_of(place, node) & self.bounds.names
-            self.reads.update(self.of.where({node, *places}))
+            self.reads |= self.slots.of("parent", [node]) | self.of.where({node, *places})
 
     def links(self, link: tuple[LinkTerm, NodeTerm]) -> None:
         nodes = self.nodes_of(link[1])
-        self.reads.update(("links", node) for node in nodes)
-        self.reads.update(self.of.connected(nodes))
+        self.reads |= self.slots.of("links", nodes) | self.of.connected(nodes)
 
     def full(self, places: Names) -> None:
         for place in places:
-            self.reads.update(("parent", name) for name in self.bounds.believed_inside(place))
             inside = self.bounds.inside(place)
-            self.reads.update((*self.of.where(inside), *self.of.there(inside)))
+            self.reads |= self.slots.of("parent", self.bounds.believed_inside(place))
+            self.reads |= self.of.where(inside) | self.of.there(inside)
 
     def placing(self) -> None:
         """Bound `moved`, `stays_forest` and `drive`: who may be moved, and where to."""
@@ -326,14 +327,14 @@ class _Reacting:
             *(self.places_of(place, each) for node, place in pairs for each in self.nodes_of(node) & self.bounds.names)
         ) & self.bounds.names  # fmt: skip
         for node in moving:
-            self.writes |= {("parent", node), ("placement", node)}
-            self.reads.update(self.of.where({node, *self.bounds.aboard(node)}))
+            self.writes |= self.slots.of("parent", [node]) | self.slots.of("placement", [node])
+            self.reads |= self.of.where({node, *self.bounds.aboard(node)})
         above = places.union(*map(self.bounds.above, places))
         if above & moving:
-            self.reads.update(("parent", name) for name in above)
+            self.reads |= self.slots.of("parent", above)
 
     def relinking(self) -> None:
         """Bound `relinked`: whose links and channels may be changed."""
         changed = set(self.redex.links) ^ set(self.reactum.links)
-        for node in frozenset[Name]().union(*(self.nodes_of(node) for _, node in changed)):
-            self.writes |= {("links", node), ("channels", node)}
+        nodes = frozenset[Name]().union(*(self.nodes_of(node) for _, node in changed))
+        self.writes |= self.slots.of("links", nodes) | self.slots.of("channels", nodes)

@@ -66,8 +66,8 @@ class Marks:
             moved = self.bounds.names
         touched = moved | linked
         slots = self.footprints.slots
-        found = slots.footprint((*self.footprints.where(touched), *self.footprints.there(touched)))
-        found |= slots.footprint(self.footprints.connected(linked))
+        found = Footprint(self.footprints.where(touched) | self.footprints.there(touched))
+        found |= Footprint(self.footprints.connected(linked))
         for holder in self.roles.agents:
             if holder != author and self.held(holder):
                 found |= slots.footprint(merges=self._of_slots(holder, moved, linked))

@@ -1,13 +1,14 @@
 """The reductions of an exploration: partial-order reduction, symmetry, or both."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
-from checker.reduction.ample import Ample, Proviso
+from checker.reduction.ample import Ample, Followed, Reached
+from checker.reduction.paths import Paths
 from checker.reduction.refusals import Reduction, refusal, refuse_partial_order, refuse_symmetry
 from checker.reduction.symmetry import Symmetry
 from semantics.properties.property import Property
 from semantics.properties.propositions import Proposition
-from semantics.state.configuration import Configuration, Transition
+from semantics.state.configuration import Configuration
 from semantics.successors import Expansion
 
 
@@ -23,13 +24,12 @@ class Reduced:
         initial: Configuration,
         reductions: Iterable[Reduction],
         formulas: Sequence[Proposition] = (),
-        proviso: Proviso = Proviso.SOME,
     ) -> None:
         asked = set(reductions)
         self.names = tuple(each for each in Reduction if each in asked)
         if Reduction.POR in asked:
             refuse_partial_order(initial)
-        self.ample = Ample(initial, formulas, proviso) if Reduction.POR in asked else None
+        self.ample = Ample(initial, formulas) if Reduction.POR in asked else None
         self.symmetry: Symmetry | None = None
         if Reduction.SYMMETRY in asked:
             refuse_symmetry(initial)
@@ -48,11 +48,17 @@ class Reduced:
         """Return the representative of a configuration."""
         return c if self.symmetry is None else self.symmetry.representative(c)
 
+    def paths(self) -> Paths:
+        """Return the paths of a new exploration; exchanges give actors other names on the way."""
+        return Paths(named=self.symmetry is None)
+
     def choose(
-        self, c: Configuration, expansion: Expansion, later: Callable[[Transition], bool]
-    ) -> tuple[Transition, ...]:
-        """Return the transitions to follow."""
-        return expansion.transitions if self.ample is None else self.ample.choose(c, expansion, later)
+        self, c: Configuration, expansion: Expansion, number: int, reached: Reached, paths: Paths
+    ) -> Followed:
+        """Return the transitions to follow from a configuration with some number."""
+        if self.ample is None:
+            return Followed(expansion.transitions)
+        return self.ample.choose(c, expansion, number, reached, paths)
 
     def hold(self, c: Configuration) -> None:
         """Check the reductions' assumptions on a configuration: footprints, visibility, and symmetry.

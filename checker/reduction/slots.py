@@ -6,6 +6,9 @@ exist? may a message wake this `react`?) is a slot of its own.
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
+
+from semantics.state.signature import Name
 
 Slot = tuple[str | int, ...]
 
@@ -63,6 +66,7 @@ class Slots:
 
     def __init__(self) -> None:
         self.numbers: dict[Slot, int] = {}
+        self._of_names = cache(self._of)
 
     def bits(self, slots: Iterable[Slot]) -> int:
         """Return the bits of some slots."""
@@ -70,6 +74,13 @@ class Slots:
         for slot in slots:
             bits |= 1 << self.numbers.setdefault(slot, len(self.numbers))
         return bits
+
+    def of(self, sort: str, names: Iterable[Name]) -> int:
+        """Return the bits of the slots of one sort, one for each name."""
+        return self._of_names(sort, frozenset(names))
+
+    def _of(self, sort: str, names: frozenset[Name]) -> int:
+        return self.bits((sort, name) for name in names)
 
     def footprint(
         self, reads: Iterable[Slot] = (), writes: Iterable[Slot] = (), merges: Iterable[Slot] = ()

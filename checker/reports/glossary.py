@@ -125,6 +125,16 @@ PROPERTIES: Final[Mapping[str, str]] = {
         A formula of branching time is true of the tree of fair runs: `ctl "name": formula`, where
         each of `G`, `F`, `X` and `U` directly follows `A` or `E`.""",
     "progress": "Every request is served in every fair run. Otherwise there is an *unserved request*.",
+    "within": """
+        A proposition becomes true in time on every run, counted from the start: `within 40 min
+        "name": formula`. With `F leads to G`, G follows in time whenever F is true. All bounds of
+        `timing` are assumptions that the verdict rests on.""",
+    "endurance": """
+        No vehicle is ever away from where it is restored for longer than it lasts, as the section
+        `timing` says.""",
+    "time": """
+        The earliest and the latest moment at which a proposition first becomes true, or that it
+        may never: `time "name": formula`.""",
 }
 """What each kind of properties means, by its word."""
 

@@ -1,8 +1,10 @@
 """Lanes: a trace with a column for each actor, and the changes of each step."""
 
+import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import Final
 
 from wcwidth import ljust, wrap
@@ -17,6 +19,15 @@ ENVIRONMENT: Final = "environment"
 SERVING: Final = frozenset({"sense", "actuate", "command", "commit", "snd", "migrate"})
 """Rules that serve a request: they act between the requesting agent and the world."""
 
+LEAST_REPEATED: Final = 8
+"""How many steps in a row have to repeat others to be folded into one line."""
+
+WORLD: Final = frozenset({"L", "P", "E"})
+"""The parts that are not the agents' own."""
+
+COUNTED: Final = re.compile(r"(?<= = )-?\d+$")
+"""The number that a variable has become: it may differ from one round of a loop to the next."""
+
 NARROWEST: Final = 24
 NUMBERS: Final = 6
 
@@ -30,12 +41,14 @@ class LaneStep:
         lane: Its index in `Lanes.names`: an agent's lane or the environment's.
         label: Its label.
         changes: Its changes.
+        date: When it is taken, where the run has dates.
     """
 
     number: int
     lane: int
     label: Label
     changes: tuple[Difference, ...]
+    date: str = ""
 
     @property
     def serves(self) -> bool:
@@ -46,6 +59,72 @@ class LaneStep:
     def about(self) -> str:
         """The label without the rule and the lane."""
         return str(self.label.about)
+
+    @property
+    def last(self) -> int:
+        """The number of the configuration after it, as of a `Repetition`."""
+        return self.number
+
+    @property
+    def deed(self) -> tuple[str, tuple[str, ...]]:
+        """What was done and what it changed, whatever a counter has come to."""
+        return str(self.label), tuple(COUNTED.sub("#", str(change)) for change in self.changes)
+
+
+@dataclass(frozen=True, slots=True)
+class Repetition:
+    """Steps in a row that only repeat others since the world last changed, such as an agent's observation loop.
+
+    Attributes:
+        steps: Those steps.
+    """
+
+    steps: tuple[LaneStep, ...]
+
+    @property
+    def number(self) -> int:
+        """The number of the configuration after the first one."""
+        return self.steps[0].number
+
+    @property
+    def last(self) -> int:
+        """The number of the configuration after the last one."""
+        return self.steps[-1].number
+
+    @property
+    def lane(self) -> int:
+        """The lane of most of its steps."""
+        return Counter(step.lane for step in self.steps).most_common(1)[0][0]
+
+    @property
+    def heading(self) -> str:
+        """How many they are."""
+        return f"↻ {len(self.steps):,} steps, to c{self.last}"
+
+    @property
+    def about(self) -> str:
+        """What is done again and again."""
+        counts = Counter(step.label.rule for step in self.steps)
+        return "again " + ", ".join(f"{rule} ×{count:,}" for rule, count in counts.items())
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut(Repetition):
+    """Steps in a row for which a report has no room."""
+
+    @property
+    def heading(self) -> str:
+        """How many they are."""
+        return f"⋯ {len(self.steps):,} steps, to c{self.last}"
+
+    @property
+    def about(self) -> str:
+        """That they are not told."""
+        return "left out here"
+
+
+Row = LaneStep | Repetition
+"""What stands in one line of a run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,30 +152,80 @@ class Lanes:
 
 
 def lanes_of(
-    configurations: Sequence[Configuration], labels: Sequence[Label], loop: int | None = None
+    configurations: Sequence[Configuration],
+    labels: Sequence[Label],
+    loop: int | None = None,
+    dates: Sequence[str] = (),
 ) -> Lanes:
     """Return a run in lanes; there is one label fewer than configurations."""
-    agents = tuple(sorted({a for c in configurations for a in c.alpha.names()}))
+    agents = tuple(sorted({a for c in dict.fromkeys(configurations) for a in c.alpha.names()}))
     around = any(label.agent is None for label in labels)
+    told = {pair: differences(*pair) for pair in dict.fromkeys(pairwise(configurations))}
     steps = []
-    for number, (label, (before, after)) in enumerate(zip(labels, pairwise(configurations), strict=True), 1):
+    for number, (label, pair) in enumerate(zip(labels, pairwise(configurations), strict=True), 1):
         lane = len(agents) if label.agent is None else agents.index(label.agent)
-        steps.append(LaneStep(number, lane, label, differences(before, after)))
+        date = dates[number - 1] if dates else ""
+        steps.append(LaneStep(number, lane, label, told[pair], date))
     return Lanes((*agents, *([ENVIRONMENT] if around else [])), tuple(steps), loop)
 
 
 def lanes_of_trace(trace: Trace) -> Lanes:
     """Return a trace in lanes."""
-    return lanes_of(trace.configurations, [step.label for step in trace.steps], trace.loop)
+    dates = [trace.date(number) for number in range(len(trace.dates))]
+    return lanes_of(trace.configurations, [step.label for step in trace.steps], trace.loop, dates)
 
 
-def lanes_text(lanes: Lanes, width: int = 100) -> Iterator[str]:
+def folded(steps: Sequence[LaneStep]) -> Iterator[Row]:
+    """Yield the steps in their order, those folded that only repeat what was done since the world last changed."""
+    known: set[object] = set()
+    again: list[LaneStep] = []
+    for step in steps:
+        if any(change.part in WORLD for change in step.changes):
+            known.clear()
+        if step.deed in known:
+            again.append(step)
+            continue
+        yield from _again(again)
+        again = []
+        known.add(step.deed)
+        yield step
+    yield from _again(again)
+
+
+def _again(steps: list[LaneStep]) -> Iterator[Row]:
+    if len(steps) < LEAST_REPEATED:
+        yield from steps
+    else:
+        yield Repetition(tuple(steps))
+
+
+def bounded(rows: Sequence[Row], most: int, around: int = 0) -> Iterator[Row]:
+    """Yield the rows if they are at most so many; else the first, the last and those around a step, a third each."""
+    third, count = most // 3, len(rows)
+    at = next((number for number, row in enumerate(rows) if around <= row.last), count)
+    near = (range(third), range(at - third // 2, at + third // 2), range(count - third, count))
+    for kept, group in groupby(
+        enumerate(rows), lambda each: count <= most or any(each[0] in r for r in near)
+    ):
+        found = [row for _, row in group]
+        if kept:
+            yield from found
+        else:
+            yield LeftOut(tuple(step for row in found for step in steps_of(row)))
+
+
+def steps_of(row: Row) -> tuple[LaneStep, ...]:
+    """Return the steps of a row."""
+    return row.steps if isinstance(row, Repetition) else (row,)
+
+
+def lanes_text(lanes: Lanes, width: int = 100, *, unfolded: bool = False) -> Iterator[str]:
     """Yield lanes line by line, as columns of a page of a given width, or wider if there are many."""
     columns = max(1, len(lanes.names))
     each = max(NARROWEST, (width - NUMBERS) // columns)
     yield _row("", [name[: each - 2] for name in lanes.names], each)
     yield _row("", ["─" * (each - 2)] * columns, each)
-    for step in lanes.steps:
+    for step in lanes.steps if unfolded else folded(lanes.steps):
         lines = [piece for line in _lines(step) for piece in _wrapped(line, each - 2)]
         for rank, line in enumerate(lines):
             cells = ["│"] * columns
@@ -106,8 +235,11 @@ def lanes_text(lanes: Lanes, width: int = 100) -> Iterator[str]:
         yield lanes.end
 
 
-def _lines(step: LaneStep) -> Iterator[str]:
-    yield f"● {step.label.rule}"
+def _lines(step: Row) -> Iterator[str]:
+    if isinstance(step, Repetition):
+        yield from (step.heading, f"  {step.about}")
+        return
+    yield f"● {step.label.rule}{f' at {step.date}' if step.date else ''}"
     if step.about:
         yield f"  {step.about}"
     yield from (f"  {change}" for change in step.changes)

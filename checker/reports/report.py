@@ -1,15 +1,21 @@
 """Reports as text for people and as plain data for machines."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from checker.properties.coverage import Coverage, Gap
+from checker.reports.times import times_json, times_text
 from checker.traces import Trace, print_length, print_trace, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
 from physical.messages import counted
 from semantics.properties.kinds import PropertyKind
 from semantics.state.setting import Control
 from semantics.successors import rules_of
+
+if TYPE_CHECKING:
+    from checker.properties.critical_path import Leg
 
 SCHEMA = "bigactors.report/1"
 """The version of the report's schema (docs/reference/json.md)."""
@@ -25,6 +31,8 @@ def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[s
     width = max((len(verdict.property.name) for verdict in report.verdicts), default=0)
     for verdict in report.verdicts:
         yield from _verdict(verdict, width, traces=traces)
+    if report.schedule is not None:
+        yield from times_text(report.schedule)
     yield "  rules: " + (", ".join(f"{rule} {count:,}" for rule, count in report.rules.items()) or "none")
     yield from (f"  note: {note}" for note in report.notes)
 
@@ -116,6 +124,7 @@ def report_json(name: str, digest: str, report: Report, control: Control) -> dic
         "rules_never_used": silent,
         "coverage": None if report.coverage is None else coverage_json(report.coverage),
         "notes": list(report.notes),
+        "times": None if report.schedule is None else times_json(report.schedule),
         "seconds": round(report.seconds, 3),
     }
 
@@ -136,6 +145,7 @@ def _property_json(name: str, digest: str, verdict: Verdict) -> dict[str, Any]:
                 "subject": v.subject,
                 "message": v.message,
                 "details": list(v.details),
+                "critical_path": [_leg_json(leg) for leg in v.path],
                 "alike": v.alike,
                 "shortest": v.trace.shortest,
                 "trace": trace(v.trace),
@@ -148,6 +158,21 @@ def _property_json(name: str, digest: str, verdict: Verdict) -> dict[str, Any]:
         "witness": trace(verdict.witness),
         "note": verdict.note,
         "remarks": list(verdict.remarks),
+    }
+
+
+def _leg_json(leg: Leg) -> dict[str, Any]:
+    """Return one stretch of a critical path, its times in seconds."""
+    least, most = leg.interval.lo, leg.interval.hi
+    return {
+        "from": leg.begin * leg.tick / 1000,
+        "to": leg.end * leg.tick / 1000,
+        "label": str(leg.label),
+        "at_least": least * leg.tick / 1000,
+        "at_most": None if most is None else most * leg.tick / 1000,
+        "bound": leg.bound.words,
+        "line": leg.bound.line,
+        "going_on": leg.going_on,
     }
 
 

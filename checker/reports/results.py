@@ -183,9 +183,9 @@ def placed_text(result: Result, issue: Issue) -> str:
 
 
 def caution_text(name: str, caution: Issue) -> Iterator[str]:
-    """Yield the warnings on a mission's text, as a report has them."""
-    yield f"  {name}:{caution.line}: warning: {caution.rule}: {caution.message}"
-    yield from (f"    {detail}" for detail in caution.details)
+    """Yield a warning on a mission's text, as a report has it before all else: it may tell why a verdict is odd."""
+    yield f"{name}:{caution.line}: warning: {caution.rule}: {caution.message}"
+    yield from (f"  {detail}" for detail in caution.details)
 
 
 def result_text(result: Result) -> str:
@@ -193,8 +193,8 @@ def result_text(result: Result) -> str:
     if result.report is None:
         return ""
     lines = [
-        *report_text(result.name, result.report, traces=False),
         *(line for caution in result.cautions for line in caution_text(result.name, caution)),
+        *report_text(result.name, result.report, traces=False),
     ]
     if result.report.coverage is not None:
         lines += coverage_text(result.name, result.report.coverage, result.text)

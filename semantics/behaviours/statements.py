@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from semantics.behaviours.durations import duration_text
 from semantics.behaviours.expressions import Expression, QueryOf
 from semantics.behaviours.patterns import Pattern
 from semantics.state.signature import Name
@@ -39,22 +40,13 @@ class Case:
 
 @dataclass(frozen=True, slots=True)
 class After:
-    """`after 10 min => body`: how long a `react` waits, and what is done then.
-
-    >>> print(After(600.0), After(90.0), After(0.5))
-    after 10 min after 90 s after 0.5 s
-    """
+    """`after 10 min => body`: how long a `react` waits, and what is done then."""
 
     seconds: float  # no int: that would be the number of a statement
     body: Block = ()
 
     def __str__(self) -> str:
-        unit, seconds = next(each for each in UNITS.items() if self.seconds % each[1] == 0 or each[0] == "s")
-        return f"after {self.seconds / seconds:g} {unit}"
-
-
-UNITS = {"h": 3600, "min": 60, "s": 1}
-"""The units of durations, in seconds, the longest first."""
+        return f"after {duration_text(self.seconds)}"
 
 
 @dataclass(frozen=True, slots=True)

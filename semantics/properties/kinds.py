@@ -17,6 +17,10 @@ class Asked(Enum):
     """With a proposition about configurations."""
     OF_RUNS = auto()
     """With a clause of its own about runs."""
+    OF_TIMES = auto()
+    """With a clause of its own about when something is true."""
+    OF_TIMED_MISSIONS = auto()
+    """By its name, in a mission that says how long things take."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +62,9 @@ class PropertyKind(StrEnum):
     LTL = "ltl"
     CTL = "ctl"
     PROGRESS = "progress"
+    WITHIN = "within"
+    ENDURANCE = "endurance"
+    TIME = "time"
 
     @property
     def about(self) -> About:
@@ -68,6 +75,11 @@ class PropertyKind(StrEnum):
     def is_of_runs(self) -> bool:
         """Whether it is about runs, and not about configurations one by one."""
         return self.about.asked is Asked.OF_RUNS
+
+    @property
+    def is_of_time(self) -> bool:
+        """Whether it is about when: a mission has to say how long things take."""
+        return self.about.asked in (Asked.OF_TIMES, Asked.OF_TIMED_MISSIONS)
 
     @property
     def has_proposition(self) -> bool:
@@ -139,6 +151,26 @@ ABOUT: Final = {
         Asked.OF_RUNS,
         ("request", "requests"),
         reducible=False,
+    ),
+    PropertyKind.WITHIN: About(
+        "A proposition becomes true in time on every run.",
+        Asked.OF_TIMES,
+        CONFIGURATIONS,
+        reducible=False,
+        counted=False,
+    ),
+    PropertyKind.ENDURANCE: About(
+        "No vehicle is ever aloft for longer than it lasts.",
+        Asked.OF_TIMED_MISSIONS,
+        CONFIGURATIONS,
+        reducible=False,
+    ),
+    PropertyKind.TIME: About(
+        "When a proposition first becomes true: the earliest and the latest moment.",
+        Asked.OF_TIMES,
+        CONFIGURATIONS,
+        reducible=False,
+        counted=False,
     ),
 }
 

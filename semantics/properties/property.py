@@ -31,6 +31,9 @@ class Property:
         temporal: The formula of `ltl` and `ctl`.
         fairness: Which runs count, for `ltl`, `ctl`, `progress` and `deadlock_freedom`: all where it is empty.
         ranges: What the quantifiers of its formula go through.
+        written: Its formula as it stands in the mission's text; empty where it was not written.
+        bound: How many ticks `within` allows.
+        then: What has to follow the formula within them (`F leads to G`); None where the formula itself has to hold.
     """
 
     kind: PropertyKind
@@ -40,9 +43,17 @@ class Property:
     temporal: Temporal | None = None
     fairness: tuple[Fairness, ...] = ()
     ranges: Ranges = ()
+    written: str = ""
+    bound: int = 0
+    then: Proposition | None = None
 
     def __repr__(self) -> str:
         return f"<Property {cut(self.name)}{'' if self.name == self.kind else f' kind={self.kind}'}>"
+
+    @property
+    def shown(self) -> str:
+        """Its formula for people: as it was written, with its quantifiers, else what it comes to."""
+        return self.written or str(self.formula if self.temporal is None else self.temporal)
 
     @property
     def is_of_runs(self) -> bool:

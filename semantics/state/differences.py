@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from semantics.behaviours.values import show
 from semantics.state.agents import written
+from semantics.state.canonical import written as written_cells
 from semantics.state.cells import AGENTS, MONITOR, NAMES, QUEUE, Cell
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, PhysicalModel
@@ -42,14 +43,9 @@ PARTS = ("α", "L", "P", "η", "E")
 
 def differences(before: Configuration, after: Configuration) -> tuple[Difference, ...]:
     """Return what differs, part by part, the monitor's cells left out."""
-    cells = sorted({*_cells(before), *_cells(after)})
-    changed = [cell for cell in cells if before.read(cell) != after.read(cell)]
+    changed = sorted({*written_cells(before, after), *written_cells(after, before)})
     found = [each for cell in changed for each in _of_cell(before, after, cell)]
     return tuple(sorted(found, key=lambda each: PARTS.index(each.part)))
-
-
-def _cells(c: Configuration) -> Iterable[Cell]:
-    return (cell for cell, _ in c.state.items())  # type: ignore[attr-defined]  # only stored configurations differ
 
 
 def _of_cell(before: Configuration, after: Configuration, cell: Cell) -> Iterator[Difference]:

@@ -50,6 +50,10 @@ def initial(
         contents[channels_cell(name)] = tuple(sorted(channels.get(name, ())))
     for clause in setting.environment:
         contents |= _remembered(clause)
+    if setting.timing is not None:
+        from semantics.timing.voyages import remembered_at_first  # noqa: PLC0415 - geometry takes its time to load
+
+        contents |= remembered_at_first(setting)
     for agent, (host, code) in sorted(agents.items()):
         contents |= starting(setting, agent, host, new_process(setting, agent, host, code))
     if setting.scheduler is Scheduler.FCFS:

@@ -6,6 +6,7 @@ from enum import Enum
 from semantics.behaviours.program import Program
 from semantics.environment import Clause
 from semantics.state.signature import Name, Sorting
+from semantics.timing.timing import Timing
 
 
 class Scheduler(Enum):
@@ -37,6 +38,7 @@ class Setting(Sorting):
         arriving: Entities whose flights always end: their `commit` is fair.
         monitored: Whether what observations rest on is remembered, for stale-observation races.
         clause_lines: The line of the mission's text that each clause of the environment stands in, from 1.
+        timing: How long everything takes; None where the mission says nothing of time.
     """
 
     program: Program
@@ -46,6 +48,7 @@ class Setting(Sorting):
     arriving: frozenset[Name] = field(default_factory=frozenset)
     monitored: bool = False
     clause_lines: tuple[int, ...] = ()
+    timing: Timing | None = None
 
     def __repr__(self) -> str:
         return (

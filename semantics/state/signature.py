@@ -41,6 +41,17 @@ class Signature:
     def __getitem__(self, kind: str) -> Kind:
         return self.kinds.get(kind) or Kind(kind)
 
+    def within(self, kind: str, *, directly: bool = False) -> frozenset[str]:
+        """Return the kinds that may be inside one: its children, and unless `directly` theirs too."""
+        found: set[str] = set()
+        waiting = [kind]
+        while waiting:
+            here = self[waiting.pop()]
+            inside = (here.contains | here.carries) - found
+            found |= inside
+            waiting += [] if directly else inside
+        return frozenset(found)
+
     @staticmethod
     def of(kinds: Iterable[Kind]) -> "Signature":
         """Collect kinds, sorted by name.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import cache
 
+from bigraphs.notation.spelling import listed
 from semantics.properties.propositions import Exists, HostedAt, Or, Proposition
 from specs import syntax as s
 from specs.codes import Code
@@ -62,7 +63,9 @@ class Among:
         """Return the bigActors that are declared or spawned with a behaviour."""
         name = behaviour.text
         if name not in self.names.behaviours:
-            self.names.findings.unknown(behaviour, self.names.behaviours, sort="behaviour")
+            known = self.names.behaviours
+            otherwise = listed(known, "behaviours")
+            self.names.findings.unknown(behaviour, known, sort="behaviour", otherwise=otherwise)
             return frozenset(self.names.agents)
         spawned = {
             each for each, sites in self.bodies.spawned.items() if any(s.behaviour == name for s in sites)

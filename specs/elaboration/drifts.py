@@ -111,9 +111,8 @@ def drifts_within(
     world.notes.append(f"borders are left out of the drift of {clause.entity.text}")
     placements = tuple(Placed(face.representative, here.altitude) for face in faces)
     called = tuple(_face(clause.place.text, face.inside) for face in faces)
-    return Drifts(
-        clause.entity.text, placements, called, tuple(face.adjacent for face in faces), faces[at].adjacent
-    )
+    following = tuple(face.adjacent for face in faces)
+    return Drifts(clause.entity.text, placements, called, following, faces[at].adjacent, within=True)
 
 
 def _face(within: str, inside: tuple[str, ...]) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from typing import Final
 
+from bigraphs.notation.spelling import listed
 from semantics.behaviours.expressions import (
     OPERATORS,
     Apply,
@@ -142,12 +143,17 @@ def _name(node: s.Name, scope: Scope, names: Names) -> Expression:
         return Literal(node.text)
     sort = names.sort_of(node.text)
     if sort is None:
-        names.findings.unknown(node, [*scope.names(), *names.kinds, *names.agents, *_WORDS])
+        otherwise = f'a variable is bound by let {node.text} = ...; a text is written "{node.text}"'
+        among = [*scope.names(), *names.kinds, *names.agents, *_WORDS]
+        names.findings.unknown(node, among, otherwise=otherwise)
     else:
         family = names.families.get(node.text, {})
+        of_kind = [name for name, kind in sorted(names.kinds.items()) if kind == node.text]
         hint = (
             f"name a member: {next(iter(family.values()))}"
             if family
+            else f"list those that are meant: {{{', '.join(of_kind[:5])}}}"
+            if of_kind
             else f'as a text it is written "{node.text}"'
         )
         names.findings.add(Code.WRONG_SORT, node, f"'{node.text}' is a {sort}, which is no value", hint)
@@ -200,7 +206,8 @@ def _named(node: s.Expression, scope: Scope, names: Names, need: Need, by: str) 
         sort = names.sort_of(node.text)
         if sort is None:
             words = {"SELF"} if need is AGENT else {"HOST"} | (QUERY_WORDS if need is NODES else set())
-            names.findings.unknown(node, [*scope.names(), *known, *words])
+            otherwise = listed(known, "bigActors" if need is AGENT else "entities")
+            names.findings.unknown(node, [*scope.names(), *known, *words], otherwise=otherwise)
         elif need is AGENT:
             names.agent(node)
         else:

@@ -21,8 +21,15 @@ from specs.elaboration.names import Names
 from specs.grammar import RESERVED
 
 AIS: Final = (".nmea", ".ais", ".txt", ".log")
+MOST_PROBLEMS: Final = 5
+"""Mistakes of one file that are told."""
+
 _NAME: Final = re.compile(r"[^\W\d_]\w*")
 _CHANNEL: Final = re.compile(r"\w+(?:[:.\-]\w+)*")
+
+
+_GIVEN_BY_FILES: Final = ("entity", "name", "channel")
+"""Sorts of names that a file may give: of one that cannot be read it is not known which."""
 
 
 class Refused(Exception):
@@ -74,6 +81,7 @@ def read_source(
         found = _read(entry, library.locate(entry.file.value), area)
     except Refused as refused:
         names.findings.add(refused.code, entry.file, refused.message, refused.hint)
+        names.findings.unread.update(_GIVEN_BY_FILES)
         return ()
     _check_keep(entry, found, names)
     kept = tuple(_kept(found, entry.keep, area))
@@ -82,7 +90,10 @@ def read_source(
         notes.append(
             f"of the {len(kept)} entities in {entry.file.value} the first {len(limited)} are in the world"
         )
-    return tuple(item for item in limited if _usable(item, entry, names))
+    usable = tuple(item for item in limited if _usable(item, entry, names))
+    if len(usable) < len(limited):
+        names.findings.unread.update(_GIVEN_BY_FILES)
+    return usable
 
 
 def _read(entry: s.FromSource, path: Path, area: Geometry | None) -> tuple[PhysicalProperty, ...]:
@@ -109,9 +120,10 @@ def _places(suffix: str, path: Path) -> tuple[PhysicalProperty, ...]:
     except OSError as error:
         raise Refused(Code.UNREADABLE_FILE, f"it cannot be read: {error.strerror or error}") from error
     except GeoJSONError as error:
-        several = f" (and {len(error.problems) - 1} more)" if len(error.problems) > 1 else ""
-        where = f"{error.where}: " if error.where else ""
-        raise Refused(Code.BAD_FILE, f"{where}{error.message}{several}", error.hint) from error
+        shown, more = error.problems[:MOST_PROBLEMS], len(error.problems) - MOST_PROBLEMS
+        told = [f"{each.where}: {each.message}" if each.where else each.message for each in shown]
+        told += [f"and {more} more"] if more > 0 else []
+        raise Refused(Code.BAD_FILE, "; ".join(told), error.hint) from error
     except PhysicalError as error:
         where = f"{error.where}: " if error.where else ""
         raise Refused(Code.BAD_FILE, f"{where}{error.message}", error.hint) from error

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 from typing import Final
 
+from bigraphs.notation.spelling import did_you_mean
 from specs.codes import Code
 from specs.diagnostics import Diagnostic, MissionError, Source
 from specs.syntax import Name, Node, Span
 
 MOST_SHOWN: Final = 100
 MOST_SUGGESTIONS: Final = 50
-MOST_COMPARED: Final = 2_000
 LONGEST: Final = 60
 
 
@@ -24,6 +23,7 @@ class Findings:
         self._found: dict[Diagnostic, None] = {}
         self._warned: dict[Diagnostic, None] = {}
         self._suggested = 0
+        self.unread: set[str] = set()
 
     def __len__(self) -> int:
         return len(self._found)
@@ -52,18 +52,19 @@ class Findings:
         code: Code = Code.UNKNOWN_NAME,
         otherwise: str = "",
     ) -> None:
-        """Note a name that means nothing, and what may have been meant; else hint at `otherwise`."""
+        """Note a name that means nothing, and what may have been meant; else hint at `otherwise`.
+
+        Of names that an unreadable file may give, nothing is said.
+        """
+        if sort in self.unread:
+            return
         hint = self.suggest(name.text, among) or otherwise
         self.add(code, name, f"unknown {sort} '{shorten(name.text)}'", hint)
 
     def suggest(self, word: str, among: Iterable[str]) -> str:
         """Return `did you mean ...?`, or nothing; after fifty it isn't asked any more, since it is slow."""
         self._suggested += 1
-        if self._suggested > MOST_SUGGESTIONS or len(word) > LONGEST:
-            return ""
-        candidates = {one.lower(): one for one in sorted(set(among))[:MOST_COMPARED] if len(one) <= LONGEST}
-        close = get_close_matches(word.lower(), candidates, 1, 0.6)
-        return f"did you mean '{candidates[close[0]]}'?" if close else ""
+        return "" if self._suggested > MOST_SUGGESTIONS else did_you_mean(word, among)
 
     def error(self) -> MissionError:
         """Return the mistakes as one error, by position: the first hundred, and how many more there are."""

@@ -33,6 +33,7 @@ from specs.codes import Code
 from specs.elaboration.among import Among
 from specs.elaboration.bodies import Bodies
 from specs.elaboration.constants import elaborate_constant
+from specs.elaboration.findings import a
 from specs.elaboration.names import Names
 from specs.elaboration.value_types import ANY, NAMES, NOTHING, Sort, Types, sort_of
 from specs.writing import write
@@ -193,7 +194,9 @@ class Formulas:
                 return Always(value)
             case s.Inside(entity, place, directly, actually):
                 within = REGION if place.text == REGION else self._entity(place, bound)
-                return Inside(self._entity(entity, bound), within, actually, directly)
+                who = self._entity(entity, bound)
+                self._check_inside(node, who, within, directly=directly)
+                return Inside(who, within, actually, directly)
             case s.LinkedTo(entity, other, actually):
                 return LinkedWith(self._entity(entity, bound), self._node_or_channel(other, bound), actually)
             case s.Present(entity):
@@ -236,6 +239,15 @@ class Formulas:
             message = f"'{name.text}' stands for a bigActor, and not for an entity"
             self.names.findings.add(Code.WRONG_SORT, name, message, hint)
         return self._stands_for(name, bound)
+
+    def _check_inside(self, node: s.Node, who: str, within: str, *, directly: bool) -> None:
+        """Warn of a place that no entity of the kind can ever be in, by the signature."""
+        kind, around = self.names.kinds.get(who), self.names.kinds.get(within)
+        if kind is None or around is None or kind in self.names.signature.within(around, directly=directly):
+            return
+        message = f"this is never true: {a(around)} cannot contain {a(kind)}"
+        hint = f"name a place of another kind, or declare it: kind {around} contains {kind}"
+        self.names.findings.warn(Code.NEVER_INSIDE, node, message, hint)
 
     def agent(self, name: s.Agent, bound: Mapping[str, str]) -> str:
         """Return the bigActor that a name stands for; reports one that is none. `bound` are quantified names."""
@@ -287,6 +299,11 @@ class Formulas:
             self.names.findings.add(Code.NOT_COMPARABLE, node, message, hint)
 
     def _variable(self, agent: s.Agent, variable: s.Name, bound: Mapping[str, str]) -> VariableOf:
+        if isinstance(agent, s.Name) and agent.text in self.names.kinds.keys() - bound:
+            message = f"'{agent.text}' is an entity, and has no variables"
+            hint = f"only bigActors have; of an entity is asked: {agent.text} in place, {agent.text} linked channel"
+            self.names.findings.add(Code.WRONG_SORT, agent, message, hint)
+            return VariableOf(NOBODY, (variable.text,))
         whose, shown = self.agent(agent, bound), variable.text
         known = list(self._variables(whose))
         unique = tuple(sorted({each for name, each in known if name == shown}))

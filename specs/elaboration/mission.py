@@ -34,6 +34,7 @@ from specs.elaboration.needs import check_types
 from specs.elaboration.realisability import Ground, check_controls
 from specs.elaboration.rules import elaborate_rules
 from specs.elaboration.signature import elaborate_signature
+from specs.elaboration.timing import Ticks, elaborate_timing
 from specs.elaboration.unread import independent
 from specs.elaboration.value_types import Inference
 from specs.elaboration.variation import AS_WRITTEN, Variation
@@ -111,7 +112,9 @@ def elaborate(
     declare_behaviours(mission, names, actors)
     mobility = elaborate_mobility(mission, names, world)
     check_nesting(names, world, mobility)
+    mistakes = len(names.findings)
     clauses, clause_spans, arriving = elaborate_environment(mission, names, world, mobility)
+    whole = len(names.findings) == mistakes
     warn_of_outliers(names, world, zip(clauses, clause_spans, strict=True))
     beliefs = elaborate_beliefs(mission, names)
     bodies, program = elaborate_bodies(mission, names, actors, elaborate_rules(mission, names))
@@ -123,10 +126,12 @@ def elaborate(
     check_controls(bodies, Ground(names, world, mobility, fixed))
     scheduler, control = elaborate_scheduler(mission, names), elaborate_control(mission, names)
     scheduler, control = variation.scheduler or scheduler, variation.control or control
+    timing = elaborate_timing(mission, names, world, clauses, control, whole=whole)
     said = tuple(clause.message for clause in clauses if isinstance(clause, Says))
     inference = Inference(program, frozenset(names.kinds), frozenset(names.agents), said)
     types = check_types(names.demands, inference, names.findings)
-    properties = elaborate_checks(mission, names, bodies, types)
+    ticks = None if timing is None else Ticks(timing.tick, names.findings)
+    properties = elaborate_checks(mission, names, bodies, types, ticks)
     precautions = elaborate_live(mission, names)
     _stop(names.findings)
     setting = Setting(
@@ -138,6 +143,7 @@ def elaborate(
         control,
         arriving,
         clause_lines=tuple(source.line(span.start) for span in clause_spans),
+        timing=timing,
     )
     there = {name: world.channels[name] for name in world.placements}
     begin = partial(initial, placements=world.placements, channels=there, agents=agents)

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Final
 
 from physical import Geometry, Place, check_places
 from physical.measure import metres_text
-from physical.outliers import is_swapped, outliers
+from physical.outliers import ON_DRY_LAND, all_swapped, is_swapped, outliers
 from semantics.environment import Clause, Placing
 from semantics.state.physical_model import Carried, Placed
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.names import Names
 from specs.elaboration.world import World
+
+_AFLOAT: Final = re.compile(r"(?i)vessel|tanker|drifter|boat|ship|ferry|buoy|raft|swimmer")
 
 
 @dataclass(slots=True)
@@ -82,13 +86,13 @@ def check_nesting(names: Names, world: World, mobility: Mobility) -> None:
     }
     for conflict in check_places(places):
         spans = [names.spans["entity", name] for name in (conflict.first, conflict.second)]
-        hint = "places must nest or be apart: change one of the two"
-        names.findings.add(Code.PLACES_OVERLAP, max(spans), str(conflict), hint)
+        names.findings.add(Code.PLACES_OVERLAP, max(spans), str(conflict), conflict.hint)
 
 
 def warn_of_outliers(names: Names, world: World, clauses: Iterable[tuple[Clause, s.Span]]) -> None:
     """Warn of what lies so far from everything else that its latitude and longitude may be swapped."""
     geometries = dict(_geometries(names, world, clauses))
+    _warn_of_all(names, geometries)
     found = outliers(geometries)
     rest = [geometry for key, geometry in geometries.items() if key not in found]
     for (span, words), metres in found.items():
@@ -97,6 +101,18 @@ def warn_of_outliers(names: Names, world: World, clauses: Iterable[tuple[Clause,
         message = f"{words} lies {metres_text(metres)} from everything else"
         hint = hint or "look at its coordinates: missions say (latitude, longitude)"
         names.findings.warn(Code.FAR_FROM_THE_REST, span, message, hint)
+
+
+def _warn_of_all(names: Names, geometries: Mapping[tuple[s.Span, str], Geometry]) -> None:
+    """Warn where the whole world seems to have latitude and longitude exchanged."""
+    afloat = [key for key in geometries if _AFLOAT.search(names.kinds.get(key[1], ""))]
+    where = all_swapped(geometries.values(), (geometries[key] for key in afloat))
+    if where:
+        on_land = where == ON_DRY_LAND
+        span, words = afloat[0] if on_land else next(iter(geometries))
+        what = f"{'whatever floats' if on_land else 'everything'} {where}"
+        hint = "are latitude and longitude swapped? missions say (latitude, longitude), GeoJSON [longitude, latitude]"
+        names.findings.warn(Code.PROBABLY_SWAPPED, span, f"{what}, such as {words}", hint)
 
 
 def _geometries(

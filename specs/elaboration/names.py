@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import Final
 
+from bigraphs.notation.spelling import listed
 from semantics.behaviours.expressions import Expression
 from semantics.behaviours.values import Value, show
 from semantics.state.signature import REGION, Signature
@@ -26,6 +28,14 @@ WORDS: Final = {
     "channel": "channel",
     "rule": "rule",
     "behaviour": "behaviour",
+}
+MANY: Final = {
+    "agent": "bigActors",
+    "family": "families of bigActors",
+    "entity": "entities",
+    "channel": "channels",
+    "rule": "rules",
+    "behaviour": "behaviours",
 }
 EXCLUSIVE: Final = ("entity", "agent", "family", "kind", "channel")
 """Sorts whose names differ from each other."""
@@ -106,6 +116,11 @@ class Names:
             self._missing(name, "entity", self.kinds, otherwise)
         return kind
 
+    def holding(self, kind: str) -> tuple[str, ...]:
+        """Return the first five entities that may contain one of a kind."""
+        found = (name for name, of in sorted(self.kinds.items()) if self.signature[of].may_contain(kind))
+        return tuple(islice(found, 5))
+
     def kind(self, name: s.Name) -> bool:
         """Tell whether there is such a kind, and report one that there isn't, once: only rules' bodies name any."""
         if name.text in self.signature.kinds:
@@ -156,7 +171,7 @@ class Names:
         """Tell whether there is such a channel, and report one that there isn't."""
         if name.text in self.channels:
             return True
-        otherwise = f"declare it: world {{ channel {name.text} }}"
+        otherwise = f"{listed(self.channels, 'channels')}; or declare it: world {{ channel {name.text} }}"
         self._missing(name, "channel", self.channels, otherwise)
         return False
 
@@ -164,6 +179,7 @@ class Names:
         self, name: s.Name, sort: str, among: Mapping[str, object] | set[str], otherwise: str = ""
     ) -> None:
         other = self.sort_of(name.text)
+        otherwise = otherwise or listed(among, MANY[sort])
         if other is None:
             self.findings.unknown(name, among, sort=WORDS[sort], otherwise=otherwise)
             return
@@ -175,6 +191,9 @@ class Names:
     def _instead(self, name: str, other: str, sort: str) -> str:
         if other == "family" and sort == "agent":
             return f"name a member: {next(iter(self.families[name].values()), f'{name}[...]')}"
+        if other == "entity" and sort == "agent":
+            hosted = [agent for agent, host in self.agents.items() if host is not None and host.text == name]
+            return f"name the bigActor that it hosts: {hosted[0]}" if hosted else ""
         host = self.agents.get(name) if other == "agent" and sort == "entity" else None
         return f"its host is '{host.text}'" if host is not None else ""
 

@@ -189,6 +189,12 @@ class _Judge:
         needs = f"{use.by} {'is' if use.by == CONDITIONAL else 'needs'} {_words(use.need)}"
         message = f"{needs}, and {_shown(use.where)} is {_said(given, use.need)}"
         origin = self.origin(use.value, use.need) if isinstance(use.value, Variable) else ""
+        if use.need is COLLECTION and use.by != "'for'" and given.sorts == {Sort.ENTITY}:
+            asked = " if x in obs" if use.by == "'in'" else ""
+            react = f"react {{ case obs: Observation{asked} => ... }}"
+            remedy = f"observe it first: observe(CHILDREN({write(use.where)})) {react}"
+            self.findings.add(Code.WRONG_VALUE, use.where, message, remedy)
+            return
         several = use.need in (NODE, AGENT) and bool(use.need.members & members_of(given))
         hint = f"take one: choose x in {write(use.where)} {{ ... }}" if several else use.need.remedy
         if isinstance(use.where, s.TupleLiteral) and use.need.sorts >= COLLECTIONS:

@@ -61,14 +61,36 @@ class Ground:
         if node.kind is None:
             return None
         if not self._mobile(node):
-            hint = f"declare it: kind {node.kind} driven"
+            hint = self._drivable() if self._is_area(node) else f"declare it: kind {node.kind} driven"
             return f"nothing can drive {node.shown}" + (f" ({a(node.kind)})" if node.name else ""), hint
         if place.kind is None:
             return None
         if not self.names.signature[place.kind].may_contain(node.kind):
-            message = f"{a(place.kind)} cannot contain {a(node.kind)}"
-            return message, f"declare it: kind {place.kind} contains {node.kind}"
+            return f"{a(place.kind)} cannot contain {a(node.kind)}", self._instead(node.kind, place)
         return self._room(node, place)
+
+    def _instead(self, kind: str, place: Someone) -> str:
+        """Return where something of a kind may be instead, or how to let it be there: a point can only carry it."""
+        there = self.names.holding(kind)
+        if there and place.name is not None and not self._is_area(place):
+            driven = self.names.signature[place.kind or ""].driven
+            aboard = f", or declare it: kind {place.kind} carries {kind}" if driven else ""
+            return f"name a place that may contain {a(kind)}: {', '.join(there)}{aboard}"
+        return f"declare it: kind {place.kind} contains {kind}"
+
+    def _is_area(self, node: Someone) -> bool:
+        placed = self.world.placements.get(node.name or "")
+        return isinstance(placed, Placed) and not placed.geometry.is_point
+
+    def _drivable(self) -> str:
+        """Return what can be driven instead of a place."""
+        kinds = self.names.kinds.items()
+        driven = [name for name, kind in sorted(kinds) if self.names.signature[kind].driven]
+        return (
+            f"what is driven moves: {', '.join(driven[:5])}"
+            if driven
+            else "declare what moves: kind UAV driven"
+        )
 
     def bars(self, node: Someone, place: Someone) -> tuple[str, str] | None:
         """Return why a node can never pass a place on its way, and what to do; None where it may be possible."""
@@ -79,7 +101,7 @@ class Ground:
         if self.names.signature[place.kind].may_contain(node.kind):
             return None
         message = f"{place.shown} is no place to pass: {a(place.kind)} cannot contain {a(node.kind)}"
-        return message, f"pass another, or declare it: kind {place.kind} contains {node.kind}"
+        return message, f"pass another, or {self._instead(node.kind, place)}"
 
     def _mobile(self, node: Someone) -> bool:
         carried = (

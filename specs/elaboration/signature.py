@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from difflib import get_close_matches
 from typing import Final
 
+from bigraphs.notation.spelling import listed
 from semantics.state.signature import Kind, Signature
 from specs import syntax as s
 from specs.codes import Code
@@ -15,8 +15,6 @@ from specs.elaboration.proposed_signature import proposed
 from specs.standard_signature import standard_kinds
 
 _MOST_NAMED: Final = 8
-_ALIKE: Final = 0.8
-"""How alike the declared kind must be that one of the paper's is taken for, misspelt."""
 
 Kinds = dict[str, Kind]
 Uses = dict[str, list[s.Name]]
@@ -118,12 +116,13 @@ def _lacking_signature(mission: s.Mission, uses: Uses, names: Names) -> Kinds:
 def _lacking_kinds(mission: s.Mission, kinds: Kinds, uses: Uses, names: Names) -> Kinds:
     """Report each kind that the signature lacks; afterwards, what contains anything contains it."""
     own = {kind.name: kind for kind in proposed(mission, tuple(uses))}
+    entities = {node.kind.text for node in s.walk(mission) if isinstance(node, s.Entity)}
     for kind, where in uses.items():
         times = f", used {len(where)} times" if len(where) > 1 else ""
-        alike = get_close_matches(kind.lower(), [other.lower() for other in kinds], 1, _ALIKE)
-        unlike = kind in _standard() and not alike
-        similar = "" if unlike else names.findings.suggest(kind, (*kinds, AGENTS))
-        hint = similar or f"declare it: signature {{ {_written(own[kind])} }}"
+        otherwise = f"declare it: signature {{ {_written(own[kind])} }}"
+        if kind not in entities:
+            otherwise = f"{listed(kinds, 'kinds')}; or {otherwise}"
+        hint = names.findings.suggest(kind, (*kinds, AGENTS)) or otherwise
         names.findings.add(Code.UNKNOWN_KIND, where[0], f"unknown kind '{shorten(kind)}'{times}", hint)
     holding = {
         name: replace(kind, contains=kind.contains | own.keys()) if kind.contains else kind

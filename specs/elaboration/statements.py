@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Final
 
+from bigraphs.notation.spelling import listed
 from semantics.behaviours import statements as k
 from semantics.behaviours.commands import COMMANDS, HOST, MOST_VIA
 from semantics.behaviours.expressions import Expression, Literal, Variable
@@ -200,7 +201,10 @@ class _Statements:
         if isinstance(action, s.ApplyRule):
             rule = self.names.rules.get(action.rule.text)
             if rule is None:
-                self.names.findings.unknown(action.rule, self.names.rules, sort="rule")
+                otherwise = f"control actions are {', '.join(each.form for each in COMMANDS.values())}"
+                if self.names.rules:
+                    otherwise = listed(self.names.rules, "rules")
+                self.names.findings.unknown(action.rule, self.names.rules, sort="rule", otherwise=otherwise)
             else:
                 check_arity(action.rule, len(action.arguments), len(rule.parameters), self.names.findings)
             by = f"rule '{action.rule.text}'"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Final
 
+from bigraphs.notation.spelling import listed
 from semantics.properties import temporal as t
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
@@ -238,7 +239,7 @@ class TemporalFormulas:
 
     def _unknown(self, first: s.Name, whose: Sequence[s.Agent]) -> None:
         among = RULES if whose else (*RULES, *EACH, *self.names.agents)
-        otherwise = f"the rules are {', '.join(RULES)}"
+        otherwise = f"{listed(self.names.agents, 'bigActors')}; the rules are {', '.join(RULES)}"
         sort = "rule" if whose else "rule or bigActor"
         self.names.findings.unknown(first, among, sort=sort, otherwise=otherwise)
 

@@ -6,11 +6,18 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
+from specs.codes import Code
 from specs.diagnostics import Diagnostic, Source
 from specs.grammar import keywords
+from specs.recovery import SECTION
 from specs.syntax import Span
 
 _NAME: Final = re.compile(r"[^\W\d_](?:[\w:.\-]*\w)?")
+
+
+_DECLARING_NOTHING: Final = frozenset({"check", "live"})
+_OF_ABSENCE: Final = frozenset({Code.NO_TIMING})
+"""What is said because something stands nowhere: it may stand in an unread part."""
 
 
 def independent(
@@ -19,14 +26,23 @@ def independent(
     """Yield the findings that are true whatever stands in the unread parts.
 
     Left out is what is said of a name that stands in one, since it may be declared or used there, and what is said of
-    a stretch that has one in it.
+    a stretch that has one in it. A `check` section declares nothing that is named outside of a property.
     """
     gaps = tuple(unread)
-    named = {name for gap in gaps for name in _names(source, gap)} - keywords()
+    findings = [found for found in findings if not gaps or found.code not in _OF_ABSENCE]
+    declaring = (gap for gap in gaps if _section(source, gap) not in _DECLARING_NOTHING)
+    named = {name for gap in declaring for name in _names(source, gap)} - keywords()
     for found in findings:
         about = {*_NAME.findall(found.message), *_names(source, found.span)}
         if not named & about and not any(_overlap(found.span, gap) for gap in gaps):
             yield found
+
+
+def _section(source: Source, gap: Span) -> str:
+    """Return the word of the section that a part lies in; nothing where it lies in several."""
+    begun = [found for found in SECTION.finditer(source.text) if found.start("word") < gap.end]
+    several = len(begun) > 1 and begun[-1].start("word") > gap.start
+    return begun[-1]["word"] if begun and not several else ""
 
 
 def _names(source: Source, span: Span) -> list[str]:

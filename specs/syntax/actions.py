@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 from typing import TypeAlias
 
 from bigraphs.errors import NotationError
 from bigraphs.notation.paper import RuleTerm, parse_rule
 from specs.syntax.expressions import Expression
-from specs.syntax.nodes import Name, Node
+from specs.syntax.nodes import Name, Node, node
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Command(Node):
     """`MOVE u TO e`, `HAND u TO g`: a command, each operand the name of a node, or a variable that holds one.
 
@@ -26,7 +26,7 @@ class Command(Node):
     via: tuple[Expression, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class ApplyRule(Node):
     """`land(uav0, base0)`: a named reaction rule, its parameters given."""
 
@@ -34,7 +34,7 @@ class ApplyRule(Node):
     arguments: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class RuleBody(Node):
     """`{ u[c] || b.$0 -> b.(u[c] | $0) }`: a reaction rule in the notation of the paper's runtime.
 

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias, TypeVar
 
 from specs.syntax.actions import RuleBody
 from specs.syntax.expressions import Agent, Expression, TextLiteral
 from specs.syntax.formulas import FairDeadlockFreedom, Formula, Progress, TemporalProperty
 from specs.syntax.live import Live
-from specs.syntax.nodes import Name, Node
-from specs.syntax.statements import Statement
+from specs.syntax.nodes import Name, Node, node
+from specs.syntax.statements import Duration, Statement
+from specs.syntax.timing import Timing
 from specs.syntax.world import Believes, Placement, Signature, World
 
 # --- rules, behaviours, bigActors
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Parameter(Node):
     """`u: UAV`: a parameter of a reaction rule, and the kind of node that it stands for."""
 
@@ -24,7 +24,7 @@ class Parameter(Node):
     kind: Name
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Rule(Node):
     """`rule land(u: UAV, b: Location) { u[c] || b.$0 -> b.(u[c] | $0) }`.
 
@@ -36,7 +36,7 @@ class Rule(Node):
     body: RuleBody
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Definition(Node):
     """`def visit(place) = { ... }`: a behaviour with parameters."""
 
@@ -45,7 +45,7 @@ class Definition(Node):
     body: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class BigActor(Node):
     """`BigActor a hosted_at uav0 with_behavior { ... }`.
 
@@ -58,7 +58,7 @@ class BigActor(Node):
     body: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Family(Node):
     """`BigActor patrol[i] for u in UAV hosted_at u with_behavior visit(u, i)`.
 
@@ -79,7 +79,7 @@ class Family(Node):
 # --- environment
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class DriftsAmong(Node):
     """`oilSpill0 drifts among circle (37.0, -8.7) radius 400 m, searchArea1`.
 
@@ -91,7 +91,7 @@ class DriftsAmong(Node):
     placements: tuple[Placement | Name, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class DriftsWithin(Node):
     """`boat0 drifts within harbour0`: the entity may move to any point of the place."""
 
@@ -99,7 +99,7 @@ class DriftsWithin(Node):
     place: Name
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Drops(Node):
     """`wifi drops`, `wifi drops and returns`: a channel is lost for all its members."""
 
@@ -107,7 +107,7 @@ class Drops(Node):
     returns: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Leaves(Node):
     """`uav0 leaves wifi`, `uav0 leaves wifi and returns`: one entity loses a channel."""
 
@@ -116,7 +116,7 @@ class Leaves(Node):
     returns: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Appears(Node):
     """`tanker0 appears at point (37.0, -8.7), searchArea1 linked ais`.
 
@@ -128,14 +128,14 @@ class Appears(Node):
     channels: tuple[Name, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Vanishes(Node):
     """`tanker0 vanishes`: an entity leaves P."""
 
     entity: Name
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Says(Node):
     """`says "handover" to a at most 3 times`, or `someone says ...`.
 
@@ -148,7 +148,7 @@ class Says(Node):
     times: int = 1
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Arrives(Node):
     """`uav0 arrives`: its flights always end, so `commit` is fair."""
 
@@ -160,7 +160,7 @@ EnvironmentClause: TypeAlias = (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Environment(Node):
     """`environment { ... }`: everything that may happen without an agent's doing."""
 
@@ -170,28 +170,28 @@ class Environment(Node):
 # --- how it runs and what is checked
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Scheduler(Node):
     """`scheduler program_order`: which request is served next: program_order (the default), unordered or fcfs."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class ControlMode(Node):
     """`control atomic`: whether control takes time: atomic (the default) or timed."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class StandardProperty(Node):
     """`race_freedom`: a standard property, which is asked for by its name alone."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Invariant(Node):
     """`invariant "never in the basin": not (actually uav0 in basin0)`: true in every configuration."""
 
@@ -199,7 +199,7 @@ class Invariant(Node):
     formula: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Reachable(Node):
     """`reachable "found": uav0 in oilSpill0`: true in some configuration."""
 
@@ -207,12 +207,43 @@ class Reachable(Node):
     formula: Formula
 
 
+@node
+class Deadline(Node):
+    """`within 40 min "there": uav0 in oilSpill0`, `within 5 min "answered": pending OBS a leads to not pending OBS a`.
+
+    On every run it is true at some moment up to that time, counted from the start. With `leads to`: whenever the first
+    is true, the second is then or at most so much later. In missions with `timing` only.
+    """
+
+    limit: Duration
+    label: TextLiteral
+    formula: Formula
+
+
+@node
+class FirstTime(Node):
+    """`time "found": uav0 in oilSpill0`: when it is true first, at the earliest and at the latest.
+
+    In missions with `timing` only.
+    """
+
+    label: TextLiteral
+    formula: Formula
+
+
 Property: TypeAlias = (
-    StandardProperty | FairDeadlockFreedom | Invariant | Reachable | TemporalProperty | Progress
+    StandardProperty
+    | FairDeadlockFreedom
+    | Invariant
+    | Reachable
+    | TemporalProperty
+    | Progress
+    | Deadline
+    | FirstTime
 )
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Check(Node):
     """`check { ... }`: the properties to check. Without it, the first three standard ones are checked."""
 
@@ -231,13 +262,14 @@ Declaration: TypeAlias = (
     | Scheduler
     | ControlMode
     | Check
+    | Timing
     | Live
 )
 
 D = TypeVar("D", bound=Node)
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Mission(Node):
     """`mission oil_spill` and declarations in any order. The header is optional."""
 

@@ -2,59 +2,58 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from semantics.behaviours.observations import QueryOperator
-from specs.syntax.nodes import Name, Node
+from specs.syntax.nodes import Name, Node, node
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class TextLiteral(Node):
     """`"handover"`: a string."""
 
     value: str
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class IntegerLiteral(Node):
     """`3`: a whole number. A negative one is written `-3`."""
 
     value: int
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class TruthLiteral(Node):
     """`true` or `false`, in expressions and in formulas."""
 
     value: bool
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class HostReference(Node):
     """`HOST`: the node that hosts the agent at that moment, in expressions and in queries."""
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class SelfReference(Node):
     """`SELF`: the agent's own name."""
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class TupleLiteral(Node):
     """`("found", oilSpill0)`: a tuple of two or more values."""
 
     items: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class SetLiteral(Node):
     """`{uav0, uav1}` or `{}`: a set."""
 
     items: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class RouteLiteral(Node):
     """`[gate0, gate1, gate0]` or `[]`: a route.
 
@@ -66,7 +65,7 @@ class RouteLiteral(Node):
     items: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Member(Node):
     """`patrol[uav0]`, `patrol[0]`: a member of a family of bigActors, by its entity or by its number, from 0.
 
@@ -78,7 +77,7 @@ class Member(Node):
     index: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class UnaryOperation(Node):
     """`not e` (also `!e`), `-e`: negation."""
 
@@ -86,7 +85,7 @@ class UnaryOperation(Node):
     operand: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class BinaryOperation(Node):
     """`a or b`, `a and b`, `a in b`, `a not in b`, `a == b`, `a != b`, `a < b`, `a + b`, `a - b`.
 
@@ -98,7 +97,7 @@ class BinaryOperation(Node):
     right: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class OfKind(Node):
     """`obs of Vessel`: the elements of a kind."""
 
@@ -106,7 +105,7 @@ class OfKind(Node):
     kind: Name
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class FunctionCall(Node):
     """`size(obs)`: a built-in function applied to its arguments."""
 
@@ -114,12 +113,12 @@ class FunctionCall(Node):
     arguments: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class AllNodes(Node):
     """`ALL`: all nodes."""
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class QueryApplication(Node):
     """`PARENT(q)`, `CHILDREN(q)`, `LINKED_TO(q)` or `HOSTED_AT(q)`.
 

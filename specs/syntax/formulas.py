@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from specs.syntax.expressions import Agent, Expression, TextLiteral, TruthLiteral
-from specs.syntax.nodes import Name, Node
+from specs.syntax.nodes import Name, Node, node
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Negation(Node):
     """`not F` (also `!F`). `X != Y` is short for `not X == Y`."""
 
     operand: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Connective(Node):
     """`F and G`, `F or G`, `F -> G`, `F <-> G`: `and` binds tightest and `<->` loosest; `->` binds to the right."""
 
@@ -25,7 +24,7 @@ class Connective(Node):
     right: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Quantified(Node):
     """`forall x: UAV . F`, `exists x: UAV . F`, `forall x: agents . F`, `forall x: patrol . F`.
 
@@ -43,7 +42,7 @@ class Quantified(Node):
     host: Name | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Inside(Node):
     """`X in Y`, `X directly in Y`, `actually X in Y`, `actually X directly in Y`.
 
@@ -56,7 +55,7 @@ class Inside(Node):
     actually: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class LinkedTo(Node):
     """`X linked N`, `actually X linked N`.
 
@@ -68,21 +67,21 @@ class LinkedTo(Node):
     actually: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Present(Node):
     """`present X`: X is in P; of a bigActor that it is there, at first or since it was spawned."""
 
     entity: Agent
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Known(Node):
     """`known X`: X is in L."""
 
     entity: Name
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Pending(Node):
     """`pending a`, `pending CTR a`.
 
@@ -93,21 +92,21 @@ class Pending(Node):
     request: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Ended(Node):
     """`ended a`: agent a has nothing left to run."""
 
     agent: Agent
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Waiting(Node):
     """`waiting a`: agent a is at a `react` statement."""
 
     agent: Agent
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class HostedAt(Node):
     """`a hosted_at X`: X hosts agent a."""
 
@@ -115,7 +114,7 @@ class HostedAt(Node):
     host: Name
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class SameName(Node):
     """`x == y`: two names are the same; at least one of them is quantified."""
 
@@ -123,7 +122,7 @@ class SameName(Node):
     right: Agent
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Stored(Node):
     """`a.x == 3`, `a.x < 3`, `a.x <= 3`, `a.x > 3`, `a.x >= 3`: compare agent a's variable x with a value.
 
@@ -138,7 +137,7 @@ class Stored(Node):
     operator: str = "=="
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class HasValue(Node):
     """`bound a.x`: agent a has given its variable x a value."""
 
@@ -152,7 +151,7 @@ SIGNS = {"G": "[]", "F": "<>", "X": "X"}
 """The signs of the operators that letters stand for."""
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class PathPrefix(Node):
     """`[] F`, `<> F`, `X F`, `always F`, `eventually F`, `next F`, `infinitely often F`.
 
@@ -164,7 +163,7 @@ class PathPrefix(Node):
     operand: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class PathOperation(Node):
     """`F U G`, `F R G`, `F W G`, `F until G`.
 
@@ -177,7 +176,7 @@ class PathOperation(Node):
     right: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class LeadsTo(Node):
     """`F leads to G`: whenever F is true, G is true then or later: `[] (F -> <> G)`. It binds loosest."""
 
@@ -185,7 +184,7 @@ class LeadsTo(Node):
     right: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class PathQuantifier(Node):
     """`AG F`, `EF F`, `AX F`, `A (F U G)`, `E (F W G)`: on all runs from here, or on some. In `ctl` only."""
 
@@ -196,7 +195,7 @@ class PathQuantifier(Node):
 # --- steps
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Steps(Node):
     """`sense a`, `a`, `sense`, `agents`, `rules`, `requests`, `environment`.
 
@@ -207,14 +206,14 @@ class Steps(Node):
     words: tuple[Agent, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Taken(Node):
     """`taken sense a`: the next step is one of these. In `ltl` only."""
 
     steps: Steps
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Enabled(Node):
     """`enabled sense a`: one of these steps is possible. In `ltl` and `ctl`."""
 
@@ -249,7 +248,7 @@ Formula: TypeAlias = (
 # --- properties
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Fairness(Node):
     """`weak fairness of a, b`, `strong fairness of actuate`.
 
@@ -262,7 +261,7 @@ class Fairness(Node):
     steps: tuple[Steps, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class TemporalProperty(Node):
     """`ltl "served": pending CTR a leads to not pending CTR a`, `ctl "home": AG EF uav0 in base0`.
 
@@ -276,7 +275,7 @@ class TemporalProperty(Node):
     fairness: tuple[Fairness, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class FairDeadlockFreedom(Node):
     """`deadlock_freedom under weak fairness of env`, `deadlock_freedom "but for the link" under weak fairness of env`.
 
@@ -288,7 +287,7 @@ class FairDeadlockFreedom(Node):
     label: TextLiteral | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Progress(Node):
     """`progress`, `progress under strong fairness of actuate`.
 

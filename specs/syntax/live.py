@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from specs.syntax.expressions import Agent
-from specs.syntax.nodes import Node
+from specs.syntax.nodes import Node, node
 from specs.syntax.statements import Duration
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class OnBroken(Node):
     """`on broken assumption: return`: hold (the default), return or continue.
 
@@ -20,7 +19,7 @@ class OnBroken(Node):
     fallback: str
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class TimeLimit(Node):
     """`FLY a within 10 min: return`, `anyone within 1 min: continue`.
 
@@ -37,7 +36,7 @@ class TimeLimit(Node):
 Precaution: TypeAlias = OnBroken | TimeLimit
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Live(Node):
     """`live { ... }`: precautions for live runs. They do not change what is checked."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
+from typing import TypeVar, dataclass_transform
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -21,14 +22,37 @@ class Span:
 NOWHERE = Span(0, 0)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Node:
     """A piece of syntax. Two nodes are equal when they say the same, wherever they were written."""
 
     span: Span = field(default=NOWHERE, compare=False, repr=False, kw_only=True)
 
+    def _said(self) -> dict[str, object]:
+        return {each.name: getattr(self, each.name) for each in fields(self) if each.compare}
 
-@dataclass(frozen=True, slots=True)
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Node) and type(self) is type(other) and self._said() == other._said()
+
+    def __hash__(self) -> int:
+        return hash(tuple(self._said().values()))
+
+    def __repr__(self) -> str:
+        said = self._said()
+        shown = ", ".join(f"{name}=%r" for name in said) % tuple(said.values())
+        return f"{type(self).__name__}({shown})"
+
+
+N = TypeVar("N", bound=Node)
+
+
+@dataclass_transform(frozen_default=True, field_specifiers=(field,))
+def node(cls: type[N]) -> type[N]:
+    """Make a class one of nodes: a frozen dataclass without methods of its own, which are slow to compile."""
+    return dataclass(frozen=True, slots=True, eq=False, repr=False)(cls)
+
+
+@node
 class Name(Node):
     """`uav0`, `control:gcs0`.
 

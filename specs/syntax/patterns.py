@@ -2,54 +2,53 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from specs.syntax.expressions import IntegerLiteral, TextLiteral, TruthLiteral
-from specs.syntax.nodes import Name, Node
+from specs.syntax.nodes import Name, Node, node
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class ObservationPattern(Node):
     """`obs: Observation` or `_: Observation`: any observation."""
 
     variable: Name | None
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class MessagePattern(Node):
     """`m: Message` or `_: Message`: any message."""
 
     variable: Name | None
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class VariablePattern(Node):
     """`x`: any value, bound to x. As the whole pattern of a `react` case, any observation."""
 
     variable: Name
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Wildcard(Node):
     """`_`: any value."""
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class LiteralPattern(Node):
     """`"handover"`, `3`, `true`: exactly this value."""
 
     value: TextLiteral | IntegerLiteral | TruthLiteral
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class ConstantPattern(Node):
     """`=uav0`: exactly this name; without `=` it is a new variable."""
 
     name: Name
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class TuplePattern(Node):
     """`("found", x, _)`: a tuple of as many values, each of which matches its pattern."""
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
-from semantics.behaviours.statements import UNITS
+from semantics.behaviours.durations import UNITS
 from specs.syntax.actions import Action
 from specs.syntax.expressions import Expression, Query
-from specs.syntax.nodes import Name, Node
+from specs.syntax.nodes import Name, Node, node
 from specs.syntax.patterns import Pattern
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Case(Node):
     """`case pattern if guard => statements`: one alternative of a `react` or a `match`."""
 
@@ -21,23 +20,23 @@ class Case(Node):
     body: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Observe(Node):
     """`observe(q)`: request an observation."""
 
     query: Query
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Control(Node):
     """`control(r)`: request a control action."""
 
     action: Action
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Duration(Node):
-    """`90 s`, `10 min`, `1.5 h`: seconds, minutes or hours."""
+    """`90 s`, `10 min`, `1.5 h`, `100 ms`: seconds, minutes, hours or milliseconds."""
 
     value: float
     unit: str
@@ -48,7 +47,7 @@ class Duration(Node):
         return self.value * UNITS[self.unit]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class After(Node):
     """`after 10 min => statements`: what an agent does that has waited so long at a `react`.
 
@@ -60,7 +59,7 @@ class After(Node):
     body: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class React(Node):
     """`react { case ... after 10 min => ... }`: wait for an observation or a message that a case matches.
 
@@ -71,7 +70,7 @@ class React(Node):
     after: After | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Send(Node):
     """`send e to a`, or `send(e, a)`: send a message to an agent."""
 
@@ -79,14 +78,14 @@ class Send(Node):
     recipient: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Migrate(Node):
     """`migrate(h)`: request to move the agent to another host."""
 
     host: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Call(Node):
     """`visit(oilSpill0)`: run a behaviour defined by `def`."""
 
@@ -94,7 +93,7 @@ class Call(Node):
     arguments: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Spawn(Node):
     """`spawn(visit(place0), hosted_at uav0)`, or `spawn b hosted_at uav0 with_behavior visit(place0)`.
 
@@ -106,14 +105,14 @@ class Spawn(Node):
     host: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Display(Node):
     """`display(e)`: show a value to the observer of the run. The configuration does not change."""
 
     value: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Let(Node):
     """`let x = e`: bind a new variable."""
 
@@ -121,7 +120,7 @@ class Let(Node):
     value: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Assign(Node):
     """`x = e`: give a bound variable another value."""
 
@@ -129,7 +128,7 @@ class Assign(Node):
     value: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class If(Node):
     """`if e { ... } else if e { ... } else { ... }`: a conditional.
 
@@ -144,14 +143,14 @@ class If(Node):
     otherwise: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Loop(Node):
     """`loop { ... }`: repeat for ever."""
 
     body: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class While(Node):
     """`while e { ... }`: repeat while the condition is true."""
 
@@ -159,7 +158,7 @@ class While(Node):
     body: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class For(Node):
     """`for x in e { ... }`: repeat for each stop of a route, or each member of a set or an observation.
 
@@ -171,7 +170,7 @@ class For(Node):
     body: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Match(Node):
     """`match e { case ... }`: take the first case that matches a value."""
 
@@ -179,21 +178,21 @@ class Match(Node):
     cases: tuple[Case, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Alternative(Node):
     """`case => statements`, or one block of `choose { ... } or { ... }`."""
 
     body: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Choose(Node):
     """`choose { case => ... case => ... }`, or `choose { ... } or { ... }`: take any alternative; all are explored."""
 
     alternatives: tuple[Alternative, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class ChooseFrom(Node):
     """`choose x in e { ... }`: bind x to any one element; all are explored."""
 
@@ -202,7 +201,7 @@ class ChooseFrom(Node):
     body: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Skip(Node):
     """`skip`: do nothing."""
 

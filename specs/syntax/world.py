@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TypeAlias
 
 from specs.syntax.expressions import TextLiteral
-from specs.syntax.nodes import Name, Node
+from specs.syntax.nodes import Name, Node, node
 
 # --- geometry
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Length(Node):
     """`400 m`, `1.5 km`: metres or kilometres."""
 
@@ -24,7 +24,7 @@ class Length(Node):
         return self.value * 1000 if self.unit == "km" else self.value
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Coordinate(Node):
     """`(37.04, -8.59)`, or `(37°02'24"N, 8°35.4'W)`.
 
@@ -41,14 +41,14 @@ class Coordinate(Node):
     written: tuple[str, str] = field(default=("", ""), compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Point(Node):
     """`point (37.08, -8.55)`: one position."""
 
     position: Coordinate
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Box(Node):
     """`box (37.04, -8.59) (36.94, -8.79)`: two opposite corners, as in the paper's Example 1."""
 
@@ -56,7 +56,7 @@ class Box(Node):
     second: Coordinate
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Polygon(Node):
     """`polygon (37.10, -8.60) (37.10, -8.50) (37.06, -8.50)`.
 
@@ -66,7 +66,7 @@ class Polygon(Node):
     corners: tuple[Coordinate, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Circle(Node):
     """`circle (37.00, -8.70) radius 400 m`: a centre and a radius."""
 
@@ -77,7 +77,7 @@ class Circle(Node):
 Geometry: TypeAlias = Point | Box | Polygon | Circle
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class AltitudeBand(Node):
     """`altitude 100 m to 300 m`, or `altitude 100 m` for a single altitude."""
 
@@ -85,7 +85,7 @@ class AltitudeBand(Node):
     highest: Length
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Placement(Node):
     """`circle (37.00, -8.70) radius 400 m altitude 0 m to 50 m`.
 
@@ -99,7 +99,7 @@ class Placement(Node):
 # --- signature
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Kind(Node):
     """`kind Vessel driven carries Drifter, Station contains Person passive`.
 
@@ -115,7 +115,7 @@ class Kind(Node):
     passive: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Signature(Node):
     """`signature { kind ... }`, `signature standard` or `signature standard { kind ... }`: the kinds of nodes.
 
@@ -129,7 +129,7 @@ class Signature(Node):
 # --- world
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Entity(Node):
     """`uav0: UAV = point (37.08, -8.55) altitude 90 m to 300 m linked control:gcs0, wifi`.
 
@@ -145,14 +145,14 @@ class Entity(Node):
     absent: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class ChannelDeclaration(Node):
     """`channel wifi`: a channel without members."""
 
     name: Name
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Keep(Node):
     """`BaseStation as Station`, or `Vessel` for `Vessel as Vessel`.
 
@@ -163,7 +163,7 @@ class Keep(Node):
     kind: Name
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class FromSource(Node):
     """`from "workum.nmea" at "2020-04-07T21:42:00Z" within box (53.1, 5.3) (52.9, 5.5) limit 12`.
 
@@ -181,7 +181,7 @@ class FromSource(Node):
 WorldEntry: TypeAlias = Entity | ChannelDeclaration | FromSource
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class World(Node):
     """`world { ... }`: places, entities, channels and the files they come from."""
 
@@ -191,7 +191,7 @@ class World(Node):
 # --- believes
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class BelievedIn(Node):
     """`uav0 in searchArea0`, or `uav0 in region` where its place is unknown."""
 
@@ -199,14 +199,14 @@ class BelievedIn(Node):
     place: Name | None
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class BelievedUnknown(Node):
     """`oilSpill0 unknown`: not in L."""
 
     entity: Name
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class BelievedLinked(Node):
     """`uav0 linked control:gcs0, wifi`: exactly these links; `uav0 unlinked` for none."""
 
@@ -217,7 +217,7 @@ class BelievedLinked(Node):
 Belief: TypeAlias = BelievedIn | BelievedUnknown | BelievedLinked
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Believes(Node):
     """`believes { ... }`: where the initial L differs from A(P)."""
 

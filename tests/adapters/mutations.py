@@ -7,7 +7,7 @@ from pymavlink.generator.mavcrc import x25crc
 
 from adapters.mavlink.codec import Encoder
 from adapters.mavlink.command import long, reposition
-from adapters.mavlink.constants import Cmd
+from adapters.mavlink.constants import Cmd, Frame
 from adapters.mavlink.items import Item, item_message
 from adapters.mavlink.message import say
 from adapters.simulated import Kind, Vehicle
@@ -51,7 +51,7 @@ def frames():
     ours = Encoder(255, 190)
     questions = (
         long(Cmd.ARM_DISARM, 1, 1),
-        reposition(1, 370_000_000, -86_000_000, 100.0, 80.0, enters=True),
+        reposition(1, 370_000_000, -86_000_000, (100.0, Frame.HOME), 80.0, enters=True),
         say("MISSION_COUNT", target_system=1, target_component=1, count=3, mission_type=0),
         say(
             "PARAM_SET",

@@ -1,6 +1,5 @@
 """What every plugin keeps to, whatever it stands for."""
 
-import asyncio
 import importlib
 import inspect
 import json
@@ -10,26 +9,39 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 
 import aiohttp.web
+import numpy as np
 import pytest
-from worlds import EPOCH, HOME, World, running, until
+from rosbags.rosbag2 import Writer
+from rosbags.typesys import Stores, get_typestore
+from worlds import AREA, EPOCH, HOME, World, running
 
 import adapters
 from adapters.ais import AisFeed
+from adapters.camera.feed import Camera, CameraFeed
+from adapters.camera.libraries import opencv
+from adapters.camera.poses import PoseLog
+from adapters.camera.sources import Folder
+from adapters.camera.view import Lens, Pose
 from adapters.detections import Detections
 from adapters.location import LocationService
 from adapters.mavlink import Autopilot, Craft
-from adapters.plugin import Aged, Gone, GoTo, HandOver, Plugin, Refused
+from adapters.naming import NamingService
+from adapters.plugin import Plugin
+from adapters.ros import RosFeed, RosVehicles
 from adapters.simulated import Kind, Simulator, Vehicle, run
+from adapters.simulated.camera import render
 from adapters.static_places import StaticPlaces
 from adapters.stations.shared_plugin import Shared
 from adapters.stations.sharing import Sharing
 from adapters.web import Listen
 from bigactors import feeds
 from bigactors.arguments.links import LIVING
-from physical import PhysicalProperty, box, write_geojson
+from bigactors.testing import Connection, PluginContract, opened
+from physical import PhysicalProperty, box, circle, write_geojson
 
 VESSEL = rb"!AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61"
 SPILL = PhysicalProperty("oilSpill0", "OilSpill", box((37.0, -8.7), (36.99, -8.71)))
+HEARD = b'{"entities": [{"name": "drifter0", "kind": "Drifter", "latitude": 37.0, "longitude": -8.7}]}'
 JUNK = (b"", b"\x00" * 300, b"\xfd\xff\x01" * 100, b"!AIVDM,9,9,,,,9*00", bytes(range(256)) * 8)
 
 
@@ -40,17 +52,21 @@ def throw(where, *packets):
 
 
 @asynccontextmanager
-async def autopilot(_tmp_path):
+async def autopilot(_tmp_path, kind=Kind.PLANE):
     plugin = Autopilot("autopilot", "udp:0", [Craft("uav0")])
 
     @asynccontextmanager
     async def fed():
-        vehicle = Vehicle(Kind.PLANE, HOME)
+        vehicle = Vehicle(kind, HOME)
         simulator = Simulator(f"udpout:127.0.0.1:{plugin.local[1]}", [vehicle], epoch=EPOCH)
         async with running(simulator.run()):
             yield
 
-    yield plugin, fed, lambda: throw(plugin.local, *JUNK)
+    yield Connection(plugin, fed, lambda: throw(plugin.local, *JUNK), ("uav0", AREA))
+
+
+def px4(tmp_path):
+    return autopilot(tmp_path, Kind.PX4_COPTER)
 
 
 @asynccontextmanager
@@ -62,7 +78,7 @@ async def ais(_tmp_path):
         throw(plugin.local, VESSEL)
         yield
 
-    yield plugin, fed, lambda: throw(plugin.local, *JUNK)
+    yield Connection(plugin, fed, lambda: throw(plugin.local, *JUNK))
 
 
 @asynccontextmanager
@@ -75,7 +91,7 @@ async def places(tmp_path):
         path.write_text(write_geojson([SPILL, SPILL.at(box((37.1, -8.7), (37.09, -8.71)))][1:]))
         yield
 
-    yield StaticPlaces("places", path), fed, lambda: path.write_bytes(JUNK[-1])
+    yield Connection(StaticPlaces("places", path), fed, lambda: path.write_bytes(JUNK[-1]))
 
 
 @asynccontextmanager
@@ -90,12 +106,40 @@ async def detections(tmp_path):
                 assert answer.status == 200
         yield
 
-    yield plugin, fed, lambda: (tmp_path / "junk.geojson").write_bytes(JUNK[-1])
+    yield Connection(plugin, fed, lambda: (tmp_path / "junk.geojson").write_bytes(JUNK[-1]))
+
+
+class Hovering(PoseLog):
+    """A vehicle that is always at one place."""
+
+    until = float("inf")
+
+    def at(self, time):
+        return Pose(time, 37.0, -8.7, 300.0)
+
+
+@asynccontextmanager
+async def camera(tmp_path):
+    lens = Lens(80)
+    plugin = CameraFeed("camera", Camera("uav0", lens), Folder(tmp_path), Hovering())
+    plugin.in_thread = False  # time is simulated
+
+    def put(data):
+        (tmp_path / "part").write_bytes(data)
+        (tmp_path / "part").rename(tmp_path / "taken.png")
+
+    @asynccontextmanager
+    async def fed():
+        image = render(Pose(0, 37.0, -8.7, 300.0), lens, (240, 180), [circle((37.0, -8.7), 100.0)])
+        put(opencv().imencode(".png", image)[1].tobytes())
+        yield
+
+    yield Connection(plugin, fed, lambda: put(JUNK[-1]))
 
 
 @asynccontextmanager
 async def location(_tmp_path):
-    said = [b'{"entities": [{"name": "drifter0", "kind": "Drifter", "latitude": 37.0, "longitude": -8.7}]}']
+    said = [HEARD]
 
     async def answer(_request):
         return aiohttp.web.Response(body=said[0])
@@ -108,13 +152,42 @@ async def location(_tmp_path):
 
     @asynccontextmanager
     async def fed():
+        said[0] = HEARD
         yield
 
     def spoil():
         said[0] = JUNK[-1]
 
-    yield LocationService("cloud", f"http://127.0.0.1:{runner.addresses[0][1]}/"), fed, spoil
+    url = f"http://127.0.0.1:{runner.addresses[0][1]}/"
+    yield Connection(LocationService("cloud", url), fed, spoil)
     await runner.cleanup()
+
+
+@asynccontextmanager
+async def ros(tmp_path):
+    store = get_typestore(Stores.ROS2_KILTED)
+    at = store.types["builtin_interfaces/msg/Time"](sec=0, nanosec=0)
+    fix = store.types["sensor_msgs/msg/NavSatFix"](
+        store.types["std_msgs/msg/Header"](at, "gps"),
+        store.types["sensor_msgs/msg/NavSatStatus"](0, 1),
+        37.0,
+        -8.7,
+        0.0,
+        np.zeros(9),
+        0,
+    )
+    with Writer(tmp_path / "bag", version=9) as bag:
+        topic = bag.add_connection("/drifter0/fix", "sensor_msgs/msg/NavSatFix", typestore=store)
+        for second, junk in enumerate(JUNK):
+            bag.write(topic, second * 10**9, junk)
+        bag.write(topic, 5 * 10**9, bytes(store.serialize_cdr(fix, "sensor_msgs/msg/NavSatFix")))
+
+    @asynccontextmanager
+    async def fed():
+        yield
+
+    naming = NamingService(kinds={"drifter0": "Drifter"})
+    yield Connection(RosFeed("ros", f"file:{tmp_path / 'bag'}", naming=naming), fed)
 
 
 DOCS = Path(__file__).parents[2] / "docs" / "reference"
@@ -124,9 +197,14 @@ PLUGINS = {
     StaticPlaces: places,
     Detections: detections,
     LocationService: location,
+    RosFeed: ros,
+    CameraFeed: camera,
 }
 ELSEWHERE = {Plugin, Shared, Sharing}
 """The interface, and what stands between several stations."""
+
+APART = {RosVehicles}
+"""Held to the contract in `tests/adapters/ros/test_vehicle.py`, with a router."""
 
 
 def is_plugin(each):
@@ -137,122 +215,54 @@ def test_every_plugin_is_held_to_the_contract_and_can_be_given():
     names = {each.name for each in pkgutil.walk_packages(adapters.__path__, "adapters.")}
     modules = [importlib.import_module(name) for name in names if not name.endswith("__main__")]
     ours = {each for module in modules for each in vars(module).values() if is_plugin(each)} - ELSEWHERE
-    assert PLUGINS.keys() == ours
-    assert {each for each in vars(feeds).values() if is_plugin(each)} - ELSEWHERE == ours - {Autopilot}
+    assert PLUGINS.keys() | APART == ours
+    assert {each for each in vars(feeds).values() if is_plugin(each)} - ELSEWHERE == ours - {
+        Autopilot,
+        CameraFeed,
+        RosVehicles,
+    }
     plugins, options = ((DOCS / name).read_text(encoding="utf-8") for name in ("plugins.md", "cli.md"))
     assert [each for each in ours if f"{each.__name__}(" not in plugins] == []
     assert [name for name in feeds.FEEDS if name not in options] == []
     assert LIVING.keys() - {"vehicles"} == feeds.FEEDS.keys() - {"places"}
 
 
-@pytest.fixture(params=PLUGINS.values(), ids=lambda make: make.__name__)
-def make(request, tmp_path):
-    return lambda: request.param(tmp_path)
+class TestAutopilot(PluginContract):
+    connect = staticmethod(autopilot)
 
 
-async def opened(plugin):
-    """Wait until a plugin has opened what it opens."""
-    await until(lambda: getattr(plugin, "local", True) and getattr(plugin, "port", True))
+class TestPx4(PluginContract):
+    connect = staticmethod(px4)
 
 
-def said(published):
-    return published.property if isinstance(published, Aged) else published
+class TestAis(PluginContract):
+    connect = staticmethod(ais)
 
 
-def test_it_is_a_plugin_with_a_name(make):
-    async def main():
-        async with make() as (plugin, _, _):
-            assert isinstance(plugin, Plugin)
-            assert plugin.name
-            assert plugin.name.isprintable()
-
-    run(main())
+class TestPlaces(PluginContract):
+    connect = staticmethod(places)
 
 
-def test_it_publishes_properties_that_are_stamped_and_never_in_the_future(make):
-    async def main():
-        async with make() as (plugin, fed, _):
-            world = World()
-            async with running(plugin.run(world)):
-                await opened(plugin)
-                async with fed():
-                    await until(lambda: world.published)
-                    await asyncio.sleep(5)
-            for published in world.published:
-                assert isinstance(published, PhysicalProperty | Aged | Gone)
-                if isinstance(published, Aged):
-                    assert EPOCH <= published.property.time <= world.now()
-                    assert published.property.source
-                    assert published.time_to_live > 0
-
-    run(main())
+class TestDetections(PluginContract):
+    connect = staticmethod(detections)
 
 
-def test_it_refuses_commands_for_what_it_does_not_own(make):
-    async def main():
-        async with make() as (plugin, _, _):
-            world = World()
-            async with running(plugin.run(world)):
-                await opened(plugin)
-                assert not plugin.owns("nobody0")
-                for command in (
-                    GoTo("r1", "nobody0", SPILL.geometry),
-                    HandOver("r2", "nobody0", "control:a", "control:b"),
-                ):
-                    with pytest.raises(Refused) as refusal:
-                        await plugin.command(command)
-                    assert "nobody0" in refusal.value.reason
-                assert world.reports == []
-
-    run(main())
+class TestLocation(PluginContract):
+    connect = staticmethod(location)
 
 
-def test_junk_does_not_end_it_and_is_reported_with_its_name(make):
-    async def main():
-        async with make() as (plugin, fed, spoil):
-            world = World()
-            async with running(plugin.run(world)):
-                await opened(plugin)
-                await asyncio.sleep(0.5)
-                spoil()
-                await asyncio.sleep(3)
-                troubles = [report for report in world.reports if hasattr(report, "what")]
-                assert troubles
-                assert {report.source for report in troubles} == {plugin.name}
-                assert all(report.what and report.count > 0 for report in troubles)
-                if plugin.name != "cloud":
-                    async with fed():
-                        await until(lambda: world.published)
-
-    run(main())
+class TestCamera(PluginContract):
+    connect = staticmethod(camera)
 
 
-def test_it_ends_when_cancelled_and_can_run_again(make):
-    async def main():
-        async with make() as (plugin, fed, _):
-            for _ in range(2):
-                world = World()
-                task = asyncio.ensure_future(plugin.run(world))
-                await asyncio.sleep(0.5)
-                await opened(plugin)
-                async with fed():
-                    await asyncio.sleep(15)
-                task.cancel()
-                with pytest.raises(asyncio.CancelledError):
-                    await task
-                count = len(world.published)
-                await asyncio.sleep(5)
-                assert len(world.published) == count
-            others = [other for other in asyncio.all_tasks() if other is not asyncio.current_task()]
-            assert all("aiohttp" in repr(other) or "web" in repr(other) for other in others)
-
-    run(main())
+class TestRos(PluginContract):
+    connect = staticmethod(ros)
 
 
 @pytest.mark.parametrize("make_one", [autopilot, ais, detections])
 def test_it_listens_on_this_machine_only_unless_told_otherwise(make_one, tmp_path):
     async def main():
-        async with make_one(tmp_path) as (plugin, _, _), running(plugin.run(World())):
+        async with make_one(tmp_path) as connection, running((plugin := connection.plugin).run(World())):
             await opened(plugin)
             port = plugin.port if make_one is detections else plugin.local[1]
             kind = socket.SOCK_STREAM if make_one is detections else socket.SOCK_DGRAM

@@ -271,14 +271,18 @@ def test_a_vehicle_that_is_in_no_mission_is_reported():
     run(main())
 
 
-def test_something_that_is_not_ardupilot_is_rejected_with_the_reason():
+@pytest.mark.parametrize(
+    ("sort", "reason"),
+    [((2, 13), "no vehicle with ArduPilot or PX4"), ((20, 12), "PX4, of which only planes and copters")],
+)
+def test_what_no_profile_fits_is_rejected_with_the_reason(sort, reason):
     async def main():
         async with flight(craft=Craft("uav0", system=7)) as f:
             encoder = Encoder(7, 1)
             beat = say(
                 "HEARTBEAT",
-                type=2,
-                autopilot=12,
+                type=sort[0],
+                autopilot=sort[1],
                 base_mode=1,
                 custom_mode=0,
                 system_status=3,
@@ -286,7 +290,7 @@ def test_something_that_is_not_ardupilot_is_rejected_with_the_reason():
             )
             await f.plugin.command(GoTo("r1", "uav0", AREA))
             await send(f, encoder, *[beat] * 100)
-            assert "ArduPilot" in f.world.of(Rejected, request="r1")[0].reason
+            assert reason in f.world.of(Rejected, request="r1")[0].reason
 
     run(main())
 

@@ -7,6 +7,7 @@ import pytest
 from worlds import AREA, EPOCH, FIELD, HOME, TINY, World, flight, running, until
 
 from adapters.mavlink import Autopilot, Craft, Stations
+from adapters.mavlink.autopilot import AT_ONCE
 from adapters.mavlink.constants import MissionType
 from adapters.mavlink.task import PATIENCE
 from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Hold, Refused, Rejected, Return
@@ -27,7 +28,7 @@ def here(vehicle):
 
 @pytest.mark.parametrize("kind", Kind)
 def test_every_kind_goes_to_a_place_and_is_published_inside_it(kind):
-    place = AREA if kind is Kind.PLANE else box((37.003, -8.601), (37.002, -8.603))
+    place = AREA if kind.limits.must_move else box((37.003, -8.601), (37.002, -8.603))
 
     async def main():
         async with flight(kind) as f:
@@ -349,5 +350,26 @@ def test_an_upload_ends_where_the_vehicle_was_handed_to_a_station_that_is_not_ou
             end = await f.ended("r1", 20)
             assert isinstance(end, Rejected)
             assert end.reason == "it obeys gcs1, not gcs0"
+
+    run(main())
+
+
+def test_the_pilots_of_a_fleet_look_at_the_clock_in_groups_so_that_the_loop_serves_others_between():
+    async def main():
+        names = [f"uav{number}" for number in range(100)]
+        plugin = Autopilot(
+            "fleet", "udp:127.0.0.1:0", [Craft(name, "UAV", at) for at, name in enumerate(names, 1)]
+        )
+        looks, at_once = dict.fromkeys(names, 0), 0
+        async with running(plugin.run(World())):
+            known = {name: plugin.pilot(name) for name in names}
+            for _ in range(1_000):
+                await asyncio.sleep(0.001)
+                looked = [name for name in names if plugin.pilot(name) is not known[name]]
+                at_once = max(at_once, len(looked))
+                for name in looked:
+                    looks[name], known[name] = looks[name] + 1, plugin.pilot(name)
+        assert at_once == AT_ONCE
+        assert set(looks.values()) <= {4, 5}
 
     run(main())

@@ -231,3 +231,14 @@ def test_the_last_words_of_a_vehicle_stand_with_why_it_was_taken_over():
     assert report.reason == (
         "it is in RTL, by itself or told by someone else; its last words: 'Battery 1 is low 29.90V used 12 mAh'"
     )
+
+
+@pytest.mark.parametrize("stop", [Hold, Return])
+def test_a_vehicle_that_is_stopped_is_not_handed_over_any_more(stop):
+    flown = Flown(command=None).goes_on(GUIDED, 3)
+    told = lambda: {message.name for message in pilot.tick(flown.pilot, flown.now + 2.0).sent}  # noqa: E731
+    flown.take(pilot.command(flown.pilot, HandOver("r2", "uav0", "control:gcs0", "control:gcs1"), flown.now))
+    assert "PARAM_SET" in told()
+    flown.take(pilot.command(flown.pilot, stop("r3", "uav0"), flown.now))
+    assert "PARAM_SET" not in told()
+    assert "COMMAND_LONG" in told()

@@ -10,10 +10,11 @@ from adapters.mavlink import sync, upload
 from adapters.mavlink.constants import Cmd, MissionResult, MissionType
 from adapters.mavlink.items import Item, fence, route, same
 from adapters.mavlink.message import say
-from adapters.simulated.store import GIVE_UP, Store
+from adapters.simulated.store import ARDUPILOT_MANNER, PX4_MANNER, Store
 from physical import box, point
 
 PATH = (point(37.0, -8.6), point(37.01, -8.61), point(37.02, -8.62))
+GIVE_UP = ARDUPILOT_MANNER.give_up
 ITEMS = route(PATH, 100.0, takeoff=True)
 FENCE = fence(box((37.05, -8.55), (36.95, -8.65)))
 KINDS = [(ITEMS, MissionType.MISSION), (FENCE, MissionType.FENCE)]
@@ -103,7 +104,7 @@ def test_an_answer_to_another_station_than_the_one_that_uploads_is_passed_over()
 
 @pytest.mark.parametrize("name", ["MISSION_REQUEST_LIST", "MISSION_REQUEST_INT"])
 def test_a_vehicle_that_is_given_a_mission_lets_nobody_read_it(name):
-    store = Store("MISSION_REQUEST", items={MissionType.MISSION: ITEMS})
+    store = Store(request="MISSION_REQUEST", items={MissionType.MISSION: ITEMS})
     count = replace(say("MISSION_COUNT", target_system=1, count=2, mission_type=0), system=255, component=190)
     store.hear(count, ready=True, now=0.0)
     (answer,) = store.hear(replace(say(name, seq=0, mission_type=0), system=254), ready=True, now=0.1)
@@ -136,7 +137,7 @@ class Line:
 
     def __init__(self, items, kind, fates, store=None):
         self.sync = sync.begin(items, kind, 1, 255)
-        self.store = store or Store("MISSION_REQUEST")
+        self.store = store or Store(request="MISSION_REQUEST")
         self.fates = iter(fates)
         self.now = 0.0
 
@@ -187,7 +188,7 @@ def test_a_vehicle_that_keeps_something_else_is_found_out():
         def _complete(self, going):
             return super()._complete(replace(going, items=(*going.items[:-1], Item(Cmd.WAYPOINT, 1, 1))))
 
-    line = Line(ITEMS, MissionType.MISSION, (), Forgetful("MISSION_REQUEST"))
+    line = Line(ITEMS, MissionType.MISSION, (), Forgetful(request="MISSION_REQUEST"))
     while line.sync.refusal is None:
         line.step()
         assert line.now < 100.0
@@ -196,7 +197,7 @@ def test_a_vehicle_that_keeps_something_else_is_found_out():
 
 
 def test_a_vehicle_gives_up_after_eight_seconds_and_says_so():
-    store = Store("MISSION_REQUEST")
+    store = Store(request="MISSION_REQUEST")
     count = replace(say("MISSION_COUNT", target_system=1, count=3, mission_type=0), system=255, component=190)
     (request,) = store.hear(count, ready=True, now=0.0)
     said = [message for tenth in range(1, 100) for message in store.tick(tenth / 10)]
@@ -204,10 +205,11 @@ def test_a_vehicle_gives_up_after_eight_seconds_and_says_so():
     assert [message.name for message in said] == ["MISSION_REQUEST"] * 7 + ["MISSION_ACK"]
     assert said[-1]["type"] == MissionResult.CANCELLED
     assert GIVE_UP == 8.0
+    assert PX4_MANNER.give_up == 5.0
 
 
 def test_an_upload_for_another_station_is_not_consumed():
-    store = Store("MISSION_REQUEST")
+    store = Store(request="MISSION_REQUEST")
     count = say("MISSION_COUNT", target_system=1, count=2, mission_type=0)
     store.hear(replace(count, system=255, component=190), ready=True, now=0.0)
     answer = store.hear(replace(count, system=253, component=190), ready=True, now=0.1)

@@ -123,7 +123,7 @@ def test_modes_alone_hold_and_return_and_authority_alone_hands_over():
 )
 def test_kinds_come_from_the_heartbeat(kind, name):
     assert profile_of(kind, 3).kind == name
-    assert profile_of(kind, 12) is None
+    assert profile_of(kind, 8) is None
 
 
 # --- tasks ------------------------------------------------------------------------------------------

@@ -195,3 +195,12 @@ def test_our_plane_circles_at_the_radius_that_was_seen_in_guided_mode(simulated)
     radii = [distance(point(at.latitude, at.longitude), centre) for at in last]
     assert len(radii) > 50
     assert all(75 < radius < 90 for radius in radii)
+
+
+def test_the_simulated_plane_says_of_its_mission_what_the_true_one_said(recorded, simulated):
+    def said(log):
+        texts = (message["text"].partition(" dist")[0] for _, message in of(log, "STATUSTEXT"))
+        return [text for text in texts if text.startswith(("Mission: ", "Reached ", "Throttle "))]
+
+    assert sorted(said(simulated)) == sorted(said(recorded))
+    assert len(said(recorded)) == 7

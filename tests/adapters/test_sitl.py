@@ -7,23 +7,26 @@ import socket
 import subprocess
 import time
 from contextlib import asynccontextmanager, contextmanager
+from itertools import groupby
 from pathlib import Path
 
 import pytest
 from worlds import AREA, HOME, ROUND, World, running, until
 
-from adapters.live.operator_socket import give_back
+from adapters.camera.poses import PoseLog
+from adapters.live.operator_socket import give_back, order
 from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.codec import Encoder
 from adapters.mavlink.command import long, set_parameter
 from adapters.mavlink.constants import Cmd
 from adapters.mavlink.profiles import PLANE
 from adapters.mavlink.sync import Sync
-from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Refused, Rejected, Return
+from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Refused, Rejected, Return, Status
 from adapters.simulated import run
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
 from bigactors.commands.run import fly, prepare, record
+from bigactors.recordings import open_recording
 from physical import box, circle, contains, distance, point
 
 FOLDER = os.environ.get("BIGACTORS_SITL", "")
@@ -77,9 +80,9 @@ def autopilot(model, port, tmp_path, parameters=()):
 
 
 @asynccontextmanager
-async def linked(model, tmp_path, craft=CRAFT, parameters=()):
+async def linked(model, tmp_path, craft=CRAFT, parameters=(), **more):
     """Start a vehicle and its plugin, and wait until it has told where it is and what it may do."""
-    world, plugin = World(), Autopilot("autopilot", "udp:127.0.0.1:0", [craft], STATIONS)
+    world, plugin = World(), Autopilot("autopilot", "udp:127.0.0.1:0", [craft], STATIONS, **more)
     async with running(plugin.run(world)):
         await until(lambda: plugin.local)
         with autopilot(model, plugin.local[1], tmp_path, parameters):
@@ -133,6 +136,30 @@ def test_the_real_plane_stays_where_it_has_arrived_as_far_out_as_we_reckon(kind,
             return farthest
 
     assert 85 < run(stays(), SPEED) < 105
+
+
+def test_the_real_plane_tells_how_it_lies_where_its_home_is_and_that_it_returns(tmp_path):
+    log, banks = PoseLog(), []
+    craft = Craft("uav0", system=1, streams=("ATTITUDE",))
+
+    async def flown_home():
+        async with linked("plane", tmp_path, craft, listeners={"uav0": log.hear}) as (world, plugin):
+            await plugin.command(GoTo("r1", "uav0", circle((37.01, -8.61), 300)))
+            await until(lambda: world.of(Arrived, request="r1"), 1_200)
+            await asyncio.sleep(60)  # until it circles
+            for _ in range(100):
+                await asyncio.sleep(0.5)
+                banks.append(log.at(log.until).roll)
+            assert world.property("uav0").geometry.vertices[0] == pytest.approx(
+                (log.at(log.until).latitude, log.at(log.until).longitude), abs=1e-3
+            )
+            assert not world.of(Status)[-1].returning
+            await plugin.command(Return("r2", "uav0"))
+            await until(lambda: world.of(Status)[-1].returning, 60)
+            return world.of(Status)[-1].home
+
+    assert run(flown_home(), SPEED) == pytest.approx(HOME[:2], abs=1e-4)
+    assert 10 < sorted(banks)[len(banks) // 2] < 50, banks  # clockwise, so its right wing is low
 
 
 @pytest.mark.parametrize("model", ["quad", "rover"])
@@ -310,6 +337,31 @@ def test_a_real_plane_that_an_operator_gives_back_flies_its_mission_to_the_end(t
     ending, _, seen = flown_by_run(ROUND, "plane", tmp_path, operator, 1_800)
     assert ending.reason == "the mission has ended"
     assert seen.kinds() - {"trouble"} == {"taken over", "given back"}
+
+
+@pytest.mark.parametrize(("model", "modes"), [("plane", ["LOITER", "RTL"]), ("rover", ["HOLD", "RTL"])])
+def test_a_real_vehicle_holds_and_returns_as_an_operator_orders(model, modes, tmp_path, monkeypatch):
+    async def operator(seen, _process):
+        await until(lambda: "command" in seen.rules)
+        await asyncio.sleep(60.0)
+        for number, what in enumerate(("hold", "return"), 1):
+            assert await order(Path("s"), what, "uav0", "Ana") == ("", {}, ())
+            await until(lambda: [each.kind for each in seen.findings].count("confirmed") == number, 120)  # noqa: B023
+            await asyncio.sleep(20.0)
+
+    monkeypatch.chdir(tmp_path)
+    ending, _, seen = flown_by_run(ROUND, model, tmp_path, operator, 300)
+    assert ending.reason == "the time is over"
+    assert ending.state.taken == {"uav0": "sent home by the operator (Ana)"}
+    assert seen.kinds() - {"trouble"} == {"ordered", "confirmed"}
+    recording = open_recording("r.mcap")
+    states = [message.data for message in recording.of("status")]
+    assert [mode for mode, _ in groupby(each["mode"] for each in states)][-2:] == modes
+    assert states[-1]["authority"] == ["gcs0"]
+    assert states[-1]["battery"]["volts"] > 10
+    assert 0 <= states[-1]["heading"] < 360
+    texts = {message.data["text"] for message in recording.of("said")}
+    assert "Throttle armed" in texts
 
 
 def test_a_real_plane_that_boots_anew_on_the_ground_where_it_was_to_go_has_not_arrived(tmp_path, monkeypatch):

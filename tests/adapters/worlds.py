@@ -1,22 +1,21 @@
-"""A world that remembers, and simulated flights in it: minutes of them in seconds, over real loopback sockets."""
+"""Simulated flights in a world that remembers: minutes of them in seconds, over real loopback sockets."""
 
-import asyncio
 import os
-from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager, suppress
-from dataclasses import dataclass, field
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.keys import Keeper
-from adapters.plugin import Aged, Arrived, Gone, Rejected, Trouble
+from adapters.plugin import Arrived, Rejected
 from adapters.simulated import Disturbance, Kind, Simulator, Vehicle
+from bigactors.testing import EPOCH, World, running, until
 from physical import box, circle
 
 ROOT = Path(__file__).parents[2]
 DATA = Path(os.environ.get("BIGACTORS_DATA", ROOT.parent / "shared" / "data"))
 NOTHING = Disturbance()
-EPOCH = 1_600_000_000.0
 
 HOME = (37.0, -8.6, 20.0)
 AREA = box((37.015, -8.61), (37.005, -8.625))
@@ -43,68 +42,6 @@ BigActor a hosted_at uav0 with_behavior {
 environment { uav0 arrives }
 """
 """The way back from north0 leads over mid0, and home is where the mission ends."""
-
-
-@dataclass
-class World:
-    """What plugins have told, in the event loop's time."""
-
-    published: list = field(default_factory=list)
-    reports: list = field(default_factory=list)
-
-    def publish(self, published):
-        self.published.append(published)
-
-    def report(self, report):
-        self.reports.append(report)
-
-    def now(self):
-        return EPOCH + asyncio.get_running_loop().time()
-
-    def of(self, kind, **wanted):
-        return [
-            report
-            for report in self.reports
-            if isinstance(report, kind)
-            and all(getattr(report, name) == value for name, value in wanted.items())
-        ]
-
-    def troubles(self):
-        return {report.what for report in self.of(Trouble)}
-
-    def property(self, entity):
-        """The newest of an entity, or None."""
-        for published in reversed(self.published):
-            said = published.property if isinstance(published, Aged) else published
-            if said.entity == entity:
-                return None if isinstance(said, Gone) else said
-        return None
-
-
-async def until(what: Callable[[], object], seconds: float = 600.0, every: float = 0.2):
-    """Wait until something holds; fail if it doesn't in time."""
-    loop = asyncio.get_running_loop()
-    end = loop.time() + seconds
-    while not (found := what()):
-        assert loop.time() < end, f"{what} did not come to hold in {seconds} s"
-        await asyncio.sleep(every)
-    return found
-
-
-@asynccontextmanager
-async def running(*coroutines) -> AsyncIterator[None]:
-    """Run beside the test; what fails there fails the test."""
-    tasks = [asyncio.ensure_future(coroutine) for coroutine in coroutines]
-    try:
-        yield
-        for task in tasks:
-            if task.done():
-                task.result()
-    finally:
-        for task in tasks:
-            task.cancel()
-            with suppress(asyncio.CancelledError):
-                await task
 
 
 @dataclass

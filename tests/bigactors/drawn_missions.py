@@ -1,5 +1,9 @@
 """A mission of two places, a UAV, a station and a vessel with its drifter, and one run of it."""
 
+from pathlib import Path
+
+from checker import Trace
+from checker.traces import candidates
 from physical import box, circle, point
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Host, Literal, QueryOf
@@ -11,6 +15,9 @@ from semantics.state.physical_model import Carried, Placed
 from semantics.state.setting import Control, Setting
 from semantics.state.signature import Kind, Signature
 from semantics.successors import successors
+from specs import Source
+from specs.elaboration import elaborate
+from specs.parser import parse
 
 MOVERS = frozenset({"OilSpill", "UAV", "Vessel", "Station", "Drifter"})
 SIGNATURE = Signature.of(
@@ -59,3 +66,21 @@ def run(configuration):
         labels.append(following[0].label)
         configurations.append(following[0].target)
     return configurations, labels
+
+
+OBSERVING = """
+mission observing
+signature { kind Place contains Craft kind Craft driven }
+world { a: Place = box (37.1, -8.5) (37.0, -8.6) u: Craft = point (37.05, -8.55) }
+BigActor w hosted_at u with_behavior { while true { observe(CHILDREN(a)) react { case seen => skip } } }
+"""
+
+
+def observing(rounds):
+    """Return a flight in which an agent observes so many times, four steps each."""
+    source = Source("observing", OBSERVING)
+    trace = Trace(elaborate(parse(source), source, Path()).initial)
+    for _ in range(16):
+        trace = trace.extended(candidates(trace.configurations[-1])[0])
+    assert trace.steps[-1].target == trace.steps[-5].target
+    return Trace(trace.initial, trace.steps + trace.steps[-4:] * (rounds - 4))

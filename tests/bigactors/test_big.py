@@ -178,6 +178,21 @@ class TestBig:
         assert out.splitlines()[0] == "walk.big: a brs of 2 rules"
         assert "  a class, one at a time: walk, burn" in out
 
+    def test_validate_names_a_rule_once_however_many_instances_it_has(self, bigactors, tmp_path):
+        (tmp_path / "count.big").write_text("""
+            atomic fun ctrl N(n) = 0; big zero = N(0); fun big at(n) = N(n); react stay = N(0) --> N(0);
+            fun react up(n) = N(n) --> N(n + 1);
+            begin brs int n = [0 : 1 : 999]; init zero; rules = [ {up(n), stay} ]; preds = { at(n) }; end
+        """)
+        code, out, _ = bigactors("big", "validate", str(tmp_path / "count.big"))
+        assert code == 0
+        assert out.splitlines() == [
+            "count.big: a brs of 1,001 rules",
+            "  initial state: N(0)",
+            "  a class, one at a time: up (1,000), stay",
+            "  predicates: at (1,000)",
+        ]
+
     def test_show_prints_and_draws_a_state(self, bigactors, walk):
         code, out, _ = bigactors("big", "show", "--state", "1", "--output", "one.svg", "walk.big")
         assert code == 0

@@ -3,7 +3,7 @@
 import shutil
 
 import pytest
-from drawn_missions import PLACEMENTS, SIGNATURE, oil_spill, run
+from drawn_missions import PLACEMENTS, SIGNATURE, observing, oil_spill, run
 
 from bigactors.pages import Story, trace_page
 from bigraphs.exploration import explore
@@ -97,6 +97,48 @@ def test_what_is_folded_is_unfolded_by_a_click(opened):
         page.click(f'[data-picture^="{model}"] [data-names] text')
         assert page.inner_text("#names") == f"UAV ×36: {', '.join(names)}"
         page.click(".caption")
+
+
+@pytest.fixture(scope="module")
+def rounds():
+    """A flight of a thousand observations, a step each half second."""
+    flight = observing(1_000)
+    return Story("t", "", False, flight, times=tuple(n / 2 for n in range(len(flight))))
+
+
+@pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
+def test_each_step_of_a_loop_is_reached_folded_and_unfolded(opened, rounds, size):
+    page, last = opened(trace_page(rounds), size), len(rounds.trace)
+    fold = page.locator("tr[data-from]").first
+    begin, end = (int(fold.get_attribute(f"data-{name}")) for name in ("from", "to"))
+    page.evaluate(f"location.hash = '#c{begin + 500}'")
+    label = str(rounds.trace.steps[begin + 499].label)
+    page.wait_for_function("document.querySelector('#number').textContent.includes(' s')")
+    assert page.inner_text("#caption") == label
+    assert page.inner_text("#number") == f"c{begin + 500} of c{last} · {(begin + 499) / 2:.1f} s"
+    assert fold.get_attribute("aria-current") == "step"
+    assert page.locator("tr.unfolded").count() == 0
+    fold.locator("button").click()
+    assert page.locator("tr.unfolded[data-row]").count() == 200
+    assert page.get_attribute("tr[aria-current]", "data-row") == str(begin + 500)
+    assert rounds.trace.steps[begin + 499].label.rule in page.inner_text("tr[aria-current] .step")
+    page.locator("tr.more button").last.click()
+    assert page.inner_text("#number").startswith(f"c{begin + 600} of")
+    fold.locator("button").click()
+    assert page.locator("tr.unfolded").count() == 0
+    page.locator(".caption").click()
+    page.keyboard.press("j")
+    assert page.inner_text("#number").startswith(f"c{min(end + 1, last)} of")
+    assert overflow(page) == 0
+
+
+def test_the_search_finds_steps_in_a_fold(opened, rounds):
+    page = opened(trace_page(rounds), DESK)
+    page.fill("#find", "c1234")
+    page.press("#find", "Enter")
+    assert page.inner_text("#number").startswith("c1234 of")
+    page.fill("#find", "rcv_obs")
+    assert page.inner_text("#found") == "1000 found"
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

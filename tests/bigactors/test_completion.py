@@ -54,7 +54,7 @@ def offered(line):
 
 LINES = [
     ("bigactors ch", {"check"}),
-    ("bigactors check oil_", {"oil_spill"}),
+    ("bigactors check oil_", {"oil_spill", "oil_spill_timed"}),
     ("bigactors check gl", {"gliding.mission"}),
     ("bigactors check older", {"older/"}),
     ("bigactors check --engine f", {"fast"}),
@@ -98,7 +98,7 @@ def typed(shell, setup, line):
     os.write(terminal, f"{first}; echo rea'dy'\n".encode())
     wait_for(r"\nready|\rready")
     os.write(terminal, f"{line}\t".encode())
-    wait_for("oil_spill")
+    wait_for("rendezvous")
     os.close(terminal)
     process.kill()
     process.wait()
@@ -110,7 +110,7 @@ def typed(shell, setup, line):
 def test_a_shell_completes_a_mission_that_ships(shell):
     if shutil.which(shell) is None:
         pytest.skip(f"there is no {shell} here")
-    assert "oil_spill" in typed(shell, INTERACTIVE[shell], "bigactors check oil_")
+    assert "rendezvous" in typed(shell, INTERACTIVE[shell], "bigactors check rendez")
 
 
 @pytest.mark.usefixtures("folder")

@@ -8,13 +8,14 @@ from html.parser import HTMLParser
 from importlib.resources import files as resources
 
 import pytest
-from drawn_missions import CHANNELS, KINDS, PLACEMENTS, SIGNATURE, oil_spill, run
+from drawn_missions import CHANNELS, KINDS, PLACEMENTS, SIGNATURE, observing, oil_spill, run
 
-from bigactors.pages import Story, trace_page
+from bigactors.pages import Story, page_of, telling, trace_page
 from bigactors.pictures import Panels
 from bigactors.pictures.page import Page
 from bigactors.pictures.vector import svg_of
 from checker import Step, Trace
+from checker.reports.lanes import Repetition
 from semantics.behaviours.program import Program
 from semantics.state.agents import mailbox_cell
 from semantics.state.initial import initial
@@ -26,7 +27,7 @@ DRAWN = {"g", "path", "text", "tspan", "use", "defs", "clippath", "rect", "circl
 WRITTEN = {
     "html", "head", "meta", "title", "style", "noscript", "body", "header", "h1", "h2", "p", "main", "section",
     "table", "thead", "tbody", "tfoot", "tr", "th", "td", "a", "div", "b", "ul", "li", "span", "small", "button",
-    "input", "output", "figure", "details", "summary", "pre", "script",
+    "input", "output", "figure", "details", "summary", "pre", "script", "template",
 }  # fmt: skip
 
 
@@ -123,22 +124,71 @@ def test_the_lanes_say_who_did_what_and_what_it_changed(page):
         assert words in text
 
 
-def test_a_long_trace_is_drawn_at_its_end_only(trace):
-    read = Reader(trace_page(Story("t", "", False, trace, drawn=2)))
-    drawn = [each["data-l"] != "" for _, each in read.elements if "data-frame" in each]
-    assert drawn == [False] * (len(trace) - 1) + [True] * 2
+def test_where_few_are_to_be_drawn_the_last_ones_are(trace):
+    told = telling(Story("t", "", False, trace, drawn=1))
+    assert [frame.number for frame in told.frames if frame.logical][-1] == len(trace)
+    assert len({frame.logical.key for frame in told.frames if frame.logical}) == 1
+    undrawn = sum(None in (each.logical, each.physical) for each in told.frames)
+    words = (
+        f"{undrawn} of {len(trace) + 1} configurations are not drawn: "
+        "a page made by `show` with --step K has those around c_K"
+    )
+    assert told.left_out == (words,)
 
 
-def test_of_a_trace_that_no_page_can_hold_the_end_is_shown(trace, monkeypatch):
-    monkeypatch.setattr("bigactors.pages.story.MOST_FRAMES", 3)
-    read = Reader(trace_page(Story("t", "", False, trace, start=5)))
-    count = len(trace)
-    numbers = [str(number) for number in range(count - 2, count + 1)]
-    assert [each["data-row"] for _, each in read.elements if "data-row" in each] == numbers
-    assert [each["data-frame"] for _, each in read.elements if "data-frame" in each] == numbers
-    (body,) = read.all("body")
-    assert body == {"data-start": str(5 - (count - 2)), "data-first": str(count - 2)}
-    assert f"{count} steps. " in read.texts
+def test_a_page_that_begins_in_the_middle_has_the_pictures_around_it(trace):
+    told = telling(Story("t", "", False, trace, start=5, drawn=1))
+    assert told.frames[5].logical
+    assert told.frames[5].physical
+
+
+# --- steps that repeat ------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def looping():
+    return observing(12)
+
+
+def test_steps_that_only_repeat_others_are_one_row_and_each_is_in_the_page(looping):
+    times = tuple(100.0 + 0.5 * number for number in range(len(looping)))
+    told = telling(Story("t", "", False, looping, times=times))
+    (again,) = (row for row in told.rows if isinstance(row, Repetition))
+    assert again.last == len(looping) == len(told.order) - 1
+    assert len(told.rows) - 1 + len(again.steps) == len(looping)
+    assert len(told.frames) < 12
+    assert None not in told.order
+    assert told.left_out == ()
+    assert told.seconds[-1] == 0.5 * (len(looping) - 1)
+
+
+def test_unfolded_each_step_has_a_row(looping):
+    told = telling(Story("t", "", False, looping, unfolded=True))
+    assert [row.number for row in told.rows] == list(range(1, len(looping) + 1))
+
+
+def test_of_a_trace_that_no_page_can_hold_the_ends_and_what_is_around_the_start_are_shown(
+    looping, monkeypatch
+):
+    monkeypatch.setattr("bigactors.pages.story.MOST_ROWS", 6)
+    monkeypatch.setattr("bigactors.pages.story._looks", lambda trace: tuple(range(len(trace) + 1)))
+    told = telling(Story("t", "", False, looping, start=20, unfolded=True))
+    held = [number for number, place in enumerate(told.order) if place is not None]
+    assert held == [0, 1, 2, 19, 20, 47, 48]
+    read = Reader(page_of(told))
+    assert [(each["data-from"], each["data-to"]) for _, each in read.elements if "data-from" in each] == [
+        ("3", "18"),
+        ("21", "46"),
+    ]
+    words = (
+        "42 of 49 configurations are left out, between c3 and c46: "
+        "a page made by `show` with --step K has those around c_K"
+    )
+    assert words in read.texts
+
+
+def test_a_long_flight_has_a_small_page():
+    assert len(trace_page(Story("t", "", False, observing(5_000))).encode()) < 500_000
 
 
 def test_a_run_that_repeats_leads_back(trace):
@@ -153,7 +203,7 @@ def test_a_trace_without_steps_is_a_page(trace):
 
 
 def test_all_maps_of_a_run_have_one_view(trace):
-    panels = Panels.of(trace.configurations)
+    panels = Panels.of(trace.configurations, 100)
     grids = {
         tuple(re.findall(r">([\d.]+°[NSEW])<", panels.physical(c, None).shapes)) for c in trace.configurations
     }

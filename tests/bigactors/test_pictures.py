@@ -12,12 +12,12 @@ from matplotlib.text import Text
 
 from bigactors.cli import main
 from bigactors.pictures import PictureError, draw_configuration, draw_overview, draw_trace
-from bigactors.pictures.page import wrapped
+from bigactors.pictures.page import Page, wrapped
 from bigactors.pictures.scene import changed_names, differing, is_place, map_entities, palette_of
 from bigactors.pictures.trace import AGENT, AROUND, SERVED, rows_of
 from bigraphs.drawing import LINKS
 from bigraphs.layout import layout
-from bigraphs.routing import route
+from bigraphs.link_curves import route
 from checker.reports.lanes import lanes_of
 from physical import circle, point
 from physical.map_style import text_width
@@ -205,7 +205,7 @@ def draw_two(stem):
     """Draw a configuration and a trace, named by a stem."""
     configurations, labels = run(oil_spill())
     draw_configuration(configurations[3], f"{stem}c.svg", changed=configurations[2])
-    draw_overview(configurations, labels, f"{stem}t.svg")
+    draw_overview(lanes_of(configurations, labels), f"{stem}t.svg")
 
 
 @pytest.mark.parametrize(
@@ -262,13 +262,15 @@ def test_a_row_tells_only_what_changed():
 
 def test_every_step_appears_in_the_overview(tmp_path, monkeypatch):
     configurations, labels = run(oil_spill())
-    texts = written(monkeypatch, draw_overview, configurations, labels, tmp_path / "t.png", title="Oil spill")
+    texts = written(
+        monkeypatch, draw_overview, lanes_of(configurations, labels), tmp_path / "t.png", title="Oil spill"
+    )
     assert {f"c{step}" for step in range(1, len(configurations))} <= set(texts)
     assert {label.rule for label in labels} <= set(texts)
 
 
 def test_a_trace_of_no_step_has_an_overview(tmp_path):
-    draw_overview([oil_spill()], [], tmp_path / "t.svg")
+    draw_overview(lanes_of([oil_spill()], []), tmp_path / "t.svg")
     assert (tmp_path / "t.svg").stat().st_size > 1000
 
 
@@ -279,3 +281,10 @@ def test_wrapped_lines_fit_and_lose_nothing_while_there_is_room():
     assert "".join(lines).replace(" ", "") == text.replace(" ", "")
     assert wrapped(text, 110.0, 7.0, 2)[-1].endswith("…")
     assert wrapped("", 110.0, 7.0, 2) == ()
+
+
+def test_a_png_that_is_too_high_is_refused_with_a_remedy(tmp_path):
+    with pytest.raises(
+        PictureError, match=r"80,000 dots high, and a .png has at most 65,535: name it .svg or .html"
+    ):
+        Page(100, 40_000).save(tmp_path / "t.png", "t")

@@ -1,6 +1,7 @@
 """What no vehicle can do is said before take-off."""
 
 import asyncio
+import socket
 from contextlib import suppress
 
 import pytest
@@ -80,9 +81,10 @@ def test_what_only_may_be_asked_for_is_a_warning(tmp_path, capsys):
 
 async def flown(flight, vehicle):
     task = asyncio.ensure_future(fly(flight, ()))
-    while not flight.plugins[0].local and not task.done():
+    link = flight.plugins[-1] if flight.company is None else flight.plugins[-1].plugin
+    while not link.local and not task.done():
         await asyncio.sleep(0.05)
-    simulator = Simulator(f"udpout:127.0.0.1:{flight.plugins[0].local[1]}", [vehicle])
+    simulator = Simulator(f"udpout:127.0.0.1:{link.local[1]}", [vehicle])
     simulation = asyncio.ensure_future(simulator.run())
     try:
         return await task
@@ -90,6 +92,12 @@ async def flown(flight, vehicle):
         simulation.cancel()
         with suppress(asyncio.CancelledError):
             await simulation
+
+
+def free_port():
+    with socket.socket() as found:
+        found.bind(("127.0.0.1", 0))
+        return found.getsockname()[1]
 
 
 def options(folder, *statements):
@@ -144,3 +152,17 @@ def test_a_copter_flies_where_a_plane_could_not(tmp_path):
     assert ending.reason == "the mission has ended"
     assert ending.state.configuration.structure.logical.parent("uav0") == "pad0"
     assert copter.fence is not None
+
+
+def test_of_several_stations_each_refuses_what_its_own_vehicles_cannot_do(tmp_path):
+    plane = Vehicle(Kind.PLANE, (37.01, -8.65, 20.0))
+    (tmp_path / "peers.toml").write_text(
+        f'[gcs0]\nconnect = ["tcp/127.0.0.1:{free_port()}"]\nhosts = ["uav0"]\n'
+        f'[gcs1]\nconnect = ["tcp/127.0.0.1:{free_port()}"]\n'
+    )
+    asked = options(tmp_path, "control(MOVE_HOST_TO east0)", "control(MOVE_HOST_TO pad0)")
+    asked.station, asked.peers = [("gcs0", None)], str(tmp_path / "peers.toml")
+    asked.station_log = str(tmp_path / "gcs0.log")
+    with pytest.raises(Mistake, match=r"pad0 is too small: .* the plane needs a circle of 104 m"):
+        run(flown(prepare(asked), plane))
+    assert not plane.armed

@@ -151,13 +151,13 @@ def test_a_run_that_is_asked_to_end_closes_its_recording(there, number, shell):
         "run.mcap",
     ]
     with begun(line, stderr=subprocess.PIPE, text=True) as run:
-        until = time.monotonic() + 30
+        until = time.monotonic() + 120
         while not (there / "run.mcap").exists() or not (there / "run.mcap").stat().st_size:
             assert time.monotonic() < until, "it did not begin in time"
             time.sleep(0.05)
         time.sleep(0.5)
         run.send_signal(number)
-        told = run.communicate(timeout=30)[1]
+        told = run.communicate(timeout=120)[1]
     assert run.returncode == 3
     assert "interrupted: vehicles go on as they were told last" in told
     recording = open_recording("run.mcap")
@@ -319,6 +319,23 @@ def test_a_run_that_goes_on_from_a_broken_one_is_broken():
     assert terminal.taken == TAKEN
     terminal.goes_on([replace(BREACH, kind="late")], {})
     assert not terminal.broken
+
+
+@pytest.mark.usefixtures("there")
+@pytest.mark.parametrize(
+    "line", [["hold", "uav0"], ["return", "--all", "--by", "Ana"], ["status"]], ids=" ".join
+)
+def test_where_no_mission_runs_there_is_no_order_and_nothing_to_tell(line, capsys):
+    assert main(line) == 2
+    assert "no mission runs here" in capsys.readouterr().err
+    assert main([*line, "--socket=s"]) == 2
+    assert "no mission runs at s" in capsys.readouterr().err
+
+
+def test_who_says_so_is_a_name_that_can_be_printed(capsys):
+    for by in ("a\nb", "a" * 201):
+        assert main(["hold", "uav0", "--by", by]) == 2
+        assert "--by has to be a name of 1 to 200 characters that can be printed" in capsys.readouterr().err
 
 
 @pytest.mark.usefixtures("there")

@@ -189,4 +189,4 @@ def test_without_the_extra_it_is_said_how_to_have_it(tmp_path):
         capture_output=True,
         text=True,
     )
-    assert (ran.returncode, "pip install 'bigactors[live]'" in ran.stderr) == (2, True)
+    assert (ran.returncode, "pip install '.[live]'" in ran.stderr) == (2, True)

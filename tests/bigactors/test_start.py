@@ -31,6 +31,14 @@ with contextlib.redirect_stdout(io.StringIO()):
     code = main(sys.argv[1:])
 print(json.dumps([code, sorted(set(sys.modules) - before)]))
 """
+COLLECTIONS = """
+import contextlib, gc, io, sys
+from bigactors.cli import main
+before = gc.get_stats()
+with contextlib.redirect_stdout(io.StringIO()):
+    main(sys.argv[1:])
+sys.exit(gc.get_stats() != before)
+"""
 MISSION = """
 signature { kind Location contains UAV  kind UAV driven }
 world { a: Location = box (0, 0) (1, 1)  u: UAV = point (0.5, 0.5) }
@@ -74,6 +82,7 @@ def test_fmt_loads_the_parser_and_no_meaning(start):
     loaded = start("fmt", "--stdout", "m.mission")
     assert libraries(loaded) == {"lazy_loader", "lark"}
     assert not loaded & {"specs.elaboration", "semantics.state.configuration", "physical.shape", "checker"}
+    assert not loaded & {"semantics.behaviours.statements", "specs.common_mistakes", "specs.syntax_errors"}
 
 
 def test_a_check_of_a_small_mission_loads_no_compiler(start):
@@ -102,3 +111,10 @@ def test_compiled_loops_load_no_more_than_numba(start):
         "checker.engines.fast.crosscheck",
         "checker.engines.fast.ample",
     }
+
+
+@pytest.mark.parametrize("line", [["fmt", "--stdout"], ["check"]])
+def test_what_is_loaded_is_not_looked_through_for_garbage(tmp_path, line):
+    mission = tmp_path / "m.mission"
+    mission.write_text(MISSION)
+    subprocess.run([sys.executable, "-c", COLLECTIONS, *line, str(mission)], check=True)

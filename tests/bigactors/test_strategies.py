@@ -45,7 +45,7 @@ def test_missions_hold_and_are_violated():
 def test_without_hypothesis_the_error_names_the_extra():
     script = "import sys; sys.modules['hypothesis'] = None; import bigactors.strategies"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
-    assert "pip install 'bigactors[strategies]'" in done.stderr
+    assert "pip install '.[strategies]'" in done.stderr
 
 
 @pytest.mark.parametrize("module", ["bigactors", "bigactors.cli"])

@@ -7,6 +7,10 @@ import sys
 
 import pytest
 
+from adapters.live.state import Heard
+from adapters.recording.writing import Recorder
+from physical import Band, PhysicalProperty, point
+
 
 @pytest.fixture
 def run(missions, bigactors):
@@ -228,6 +232,41 @@ def test_a_trace_becomes_a_page(bigactors, missions, option):
     assert page.startswith("<!DOCTYPE html>\n")
     assert 'data-start="3"' in page
     assert page.count("data-frame=") == 9
+
+
+@pytest.mark.usefixtures("run")
+def test_the_tracks_of_a_trace_are_written(bigactors, missions):
+    code, out, err = bigactors("show", "--trace", "run.json", "--output", "tracks.geojson")
+    assert (code, out, err) == (0, "", "1 track written to tracks.geojson\n")
+    (feature,) = json.loads((missions / "tracks.geojson").read_text(encoding="utf-8"))["features"]
+    assert feature["properties"] == {"name": "uav0", "kind": "UAV"}
+    assert feature["geometry"]["type"] == "LineString"
+    assert feature["geometry"]["coordinates"][0] == [-8.7, 37.15]
+
+
+def test_the_tracks_of_a_recording_have_every_position_with_its_time(bigactors, missions):
+    run = {"mission": "holds.mission", "text": "", "digest": ""}
+    recorder = Recorder(missions / "run.mcap", run, 0.0, ["uav0"])
+    for k in range(4):
+        at = PhysicalProperty("uav0", "UAV", point(37 + k, -8), Band(0, 10), time=k / 2)
+        recorder.arrival(Heard("p", at), float(k))
+    recorder.close("done", 4.0)
+    code, out, err = bigactors("show", "--trace", "run.mcap", "--output", "tracks.geojson")
+    assert (code, out, err) == (0, "", "1 track written to tracks.geojson\n")
+    (feature,) = json.loads((missions / "tracks.geojson").read_text(encoding="utf-8"))["features"]
+    assert feature["geometry"]["coordinates"] == [[-8, 37 + k, 5] for k in range(4)]
+    assert feature["properties"]["coordTimes"][3] == "1970-01-01T00:00:01.500Z"
+
+
+@pytest.mark.usefixtures("run")
+def test_tracks_are_of_a_whole_trace(bigactors):
+    for words, said in (
+        (("holds.mission",), "tracks are those of a trace"),
+        (("--trace", "run.json", "--step", "2"), "tracks are those of a whole trace"),
+    ):
+        code, _, err = bigactors("show", *words, "--output", "tracks.geojson")
+        assert code == 2
+        assert said in err
 
 
 @pytest.mark.usefixtures("run")

@@ -2,6 +2,7 @@ import json
 from pathlib import Path
 
 import pytest
+from shapely.geometry import shape
 
 from physical import point, write_plan, write_waypoints
 
@@ -116,7 +117,7 @@ def test_the_points_of_a_plan_or_waypoint_file_are_read_as_places(harbour, bigac
 @pytest.mark.parametrize(
     ("features", "said"),
     [
-        ([feature("a", "Place", [0, 95]), feature("b", "Place", [0, 96])], "feature 1 (b)"),
+        ([feature("a", "Place", [0, 95]), feature("b", "Place", [0, 96])], "feature 2 (b)"),
         ([feature("a", "Crate", [0, 0], carried_by="b")], "a is carried by 'b', which is not there"),
         (
             [feature("a", "Crate", [0, 0], carried_by="b"), feature("b", "Crate", [0, 0], carried_by="a")],
@@ -156,3 +157,26 @@ def test_what_cannot_be_shown_is_told(missions, bigactors, words, said):
     assert code == 2
     assert said in err
     assert "Traceback" not in err
+
+
+@pytest.mark.usefixtures("missions")
+def test_a_world_is_written_for_other_programs(missions, bigactors):
+    turning_right = [list(reversed(square(179, 0, 180, 1)[0]))]
+    across = {
+        "type": "MultiPolygon",
+        "coordinates": [square(179, 10, 180, 11), square(-180, 10, -179, 11)],
+    }
+    write(
+        missions / "sea.geojson",
+        feature("box0", "Place", turning_right),
+        {**feature("box1", "Place", square(0, 0, 1, 1)), "geometry": across},
+        feature("buoy0", "Buoy", [20, 20]),
+    )
+    code, out, err = bigactors("world", "sea.geojson", "--output", "world.geojson")
+    assert (code, err) == (0, "3 features written to world.geojson\n")
+    written = json.loads((missions / "world.geojson").read_text(encoding="utf-8"))
+    shapes = {each["properties"]["name"]: shape(each["geometry"]) for each in written["features"]}
+    assert shapes["box0"].exterior.is_ccw
+    assert [each.bounds for each in shapes["box1"].geoms] == [(179, 10, 180, 11), (-180, 10, -179, 11)]
+    assert all(each.exterior.is_ccw for each in shapes["box1"].geoms)
+    assert bigactors("world", "world.geojson")[1] == out

@@ -6,14 +6,14 @@ from bigraphs.bigraph import children, link_key, links, points
 from bigraphs.matching import Match
 
 
-def naive_matches(redex, target, *, sharing=False, nowhere=False):
-    """Return every match that satisfies the definition, as a set; with `nowhere`, regions may lie nowhere."""
+def naive_matches(redex, target, *, sharing=False):
+    """Return every match that satisfies the definition, as a set: with sharing, regions may lie nowhere."""
     found = set()
     for nodes in permutations(range(len(target.nodes)), len(redex.nodes)):
         if not _controls_agree(redex, target, nodes):
             continue
         maps = [m for m in _link_maps(redex, target) if _links_agree(redex, target, nodes, m)]
-        placed = list(_placed(redex, target, nodes, sharing, nowhere)) if maps else []
+        placed = list(_placed(redex, target, nodes, sharing)) if maps else []
         found |= {Match(redex, target, nodes, tuple(m.items()), *where) for m in maps for where in placed}
     return found
 
@@ -52,13 +52,13 @@ def _subsets(items, largest):
     return chain.from_iterable(combinations(items, size) for size in range(largest + 1))
 
 
-def _placed(redex, target, nodes, sharing, nowhere):
+def _placed(redex, target, nodes, sharing):
     places = range(-target.regions, len(target.nodes))
     rest = [number for number in range(len(target.nodes)) if number not in nodes]
     homes = [
         set(s)
         for s in _subsets([p for p in places if p not in nodes], len(places) if sharing else 1)
-        if s or nowhere
+        if s or sharing
     ]
     for regions in product(homes, repeat=redex.regions):
         if not _tops_agree(redex, target, nodes, regions):

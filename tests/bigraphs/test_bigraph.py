@@ -41,7 +41,6 @@ A, B, Z = Node("A"), Node("B", None, (0,)), Node("Z", None, (0,))
             {"inner_links": {"i": "x"}},
             "inner name 'i' is linked to 'x', which is no outer name of the bigraph",
         ),
-        ([], {"sites": [()]}, "site 0 has no parent"),
         ([], {"regions": -1}, "regions and edges are counted from 0"),
     ],
 )

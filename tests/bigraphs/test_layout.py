@@ -8,8 +8,8 @@ from matplotlib.textpath import TextToPath
 from scale import examples
 
 from bigraphs.layout import GAP, Box, label_size, layout, pill_width, text_width
+from bigraphs.link_curves import route
 from bigraphs.relations import from_relations
-from bigraphs.routing import route
 
 
 @st.composite

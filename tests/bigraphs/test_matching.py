@@ -177,6 +177,15 @@ def test_a_shared_node_matches_only_with_all_its_parents_or_a_region():
     assert count(shared, target) == 2
 
 
+def test_a_region_may_lie_nowhere_if_its_nodes_are_in_nodes_of_the_redex_too():
+    holder = ion(SIGNATURE, "A") // merge(1)
+    redex = holder @ placing([{0, 1}], 2) @ node("A", inside=ONE)
+    target = named(node("A", inside=node("A", inside=ONE)))
+    (match,) = find_matches(redex, target)
+    assert match.regions == ((~0,), ())
+    assert recompose(take_apart(match)) == target
+
+
 @pytest.mark.parametrize(
     ("redex", "target", "message"),
     [

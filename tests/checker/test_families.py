@@ -4,7 +4,7 @@ from math import comb
 
 import pytest
 from checked_missions import load, verdict_of
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scale import examples
 
@@ -123,7 +123,9 @@ def checked(text, **more):
 @examples(25)
 def test_a_family_on_its_routes_is_what_is_written_out_by_hand(steps, number, control):
     family, hand = as_family(steps, number, control), by_hand(steps, number, control)
-    expected = told(checked(hand))
+    whole = checked(hand)
+    assume(whole.complete)  # else what was found depends on the order, and that on the names
+    expected = told(whole)
     assert told(checked(family)) == expected
     assert told(checked(family, engine=Engine.FAST)) == expected
     reduced = [checked(text, reduce=(Reduction.POR,)) for text in (family, hand)]

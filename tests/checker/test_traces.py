@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scale import examples
 
 from checker import Limits, ReplayError, Step, Trace, check, explore, print_trace, replay, to_json
-from checker.traces import MOST_STEPS, candidates, step_of, trace_to
+from checker.traces import MOST_STEPS, alike, candidates, step_of, trace_to
 from semantics.state.configuration import Label
 from semantics.strategies import initial_configurations
 from specs.elaboration import load_mission
@@ -122,9 +122,9 @@ def test_two_messages_that_print_alike_are_told_apart():
     c = load(text).initial
     found = explore(c)
     runs = [trace_to(found, number) for number in range(1, len(found.configurations))]
-    alike = [run for run in runs if run.steps[-1].label.rule == "snd" and len(candidates_of(run)) == 2]
-    assert alike  # both messages are on their way, show {north0}, and hold different relations
-    for trace in alike:
+    twins = [run for run in runs if run.steps[-1].label.rule == "snd" and len(candidates_of(run)) == 2]
+    assert twins  # both messages are on their way, show {north0}, and hold different relations
+    for trace in twins:
         assert replay(c, through_json(trace)) == trace
 
 
@@ -141,6 +141,28 @@ def test_every_configuration_of_a_generated_mission_has_a_trace_that_replays(c, 
     trace = trace_to(found, number)
     assert trace.configurations[-1] == found.configurations[number]
     assert replay(c, through_json(trace)) == trace
+
+
+@examples(25)
+@given(initial_configurations(monitored=None))
+def test_agents_that_a_label_does_not_name_have_no_step_of_it(c):
+    for source in explore(c, limits=Limits(configurations=40)).configurations:
+        found = candidates(source)
+        for label in {str(transition.label) for transition in found}:
+            assert alike(source, label) == [each for each in found if str(each.label) == label]
+
+
+def test_to_take_a_step_again_only_the_agents_that_its_label_names_are_asked():
+    agents = "".join(
+        f"BigActor a{number} hosted_at uav0 with_behavior {{ display({number}) }}" for number in range(20)
+    )
+    c = load(agents).initial
+    assert len(candidates(c)) == 20
+    assert len(candidates(c, label="⟨fun : a7⟩")) == 1
+    assert [step.label.agent for step in candidates(c, label="⟨fun : a17⟩")] == [
+        "a1",
+        "a17",
+    ]  # a1 is part of it
 
 
 def test_a_step_that_waits_for_its_turn_may_end_a_trace():

@@ -63,7 +63,7 @@ def test_without_transitions_there_is_no_graph():
 def test_without_pandas_the_error_names_the_extra(monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
     found = explore(load_mission("oil_spill").initial, edges=True)
-    with pytest.raises(ImportError, match=r"pip install 'bigactors\[notebook\]'"):
+    with pytest.raises(ImportError, match=r"pip install '\.\[notebook\]'"):
         found.to_pandas()
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from checker import Engine, Limits, Outcome, Reduction, Report, check
 from semantics import Control, Scheduler
+from semantics.properties.kinds import PropertyKind
 from specs.elaboration import Variation, load_mission
 
 MISSIONS = Path(__file__).parents[2] / "specs" / "missions"
@@ -15,33 +16,84 @@ MISSIONS = Path(__file__).parents[2] / "specs" / "missions"
 
 @dataclass(frozen=True)
 class Expected:
-    """Counts, and for each property that is violated the lengths of its shortest traces by kind."""
+    """Counts, for each property that is violated the lengths of its shortest traces by kind, and when what is true."""
 
     configurations: int
     transitions: int
     violated: dict[str, dict[str, int]] = field(default_factory=dict)
     witnesses: dict[str, int] = field(default_factory=dict)
+    times: dict[str, str] = field(default_factory=dict)
 
 
 SHIPPED: dict[str, Expected] = {
     "broken_control_race": Expected(10, 12, violated={"race_freedom": {"control race": 2}}),
     "broken_deadlock": Expected(526, 1_128, violated={"deadlock_freedom": {"deadlock": 22}}),
+    "broken_endurance": Expected(
+        26,
+        28,
+        violated={"endurance": {"exhausted": 18}},
+        times={"home": "at 12:30 at the earliest, at 28:10 at the latest"},
+    ),
     "broken_inconsistent": Expected(24, 48, violated={"local_consistency": {"inconsistent": 2}}),
+    "broken_race_in_time": Expected(
+        17,
+        20,
+        violated={"race_freedom": {"control race": 3}},
+        times={
+            "in the west": "at 0:35 at the earliest, at 14:25 at the latest",
+            "there and back": "after 28:35 at the latest",
+        },
+    ),
     "broken_unmatched": Expected(24, 46, violated={"local_consistency": {"unmatched": 3}}),
     "broken_unrealisable": Expected(60, 136, violated={"local_consistency": {"unrealisable": 4}}),
     "convoy": Expected(3_730, 11_253, witnesses={"all are out": 54}),
     "distributed_handover": Expected(102, 157, witnesses={"once around": 45}),
+    "endurance": Expected(26, 28, times={"home": "at 12:30 at the earliest, at 28:10 at the latest"}),
     "go_ahead": Expected(82, 202, witnesses={"surveyed": 9}),
     "handover": Expected(23, 34, witnesses={"handed over": 6}),
+    "handover_timed": Expected(
+        14,
+        14,
+        times={
+            "authority": "after 5 s at the latest",
+            "told": "after 13 s at the latest",
+            "handed over": "at 0:30 at the earliest, at 1:07 at the latest if at all: it may never",
+        },
+    ),
     "harbour_watch": Expected(12, 11, witnesses={"the fairway was clear": 11}),
     "look_before_entry": Expected(26, 27, witnesses={"the second enters too": 23}),
     "look_before_entry_racy": Expected(53, 86, violated={"race_freedom": {"stale-observation race": 12}}),
     "nomad": Expected(78, 125, witnesses={"aboard the UAV": 9, "ashore again": 3}),
     "oil_spill": Expected(34, 74, witnesses={"over the spill": 8}),
+    "oil_spill_timed": Expected(
+        209,
+        330,
+        times={
+            "over the spill": "after 47:07 at the latest",
+            "over the spill at": "at 7:28 at the earliest, at 47:07 at the latest",
+            "home": "at 19:17 at the earliest, at 1:09:07 at the latest",
+        },
+    ),
+    "race_in_time": Expected(
+        8,
+        7,
+        times={
+            "in the west": "at 0:35 at the earliest, at 14:25 at the latest",
+            "there and back": "after 28:35 at the latest",
+        },
+    ),
+    "relay_timed": Expected(
+        16,
+        29,
+        times={
+            "the report": "after 8 min at the latest",
+            "told": "at 0:10 at the earliest, at 8:00 at the latest",
+        },
+    ),
     "rendezvous": Expected(18_051, 73_275, witnesses={"all meet": 55}),
     "search_and_deploy": Expected(76, 121, witnesses={"deployed": 13}),
     "smartphone": Expected(15, 16, witnesses={"delivered": 12}),
-    "spill_watch": Expected(1_684, 5_389, witnesses={"home": 36, "over the spill": 13}),
+    "spill_watch": Expected(4_446, 15_843, witnesses={"home": 37, "over the spill": 13}),
     "surveillance": Expected(153, 663, witnesses={"an alarm is raised": 6}),
     "takeover": Expected(630, 2_214, witnesses={"landed after an emergency": 25}),
     "tanker": Expected(56, 125, witnesses={"both drifters deployed": 14}),
@@ -76,6 +128,8 @@ def test_a_mission_that_ships_has_its_counts_verdicts_and_shortest_traces(name):
         if v.property.kind == "reachable" and v.witness is not None
     }
     assert reached == expected.witnesses
+    timed = (PropertyKind.TIME, PropertyKind.WITHIN)
+    assert {v.property.name: v.note for v in report.verdicts if v.property.kind in timed} == expected.times
 
 
 PAPERS_RUN = [

@@ -105,7 +105,6 @@ def test_altitude_counts_where_both_have_a_band():
     [
         (SEARCH, SEARCH, "are the same place"),
         (SEARCH, box((37.0, -8.6), (38.0, -8.5)), "partly overlap"),
-        (box((0, 0), (2, 2)), box((0, 0), (1, 1)), "share border: neither is inside the other"),
         (Place(SEARCH, Band(0, 9)), Place(SEARCH, Band(0, 5)), "have one border and overlap in altitude"),
         (
             Place(SEARCH, Band(0, 9)),
@@ -118,7 +117,13 @@ def test_a_conflict_names_both_places_and_says_why(a, b, reason):
     (found,) = check_places({"x": a, "w": b})
     assert found == Conflict("w", "x", reason)
     assert str(found) == f"w and x {reason}"
-    assert found.hint == "places must nest or be apart: change one of the two, or allow sharing"
+    assert found.hint == "places must nest or be apart: change one of the two"
+
+
+def test_a_place_that_touches_the_border_of_the_one_around_it_is_told_to_make_that_larger():
+    (found,) = check_places({"cell": box((0, 0), (1, 1)), "area": box((0, 0), (2, 2))})
+    assert found == Conflict("area", "cell", "share a border: neither is inside the other", "area")
+    assert found.hint == "what lies inside touches no border: make area a little larger"
 
 
 @pytest.mark.parametrize(

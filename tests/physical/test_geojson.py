@@ -15,6 +15,7 @@ from physical import (
     area,
     box,
     circle,
+    contains,
     point,
     polygon,
     read_geojson,
@@ -116,6 +117,38 @@ def test_what_only_touches_the_antimeridian_is_written_whole_on_its_side():
     assert read_geojson(write_geojson([east, west])) == (east, west)
 
 
+def test_a_line_with_a_width_is_a_corridor_that_programs_read():
+    bend = [[-8.6, 37], [-8.5, 37], [-8.5, 37.1]]
+    (found,) = read_geojson(collection(feature("LineString", bend, width_m=200)))
+    length = 8_899 + 11_099  # metres, by geod
+    expected = 200 * length + math.pi * 100**2 - (1 - math.pi / 4) * 100**2
+    assert area(found.geometry) == pytest.approx(expected, rel=0.002)
+    assert contains(found.geometry, point(37.0008, -8.55))
+    assert not contains(found.geometry, point(37.0010, -8.55))
+    assert read_geojson(write_geojson([found])) == (found,)
+
+
+def test_a_corridor_is_the_same_at_the_antimeridian_and_anywhere():
+    def at(east):
+        line = [[wrapped(east - 0.25), 60], [wrapped(east + 0.25), 60.25]]
+        return read_geojson(collection(feature("LineString", line, width_m=500)))[0].geometry
+
+    assert area(at(180)) == pytest.approx(area(at(10)), rel=1e-6)
+    assert len(at(180).ring) == len(at(10).ring)
+
+
+def test_a_multi_geometry_of_one_part_is_that_part():
+    line = [[0, 0], [0, 0.1]]
+    for single, multi, coordinates, more in (
+        ("Point", "MultiPoint", [3, 4], {"radius_m": 9}),
+        ("Point", "MultiPoint", [3, 4], {}),
+        ("LineString", "MultiLineString", line, {"width_m": 9}),
+        ("Polygon", "MultiPolygon", SQUARE, {}),
+    ):
+        one = read_geojson(collection(feature(single, coordinates, **more)))
+        assert read_geojson(collection(feature(multi, [coordinates], **more))) == one
+
+
 def test_a_point_with_a_radius_is_a_circle():
     (found,) = read_geojson(collection(feature("Point", [5.44, 52.97], radius_m=250)))
     assert found.geometry is circle((52.97, 5.44), 250)
@@ -136,48 +169,83 @@ def problem(text):
 @pytest.mark.parametrize(
     ("item", "message"),
     [
-        (3, "feature 0: this is no Feature"),
-        ({"type": "Feature"}, "feature 0: the feature has no properties"),
-        (feature(name=None), "feature 0: the feature has no name"),
-        (feature(kind=None), "feature 0 (a): the feature has no kind"),
-        (feature(name=3), "feature 0: the name 3 is no word"),
-        (feature(name=" "), "feature 0 ( ): the name ' ' is no word"),
-        (feature(kind="a\nb"), r"feature 0 (a): the kind 'a\nb' is no word"),
-        (feature(altitude=5), "feature 0 (a): the altitude 5 is no band"),
-        (feature(altitude=[1]), "feature 0 (a): the altitude [1] is no band"),
-        (feature(altitude=[2, 1]), "feature 0 (a): the band from 2.0 m to 1.0 m is upside down"),
-        (feature(altitude=["a", 1]), "feature 0 (a): the altitude 'a' is not a number"),
-        (feature(channels="wifi"), "feature 0 (a): the channels 'wifi' are no list"),
-        (feature(channels=[1]), "feature 0 (a): the channel 1 is no word"),
-        (feature(carried_by=[]), "feature 0 (a): the carried_by [] is no word"),
-        (feature(radius_m=4), "feature 0 (a): only a Point can have a radius_m"),
-        (feature("Point", [0, 0], radius_m="x"), "feature 0 (a): the radius 'x' is not a number"),
-        (feature("Point", [0, 0], radius_m=0), "feature 0 (a): the radius 0 m is under 0.5 m"),
-        (feature("Point", [0]), "feature 0 (a): [0] is no position"),
-        (feature("Point", [0, 91]), "feature 0 (a): the latitude 91 is not between -90 and 90"),
-        (feature("Point", ["x", 1]), "feature 0 (a): the longitude 'x' is not a number"),
-        (feature("Point", None), "feature 0 (a): None is no position"),
-        (feature("Polygon", 3), "feature 0 (a): 3 is no list of coordinates"),
-        (feature("Polygon", []), "feature 0 (a): None is no list of coordinates"),
-        (feature("Polygon", [[]]), "feature 0 (a): the polygon's ring is not closed"),
-        (feature("Polygon", [SQUARE[0][:4]]), "feature 0 (a): the polygon's ring is not closed"),
-        (feature("Polygon", SQUARE * 2), "feature 0 (a): the polygon has 1 hole(s)"),
+        (3, "feature 1: this is no Feature"),
+        ({"type": "Feature"}, "feature 1: the feature has no properties"),
+        (feature(name=None), "feature 1: the feature has no name"),
+        (feature(kind=None), "feature 1 (a): the feature has no kind"),
+        (feature(name=3), "feature 1: the name 3 is no word"),
+        (feature(name=" "), "feature 1 ( ): the name ' ' is no word"),
+        (feature(kind="a\nb"), r"feature 1 (a): the kind 'a\nb' is no word"),
+        (feature(altitude=5), "feature 1 (a): the altitude 5 is no band"),
+        (feature(altitude=[1]), "feature 1 (a): the altitude [1] is no band"),
+        (feature(altitude=[2, 1]), "feature 1 (a): the band from 2.0 m to 1.0 m is upside down"),
+        (feature(altitude=["a", 1]), "feature 1 (a): the altitude 'a' is not a number"),
+        (feature(channels="wifi"), "feature 1 (a): the channels 'wifi' are no list"),
+        (feature(channels=[1]), "feature 1 (a): the channel 1 is no word"),
+        (feature(carried_by=[]), "feature 1 (a): the carried_by [] is no word"),
+        (feature(radius_m=4), "feature 1 (a): only a Point can have a radius_m"),
+        (feature("Point", [0, 0], radius_m="x"), "feature 1 (a): the radius 'x' is not a number"),
+        (feature("Point", [0, 0], radius_m=0), "feature 1 (a): the radius 0 m is under 0.5 m"),
+        (feature("Point", [0]), "feature 1 (a): [0] is no position"),
+        (feature("Point", [0, 91]), "feature 1 (a): the latitude 91 is not between -90 and 90"),
+        (feature("Point", ["x", 1]), "feature 1 (a): the longitude 'x' is not a number"),
+        (feature("Point", None), "feature 1 (a): None is no position"),
+        (feature("Polygon", 3), "feature 1 (a): 3 is no list of coordinates"),
+        (feature("Polygon", []), "feature 1 (a): None is no list of coordinates"),
+        (feature("Polygon", [[]]), "feature 1 (a): the polygon's ring is not closed"),
+        (feature("Polygon", [SQUARE[0][:4]]), "feature 1 (a): the polygon's ring is not closed"),
+        (feature("Polygon", SQUARE * 2), "feature 1 (a): the polygon has 1 hole(s)"),
         (
             feature("Polygon", [[[0, 0], [1, 1], [0, 1], [1, 0], [0, 0]]]),
-            "feature 0 (a): the polygon's border crosses or touches itself at (0.5000000, 0.5000000)",
+            "feature 1 (a): the polygon's border crosses or touches itself at (0.5000000, 0.5000000)",
         ),
         (
             feature("MultiPolygon", [SQUARE, SQUARE]),
-            "feature 0 (a): a MultiPolygon of 2 parts that are not one polygon cut along the antimeridian",
+            "feature 1 (a): a MultiPolygon of 2 parts that are not one polygon cut along the antimeridian",
         ),
-        (feature("MultiPoint", [[0, 0]]), "feature 0 (a): a MultiPoint is neither a Point nor a Polygon"),
+        (feature("MultiPoint", [[0, 0], [1, 1]]), "feature 1 (a): a MultiPoint is not read"),
+        (
+            feature("MultiLineString", [[[0, 0], [1, 1]]] * 2),
+            "feature 1 (a): a MultiLineString is not read",
+        ),
+        (feature("GeometryCollection", None), "feature 1 (a): a GeometryCollection is not read"),
+        (feature([], None), "feature 1 (a): a [] is not read"),
         (
             feature("LineString", [[0, 0], [1, 1]]),
-            "feature 0 (a): a LineString is neither a Point nor a Polygon",
+            "feature 1 (a): a LineString is no place: nothing can be in it",
+        ),
+        (feature(width_m=4), "feature 1 (a): only a LineString can have a width_m"),
+        (
+            feature("LineString", [[0, 0], [1, 1]], radius_m=4),
+            "feature 1 (a): only a Point can have a radius_m",
+        ),
+        (feature("LineString", 3, width_m=4), "feature 1 (a): 3 is no list of coordinates"),
+        (feature("LineString", [[0, 0], 3], width_m=4), "feature 1 (a): 3 is no position"),
+        (feature("LineString", [], width_m=4), "feature 1 (a): the line has no length"),
+        (feature("LineString", [[0, 0], [0, 0]], width_m=4), "feature 1 (a): the line has no length"),
+        (
+            feature("LineString", [[0, 0], [0, 1]], width_m="x"),
+            "feature 1 (a): the width 'x' is not a number",
+        ),
+        (
+            feature("LineString", [[0, 0], [0, 1]], width_m=0),
+            "feature 1 (a): the width 0 m is not between 1 and 300,000 m",
+        ),
+        (
+            feature("LineString", [[0, 0], [0, 9]], width_m=9),
+            "feature 1 (a): the line reaches over 300 km from its middle",
+        ),
+        (
+            feature("LineString", SQUARE[0], width_m=9),
+            "feature 1 (a): the line comes back to itself: 9 m wide, it encloses what it does not cover",
+        ),
+        (
+            feature("LineString", [[0, 0]] * 1_001, width_m=9),
+            "feature 1 (a): the line has 1,001 positions, more than 1,000",
         ),
         (
             {"type": "Feature", "properties": {"name": "a", "kind": "K"}, "geometry": None},
-            "feature 0 (a): the feature has no geometry",
+            "feature 1 (a): the feature has no geometry",
         ),
     ],
 )
@@ -217,9 +285,9 @@ def test_all_problems_are_reported_at_once_and_carry_their_hints():
         read_geojson(collection(*items))
     assert [found.code for found in caught.value.problems] == ["kind", "latitude", "duplicate-name"]
     assert str(caught.value) == (
-        "feature 0 (a): the feature has no kind\n"
+        "feature 1 (a): the feature has no kind\n"
         'hint: write "kind" into its properties\n'
-        "feature 3 (c): the latitude 99 is not between -90 and 90\n"
+        "feature 4 (c): the latitude 99 is not between -90 and 90\n"
         "hint: a position of GeoJSON is [longitude, latitude], in degrees, east and north positive\n"
         "2 features have the name b\n"
         "hint: names are unique"
@@ -246,6 +314,8 @@ def test_nothing_but_a_diagnostic_comes_out(value):
         collection(value),
         collection(feature("Polygon", value)),
         collection(feature("MultiPolygon", value)),
+        collection(feature("LineString", value, width_m=10)),
+        collection(feature("LineString", [[0, 0], [1, 1]], width_m=value)),
     ):
         with suppress(GeoJSONError):
             read_geojson(text)

@@ -16,10 +16,11 @@ def sources():
     }
 
 
-def test_a_hint_of_an_extra_says_how_for_a_name_and_for_a_clone():
+def test_a_hint_of_an_extra_says_how_for_a_clone_and_for_a_wheel():
     hint = install_extra("live")
-    assert "pip install 'bigactors[live]'" in hint
-    assert "pip install -e '.[live]'" in hint
+    assert "pip install '.[live]'" in hint
+    assert "pip install 'FILE.whl[live]'" in hint
+    assert "bigactors[" not in hint  # a registry would have something else of this name
     assert "as you did" in hint
 
 

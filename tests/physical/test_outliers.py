@@ -5,7 +5,7 @@ import time
 import pytest
 
 from physical import box, circle, distance, point
-from physical.outliers import is_swapped, outliers
+from physical.outliers import all_swapped, is_swapped, outliers
 
 BAY = {
     "bay0": box((37.1, -8.6), (37.0, -8.7)),
@@ -47,3 +47,19 @@ def test_thousands_of_vessels_take_no_time():
     began = time.perf_counter()
     assert list(outliers({**vessels, "far": point(4.0, 50.0)})) == ["far"]
     assert time.perf_counter() - began < 20.0
+
+
+def test_boats_that_are_all_on_land_were_probably_swapped():
+    bay = [point(37.05, -8.6), point(37.0, -8.7)]
+    exchanged = [point(-8.6, 37.05), point(-8.7, 37.0)]
+    assert all_swapped(bay, bay) == ""
+    assert all_swapped(exchanged, exchanged) == "stands on land"
+    assert all_swapped(exchanged, []) == ""  # a UAV over Tanzania may be meant
+
+
+def test_a_world_far_out_at_sea_that_exchanged_is_on_a_coast_was_probably_swapped():
+    assert all_swapped([point(10.0, 54.0), point(10.2, 54.1)], []) == "is more than 100 km from any coast"
+    assert all_swapped([point(54.0, 10.0)], []) == ""
+    assert all_swapped([point(0.0, -30.0)], []) == ""  # exchanged it is as far out
+    assert all_swapped([point(10.0, 54.0), point(30.0, 54.0)], []) == ""  # too wide for one place
+    assert all_swapped([], []) == ""

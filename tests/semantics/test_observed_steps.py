@@ -37,7 +37,7 @@ def test_what_is_in_transit_is_placed_by_commit_alone():
     c = flying()
     assert isinstance(c.structure.physical.placement("u0"), InTransit)
     assert list(happening(c, Sight("u0 is elsewhere", {U0: BASE}))) == []
-    assert [step.label.rule for step in steps_seen(c, Sight("u0 arrives", {U0: AREA}))] == ["commit"]
+    assert [step.label.rule for step in steps_seen(c, Sight("u0 arrives", {U0: AREA}), ("a",))] == ["commit"]
 
 
 @pytest.mark.parametrize("cell", [("parent", "u0"), ("placement", "nobody"), ("line", "a"), ("host", "a")])

@@ -24,7 +24,7 @@ def codes(text):
 
 
 def is_ours(code):
-    return code[:3] in {"LS2", "LS3", "LS4", "LS5", "LS6"} and code != "LS501"
+    return code[:3] in {"LS2", "LS3", "LS4", "LS5", "LS6", "LS8"} and code != "LS501"
 
 
 BAD = [
@@ -70,7 +70,7 @@ def test_nothing_that_ships_is_warned_of(path):
     assert load_mission(path).warnings == ()
 
 
-@pytest.mark.parametrize("name", ["everything", "rules", "figure2_whole", "empty"])
+@pytest.mark.parametrize("name", ["everything", "rules", "figure2_whole", "empty", "timed"])
 def test_a_sound_mission_elaborates(name):
     path = CORPUS / "ok" / f"{name}.mission"
     assert load_mission(path).name in (name, "oil_spill")

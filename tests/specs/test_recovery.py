@@ -152,6 +152,7 @@ def test_whatever_is_wrong_is_reported_and_the_rest_is_a_tree(path, data):
     assert {node.text for node in s.walk(found.mission) if isinstance(node, s.Name)} <= {
         *words,
         *re.findall(r"[\w:.\-]+", text),
+        *re.findall(r"\w+(?:[:.\-]\w+)*", text),
     }
     if found.mistakes:
         with pytest.raises(MissionError) as caught:

@@ -26,12 +26,16 @@ FRAMES = {
     "Signature": "signature {{ {} }}",
     "Environment": "environment {{ {} }}",
     "Checks": "check {{ {} }}",
+    "Timing": "timing {{ {} }}",
     "Live runs": "live {{ {} }}",
 }
 SPECIAL = {
     s.AltitudeBand: "world {{ a: B = point (1, 2) {} }}",
     s.Length: "world {{ a: B = circle (1, 2) radius {} }}",
     s.Duration: "live {{ a within {}: hold }}",
+    s.Speed: "timing {{ a flies at {} }}",
+    s.Speeds: "timing {{ a flies at {} }}",
+    s.Lapse: "timing {{ sense {} }}",
     s.Coordinate: "world {{ a: B = point {} }}",
     s.Keep: 'world {{ from "x" keep {} }}',
     s.Parameter: "rule r({}) {{ a -> b }}",
@@ -42,7 +46,7 @@ SPECIAL = {
     s.Fairness: "check {{ progress under {} }}",
     s.Alternative: "def f() = {{ choose {{ {} }} }}",
 }
-SECTIONS = {s.Signature, s.World, s.Believes, s.Environment, s.Check, s.Live, s.Mission}
+SECTIONS = {s.Signature, s.World, s.Believes, s.Environment, s.Check, s.Timing, s.Live, s.Mission}
 
 
 def concrete(form):

@@ -37,6 +37,7 @@ TABLE = [
     (Code.MISSING_COMMA, IN_BEHAVIOUR, "let x = (a b)"),
     (Code.RESERVED_WORD, IN_BEHAVIOUR, "for loop in x { skip }"),
     (Code.RESERVED_WORD, "signature {{ {} }}", "kind HOST"),
+    (Code.RESERVED_WORD, "world {{ a: B = point (0, 0) linked w {} }}", ", true- b"),
     (Code.MISSING_BRACE, IN_BEHAVIOUR, "if a skip"),
     (Code.MISSING_BRACE, "{}", "world a: B"),
     (Code.MISSING_UNIT, IN_WORLD, "a: B = point (1, 2) altitude 100 to 300 m"),

@@ -76,6 +76,7 @@ _WORDS: Final = {
     "$END": "the end",
 }
 _CHECK: Final = re.compile(r"^(?P<code>[^#\n]*)%check\b.*", re.DOTALL | re.MULTILINE)
+_NAMED: Final = re.compile(r"(?P<name>\b[A-Za-z]\w*)\s*(?P<colon>:)\s*(?P<meant>[A-Za-z]\w*)")
 MAX_QUERY: Final = 50
 
 
@@ -83,12 +84,29 @@ def parse_bgm(text: str) -> tuple[Line, ...]:
     """Parse a `.bgm` file up to `%check`; raises NotationError at the first thing that does not fit."""
     ends = _CHECK.search(text)
     kept = text if ends is None else text[: ends.end("code")]
-    tree = read(_parser(), kept, _WORDS, "file")
+    try:
+        tree = read(_parser(), kept, _WORDS, "file")
+    except NotationError as error:
+        raise _named_apart(error, kept) or error from None
     try:
         lines: tuple[Line, ...] = _Build(text).transform(tree)
     except VisitError as error:
         raise error.orig_exc from None
     return lines
+
+
+def _named_apart(error: NotationError, text: str) -> NotationError | None:
+    """Return what to say of the dialect that names nodes and ports, `a:Ctrl[p:x]`; None for anything else."""
+    for named in _NAMED.finditer(text):
+        if named.start("colon") == error.offset:
+            name, meant = named["name"], named["meant"]
+            port = text.rfind("[", 0, error.offset) > text.rfind("]", 0, error.offset)
+            message = (
+                f"'{name}:{meant}' names a {'port' if port else 'node'}, as another dialect of .bgm does"
+            )
+            hint = f"write the link alone, '{meant}'" if port else f"write '{meant}', or '{name}_{meant}'"
+            return NotationError("syntax", message, text, named.start(), length=len(named.group()), hint=hint)
+    return None
 
 
 @cache

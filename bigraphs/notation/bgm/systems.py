@@ -7,6 +7,7 @@ from typing import Final
 
 from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph
+from bigraphs.errors import NotationError
 from bigraphs.notation.bgm import queries
 from bigraphs.notation.bgm.parser import parse_bgm
 from bigraphs.notation.bgm.syntax import (
@@ -21,7 +22,7 @@ from bigraphs.notation.bgm.syntax import (
     Term,
     Wide,
 )
-from bigraphs.notation.bgm.terms import Terms, holes, names_in
+from bigraphs.notation.bgm.terms import Terms, holes, name_and_kind, names_in, walk
 from bigraphs.notation.big.findings import Findings
 from bigraphs.notation.big.solidity import faults
 from bigraphs.notation.big.syntax import MAX_SIZE, Span
@@ -60,8 +61,35 @@ class _Reading:
                 self.add("too-large", f"a node of more than {MAX_SIZE} ports", line.offset, len(line.name))
                 controls = []
         kinds = {line.name: Control(line.name, line.arity, line.status) for line in controls}
-        self.terms = Terms(Signature(tuple(kinds.values())), findings)
+        self.warnings: tuple[NotationError, ...] = ()
+        if not controls and not len(findings):
+            kinds = self.inferred()
+        self.terms = Terms(Signature(tuple(kinds.values())), findings, named=not controls)
         self.declared = frozenset(line.name for line in lines if isinstance(line, NameLine))
+
+    def inferred(self) -> dict[str, Control]:
+        """Return the controls that a file without declarations uses, with a warning that names them."""
+        wides = [
+            wide
+            for line in self.lines
+            for wide in (
+                [line.redex, line.reactum]
+                if isinstance(line, RuleLine)
+                else [line.term]
+                if isinstance(line, ModelLine)
+                else []
+            )
+        ]
+        ports: dict[str, int] = {}
+        for _, term in (pair for wide in wides for pair in walk(wide)):
+            if isinstance(term, Prefix):
+                _, kind = name_and_kind(term.control)
+                ports[kind] = max(ports.get(kind, 0), len(term.ports))
+        told = ", ".join(f"%active {kind} : {count}" for kind, count in sorted(ports.items()))
+        hint = f"declare them: {told}"
+        message = "no control is declared, so they are inferred from their uses"
+        self.warnings = (NotationError("name", message, self.findings.text, 0, hint=hint),) if ports else ()
+        return {kind: Control(kind, count) for kind, count in ports.items()}
 
     def system(self) -> System | None:
         """Return the system, if all is well."""
@@ -74,7 +102,14 @@ class _Reading:
         if len(self.findings) or initial is None:
             return None
         classes = (PriorityClass(rules),) if rules else ()
-        return System(SystemKind.BRS, self.terms.signature, initial, classes, properties=properties)
+        return System(
+            SystemKind.BRS,
+            self.terms.signature,
+            initial,
+            classes,
+            properties=properties,
+            warnings=self.warnings,
+        )
 
     def add(self, code: str, message: str, offset: int, length: int = _ONE, hint: str = "") -> None:
         self.findings.add(code, message, Span(offset, offset + length), hint)

@@ -14,10 +14,11 @@ from bigraphs.signature import Signature
 
 @dataclass(frozen=True, slots=True)
 class Terms:
-    """The terms of one file, over its controls."""
+    """The terms of one file, over its controls; where those are inferred, nodes may be `named`, `uav0_UAV`."""
 
     signature: Signature
     findings: Findings
+    named: bool = False
 
     def bigraph(self, wide: Wide, sites: Mapping[int, int], names: Iterable[str]) -> Bigraph | None:
         """Return the bigraph of a term whose holes are these sites; None where a mistake has been noted.
@@ -27,7 +28,7 @@ class Terms:
         before = len(self.findings)
         nodes: list[Node] = []
         parents: list[list[Place]] = [[] for _ in sites]
-        outer, edges = set(names), 0
+        outer, edges, taken = set(names), 0, set[str | None]()
         for place, term in walk(wide):
             if isinstance(term, Hole):
                 parents[sites[term.index]].append(place)
@@ -37,7 +38,12 @@ class Terms:
                 links.append(edges if name is None else name)
                 edges += name is None
             outer |= {link for link in links if isinstance(link, str)}
-            nodes.append(Node(term.control, None, tuple(links), (place,)))
+            name, kind = self._kind(term)
+            if name in taken:
+                at = Span(term.offset, term.offset + len(term.control))
+                self.findings.add("name", f"node '{name}' is there twice", at, "a name identifies one node")
+            taken |= {name} - {None}
+            nodes.append(Node(kind, name, tuple(links), (place,)))
             if len(nodes) + edges > MAX_SIZE:
                 message = f"a bigraph of more than {MAX_SIZE} parts"
                 self.findings.add("too-large", message, Span(term.offset, term.offset + 1))
@@ -48,17 +54,27 @@ class Terms:
             self.signature, nodes, regions=len(wide), sites=parents, edges=edges, outer_names=outer
         )
 
+    def _kind(self, term: Prefix) -> tuple[str | None, str]:
+        return name_and_kind(term.control) if self.named else (None, term.control)
+
     def _ports(self, term: Prefix) -> tuple[str | None, ...]:
         at = Span(term.offset, term.offset + len(term.control))
-        if term.control not in self.signature:
+        _, kind = self._kind(term)
+        if kind not in self.signature:
             known = [control.name for control in self.signature.controls]
             self.findings.unknown("control", term.control, at, known, "'%active' or '%passive'")
             return ()
-        arity = self.signature[term.control].arity or 0
+        arity = self.signature[kind].arity or 0
         if term.ports and len(term.ports) != arity:
             message = f"'{term.control}' has {arity} ports, this has {len(term.ports)} names"
             self.findings.add("arity", message, at, "write '-' for a port that is not linked")
         return term.ports or (None,) * arity
+
+
+def name_and_kind(written: str) -> tuple[str | None, str]:
+    """Take the runtime's notation for a node apart, `uav0_UAV`: its name, if it has one, and its control."""
+    name, _, kind = written.rpartition("_")
+    return (name, kind) if name and kind[:1].isupper() else (None, written)
 
 
 def walk(wide: Wide) -> Iterator[tuple[Place, Prefix | Hole]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from lark import Token, v_args
 from lark.tree import Meta
@@ -14,6 +14,8 @@ from bigraphs.notation.big.build_values import span_of, token_span
 from bigraphs.notation.big.syntax import Expression, ValueExpression
 from bigraphs.signature import Status
 
+_KINDS: Final = {"abrs": "nbrs"}
+"""What BigraphER called kinds of systems before its version 1.9.3, and files still do."""
 _Change: TypeAlias = tuple[Any, Any, Any, Any, Any]
 
 
@@ -99,6 +101,12 @@ class Build(Expressions):
     def predicate(self, meta: Meta, name: Token, arguments: Any, reward: Any) -> declared.Call:
         return declared.Call(str(name), arguments or (), reward, span_of(meta))
 
+    def listed_action(self, _meta: Meta, name: Token, reward: Any, rules: tuple[str, ...]) -> Any:
+        return declared.ActionTerm(str(name), rules, reward, token_span(name))
+
+    def actions(self, _meta: Meta, *actions: declared.ActionTerm) -> tuple[declared.ActionTerm, ...]:
+        return actions
+
     def predicates(self, _meta: Meta, *predicates: declared.Call) -> tuple[declared.Call, ...]:
         return predicates
 
@@ -127,9 +135,15 @@ class Build(Expressions):
         return declared.ParameterDeclaration(str(type_), names, values, True, span_of(meta))
 
     def system(self, meta: Meta, kind: Token, *parts: Any) -> declared.SystemTerm:
-        *parameters, init, classes, predicates = parts
+        *parameters, init, classes, actions, predicates = parts
         return declared.SystemTerm(
-            str(kind), init, classes, predicates or (), tuple(parameters), span_of(meta)
+            _KINDS.get(kind, str(kind)),
+            init,
+            classes,
+            predicates or (),
+            tuple(parameters),
+            actions or (),
+            span_of(meta),
         )
 
     def model(self, _meta: Meta, *parts: Any) -> declared.Model:

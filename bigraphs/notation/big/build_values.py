@@ -93,6 +93,9 @@ class Values(Transformer_NonRecursive[Token, Any]):
     def negated(self, meta: Meta, _minus: Token, operand: ValueExpression) -> ValueExpression:
         return self.checked(syntax.Negated(operand, span_of(meta)))
 
+    def absolute(self, meta: Meta, operand: ValueExpression) -> syntax.Absolute:
+        return syntax.Absolute(operand, span_of(meta))
+
     def raised(
         self, meta: Meta, base: ValueExpression, caret: Token, exponent: ValueExpression
     ) -> ValueExpression:

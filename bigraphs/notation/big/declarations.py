@@ -147,6 +147,16 @@ class ClassTerm:
 
 
 @dataclass(frozen=True, slots=True)
+class ActionTerm:
+    """`a[reward] = {r, s}`, an action that lists its rules, within a system."""
+
+    name: str
+    rules: tuple[str, ...]
+    reward: ValueExpression | None = None
+    span: Span = field(default=NOWHERE, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
 class SystemTerm:
     """`begin brs ... end`."""
 
@@ -155,6 +165,7 @@ class SystemTerm:
     classes: tuple[ClassTerm, ...] = ()
     predicates: tuple[Call, ...] = ()
     parameters: tuple[ParameterDeclaration, ...] = ()
+    actions: tuple[ActionTerm, ...] = ()
     span: Span = field(default=NOWHERE, compare=False)
 
 

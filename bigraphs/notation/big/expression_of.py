@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 from bigraphs.bigraph import Bigraph, Link, Node, Place, children, sites_in
@@ -58,7 +58,7 @@ def expression_of(bigraph: Bigraph) -> Expression:
     shared = any(len(parents) > 1 for parents in [*(node.parents for node in bigraph.nodes), *bigraph.sites])
     places = _layers(bigraph, edges) if shared else _nested(bigraph, edges)
     parts = [*places, *_wires(bigraph, edges)]
-    body = _chain("||", parts) if parts else Number(0)
+    body = _chain("||", parts) if parts else Identity(0)
     return Wired(tuple(Close((name,)) for name in edges), body) if edges else body
 
 
@@ -161,7 +161,9 @@ def _layers(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
         waiting = [number for number in waiting if number not in layer]
         kept = [place for place in slots if place in _needed(bigraph, waiting)]
         whats = [_content(bigraph, edges, number, closed) for number in layer]
-        found = _shared(whats, [bigraph.nodes[number].parents for number in layer], kept, slots, found)
+        names = sorted({name for number in layer for name in _links_within(bigraph, edges, number, closed)})
+        where = _chain("||", [found, Identity(0, tuple(names))]) if names else found
+        found = _shared(whats, [bigraph.nodes[number].parents for number in layer], kept, slots, where)
         slots = [*(number for number in layer if number not in closed), *kept]
     rank = {place: slot for slot, place in enumerate(slots)}
     sites = Placed(tuple(tuple(rank[place] for place in parents) for parents in bigraph.sites), len(slots))
@@ -199,6 +201,15 @@ def _content(
         return ion
     inside = [_content(bigraph, edges, child, closed) for child in closed[number]]
     return Nest(ion, _chain("|", inside) if inside else Number(1))
+
+
+def _links_within(
+    bigraph: Bigraph, edges: Sequence[str], number: int, closed: Mapping[int, Sequence[int]]
+) -> Iterator[str]:
+    """Yield the links of a node, and of what is in it if that is nowhere else."""
+    yield from (_named(link, edges) for link in bigraph.nodes[number].ports)
+    for child in closed.get(number, ()):
+        yield from _links_within(bigraph, edges, child, closed)
 
 
 def _shared(

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import Final, Literal, TypeAlias
 
 from bigraphs import algebra
 from bigraphs.bigraph import Bigraph
 from bigraphs.errors import BigraphError
 from bigraphs.interface import Interface
-from bigraphs.notation.big.declarations import BigDeclaration
+from bigraphs.notation.big.declarations import BigDeclaration, ReactDeclaration
 from bigraphs.notation.big.scope import NESTED, Frame, Scope
 from bigraphs.notation.big.syntax import (
     MAX_SIZE,
@@ -30,9 +30,11 @@ from bigraphs.notation.big.syntax import (
     Wire,
     Wired,
 )
+from bigraphs.notation.big.templates import Part, SymbolicScope, Template
 from bigraphs.signature import Control, Signature
-from bigraphs.system import Value, call
+from bigraphs.system import Value
 
+Declared: TypeAlias = BigDeclaration | ReactDeclaration
 MAX_WORK: Final = 1_000_000
 """How many parts of bigraphs are made, all steps together, before a file is refused."""
 MAX_DEPTH: Final = 220
@@ -46,6 +48,7 @@ class Evaluation:
         self.scope = scope
         self.controls: dict[str, Control] = {}
         self._known: dict[str, Bigraph | None] = dict(known or {})
+        self._templates: dict[tuple[object, ...], Template | Literal[False] | None] = {}
         self._under_way: set[str] = set()
         self._work = 0
         self._depth = 0
@@ -58,17 +61,48 @@ class Evaluation:
         parameters = declaration.parameters
         if parameters and not self.scope.fits(name, parameters, given, span, frame):
             return None
-        key = call(name, given)
+        inner = self.scope.entered(declaration, given, span, frame)
+        if inner is None:
+            return None
+        key = inner.key(name, given)
         if key in self._under_way:
             self.scope.add("cycle", f"'{name}' is made of itself", span, frame)
         elif key not in self._known and frame.depth >= NESTED:
             self.scope.add("too-deep", f"bigraphs use each other more than {NESTED} deep", span, frame)
         elif key not in self._known:
             self._under_way.add(key)
-            inner = frame.inside(name, parameters, given if parameters else ())
-            self._known[key] = self.value(declaration.body, inner)
+            made = self.instance(declaration, inner, [(declaration.body, _itself)])
+            found = self._known[key] = made[0] if made else self.value(declaration.body, inner)
+            if found is not None:
+                self.is_well(declaration, inner)
             self._under_way.discard(key)
         return self._known.get(key)
+
+    def instance(self, declaration: Declared, frame: Frame, parts: Sequence[Part]) -> list[Bigraph] | None:
+        """Return what the parts of a declaration make, from a template; None if they are to be evaluated as written."""
+        key = _instances(declaration, frame)
+        if self._templates.get(key, False) is None:
+            self._templates[key] = self._template(tuple(frame.values), parts)
+        made = self._templates.get(key)
+        found = made.instance(tuple(frame.values.values())) if made else None
+        if not found or not self._affordable(sum(map(_size, found[0])), declaration.span, frame):
+            return None
+        self.controls.update((control.name, control) for control in found[1])
+        return found[0]
+
+    def is_well(self, declaration: Declared, frame: Frame) -> None:
+        """Note that an instance was evaluated as written without a mistake, so that a template may make others."""
+        if declaration.parameters and not isinstance(self.scope, SymbolicScope):
+            self._templates.setdefault(_instances(declaration, frame), None)
+
+    def _template(self, parameters: Sequence[str], parts: Sequence[Part]) -> Template | Literal[False]:
+        """Return the template of some expressions, False if their form depends on the parameters."""
+        symbolic = SymbolicScope(self.scope, parameters)
+        evaluation = Evaluation(symbolic)
+        found = [(evaluation.value(expression, symbolic.frame), finish) for expression, finish in parts]
+        bigraphs = [finish(bigraph) for bigraph, finish in found if bigraph is not None]
+        whole = len(bigraphs) == len(found) and not len(symbolic.findings)
+        return symbolic.template(bigraphs, self.scope) if whole else False
 
     def _declaration(self, name: str, given: tuple[Value, ...], span: Span) -> BigDeclaration | None:
         found = self.scope.names.bigs.get(name)
@@ -217,6 +251,11 @@ class Evaluation:
         elif lacking := sorted({name for name, _ in where.inner_links} - set(what.outer_names)):
             found = f"this waits for the name '{lacking[0]}', which what is shared does not have"
             self.scope.add("interface", found, share.where.span, frame)
+        elif stuck := sorted(set(what.outer_names) - {name for name, _ in where.inner_links}):
+            found = f"this does not pass on the name '{stuck[0]}' of what is shared"
+            self.scope.add(
+                "interface", found, share.where.span, frame, f"write '|| id{{{', '.join(stuck)}}}' in it"
+            )
         else:
             return _share(what, by, where)
         return None
@@ -238,6 +277,19 @@ class Evaluation:
         if not self._joinable(repeat.operator, run[:3], [repeat.body] * 3, frame):
             return None
         return _joined(repeat.operator, run) if times else run[0]
+
+
+def _instances(declaration: Declared, frame: Frame) -> tuple[object, ...]:
+    """Return what instances have in common that one template makes: the same names with values of the same types."""
+    return (
+        type(declaration),
+        declaration.name,
+        tuple((name, type(each)) for name, each in frame.values.items()),
+    )
+
+
+def _itself(bigraph: Bigraph) -> Bigraph:
+    return bigraph
 
 
 def _misfit(context: Bigraph, content: Bigraph) -> tuple[str, str] | None:
@@ -277,7 +329,7 @@ def _size(bigraph: Bigraph) -> int:
 def _element(expression: Expression) -> Bigraph:
     match expression:
         case Number(0):
-            return algebra.identity(Interface())
+            return algebra.placing([()], 0)
         case Number(1):
             return algebra.merge(0)
         case Identity(width, names):
@@ -291,7 +343,7 @@ def _element(expression: Expression) -> Bigraph:
         case NewNames(names):
             return algebra.parallel(*(algebra.substitution(name, ()) for name in names))
         case _:
-            hint = "write 0 for nothing, 1 for an empty region"
+            hint = "write 0 for a site without a region, 1 for an empty region"
             raise BigraphError("syntax", "a number is no bigraph", hint)
 
 
@@ -303,7 +355,6 @@ def _wire(wire: Wire, body: Bigraph) -> Bigraph:
 
 
 def _share(what: Bigraph, by: Bigraph, where: Bigraph) -> Bigraph:
-    """Put each region of what into the sites of where that the placing says; names that where lacks pass by it."""
-    passing = algebra.names(set(what.outer_names) - {name for name, _ in where.inner_links})
+    """Put each region of what into the sites of where that the placing says."""
     placed = algebra.compose(algebra.tensor(by, algebra.names(what.outer_names)), what)
-    return algebra.compose(algebra.parallel(where, passing), placed)
+    return algebra.compose(where, placed)

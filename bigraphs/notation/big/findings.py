@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 from typing import Final
 
 from bigraphs.errors import NotationError
 from bigraphs.notation.big.syntax import Span
+from bigraphs.notation.spelling import did_you_mean
 
 MOST: Final = 100
 """How many mistakes are told of one text."""
@@ -19,6 +19,7 @@ class Findings:
     def __init__(self, text: str) -> None:
         self.text = text
         self._found: dict[tuple[int, str, str], NotationError] = {}
+        self._warned: dict[tuple[int, str, str], NotationError] = {}
 
     def __len__(self) -> int:
         return len(self._found)
@@ -30,10 +31,22 @@ class Findings:
             length = span.end - span.start
             self._found[key] = NotationError(code, message, self.text, span.start, length=length, hint=hint)
 
+    def take(self, other: Findings) -> None:
+        """Note the mistakes of another collection."""
+        self._found |= other._found
+
+    def warn(self, other: Findings) -> None:
+        """Note the mistakes of another collection as warnings: they are in what nothing uses."""
+        self._warned |= other._found
+
+    @property
+    def warnings(self) -> tuple[NotationError, ...]:
+        """Return what was found and does not matter, by position."""
+        return tuple(self._warned[key] for key in sorted(self._warned))[:MOST]
+
     def unknown(self, what: str, name: str, span: Span, known: Iterable[str], how: str = "") -> None:
         """Note a name that is not declared, with the declared one that it resembles, or how it is declared."""
-        close = get_close_matches(name, sorted(known), n=1, cutoff=0.6)
-        hint = f"did you mean '{close[0]}'?" if close else f"declare it with {how or _KEYWORD[what]}"
+        hint = did_you_mean(name, known) or f"declare it with {how or _KEYWORD[what]}"
         self.add("name", f"unknown {what} '{name}'", span, hint)
 
     def raise_any(self) -> None:

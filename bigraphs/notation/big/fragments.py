@@ -14,7 +14,7 @@ from bigraphs.notation.big.parser import parse_expression, parse_model
 from bigraphs.notation.big.rules import Rules
 from bigraphs.notation.big.scope import Frame, Scope, control_of
 from bigraphs.notation.big.survey import Survey, survey
-from bigraphs.notation.big.syntax import NOWHERE, Number
+from bigraphs.notation.big.syntax import NOWHERE, Identity
 from bigraphs.notation.big.systems import check_declared
 from bigraphs.rules import ReactionRule
 from bigraphs.signature import Signature
@@ -51,7 +51,7 @@ def _theory(names: Names, evaluation: Evaluation, rules: Rules) -> Theory:
     bigs = [big.name for big in names.bigs.values() if not big.parameters and not big.arguments]
     found = [(name, evaluation.named(name, (), NOWHERE, Frame())) for name in bigs]
     reacts = [react.name for react in names.reacts.values() if not react.parameters and not react.arguments]
-    known = [rule for name in reacts if (rule := rules.named(name, (), NOWHERE)) is not None]
+    known = [rule for name in reacts if (rule := rules.named(name, (), NOWHERE, Frame())) is not None]
     return Theory(
         signature,
         tuple((name, replace(big, signature=signature)) for name, big in found if big is not None),
@@ -87,5 +87,5 @@ def _names_of(signature: Signature, known: Mapping[str, Bigraph]) -> Names:
         names.controls[name] = ControlDeclaration(
             name, control.arity, control.status, control.ordered, parameters
         )
-    names.bigs.update((name, BigDeclaration(name, Number(0))) for name in known)
+    names.bigs.update((name, BigDeclaration(name, Identity(0))) for name in known)
     return names

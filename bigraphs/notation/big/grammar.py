@@ -32,7 +32,7 @@ controls: "{" [CONTROL ("," CONTROL)*] "}"
 link: "link" NAME "=" "{" port ("," port)* "}" ";"
 port: CONTROL ["." INT]
 
-system: "begin" KIND parameter* init "rules" "=" "[" classes "]" ";" [predicates] "end"
+system: "begin" KIND parameter* init "rules" "=" "[" classes "]" ";" [actions] [predicates] "end"
 parameter: TYPE names "=" value ";" -> single
     | TYPE names "=" "{" values "}" ";" -> several
     | TYPE names "=" "[" value ":" value ":" value "]" ";" -> range
@@ -41,6 +41,8 @@ classes: [class ("," class)*]
 class: "{" calls "}" -> ordinary | "(" calls ")" -> instantaneous
 calls: call ("," call)*
 call: NAME [arguments]
+actions: "actions" "=" "[" listed_action ("," listed_action)* "]" ";"
+listed_action: NAME ["[" value "]"] "=" "{" names "}"
 predicates: "preds" "=" "{" predicate ("," predicate)* "}" ";"
 predicate: NAME [arguments] ["[" value "]"]
 
@@ -51,6 +53,7 @@ values: value ("," value)*
 ?signed: power | MINUS signed -> negated
 ?power: primary | primary CARET signed -> raised
 ?primary: NUMBER -> number_value | STRING -> string_value | NAME -> variable | "(" value ")"
+    | "abs" "(" value ")" -> absolute
 
 ?expression: sums (PRODUCT sums)* -> chain
 ?sums: compositions (PLUS compositions)* -> chain
@@ -82,7 +85,7 @@ LARROW: "-["
 RARROW: "]->"
 BANG: "!"
 TYPE: "int" | "float" | "string"
-KIND: "brs" | "pbrs" | "sbrs" | "nbrs"
+KIND: "brs" | "pbrs" | "sbrs" | "nbrs" | "abrs"
 WHERE: "ctx" | "param"
 OPERATOR.2: /p?par(?![A-Za-z0-9_'])/
 PRODUCT.2: "||" | "|"
@@ -103,7 +106,7 @@ COMMENT: /#[^\n]*/
 """
 
 _LANGUAGE: Final = """
-ctrl atomic big react init int float string fun action begin brs pbrs sbrs nbrs end rules preds share by in id
+ctrl atomic big react init int float string fun action begin brs pbrs sbrs nbrs abrs abs end rules preds share by in id
 merge split par ppar if ctx param
 """
 RESERVED: Final = frozenset(_LANGUAGE.split())
@@ -127,7 +130,7 @@ WORDS: Final = {
     "RARROW": "']->'",
     "BANG": "'!'",
     "TYPE": "a type",
-    "KIND": "'brs', 'pbrs', 'sbrs' or 'nbrs'",
+    "KIND": "'brs', 'pbrs', 'sbrs', 'nbrs' or 'abrs'",
     "WHERE": "'ctx' or 'param'",
     "OPERATOR": "'par'",
     "SEMICOLON": "';'",
@@ -146,6 +149,6 @@ WORDS: Final = {
     "$END": "the end",
 } | {
     word.upper(): f"'{word}'"
-    for word in (RESERVED | {"passive", "ordered", "sort", "place", "link"})
-    - {"int", "float", "string", "brs", "pbrs", "sbrs", "nbrs", "ctx", "param", "par", "ppar"}
+    for word in (RESERVED | {"actions", "passive", "ordered", "sort", "place", "link"})
+    - {"int", "float", "string", "brs", "pbrs", "sbrs", "nbrs", "abrs", "ctx", "param", "par", "ppar"}
 }

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from bigraphs.notation.big.declarations import (
     ActionDeclaration,
+    ActionTerm,
     BigDeclaration,
     ConstantDeclaration,
     ControlDeclaration,
@@ -29,6 +30,8 @@ class Names:
     given_reacts: dict[str, list[ReactDeclaration]] = field(default_factory=dict)
     actions: dict[str, ActionDeclaration] = field(default_factory=dict)
     """Actions by the name of a rule in them."""
+    free: dict[tuple[type, str], tuple[str, ...]] = field(default_factory=dict)
+    """Parameters of the system that a declaration uses without having them, itself or in what it calls."""
 
     def all_reacts(self) -> Iterator[ReactDeclaration]:
         """Yield every rule as declared."""
@@ -64,7 +67,24 @@ def index(model: Model, findings: Findings) -> Names:
                     _add_react(names, rule, first, findings)
             case _:
                 pass  # sorts are names of their own
+    for action in model.system.actions if model.system is not None else ():
+        _add_listed(names, action, findings)
     return names
+
+
+def _add_listed(names: Names, action: ActionTerm, findings: Findings) -> None:
+    """Note the rules that an action of the system lists."""
+    declaration = ActionDeclaration(action.name, (), action.reward, action.span)
+    _check_action(names, declaration, findings)
+    nowhere = Findings(findings.text)
+    for rule in action.rules:
+        if rule not in names.reacts:
+            nowhere.unknown("rule", rule, action.span, names.reacts)
+        elif rule in names.actions:
+            found = f"rule '{rule}' is in action '{names.actions[rule].name}', too"
+            findings.add("name", found, action.span, "leave it in one of them")
+        names.actions[rule] = declaration
+    findings.warn(nowhere)
 
 
 def _check_action(names: Names, action: ActionDeclaration, findings: Findings) -> None:

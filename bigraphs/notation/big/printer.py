@@ -22,6 +22,7 @@ from bigraphs.notation.big.declarations import (
     SystemTerm,
 )
 from bigraphs.notation.big.syntax import (
+    Absolute,
     Arguments,
     Arithmetic,
     Chain,
@@ -124,6 +125,8 @@ def format_value(value: ValueExpression) -> str:
             return name
         case Negated(operand):
             return f"-{_value_operand(operand, 3)}"
+        case Absolute(operand):
+            return f"abs({format_value(operand)})"
         case Arithmetic(first, rest):
             level = _VALUE_LEVEL[rest[0][0]]
             if level == 4:  # '^' binds to the right

@@ -11,7 +11,7 @@ from bigraphs.notation.big.expressions import Evaluation
 from bigraphs.notation.big.scope import Frame
 from bigraphs.notation.big.solidity import faults, pattern_of
 from bigraphs.notation.big.syntax import Expression, Span, ValueExpression
-from bigraphs.system import Condition, Position, Rule, SystemKind, Value, Where, call
+from bigraphs.system import Condition, Position, Rule, SystemKind, Value, Where
 
 
 class Rules:
@@ -23,17 +23,20 @@ class Rules:
         self.kind = kind
         self._known: dict[str, Rule | None] = {}
 
-    def named(self, name: str, given: tuple[Value, ...], span: Span) -> Rule | None:
+    def named(self, name: str, given: tuple[Value, ...], span: Span, frame: Frame) -> Rule | None:
         """Return a declared rule for some arguments, or None where a mistake has been noted."""
         declaration = self._declaration(name, given, span)
         if declaration is None:
             return None
         parameters = declaration.parameters
-        if parameters and not self.scope.fits(name, parameters, given, span, Frame()):
+        if parameters and not self.scope.fits(name, parameters, given, span, frame):
             return None
-        key = call(name, given)
+        inner = self.scope.entered(declaration, given, span, frame)
+        if inner is None:
+            return None
+        key = inner.key(name, given)
         if key not in self._known:
-            self._known[key] = self.rule(declaration, given)
+            self._known[key] = self.rule(declaration, given, inner)
         return self._known[key]
 
     def _declaration(self, name: str, given: tuple[Value, ...], span: Span) -> ReactDeclaration | None:
@@ -42,29 +45,39 @@ class Rules:
             return self.scope.instance(self.scope.names.given_reacts[name], given, span)
         return found if found is not None and len(found.parameters) == len(given) else None
 
-    def rule(self, react: ReactDeclaration, given: tuple[Value, ...]) -> Rule | None:
+    def rule(self, react: ReactDeclaration, given: tuple[Value, ...], frame: Frame) -> Rule | None:
         """Return the rule of a declaration for some arguments."""
-        frame = Frame().inside(react.name, react.parameters, given if react.parameters else ())
-        redex = self.evaluation.value(react.redex, frame)
-        reactum = self.evaluation.value(react.reactum, frame)
-        conditions = [self._condition(condition, frame) for condition in react.conditions]
+        patterns = [(condition.pattern, pattern_of) for condition in react.conditions]
+        parts = [(react.redex, lean), (react.reactum, lean), *patterns]
+        sides = self.evaluation.instance(react, frame, parts) or self._sides(react, frame)
         weight = self._weight(react, frame)
-        if redex is None or reactum is None or not self._fitting(react, redex, reactum, frame):
+        if sides is None:
             return None
+        self.evaluation.is_well(react, frame)
+        redex, reactum, *conditions = sides
         sites = react.instantiation if react.instantiation is not None else tuple(range(len(redex.sites)))
         action = self.scope.names.actions.get(react.name)
         return Rule(
             react.name,
-            lean(redex),
-            lean(reactum),
+            redex,
+            reactum,
             sites,
             weight,
             action.name if action is not None and self.kind is SystemKind.NBRS else None,
             self.reward(action.reward if action is not None else None),
-            tuple(condition for condition in conditions if condition is not None),
+            tuple(map(_condition, react.conditions, conditions)),
             given,
             position=self.position(react.span),
         )
+
+    def _sides(self, react: ReactDeclaration, frame: Frame) -> list[Bigraph] | None:
+        redex = self.evaluation.value(react.redex, frame)
+        reactum = self.evaluation.value(react.reactum, frame)
+        patterns = [self.pattern(condition.pattern, frame) for condition in react.conditions]
+        if redex is None or reactum is None or not self._fitting(react, redex, reactum, frame):
+            return None
+        found = [pattern for pattern in patterns if pattern is not None]
+        return [lean(redex), lean(reactum), *found] if len(found) == len(patterns) else None
 
     def reward(self, expression: ValueExpression | None) -> int | float:
         """Return the reward of an action or a predicate, 0 if none is written."""
@@ -94,10 +107,6 @@ class Rules:
             return found
         return None
 
-    def _condition(self, condition: ConditionTerm, frame: Frame) -> Condition | None:
-        found = self.pattern(condition.pattern, frame)
-        return None if found is None else Condition(condition.positive, found, Where(condition.where))
-
     def _fitting(self, react: ReactDeclaration, redex: Bigraph, reactum: Bigraph, frame: Frame) -> bool:
         """Note what keeps the sides of a rule from making one."""
         before = len(self.scope.findings)
@@ -107,6 +116,10 @@ class Rules:
         if reactum.inner_links:
             name = reactum.inner_links[0][0]
             self.scope.add("rule", f"the reactum has the inner name '{name}'", react.reactum.span, frame)
+        if () in reactum.sites:
+            message = f"site {reactum.sites.index(())} of the reactum is in no region, so what is in it had no place"
+            hint = "leave it out, and say with '@ [...]' what each of the others holds"
+            self.scope.add("rule", message, react.reactum.span, frame, hint)
         self._check_sites(react, len(redex.sites), len(reactum.sites), frame)
         return len(self.scope.findings) == before
 
@@ -153,6 +166,10 @@ class Rules:
             self.scope.add("weight", wrong, react.weight.span, frame)
             return None
         return float(found)
+
+
+def _condition(term: ConditionTerm, pattern: Bigraph) -> Condition:
+    return Condition(term.positive, pattern, Where(term.where))
 
 
 def _wrong_weight(weight: Value, kind: SystemKind | None) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, TypeVar
 
@@ -29,10 +29,17 @@ class Frame:
     values: Mapping[str, Value] = field(default_factory=dict)
     depth: int = 0
 
-    def inside(self, name: str, parameters: Sequence[str], arguments: Sequence[Value]) -> Frame:
-        """Return the frame of a call from this one."""
-        given = dict(zip(parameters, arguments, strict=True))
-        return Frame(call(name, tuple(arguments)) if given else "", given, self.depth + 1)
+    def inside(
+        self, name: str, parameters: Sequence[str], arguments: Sequence[Value], free: Iterable[str] = ()
+    ) -> Frame:
+        """Return the frame of a call from this one, whose meaning of the free names it takes over."""
+        given = {each: self.values[each] for each in free if each in self.values}
+        given.update(zip(parameters, arguments, strict=True))
+        return Frame(call(name, tuple(arguments)) if parameters else "", given, self.depth + 1)
+
+    def key(self, name: str, given: tuple[Value, ...]) -> str:
+        """Return what tells this call of a declaration from others: its arguments, and what is taken over."""
+        return " ".join((call(name, given), *(f"{each}={value!r}" for each, value in self.values.items())))
 
 
 class Scope:
@@ -96,6 +103,27 @@ class Scope:
 
         return lookup
 
+    def entered(
+        self,
+        declaration: BigDeclaration | ReactDeclaration,
+        given: tuple[Value, ...],
+        span: Span,
+        frame: Frame,
+    ) -> Frame | None:
+        """Return the frame of a call; None if it does not say what parameter of the system is meant."""
+        free = self.names.free.get((type(declaration), declaration.name), ())
+        parameters = declaration.parameters
+        inner = frame.inside(declaration.name, parameters, given if parameters else (), free)
+        lacking = [each for each in free if each not in inner.values and each not in self.constants]
+        if not lacking:
+            return inner
+        found = (
+            f"'{declaration.name}' uses the system's parameter '{lacking[0]}', which this call does not give"
+        )
+        hint = f"call it from the system with '{lacking[0]}' among its arguments"
+        self.add("name", found, span, frame, hint)
+        return None
+
     def control(self, ion: Ion, frame: Frame) -> Control | None:
         """Return the control of an ion, its parameters filled in."""
         declaration = self.names.controls.get(ion.control)
@@ -106,6 +134,10 @@ class Scope:
             return None
         if declaration.arity not in (None, len(ion.links)):
             return None
+        return self.filled(declaration, given)
+
+    def filled(self, declaration: ControlDeclaration, given: tuple[Value, ...]) -> Control:
+        """Return a declared control for arguments that fit it."""
         return control_of(declaration, given)
 
     def instance(self, choices: Sequence[_Given], given: tuple[Value, ...], span: Span) -> _Given | None:

@@ -29,7 +29,7 @@ def faults(redex: Bigraph) -> Iterator[tuple[str, str]]:
 
 def _faults_of_sites(redex: Bigraph) -> Iterator[tuple[str, str]]:
     for site, parents in enumerate(redex.sites):
-        if any(parent < 0 for parent in parents):
+        if not parents or any(parent < 0 for parent in parents):
             hint = "leave it out: what is beside the redex stays as it is"
             yield f"site {site} of the redex is in no node", hint
     for place, sites in sorted(sites_in(redex).items()):
@@ -56,7 +56,9 @@ def pattern_of(bigraph: Bigraph) -> Bigraph:
         bigraph.signature,
         nodes,
         regions=len(kept),
-        sites=sorted({parents for parents in bigraph.sites if all(parent >= 0 for parent in parents)}),
+        sites=sorted(
+            {parents for parents in bigraph.sites if parents and all(parent >= 0 for parent in parents)}
+        ),
         edges=bigraph.edges,
         inner_links=dict(bigraph.inner_links),
         outer_names=_used_names(bigraph),

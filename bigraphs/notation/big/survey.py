@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TypeAlias
 
 from bigraphs.notation.big.declarations import (
     ActionDeclaration,
@@ -17,6 +18,7 @@ from bigraphs.notation.big.declarations import (
 from bigraphs.notation.big.findings import Findings
 from bigraphs.notation.big.names import Names
 from bigraphs.notation.big.syntax import (
+    Absolute,
     Arithmetic,
     Chain,
     Expression,
@@ -32,15 +34,21 @@ from bigraphs.notation.big.syntax import (
     Wired,
 )
 
+_Used: TypeAlias = tuple[type, str]
+"""What is called, a bigraph or a rule, and its name."""
+
 
 def survey(model: Model, names: Names, findings: Findings, given: Iterable[str] = ()) -> None:
     """Note every name that is not declared, and every wrong number of links or arguments; `given` are constants."""
     constants = frozenset(given) | names.constants.keys()
-    look = Survey(names, findings, constants)
+    ranging = () if model.system is None else model.system.parameters
+    look = Survey(names, findings, constants, frozenset(name for each in ranging for name in each.names))
     for declaration in model.declarations:
         look.declaration(declaration)
+    names.free.update(look.free())
     if model.system is not None:
         look.system(model.system)
+    look.settle(model.system is not None)
     for name in sorted(set(given) - names.constants.keys() - look.seen):
         findings.add("name", f"no constant '{name}' is in the file", Span(0, 1), "leave it out")
 
@@ -48,21 +56,72 @@ def survey(model: Model, names: Names, findings: Findings, given: Iterable[str] 
 class Survey:
     """A walk over syntax that knows which values can be named where it is."""
 
-    def __init__(self, names: Names, findings: Findings, constants: frozenset[str]) -> None:
+    def __init__(
+        self,
+        names: Names,
+        findings: Findings,
+        constants: frozenset[str],
+        ranging: frozenset[str] = frozenset(),
+    ) -> None:
         self.names = names
         self.findings = findings
         self.variables = self.constants = constants
+        self._ranging = ranging - constants
+        self._free: dict[_Used, set[str]] = {}
         self.seen: set[str] = set()
+        self._within: _Used | None = None
+        self._uses: dict[_Used | None, set[_Used]] = {}
+        self._apart: dict[_Used, Findings] = {}
+
+    def apart(self, what: type, name: str, parameters: Sequence[str], walk: Callable[[], None]) -> None:
+        """Look at a declaration with its parameters known, and keep its mistakes apart if it has to be called."""
+        if not parameters:
+            walk()
+        else:
+            self.variables = self.constants | self._ranging | frozenset(parameters)
+            self._free[what, name] = set()
+            whole, self.findings, self._within = self.findings, Findings(self.findings.text), (what, name)
+            walk()
+            self._apart[what, name] = self.findings
+            self.findings, self._within = whole, None
+            self._free[what, name].difference_update(parameters)
+            self.variables = self.constants
+
+    def free(self) -> dict[_Used, tuple[str, ...]]:
+        """Return the parameters of the system that each declaration uses, those that what it calls uses included."""
+        grown = True
+        while grown and any(self._free.values()):
+            before = sum(map(len, self._free.values()))
+            for each, found in self._free.items():
+                called = (self._free.get(other, ()) for other in self._uses.get(each, ()))
+                found.update(*called)
+                found.difference_update(self.parameters(each))
+            grown = sum(map(len, self._free.values())) > before
+        return {each: tuple(sorted(found)) for each, found in self._free.items() if found}
+
+    def parameters(self, used: _Used) -> tuple[str, ...]:
+        """Return the parameters of a bigraph or a rule."""
+        what, name = used
+        known: Mapping[str, BigDeclaration | ReactDeclaration]
+        known = self.names.bigs if what is BigDeclaration else self.names.reacts
+        return known[name].parameters
+
+    def settle(self, called: bool) -> None:
+        """Make mistakes in what nothing calls warnings, the others mistakes."""
+        reached: list[_Used | None] = [None, *(() if called else self._apart)]
+        for each in reached:  # grows while it is walked
+            reached.extend(self._uses.pop(each, ()))
+        for each, found in self._apart.items():
+            (self.findings.take if each in reached else self.findings.warn)(found)
 
     def declaration(self, declaration: Declaration) -> None:
         """Look at one declaration, in which its parameters are known."""
         match declaration:
             case ConstantDeclaration(value=value):
                 self.value(value)
-            case BigDeclaration(body=body, parameters=parameters, arguments=arguments):
+            case BigDeclaration(name, body=body, parameters=parameters, arguments=arguments):
                 self.values(arguments)
-                self.variables = self.constants | frozenset(parameters)
-                self.expression(body)
+                self.apart(BigDeclaration, name, parameters, lambda: self.expression(body))
             case ReactDeclaration():
                 self.react(declaration)
             case ActionDeclaration(rules=rules, reward=reward):
@@ -71,18 +130,19 @@ class Survey:
                     self.react(rule)
             case _:
                 pass
-        self.variables = self.constants
 
     def react(self, react: ReactDeclaration) -> None:
         """Look at a rule, in which its parameters are known."""
         self.values(react.arguments)
-        self.variables = self.constants | frozenset(react.parameters)
+        self.apart(ReactDeclaration, react.name, react.parameters, lambda: self.change(react))
+
+    def change(self, react: ReactDeclaration) -> None:
+        """Look at what a rule does."""
         self.expression(react.redex)
         self.expression(react.reactum)
         self.values(() if react.weight is None else (react.weight,))
         for condition in react.conditions:
             self.expression(condition.pattern)
-        self.variables = self.constants
 
     def system(self, system: SystemTerm) -> None:
         """Look at a system, in which its parameters are known."""
@@ -93,6 +153,8 @@ class Survey:
         for each in system.classes:
             for rule in each.rules:
                 self.call(rule, "rule")
+        for action in system.actions:
+            self.values(() if action.reward is None else (action.reward,))
         for predicate in system.predicates:
             self.call(predicate, "bigraph")
 
@@ -104,6 +166,8 @@ class Survey:
 
     def used(self, what: str, name: str, arguments: int, span: Span) -> None:
         """Check a name that is used as a bigraph or a rule, and how many arguments it gets."""
+        kind = BigDeclaration if what == "bigraph" else ReactDeclaration
+        self._uses.setdefault(self._within, set()).add((kind, name))
         known = self.names.bigs if what == "bigraph" else self.names.reacts
         if name not in known:
             self.findings.unknown(what, name, Span(span.start, span.start + len(name)), known)
@@ -177,9 +241,11 @@ class Survey:
         match value:
             case Variable(name):
                 self.seen.add(name)
+                if self._within is not None and name in self._ranging:
+                    self._free[self._within].add(name)
                 if name not in self.variables:
                     self.findings.unknown("value", name, value.span, self.variables)
-            case Negated(operand):
+            case Negated(operand) | Absolute(operand):
                 self.value(operand)
             case Arithmetic(first, rest):
                 self.values((first, *(operand for _, operand in rest)))

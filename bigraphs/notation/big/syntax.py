@@ -48,6 +48,14 @@ class Negated:
 
 
 @dataclass(frozen=True, slots=True)
+class Absolute:
+    """`abs(e)`."""
+
+    operand: ValueExpression
+    span: Span = field(default=NOWHERE, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Arithmetic:
     """Operands with `+ -` or `* /` between them, from the left, or `^`, from the right."""
 
@@ -56,7 +64,7 @@ class Arithmetic:
     span: Span = field(default=NOWHERE, compare=False)
 
 
-ValueExpression: TypeAlias = Literal | Variable | Negated | Arithmetic
+ValueExpression: TypeAlias = Literal | Variable | Negated | Absolute | Arithmetic
 Arguments: TypeAlias = tuple[ValueExpression, ...]
 
 
@@ -74,7 +82,7 @@ class Ref:
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """`1`, the empty region, or `0`, nothing at all."""
+    """`1`, the empty region, or `0`, a site without a region."""
 
     value: int
     span: Span = field(default=NOWHERE, compare=False)

@@ -9,7 +9,7 @@ from itertools import product
 from typing import Final
 
 from bigraphs.algebra import lean
-from bigraphs.bigraph import Bigraph
+from bigraphs.bigraph import Bigraph, relabelled
 from bigraphs.notation.big import values
 from bigraphs.notation.big.declarations import Call, ClassTerm, Model, ParameterDeclaration, SystemTerm
 from bigraphs.notation.big.expressions import Evaluation
@@ -20,7 +20,7 @@ from bigraphs.notation.big.rules import Rules
 from bigraphs.notation.big.scope import Frame, Scope, control_of
 from bigraphs.notation.big.sorts import check_sorted, sorting_of
 from bigraphs.notation.big.survey import survey
-from bigraphs.notation.big.syntax import Arithmetic, Negated, Span, ValueExpression, Variable
+from bigraphs.notation.big.syntax import Span
 from bigraphs.signature import Signature
 from bigraphs.system import Action, Predicate, PriorityClass, Rule, System, SystemKind, Value
 
@@ -98,7 +98,7 @@ class _Systems:
         whole = with_signature(system, self.signature(system))
         spans = {rule.name: rule.span for rule in self.names.all_reacts()}
         check_sorted(whole, term.init.span, spans, self.findings)
-        return whole
+        return replace(whole, warnings=self.findings.warnings)
 
     def signature(self, system: System) -> Signature:
         """Return the declared controls, and of parametrised ones those that are in the system."""
@@ -149,12 +149,14 @@ class _Systems:
             self.findings.add("initial", message, call.span, "fill its sites with 1, close its inner names")
         return None if found is None else lean(found)
 
-    def instances(self, call: Call) -> Iterator[tuple[Value, ...]]:
-        """Yield the arguments of a call for each value of the parameters in it.
+    def instances(self, call: Call) -> Iterator[tuple[tuple[Value, ...], Frame]]:
+        """Yield the arguments of a call for each value of the parameters in it, and the frame that gives these.
 
         The last comes first, as in BigraphER, where that decides between instantaneous rules.
         """
-        names = sorted({name for value in call.arguments for name in _variables(value)} & set(self.ranges))
+        names = sorted(
+            {name for value in call.arguments for name in values.variables(value)} & set(self.ranges)
+        )
         count = 1
         for name in names:
             count *= len(self.ranges[name])
@@ -162,14 +164,17 @@ class _Systems:
             self.findings.add("too-large", f"more than {MAX_INSTANCES} instances of '{call.name}'", call.span)
             return
         for chosen in reversed(list(product(*(self.ranges[name] for name in names)))):
-            given = self.scope.arguments(call.arguments, Frame(values=dict(zip(names, chosen, strict=True))))
+            frame = Frame(values=dict(zip(names, chosen, strict=True)))
+            given = self.scope.arguments(call.arguments, frame)
             if given is not None:
-                yield given
+                yield given, frame
 
     def priority_class(self, term: ClassTerm) -> PriorityClass:
         rules: list[Rule] = []
         for call in term.rules:
-            found = [self.rules.named(call.name, given, call.span) for given in self.instances(call)]
+            found = [
+                self.rules.named(call.name, given, call.span, frame) for given, frame in self.instances(call)
+            ]
             rules.extend(rule for rule in found if rule is not None)
         if len(rules) > MAX_INSTANCES:
             self.findings.add("too-large", f"more than {MAX_INSTANCES} rules", term.span)
@@ -206,8 +211,8 @@ class _Systems:
             )
 
     def predicates(self, call: Call) -> Iterator[Predicate]:
-        for given in self.instances(call):
-            found = self.evaluation.named(call.name, given, call.span, Frame())
+        for given, frame in self.instances(call):
+            found = self.evaluation.named(call.name, given, call.span, frame)
             pattern = None if found is None else self.rules.as_pattern(found, call.span, Frame())
             reward = None if call.reward is None else self.rules.reward(call.reward)
             if pattern is not None:
@@ -225,7 +230,7 @@ def check_declared(names: Names, scope: Scope, evaluation: Evaluation, rules: Ru
     for react in names.all_reacts():
         given = scope.arguments(react.arguments, Frame())
         if not react.parameters and given is not None:
-            rules.named(react.name, given, react.span)
+            rules.named(react.name, given, react.span, Frame())
 
 
 def bigraphs_of(system: System) -> Iterator[Bigraph]:
@@ -241,21 +246,19 @@ def bigraphs_of(system: System) -> Iterator[Bigraph]:
 def with_signature(system: System, signature: Signature) -> System:
     """Return a system all of whose bigraphs are over one signature."""
 
-    def widened(rule: Rule) -> Rule:
-        conditions = tuple(
-            replace(each, pattern=replace(each.pattern, signature=signature)) for each in rule.conditions
-        )
-        redex, reactum = (replace(side, signature=signature) for side in (rule.redex, rule.reactum))
-        return replace(rule, redex=redex, reactum=reactum, conditions=conditions)
+    def widened(bigraph: Bigraph) -> Bigraph:
+        return relabelled(bigraph, {}, signature)
+
+    def within(rule: Rule) -> Rule:
+        conditions = tuple(replace(each, pattern=widened(each.pattern)) for each in rule.conditions)
+        return replace(rule, redex=widened(rule.redex), reactum=widened(rule.reactum), conditions=conditions)
 
     return replace(
         system,
         signature=signature,
-        initial=replace(system.initial, signature=signature),
-        classes=tuple(replace(each, rules=tuple(map(widened, each.rules))) for each in system.classes),
-        predicates=tuple(
-            replace(each, pattern=replace(each.pattern, signature=signature)) for each in system.predicates
-        ),
+        initial=widened(system.initial),
+        classes=tuple(replace(each, rules=tuple(map(within, each.rules))) for each in system.classes),
+        predicates=tuple(replace(each, pattern=widened(each.pattern)) for each in system.predicates),
     )
 
 
@@ -267,19 +270,6 @@ def _actions(classes: list[PriorityClass]) -> tuple[Action, ...]:
         if rule.action is not None
     }
     return tuple(found.values())
-
-
-def _variables(value: ValueExpression) -> Iterator[str]:
-    match value:
-        case Variable(name):
-            yield name
-        case Negated(operand):
-            yield from _variables(operand)
-        case Arithmetic(first, rest):
-            for operand in (first, *(operand for _, operand in rest)):
-                yield from _variables(operand)
-        case _:
-            pass
 
 
 def _end(text: str) -> Span:

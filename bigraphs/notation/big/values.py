@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Final, TypeAlias
 
 from bigraphs.errors import BigraphError
 from bigraphs.notation.big.build_values import LARGEST
 from bigraphs.notation.big.findings import Findings
-from bigraphs.notation.big.syntax import Arithmetic, Literal, Negated, Span, ValueExpression, Variable
+from bigraphs.notation.big.syntax import (
+    Absolute,
+    Arithmetic,
+    Literal,
+    Negated,
+    Span,
+    ValueExpression,
+    Variable,
+)
 from bigraphs.system import Value
 
 Lookup: TypeAlias = Callable[[Variable], Value | None]
@@ -31,8 +39,24 @@ def evaluate(expression: ValueExpression, lookup: Lookup, findings: Findings) ->
             return lookup(expression)
         case Negated(operand):
             return _negated(evaluate(operand, lookup, findings), expression.span, findings)
+        case Absolute(operand):
+            return _absolute(evaluate(operand, lookup, findings), expression.span, findings)
         case Arithmetic():
             return _arithmetic(expression, lookup, findings)
+
+
+def variables(value: ValueExpression) -> Iterator[str]:
+    """Yield every name in an expression."""
+    match value:
+        case Variable(name):
+            yield name
+        case Negated(operand) | Absolute(operand):
+            yield from variables(operand)
+        case Arithmetic(first, rest):
+            for operand in (first, *(operand for _, operand in rest)):
+                yield from variables(operand)
+        case _:
+            pass
 
 
 def typed(type_: str, value: Value, span: Span, findings: Findings) -> Value | None:
@@ -59,6 +83,13 @@ def _negated(value: Value | None, span: Span, findings: Findings) -> Value | Non
         findings.add("type", "a string has no sign", span)
         return None
     return None if value is None else -value
+
+
+def _absolute(value: Value | None, span: Span, findings: Findings) -> Value | None:
+    if isinstance(value, str):
+        findings.add("type", "'abs' takes a number, not a string", span)
+        return None
+    return None if value is None else abs(value)
 
 
 def _arithmetic(expression: Arithmetic, lookup: Lookup, findings: Findings) -> Value | None:

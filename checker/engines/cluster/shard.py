@@ -292,13 +292,13 @@ class Shard(Space):
         """Note another worker's values; a cell that varies there is not still here either."""
         learner, cell = self.learner, entry.place[0]
         if len(entry.place) == 3 and learner.columns.dig(cell, entry.place[1] + 1):
-            learner.forget()
+            learner.forget_those(learner.writers, cell)
         number = learner.columns.number(entry.place)
         codes = [learner.columns.all[number].code(value) for value in entry.values]
         dictionary.add(entry.column, number, codes)
         if any(codes) and cell not in learner.varying:
             learner.varying.add(cell)
-            learner.forget(cell)
+            learner.forget_those(learner.taken, cell)
 
     def translated(self, peer: int, parcel: Parcel) -> Iterator[NDArray[np.int64]]:
         """Put the rows of a parcel into the batch, some at a time; yield the sender's rows they were reached from."""

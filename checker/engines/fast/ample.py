@@ -1,8 +1,7 @@
 """The compiled loop over ample sets: `checker.reduction.ample` on rows and footprints as words.
 
-Rows are gathered as for the full search. Which successors of a row are followed is chosen when they are stored, row by
-row, since whether a step may be put off depends on what was visited before. Which actors there are is told by trees of
-their own; what may disturb what is worked out where it is first asked for.
+Row by row, it is chosen first which transitions are followed; only these are made, and those that a choice looks at.
+Which actors there are is told by trees of their own; what may disturb what is worked out where it is first asked for.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
@@ -14,33 +13,54 @@ import numpy as np
 from numba import njit
 
 from checker.engines.fast.kernel import (
-    ALL_KNOWN,
     ALPHA,
-    BLOCK,
+    AT,
+    CROWDS,
     CUT,
     EXPANDED,
     LIMIT,
+    NODE,
     SIZE,
-    TOUCHED,
     TREE,
+    WIDE,
     WORDS,
     Batch,
     Ints,
     Model,
     State,
     code_at,
+    conclude,
+    copy_columns,
+    is_repeated,
     walk,
 )
-from checker.engines.fast.table import Words, bits_for, entry_of, find, touch
+from checker.engines.fast.leaves import (
+    ALIKE,
+    COPIES,
+    COPIES_END,
+    CROWDED,
+    END,
+    FIRST,
+    FLAGS,
+    LEAF,
+    PARTS_END,
+    STEP,
+)
+from checker.engines.fast.leaves import PARTS as TREES_OF_PARTS
+from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
 
-MOST_HERE = 64
+WORD = 64
+"""Actors of a row in one word of a set."""
+
+MOST_HERE = 8 * WORD
 """A configuration with more actors than these is expanded in full."""
 
-EVERYBODY = ~np.uint64(0)
-"""The set of all actors."""
+EVERYBODY, UNKNOWN, NOBODY_LEFT, GOING_ON = -1, -2, -3, -4
+"""What is said in the place of the transition that leads on: that all are followed, that not all is known, that none
+need lead on, or that another set joins."""
 
 TRIED = -1
-"""The size of a set that was found not to be ample."""
+"""The size of a set that was found not to be ample, or that joined."""
 
 FAIR, AGENTS_OWN = 1, 2
 """Flags of a transition: an agent's, and one that must be taken some time; an agent's."""
@@ -52,6 +72,12 @@ RECORD = 5
 PARTS = 3
 """A footprint has reads, writes and merges, each as words of bits."""
 
+KINDS = 3
+"""Parts of an agent (see `checker.reduction.paths.Part`): program, line, requests. Clauses come after all of these."""
+
+NO_AGENT = -1
+"""What a path has where it ends at a row that no agent's step led to; less by as much as an agent's number for its."""
+
 
 class Members(NamedTuple):
     """Who may move, and what that may disturb, as the loop sees it.
@@ -60,21 +86,30 @@ class Members(NamedTuple):
         trees_from, trees: Trees that tell the actors, in groups: one for each value of the cell that names agents.
         begins: For each leaf of these where its actors begin in `actors`, and where they end.
         actors: `RECORD` numbers an actor.
+        part: For each actor the part that it belongs to.
         footprints: For each footprint the words of its parts.
         disturbed: For each two footprints whether one disturbs the other: 0 where it was not asked, 1 no, 2 yes.
         step_actor, step_flags: For each transition whose it is, and its flags.
         seen_masks: For each word of a row the bits that properties look at.
+        seen_whole: For each word of a row the bits that properties look at as they are.
         seen: Columns that properties look at through a question, each with where its answers begin.
         answers: What that question makes of each code.
-        seen_whole: For each word of a row the bits that properties look at as they are.
-        here, disturbers, whose, sets, sizes: Room for one row: its actors, who may disturb each (0 where it was not
-            asked), whose each successor is, sets of actors, and how many successors each has.
+        agents: How many agents there may ever be.
+        here, place: Room for one row: its actors, and where each actor is among them.
+        whose, made: Whose each of its transitions is, and whether that was made.
+        disturbers, sets: Sets of its actors, each in as many words as they need: who may disturb each (where that was
+            asked it is one itself), and those that were found.
+        sizes: How many transitions each set that was found has.
+        inside, owners, whole: Who has joined, who may take a step, and around whom the least set omits nobody's.
+        waiting, tried: Room for the actors whose disturbers are asked next; whose sets were found.
+        taken, more: Parts that are taken on the way.
     """
 
     trees_from: Ints
     trees: Ints
     begins: Ints
     actors: Ints
+    part: Ints
     footprints: Words
     disturbed: Any
     step_actor: Ints
@@ -83,11 +118,33 @@ class Members(NamedTuple):
     seen_whole: Words
     seen: Ints
     answers: Any
+    agents: int
     here: Ints
-    disturbers: Words
+    place: Ints
     whose: Ints
+    made: Any
+    disturbers: Words
     sets: Words
     sizes: State
+    inside: Words
+    owners: Words
+    whole: Words
+    waiting: Ints
+    tried: Ints
+    taken: Words
+    more: Words
+
+
+class Trails(NamedTuple):
+    """The paths of `checker.reduction.paths`, for each row.
+
+    Attributes:
+        leads: Where the path leads on; less than 0 where it ends, with whose step led there (see `NO_AGENT`).
+        taken: The parts that are taken on the way there, as words of bits.
+    """
+
+    leads: Ints
+    taken: Words
 
 
 @njit(cache=True)
@@ -110,12 +167,12 @@ def compare(footprints: Words, disturbed: Any, count: int, one: int, other: int)
 
 
 @njit(cache=True)
-def meet(m: Model, r: Members, words: Words, at: int, here: Ints, state: State) -> int:
+def meet(m: Model, r: Members, words: Words, at: int, state: State) -> int:
     """Note the actors of a row; return how many there are, -1 where something is not known."""
     group = np.int64(0)
     if state[ALPHA] >= 0:
         group = code_at(words, at, m.columns, state[ALPHA])
-    count = np.int64(0)
+    count, here = np.int64(0), r.here
     for k in range(r.trees_from[group], r.trees_from[group + 1]):
         reference = walk(words, at, m.root[r.trees[k]], m.nodes, m.next, state)
         if reference == 0:
@@ -125,47 +182,73 @@ def meet(m: Model, r: Members, words: Words, at: int, here: Ints, state: State) 
         for actor in range(r.begins[2 * leaf], r.begins[2 * leaf + 1]):
             if count < len(here):
                 here[count] = actor
+                r.place[r.actors[RECORD * actor + MEMBER]] = count
             count += 1
     return count
 
 
 @njit(cache=True, inline="always")
-def has(actors: np.uint64, actor: int) -> bool:
-    """Tell whether a set of the actors of a row has one."""
-    return bool((actors >> np.uint64(actor)) & np.uint64(1))
+def has(sets: Words, begin: int, actor: int) -> bool:
+    """Tell whether the set that begins there has an actor."""
+    return bool((sets[begin + (actor >> 6)] >> np.uint64(actor & 63)) & np.uint64(1))
+
+
+@njit(cache=True, inline="always")
+def add(sets: Words, begin: int, actor: int) -> None:
+    """Add an actor to the set that begins there."""
+    sets[begin + (actor >> 6)] |= np.uint64(1) << np.uint64(actor & 63)
 
 
 @njit(cache=True)
-def persistent(r: Members, here: Ints, known: Words, actors: int, seed: int) -> np.uint64:
-    """Return the least set around an actor such that nothing outside ever disturbs what those inside may do now.
-
-    For each actor it is known who may disturb it, itself included, once that was asked.
-    """
-    disturbed = r.disturbed
+def note_disturbers(r: Members, actors: int, wide: int, k: int) -> None:
+    """Note who may ever disturb what an actor of a row may do now, and that it was asked: it is in its own set."""
+    disturbed, here = r.disturbed, r.here
     count = np.int64(np.sqrt(len(disturbed)))
-    inside, done = np.uint64(1) << np.uint64(seed), np.uint64(0)
-    while inside != done:
-        waiting = inside & ~done
-        done = inside
-        for k in range(actors):
-            if not has(waiting, k):
-                continue
-            if known[k] == np.uint64(0):
-                actor = RECORD * here[k]
-                now, follower = r.actors[actor + NOW], r.actors[actor + FOLLOWER]
-                found = np.uint64(1) << np.uint64(k)
-                for j in range(actors):
-                    other = RECORD * here[j]
-                    behind = follower >= 0 and follower == r.actors[other + MEMBER]
-                    may = r.actors[other + (ASIDE if behind else EVER)]
-                    known_to = np.int64(disturbed[now * count + may])
-                    if known_to == 0:
-                        known_to = compare(r.footprints, disturbed, count, now, may)
-                    if known_to == 2 and j != k:
-                        found |= np.uint64(1) << np.uint64(j)
-                known[k] = found
-            inside |= known[k]
-    return inside
+    actor = RECORD * here[k]
+    now, follower = r.actors[actor + NOW], r.actors[actor + FOLLOWER]
+    add(r.disturbers, k * wide, k)
+    for j in range(actors):
+        other = RECORD * here[j]
+        behind = follower >= 0 and follower == r.actors[other + MEMBER]
+        may = r.actors[other + (ASIDE if behind else EVER)]
+        known = np.int64(disturbed[now * count + may])
+        if known == 0:
+            known = compare(r.footprints, disturbed, count, now, may)
+        if known == 2:
+            add(r.disturbers, k * wide, j)
+
+
+@njit(cache=True)
+def persistent(r: Members, actors: int, wide: int, seed: int, at: int) -> bool:
+    """Write the least set around an actor such that nothing outside ever disturbs what those inside may do now.
+
+    False where everyone who may take a step is inside, as around somebody inside: it is not written to its end then.
+    """
+    inside, waiting = r.sets, r.waiting
+    for word in range(wide):
+        inside[at + word] = np.uint64(0)
+    add(inside, at, seed)
+    waiting[0] = seed
+    left = np.int64(1)
+    while left:
+        left -= 1
+        k = np.int64(waiting[left])
+        if not has(r.disturbers, k * wide, k):
+            note_disturbers(r, actors, wide, k)
+        omitted, whole = np.uint64(0), np.uint64(0)
+        for word in range(wide):
+            joining = r.disturbers[k * wide + word] & ~inside[at + word]
+            inside[at + word] |= joining
+            omitted |= r.owners[word] & ~inside[at + word]
+            whole |= r.whole[word] & inside[at + word]
+            for bit in range(WORD if joining else 0):
+                if (joining >> np.uint64(bit)) & np.uint64(1):
+                    waiting[left] = WORD * word + bit
+                    left += 1
+        if omitted == np.uint64(0) or whole != np.uint64(0):
+            add(r.whole, 0, seed)
+            return False
+    return True
 
 
 @njit(cache=True)
@@ -187,150 +270,330 @@ def is_seen(m: Model, r: Members, words: Words, at: int, target: Words, to: int,
 
 
 @njit(cache=True)
-def attribute(r: Members, batch: Batch, begin: int, count: int) -> None:
-    """Note whose each successor of a row is, as a number among its actors."""
-    for k in range(count):
-        r.whose[k] = 0
-        while r.actors[RECORD * r.here[r.whose[k]] + MEMBER] != r.step_actor[batch.steps[begin + k]]:
-            r.whose[k] += 1
+def list_steps(m: Model, words: Words, batch: Batch, state: State) -> int:
+    """Note the transitions that a row allows, not made yet; return how many, UNKNOWN where something is not known."""
+    row, width = state[AT], state[WORDS]
+    first, last = np.int64(0), np.int64(len(m.agents))
+    if state[ALPHA] >= 0:
+        group = code_at(words, row * width, m.columns, state[ALPHA])
+        first, last = np.int64(m.agents_from[group]), np.int64(m.agents_from[group + 1])
+    count, flags = np.int64(0), np.int64(0)
+    for k in range(last - first + len(m.clauses)):
+        tree = m.agents[first + k] if first + k < last else m.clauses[first + k - last]
+        reference = walk(words, row * width, m.root[tree], m.nodes, m.next, state)
+        if reference == 0:
+            state[TREE] = tree
+            return UNKNOWN
+        leaf = LEAF * (-reference - 1)
+        flags |= m.leaves[leaf + FLAGS]
+        for step in range(m.leaves[leaf + FIRST], m.leaves[leaf + END]):
+            if count == len(batch.steps):
+                state[NODE] = WIDE
+                return UNKNOWN
+            batch.steps[count] = step
+            count += 1
+    if flags & CROWDED:
+        state[CROWDS] += 1
+        return 0
+    return count
 
 
 @njit(cache=True)
-def gather_sets(r: Members, batch: Batch, begin: int, count: int, actors: int) -> int:
-    """Note the persistent sets around those who can move, and how many successors each has; return how many sets."""
-    flags, steps, whose, sets, sizes, disturbers = (
-        r.step_flags, batch.steps, r.whose, r.sets, r.sizes, r.disturbers
-    )  # fmt: skip
-    for k in range(actors):
-        disturbers[k] = np.uint64(0)
-    found, tried = np.int64(0), np.uint64(0)
-    for k in range(count):
-        if not flags[steps[begin + k]] & AGENTS_OWN or has(tried, whose[k]):
-            continue
-        tried |= np.uint64(1) << np.uint64(whose[k])
-        inside = persistent(r, r.here, disturbers, actors, whose[k])
-        known = False
-        for j in range(found):
-            known = known or sets[j] == inside
-        if not known:
-            sets[found], sizes[found] = inside, 0
-            for j in range(count):
-                sizes[found] += has(inside, whose[j])
-            found += 1
-    return found
+def make(m: Model, r: Members, words: Words, batch: Batch, k: int, state: State) -> bool:
+    """Make what a transition of a row leads to, if it was not made yet; False where something is not known."""
+    if r.made[k]:
+        return True
+    width = state[WORDS]
+    at, to, record = state[AT] * width, k * width, STEP * batch.steps[k]
+    conclude(words, at, m.masks, batch.steps[k], batch.words, to, width)
+    begin, end = m.steps[record + COPIES], m.steps[record + COPIES_END]
+    copy_columns(words, at, m.columns, m.copies, begin, end, batch.words, to)
+    for part in range(m.steps[record + TREES_OF_PARTS], m.steps[record + PARTS_END]):
+        tree = m.part[part]
+        reference = walk(words, at, m.root[tree], m.nodes, m.next, state)
+        if reference == 0:
+            state[TREE] = tree
+            return False
+        own = m.leaves[LEAF * (-reference - 1) + FIRST]
+        conclude(batch.words, to, m.masks, own, batch.words, to, width)
+    batch.hashes[k] = hashed(batch.words, to, width)
+    r.made[k] = 1
+    return True
 
 
 @njit(cache=True)
-def is_ample(
+def without_repetitions(m: Model, r: Members, words: Words, batch: Batch, count: int, state: State) -> int:
+    """Leave out what leads under the same label to the same; return how many are left, UNKNOWN as elsewhere."""
+    width, alike = state[WORDS], False
+    for k in range(count):
+        r.made[k] = 0
+        alike = alike or m.steps[STEP * batch.steps[k] + ALIKE] >= 0
+    if not alike:
+        return count
+    left = np.int64(0)
+    for k in range(count):
+        step = batch.steps[k]
+        batch.steps[left] = step
+        r.made[left] = 0
+        if not make(m, r, words, batch, left, state):
+            return UNKNOWN
+        if m.steps[STEP * step + ALIKE] < 0 or not is_repeated(
+            batch.words, batch.steps, m.steps, 0, left, step, width
+        ):
+            left += 1
+    return left
+
+
+@njit(cache=True)
+def attribute(r: Members, batch: Batch, count: int, wide: int) -> None:
+    """Note whose each transition of a row is, as a number among its actors."""
+    for word in range(wide):
+        r.owners[word] = r.inside[word] = r.whole[word] = np.uint64(0)
+    for k in range(count):
+        r.whose[k] = r.place[r.step_actor[batch.steps[k]]]
+        add(r.owners, 0, r.whose[k])
+
+
+@njit(cache=True)
+def find_set(r: Members, count: int, actors: int, wide: int, seed: int, found: int) -> int:
+    """Note the persistent set around an actor after those found; return how many transitions it has.
+
+    A set that was found already, or that omits nothing, counts as tried.
+    """
+    at = found * wide
+    if not persistent(r, actors, wide, seed, at):
+        return TRIED
+    for other in range(found):
+        same = True
+        for word in range(wide):
+            same = same and r.sets[other * wide + word] == r.sets[at + word]
+        if same:
+            return TRIED
+    size = np.int64(0)
+    for j in range(count):
+        size += has(r.sets, at, r.whose[j])
+    return size
+
+
+@njit(cache=True)
+def is_ample(m: Model, r: Members, words: Words, batch: Batch, count: int, at: int, state: State) -> int:
+    """Tell whether no property sees a step, and one must be taken some time: 0 or 1, or UNKNOWN."""
+    width, fair = state[WORDS], np.int64(0)
+    for k in range(count):
+        if has(r.sets, at, r.whose[k]):
+            if not make(m, r, words, batch, k, state):
+                return UNKNOWN
+            if is_seen(m, r, words, state[AT] * width, batch.words, k * width, width):
+                return 0
+            fair |= r.step_flags[batch.steps[k]] & FAIR
+    return fair
+
+
+@njit(cache=True, inline="always")
+def part_at(r: Members, k: int) -> int:
+    """Return the part that an actor of a row belongs to."""
+    return np.int64(r.part[r.actors[RECORD * r.here[k] + MEMBER]])
+
+
+@njit(cache=True)
+def ignores(r: Members, sets: Words, at: int, wide: int) -> bool:
+    """Tell whether someone in a set may take a step who has not joined, and of whose part none is taken on the way."""
+    for word in range(wide):
+        left = sets[at + word] & r.owners[word] & ~r.inside[word]
+        for bit in range(WORD if left else 0):
+            if (left >> np.uint64(bit)) & np.uint64(1) and not has(r.taken, 0, part_at(r, WORD * word + bit)):
+                return True
+    return False
+
+
+@njit(cache=True)
+def let_join(r: Members, actors: int, wide: int, at: int) -> None:
+    """Let a set join: the parts of which all are inside are taken."""
+    r.more[:] = np.uint64(0)
+    for j in range(actors):
+        if has(r.sets, at, j):
+            add(r.more, 0, part_at(r, j))
+    for j in range(actors):
+        if not has(r.sets, at, j):
+            part = part_at(r, j)
+            r.more[part >> 6] &= ~(np.uint64(1) << np.uint64(part & 63))
+    for word in range(len(r.taken)):
+        r.taken[word] |= r.more[word]
+    for word in range(wide):
+        r.inside[word] |= r.sets[at + word]
+
+
+@njit(cache=True)
+def end_of(trails: Trails, row: int, taken: Words) -> int:
+    """Return where the path from a row ends, with what is taken on it; the path is made shorter."""
+    wide = len(taken)
+    while trails.leads[row] >= 0:
+        lead = np.int64(trails.leads[row])
+        further = trails.leads[lead] >= 0
+        for word in range(wide):
+            if further:
+                trails.taken[row * wide + word] |= trails.taken[lead * wide + word]
+            taken[word] |= trails.taken[row * wide + word]
+        if further:
+            trails.leads[row] = trails.leads[lead]
+        row = np.int64(trails.leads[row])
+    return row
+
+
+@njit(cache=True)
+def join(
     m: Model,
     r: Members,
+    trails: Trails,
     words: Words,
     table: Any,
     batch: Batch,
-    begin: int,
     count: int,
-    inside: np.uint64,
-    width: int,
-) -> bool:
-    """Tell whether no property sees a step, one must be taken some time, and one leads to what is expanded later."""
+    actors: int,
+    at: int,
+    state: State,
+) -> int:
+    """Let a set join that is ample and has someone who is ignored; return which transition leads on, or what is so."""
+    width, row, wide = state[WORDS], state[AT], (actors + WORD - 1) // WORD
+    if not ignores(r, r.sets, at, wide):
+        return GOING_ON
+    ample = is_ample(m, r, words, batch, count, at, state)
+    if ample <= 0:
+        return UNKNOWN if ample == UNKNOWN else GOING_ON
+    let_join(r, actors, wide, at)
     bits = np.uint32(bits_for(len(table)))
-    row = batch.origins[begin]
-    fair, later = False, False
     for k in range(count):
-        if has(inside, r.whose[k]):
-            if is_seen(m, r, words, row * width, batch.words, (begin + k) * width, width):
-                return False
-            fair = fair or bool(r.step_flags[batch.steps[begin + k]] & FAIR)
-            if not later:
-                number = find(words, table, batch.words, begin + k, batch.hashes[begin + k], width, bits)
-                later = number < 0 or number > row
-    return fair and later
+        if has(r.sets, at, r.whose[k]):
+            number = find(words, table, batch.words, k, batch.hashes[k], width, bits)
+            if number < 0:
+                return k
+            r.more[:] = np.uint64(0)
+            if end_of(trails, number, r.more) != row:
+                return k
+            for word in range(len(r.taken)):
+                r.taken[word] |= r.more[word]
+    return GOING_ON if ignores(r, r.owners, 0, wide) else NOBODY_LEFT
 
 
 @njit(cache=True)
 def choose(
-    m: Model, r: Members, words: Words, table: Any, batch: Batch, begin: int, count: int, state: State
-) -> tuple[bool, np.uint64]:
-    """Return whether all is known, and whose steps are to be followed: everybody's where no set is ample."""
+    m: Model, r: Members, trails: Trails, words: Words, table: Any, batch: Batch, count: int, state: State
+) -> int:
+    """Return which transition leads on of those that are followed, or what is said in its place; note who is inside.
+
+    The sets around who moved last come first, then the others', the smallest first: one with one step at once.
+    """
     if count < 2:
-        return True, EVERYBODY
-    width = state[WORDS]
-    actors = meet(m, r, words, batch.origins[begin] * width, r.here, state)
+        return EVERYBODY
+    row = state[AT]
+    actors = meet(m, r, words, row * state[WORDS], state)
     if actors < 0:
-        return False, EVERYBODY
+        return UNKNOWN
     if actors > MOST_HERE:
-        return True, EVERYBODY
-    attribute(r, batch, begin, count)
-    found = gather_sets(r, batch, begin, count, actors)
-    for _ in range(found):
-        least = np.int64(-1)
-        for j in range(found):
-            if 0 <= r.sizes[j] < count and (least < 0 or r.sizes[j] < r.sizes[least]):
-                least = j
-        if least < 0:
-            break
-        r.sizes[least] = TRIED
-        if is_ample(m, r, words, table, batch, begin, count, r.sets[least], width):
-            return True, r.sets[least]
-    return True, EVERYBODY
+        return EVERYBODY
+    wide = (actors + WORD - 1) // WORD
+    attribute(r, batch, count, wide)
+    r.disturbers[: actors * wide] = np.uint64(0)
+    r.tried[:actors] = 0
+    r.taken[:] = np.uint64(0)
+    mover, found = NO_AGENT - 1 - np.int64(trails.leads[row]), np.int64(0)
+    for others in range(2):
+        begin = found
+        for k in range(count):
+            seed = np.int64(r.whose[k])
+            agent = np.int64(r.part[r.step_actor[batch.steps[k]]]) // KINDS
+            if (
+                not r.step_flags[batch.steps[k]] & AGENTS_OWN
+                or r.tried[seed]
+                or (agent != mover) != bool(others)
+            ):
+                continue
+            r.tried[seed] = 1
+            size = find_set(r, count, actors, wide, seed, found)
+            if size == TRIED:
+                continue
+            at = found * wide
+            r.sizes[found] = size
+            found += 1
+            if size == 1:
+                r.sizes[found - 1] = TRIED
+                onward = join(m, r, trails, words, table, batch, count, actors, at, state)
+                if onward != GOING_ON:
+                    return onward
+        for _ in range(begin, found):
+            least = np.int64(-1)
+            for j in range(begin, found):
+                if r.sizes[j] >= 0 and (least < 0 or r.sizes[j] < r.sizes[least]):
+                    least = j
+            if least < 0:
+                break
+            r.sizes[least] = TRIED
+            onward = join(m, r, trails, words, table, batch, count, actors, least * wide, state)
+            if onward != GOING_ON:
+                return onward
+    return EVERYBODY
 
 
-@njit(cache=True, nogil=True)
-def store_reduced(
+@njit(cache=True)
+def expand_reduced(
     m: Model,
     r: Members,
+    trails: Trails,
     words: Words,
     origins: Any,
     table: Any,
     batch: Batch,
-    gathered: int,
-    at: int,
+    until: int,
+    room: int,
     met: State,
     counts: State,
     state: State,
-    walked: State,
-) -> int:
-    """Look up what was gathered of the rows before `at`, as `kernel.store` does, but of ample sets where there are any.
+) -> bool:
+    """Expand rows up to a number, or until so many new ones came, by ample sets where there are any.
 
-    It is counted how often each transition was met, and how often it was followed. Where the actors of a row are not
-    known, the row is returned and nothing from there on is stored; what was not known is noted in `walked`, since
-    `gather` notes the same in `state` beside it.
+    It is counted how often each transition was met, and how often it was followed. False where something is not known
+    of the row that comes next: of that, nothing was stored.
     """
-    width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
-    walked[WORDS], walked[ALPHA] = width, state[ALPHA]
+    width, limit = state[WORDS], state[LIMIT]
     bits = np.uint32(bits_for(len(table)))
-    begin, touched = np.int64(0), np.int64(0)
-    expanded, missed = at, np.int64(ALL_KNOWN)
-    while begin < gathered:
-        row = batch.origins[begin]
-        end = begin + 1
-        while end < gathered and batch.origins[end] == row:
-            end += 1
-        if end > touched:
-            until = max(end, min(touched + BLOCK, gathered))
-            state[TOUCHED] = touch(words, table, batch.hashes, touched, until, width)
-            touched = until
-        known, inside = choose(m, r, words, table, batch, begin, end - begin, walked)
+    wide = len(r.taken)
+    while state[AT] < until and state[SIZE] + len(batch.steps) <= room:
+        row = state[AT]
+        count = list_steps(m, words, batch, state)
+        if count > 0:
+            count = without_repetitions(m, r, words, batch, count, state)
+        if count == UNKNOWN:
+            return False
+        onward = choose(m, r, trails, words, table, batch, count, state) if count else np.int64(EVERYBODY)
+        known = onward != UNKNOWN
+        for k in range(count if known else 0):
+            if onward == EVERYBODY or has(r.inside, 0, r.whose[k]):
+                known = known and make(m, r, words, batch, k, state)
         if not known:
-            expanded = missed = row
-            break
-        for k in range(begin, end):
-            met[batch.steps[k]] += 1
-            if inside != EVERYBODY and not has(inside, r.whose[k - begin]):
+            return False
+        for k in range(count):
+            step = batch.steps[k]
+            met[step] += 1
+            if onward != EVERYBODY and not has(r.inside, 0, r.whose[k]):
                 continue
-            counts[batch.steps[k]] += 1
-            found = find(words, table, batch.words, k, batch.hashes[k], width, bits)
-            if found >= 0:
-                continue
-            if size >= limit:
+            counts[step] += 1
+            number = find(words, table, batch.words, k, batch.hashes[k], width, bits)
+            if number < 0 and state[SIZE] >= limit:
                 state[CUT] += 1
                 continue
-            for j in range(width):
-                words[size * width + j] = batch.words[k * width + j]
-            origins[size] = row
-            table[-found - 1] = entry_of(batch.hashes[k], size, bits)
-            size += 1
-        begin = end
-    state[SIZE] = size
-    state[EXPANDED] = expanded
-    return missed
+            if number < 0:
+                slot, number = -number - 1, np.int64(state[SIZE])
+                for j in range(width):
+                    words[number * width + j] = batch.words[k * width + j]
+                origins[number] = row
+                table[slot] = entry_of(batch.hashes[k], number, bits)
+                agent = np.int64(r.part[r.step_actor[step]]) // KINDS
+                trails.leads[number] = NO_AGENT - (agent + 1 if agent < r.agents else 0)
+                state[SIZE] += 1
+            if k == onward:
+                trails.leads[row] = number
+                for word in range(wide):
+                    trails.taken[row * wide + word] = r.taken[word]
+        state[AT] += 1
+        state[EXPANDED] = state[AT]
+    return True

@@ -5,7 +5,7 @@ that a column was found to take are interned in the order in which they were met
 they need. Growing beyond them asks for a new packing.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,13 +35,21 @@ Place = tuple[Cell, int, Name] | tuple[Cell]
 """What a column is of: a cell's skeleton, or what the hole of that number says of a name."""
 
 
+@dataclass(slots=True)
+class Growth:
+    """Counts how many times columns were made, or took a bit more."""
+
+    times: int = 0
+
+
 class Column:
     """The values that a column takes, by code; what is said of one name has the same codes in every column."""
 
-    __slots__ = ("codes", "place", "values")
+    __slots__ = ("codes", "growth", "place", "values")
 
-    def __init__(self, place: Place, first: Any, alike: "Column | None" = None) -> None:
+    def __init__(self, place: Place, first: Any, growth: Growth, alike: "Column | None" = None) -> None:
         self.place = place
+        self.growth = growth
         self.values: list[Any] = [first] if alike is None else alike.values
         self.codes: dict[Any, int] = {first: 0} if alike is None else alike.codes
 
@@ -56,6 +64,8 @@ class Column:
         if known is None:
             known = self.codes[value] = len(self.values)
             self.values.append(value)
+            if known & (known - 1) == 0:  # the codes before it had a bit less
+                self.growth.times += 1
         return known
 
 
@@ -69,6 +79,7 @@ class Columns:
     Attributes:
         mobile: The names that an observation has columns for.
         apart: The names about which a rule's conclusion is worked out apart: those, and agents.
+        growth: How many times it grew; what depends on the columns' bits alone stays as it is until then.
     """
 
     def __init__(self, mobile: frozenset[Name], agents: frozenset[Name] = frozenset()) -> None:
@@ -78,7 +89,8 @@ class Columns:
         self.all: list[Column] = []
         self.numbers: dict[Place, int] = {}
         self.holes: dict[Cell, int] = {}
-        self.about = {name: Column((NAMES, 0, name), NOTHING_SEEN) for name in self.names}
+        self.growth = Growth()
+        self.about = {name: Column((NAMES, 0, name), NOTHING_SEEN, self.growth) for name in self.names}
 
     def __len__(self) -> int:
         return len(self.all)
@@ -93,8 +105,25 @@ class Columns:
     def _add(self, place: Place, first: Any) -> int:
         self.numbers[place] = len(self.all)
         alike = self.about[place[2]] if len(place) == 3 else None
-        self.all.append(Column(place, first, alike))
+        self.all.append(Column(place, first, self.growth, alike))
+        self.growth.times += 1
         return self.numbers[place]
+
+    @property
+    def sizes(self) -> list[int]:
+        """How many values each column takes so far."""
+        return [len(column.values) for column in self.all]
+
+    def room(self, varying: Set[Cell]) -> list[int]:
+        """Return for how many values each column is given bits: what varies for as many as the widest of its kind."""
+        kinds = [(column.place[0][0], len(column.place)) for column in self.all]
+        widest: dict[tuple[str, int], int] = {}
+        for kind, size in zip(kinds, self.sizes, strict=True):
+            widest[kind] = max(size, widest.get(kind, 1))
+        return [
+            widest[kind] if column.place[0] in varying else 1
+            for kind, column in zip(kinds, self.all, strict=True)
+        ]
 
     def start(self, cell: Cell, value: Any) -> None:
         """Make the columns of a cell that every configuration has, beginning with its first value."""
@@ -185,6 +214,16 @@ class Packing:
         """The mask of each column's code, unshifted."""
         return self.columns[2::3]
 
+    def code(self, words: Sequence[int], column: int) -> int:
+        """Return the code of one column in a row; of one that was made since, its first."""
+        word, shift, mask = self.columns[3 * column : 3 * column + 3].tolist() or (0, 0, 0)
+        return words[word] >> shift & mask
+
+    def codes(self, words: NDArray[np.uint64]) -> list[int]:
+        """Return the code of each column in a row."""
+        found: list[int] = ((words[self.word] >> self.shift) & self.mask).tolist()
+        return found
+
     def holds(self, sizes: Sequence[int]) -> bool:
         """Tell whether every column has bits for as many values."""
         return bool(np.all(np.array(sizes, np.uint64) - np.uint64(1) <= self.mask))
@@ -220,23 +259,25 @@ def packing(sizes: Sequence[int], words: int = 1) -> Packing:
     bits = [max(size - 1, 0).bit_length() for size in sizes]
     rows: list[list[int]] = [[] for _ in range(words)]
     room = [WORD] * words
-    for number in sorted(range(len(bits)), key=lambda n: -bits[n]):
-        at = next((word for word, free in enumerate(room) if free >= bits[number]), len(room))
+    full = 0  # how many of the first words are
+    for number in sorted(np.flatnonzero(bits).tolist(), key=lambda n: -bits[n]):
+        at = next((word for word in range(full, len(room)) if room[word] >= bits[number]), len(room))
         if at == len(room):
             rows.append([])
             room.append(WORD)
         rows[at].append(number)
         room[at] -= bits[number]
-    columns = np.zeros((len(sizes), 3), np.uint64)
+        while full < len(room) and not room[full]:
+            full += 1
+    columns = [(0, 0, 0)] * len(sizes)
     for word, (numbers, free) in enumerate(zip(rows, room, strict=True)):
-        growing = [number for number in numbers if bits[number]]
         shift = 0
         for place, number in enumerate(numbers):
-            spare = (free + len(growing) - 1 - place) // len(growing) if number in growing else 0
-            wide = bits[number] + min(spare, 1 if len(growing) > 1 else free)
-            columns[number] = word, shift % WORD, (1 << wide) - 1
+            spare = (free + len(numbers) - 1 - place) // len(numbers)
+            wide = bits[number] + min(spare, 1 if len(numbers) > 1 else free)
+            columns[number] = word, shift, (1 << wide) - 1
             shift += wide
-    return Packing(len(rows), columns.ravel())
+    return Packing(len(rows), np.array(columns, np.uint64).ravel())
 
 
 def shifts(old: Packing, new: Packing) -> NDArray[np.uint64]:
@@ -246,10 +287,12 @@ def shifts(old: Packing, new: Packing) -> NDArray[np.uint64]:
     right.
     """
     masks: dict[tuple[int, int, int], int] = {}
-    for column in np.flatnonzero(old.mask):
-        far = int(new.shift[column]) - int(old.shift[column])
-        way = (int(old.word[column]), int(new.word[column]), far)
-        masks[way] = masks.get(way, 0) | int(old.mask[column]) << int(old.shift[column])
+    stood, stand = (where.columns.reshape(-1, 3).tolist() for where in (old, new))
+    for before, after in zip(stood, stand, strict=False):  # columns that were made since have no bits to move
+        (word, shift, mask), (target, there, _) = before, after
+        if mask:
+            way = (word, target, there - shift)
+            masks[way] = masks.get(way, 0) | mask << shift
     found = [
         (source, target, mask, max(far, 0), max(-far, 0)) for (source, target, far), mask in masks.items()
     ]

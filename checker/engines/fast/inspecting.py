@@ -286,7 +286,7 @@ def look_at_invariant(survey: Survey, inspection: Invariant) -> None:
         (None if fine else inspection.WRONG, int(count), int(first))
         for fine, first, count in zip(good, firsts, counts, strict=True)
     ]
-    _collect(survey, inspection, tallies, lambda: Invariant(inspection.formula))
+    _collect(survey, inspection, tallies, lambda: Invariant(inspection.formula, inspection.shown))
 
 
 def look_at_reachability(survey: Survey, inspection: Reachability) -> None:

@@ -88,9 +88,6 @@ BLOCK = 1 << 12
 WIDE = -2
 """What stands in the place of a node where one row has more successors than a batch holds."""
 
-ALL_KNOWN = -1
-"""What stands for a row at which something was not known, where there is none."""
-
 PLACE, MOVE = 3, 5
 
 # Indices are unsigned in the inner loops: of signed ones numba asks whether they count from the end.

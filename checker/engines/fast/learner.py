@@ -5,16 +5,17 @@ tree whose leaves hold its transitions. What a transition writes name by name (a
 tree for each mobile name, walked by itself: the answers of one observation do not multiply.
 """
 
+from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from checker.engines.fast.columns import Columns
+from checker.engines.fast.columns import Columns, Packing, Writes
 from checker.engines.fast.leaves import ALIKE, CROWDED, NO_TURN, STEP, UNLIKE, Effect, Leaves, Step
-from checker.engines.fast.recording import Ask, Asked, Recorder, Source
+from checker.engines.fast.recording import Ask, Recorder, Scope, Source
 from checker.engines.fast.skeletons import settled
 from checker.engines.fast.trees import Trees
-from checker.engines.fast.writing import Concluded, Relearn, Writing
+from checker.engines.fast.writing import Concluded, Relearn, Varies, Writing
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Fact, agent_key
 from semantics.behaviours.statements import Migrate, Spawn
@@ -72,10 +73,11 @@ class Known:
 
 @dataclass(slots=True)
 class CodedSource(Source):
-    """A configuration given by the codes of its columns."""
+    """A configuration given by a packed row: of its many columns only those are read that are asked for."""
 
     columns: Columns
-    codes: list[int]
+    packing: Packing
+    words: list[int]
 
     def skeleton(self, cell: Cell) -> Any:
         """Return the skeleton of a cell's value, None where there is no such cell."""
@@ -87,8 +89,8 @@ class CodedSource(Source):
         return fact
 
     def code(self, number: int) -> int:
-        """Return the code of a column; one that was made since holds its first."""
-        return self.codes[number] if number < len(self.codes) else 0
+        """Return the code of a column."""
+        return self.packing.code(self.words, number)
 
     def _value(self, place: Any) -> Any:
         number = self.columns.number(place)
@@ -105,7 +107,8 @@ class Learner:
         pending: How many requests or messages an agent may have before it is not followed further.
         runs: How many times an actor's rules were run in Python.
         owners: What each tree is about.
-        taken: For each tree the cells that were taken to be never written.
+        taken: For each cell that was taken to be never written, the trees that did so.
+        writers: For each cell the trees that write it.
         answers: What a question is answered with, leaf by leaf.
         reads: For each leaf of an actor what was asked of which column to come there, with the answer.
         steps: The label of each transition, as it was when it was learned.
@@ -120,7 +123,8 @@ class Learner:
     trees: Trees = field(default_factory=Trees)
     leaves: Leaves = field(default_factory=Leaves)
     owners: list[Actor | PartOf | Question] = field(default_factory=list)
-    taken: list[set[Cell]] = field(default_factory=list)
+    taken: defaultdict[Cell, set[int]] = field(default_factory=lambda: defaultdict(set))
+    writers: defaultdict[Cell, set[int]] = field(default_factory=lambda: defaultdict(set))
     planted: dict[Actor, int] = field(default_factory=dict)
     varying: set[Cell] = field(default_factory=set)
     rules: dict[str, int] = field(default_factory=dict)
@@ -152,31 +156,41 @@ class Learner:
 
     def _plant(self, owner: Actor | PartOf | Question) -> int:
         self.owners.append(owner)
-        self.taken.append(set())
         return self.trees.plant()
 
     def learn(self, tree: int, source: CodedSource) -> None:
         """Run the rules of a tree's actor on a configuration, and let the tree know what they asked and wrote."""
+        while not self._learned(tree, source):
+            pass
+
+    def _learned(self, tree: int, source: CodedSource) -> bool:
+        """Learn a tree's way for a configuration; False where something was not what it was taken for till now."""
         owner = self.owners[tree]
         self.runs += 1
         try:
             if isinstance(owner, PartOf):
                 owner.recorder.source = source  # it agrees on all that the rules themselves asked
                 self._learn_part(tree, owner, source)
-                return
+                return True
             recorder = Recorder(source, self.still, self.varying.__contains__, self.columns.mobile)
             if isinstance(owner, Actor):
                 self._learn_root(tree, owner, recorder, source)
             else:
                 self._learn_answer(tree, owner, recorder, source)
         except Relearn as news:
-            self.forget(news.cell)
+            self.forget_those(self.taken if isinstance(news, Varies) else self.writers, news.cell)
+            return False
+        return True
 
-    def forget(self, cell: Cell | None = None) -> None:
-        """Forget what was learned by taking a cell to be never written; everything where none is named."""
-        for tree, taken in enumerate(self.taken):
-            if cell is None or cell in taken:
-                self.trees.forget(tree)
+    def forget(self) -> None:
+        """Forget everything."""
+        for tree in range(len(self.owners)):
+            self.trees.forget(tree)
+
+    def forget_those(self, trees: dict[Cell, set[int]], cell: Cell) -> None:
+        """Forget what some trees know: those that took a cell for something that it is not."""
+        for tree in trees.pop(cell, ()):
+            self.trees.forget(tree)
 
     def _learn_root(self, tree: int, actor: Actor, recorder: Recorder, source: CodedSource) -> None:
         c = Configuration(self.setting, recorder)
@@ -186,33 +200,41 @@ class Learner:
         parts = [[self._plant(PartOf(recorder, each, name)) for name in each.apart] for each in concluded]
         for each, trees in zip(concluded, parts, strict=True):
             each.effect.parts = trees
+        for each in concluded:
+            self._note_writer(tree, each.effect.writes)
         leaf = self.leaves.add(self._steps(actor, concluded), CROWDED if is_full else 0)
         self.whose |= dict.fromkeys(self.leaves.steps_of(leaf), actor)
-        self.reads[leaf] = tuple((self._column(ask), ask, said) for ask, said in recorder.scopes[0].items())
-        self._grow(tree, recorder.scopes[0], recorder.taken, leaf, source)
+        self.reads[leaf] = tuple(
+            (self._column(ask), ask, said) for ask, said in recorder.scopes[0].asked.items()
+        )
+        self._grow(tree, recorder.scopes[0], leaf, source)
         for part in (part for trees in parts for part in trees):
-            owner = self.owners[part]
-            assert isinstance(owner, PartOf)
-            self._learn_part(part, owner, source)
+            self.learn(part, source)
 
     def _learn_answer(self, tree: int, question: Question, recorder: Recorder, source: CodedSource) -> None:
         answer = settled(question(Configuration(self.setting, recorder)))
         leaf = self.leaves.add(())
         self.answers[leaf] = answer
-        self._grow(tree, recorder.scopes[0], recorder.taken, leaf, source)
+        self._grow(tree, recorder.scopes[0], leaf, source)
 
     def _column(self, ask: Ask) -> int:
         return self.columns.number((ask.cell,) if ask.hole is None else (ask.cell, *ask.hole))
 
     def _learn_part(self, tree: int, part: PartOf, source: CodedSource) -> None:
-        writes, asked = part.recorder.apart(lambda: self.writing.part(part.concluded, part.name))
-        self._grow(tree, asked, part.recorder.taken, self.leaves.add([Step(Effect(writes))]), source)
+        writes, scope = part.recorder.apart(lambda: self.writing.part(part.concluded, part.name))
+        self._note_writer(tree, writes)
+        self._grow(tree, scope, self.leaves.add([Step(Effect(writes))]), source)
 
-    def _grow(self, tree: int, asked: Asked, taken: set[Cell], leaf: int, source: CodedSource) -> None:
-        self.taken[tree] |= taken
+    def _note_writer(self, tree: int, writes: Writes) -> None:
+        for number, _ in writes:
+            self.writers[self.columns.all[number].place[0]].add(tree)
+
+    def _grow(self, tree: int, scope: Scope, leaf: int, source: CodedSource) -> None:
+        for cell in scope.taken:
+            self.taken[cell].add(tree)
         path: list[tuple[Ask, Any]] = []
         columns = []
-        for ask, answer in asked.items():
+        for ask, answer in scope.asked.items():
             number = self._column(ask)
             columns.append((self.columns.all[number], number))
             path.append((ask, source.code(number) if ask.question is None else answer))

@@ -3,16 +3,30 @@
 What is chosen is what `checker.reduction.ample` chooses, configuration for configuration.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
+from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from checker.engines.fast.ample import AGENTS_OWN, FAIR, MOST_HERE, PARTS, RECORD, Members
+from checker.engines.fast.ample import (
+    AGENTS_OWN,
+    FAIR,
+    KINDS,
+    MOST_HERE,
+    NO_AGENT,
+    PARTS,
+    RECORD,
+    WORD,
+    Members,
+    Trails,
+)
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.columns import Packing
-from checker.engines.fast.learner import Learner
+from checker.engines.fast.learner import Learner, agents_of
 from checker.engines.fast.leaves import LEAF
+from checker.engines.fast.pages import Pages
 from checker.properties.inspections import never_ends
 from checker.reduction.actors import Acting, Actor
 from checker.reduction.ample import Ample
@@ -21,8 +35,9 @@ from checker.reduction.visible import Seen
 from semantics.state.configuration import Configuration, Label
 from semantics.state.signature import Name
 
-WORD = 64
 NOBODY = -1
+
+AGENT_PARTS = ("program", "line", "request")
 
 
 class Here(NamedTuple):
@@ -44,32 +59,63 @@ class Choosing:
         self.learner = learner
         self.ample = ample
         self.agents: dict[Name, int] = {}
+        self.groups: list[tuple[Name, ...]] = []
+        self.trees: tuple[NDArray[np.int32], ...] = ()
         actors = ample.actors
         self.clauses = [
             learner.question(_of_clause(ample, number)) for number in range(len(actors.setting.environment))
         ]
         self.numbers: dict[Actor, int] = {}
+        self.everyone = {name: k for k, name in enumerate(sorted(agents_of(learner.setting, learner.still)))}
+        self.part = Growing(np.int32)
         self.footprints: dict[Footprint, int] = {}
         self.begins = Growing(np.int32)
         self.actors = Growing(np.int32)
         self.step_actor = Growing(np.int32)
         self.step_flags = Growing(np.int32)
+        self.leads, self.taken = Pages(np.int32, 1), Pages(np.uint64, self.wide)
+        self.leads.room[0] = NO_AGENT
         self.stride = self.width = 0
         self.looked: tuple[object, ...] = ()
 
-    def see(self, groups: Iterable[tuple[Name, ...]], where: Packing, successors: int) -> None:
+    @property
+    def wide(self) -> int:
+        """How many words have a bit for each part of each agent, and for each clause."""
+        return -(-(KINDS * len(self.everyone) + len(self.clauses)) // WORD) or 1
+
+    @property
+    def trails(self) -> Trails:
+        """The paths so far; growing makes others: don't keep them."""
+        return Trails(self.leads.room, self.taken.room)
+
+    def reserve(self, rows: int) -> None:
+        """Make room for the paths of so many rows."""
+        self.leads.grow(rows)
+        self.taken.grow(rows * self.wide)
+
+    def held(self, rows: int) -> int:
+        """Return how many bytes the paths of so many rows take."""
+        return self.leads.held(rows) + self.taken.held(rows * self.wide)
+
+    def see(self, groups: list[tuple[Name, ...]], where: Packing, successors: int) -> None:
         """Take in what was learned since; groups are the agents that there are, for each value of their cell."""
-        trees = [[*map(self._agent, group), *self.clauses] for group in groups]
-        begins = np.cumsum([0, *map(len, trees)])
+        if groups != self.groups:
+            self.groups = list(groups)
+            trees = [[*map(self._agent, group), *self.clauses] for group in groups]
+            begins = np.cumsum([0, *map(len, trees)])
+            self.trees = (
+                begins.astype(np.int32),
+                np.array([tree for group in trees for tree in group], np.int32),
+            )
         self._take_leaves()
         self._take_steps()
         self._take_footprints()
         self._look(where)
-        self.members = Members(
-            begins.astype(np.int32),
-            np.array([tree for group in trees for tree in group], np.int32),
+        learned = (
+            *self.trees,
             self.begins.room,
             self.actors.room,
+            self.part.room,
             self.words,
             self.disturbed,
             self.step_actor.room,
@@ -78,11 +124,26 @@ class Choosing:
             self.seen_whole,
             self.seen,
             self.seen_answers,
+            len(self.everyone),
+        )
+        self.members = Members._make((*learned, *self._room(successors)))
+
+    def _room(self, successors: int) -> tuple[Any, ...]:
+        """Return the room for one row."""
+        sets, words = MOST_HERE * MOST_HERE // WORD, MOST_HERE // WORD
+        return (
             np.zeros(MOST_HERE, np.int32),
-            np.zeros(MOST_HERE, np.uint64),
+            np.zeros(len(self.part.room), np.int32),
             np.zeros(successors, np.int32),
-            np.zeros(MOST_HERE, np.uint64),
+            np.zeros(successors, np.uint8),
+            np.zeros(sets, np.uint64),
+            np.zeros(sets, np.uint64),
             np.zeros(MOST_HERE, np.int64),
+            *(np.zeros(words, np.uint64) for _ in range(3)),
+            np.zeros(MOST_HERE, np.int32),
+            np.zeros(MOST_HERE, np.int32),
+            np.zeros(self.wide, np.uint64),
+            np.zeros(self.wide, np.uint64),
         )
 
     # --- actors -----------------------------------------------------------------------------------------------------
@@ -93,7 +154,15 @@ class Choosing:
         return self.agents[agent]
 
     def _number(self, actor: Actor) -> int:
-        return self.numbers.setdefault(actor, len(self.numbers))
+        if actor not in self.numbers:
+            self.numbers[actor] = len(self.numbers)
+            self.part.append(self._part(actor))
+        return self.numbers[actor]
+
+    def _part(self, actor: Actor) -> int:
+        if actor.kind == "clause":
+            return KINDS * len(self.everyone) + int(actor.owner)
+        return KINDS * self.everyone[str(actor.owner)] + AGENT_PARTS.index(actor.kind)
 
     def _footprint(self, footprint: Footprint) -> int:
         return self.footprints.setdefault(footprint, len(self.footprints))
@@ -136,7 +205,8 @@ class Choosing:
             self.words = np.zeros(self.stride * PARTS * slots, np.uint64)
             self.disturbed = np.zeros(self.stride * self.stride, np.uint8)
             self.written = 0
-        for footprint, number in list(self.footprints.items())[self.written :]:
+        new = count - self.written
+        for footprint, number in islice(reversed(self.footprints.items()), new):
             at = number * PARTS * slots
             self.words[at : at + PARTS * slots] = [
                 word

@@ -46,6 +46,21 @@ class Source(Protocol):
 
 
 @dataclass(slots=True)
+class Scope:
+    """What the rule itself asked, or a part of its conclusion beyond that.
+
+    Attributes:
+        asked: The questions with their answers.
+        taken: The cells that were taken to be never written.
+        known: What was worked out already.
+    """
+
+    asked: Asked = field(default_factory=dict)
+    taken: set[Cell] = field(default_factory=set)
+    known: dict[Any, Any] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
 class Recorder:
     """Cells that note what is asked of them.
 
@@ -54,9 +69,7 @@ class Recorder:
         still: The value of each cell that is never written, None for no such cell; cells not here are asked.
         varies: Tells whether a cell is ever written.
         mobile: The names that parts are recorded apart for.
-        scopes: What was asked, by the rule itself and then by the part that is being recorded.
-        taken: The cells that were taken to be never written.
-        known: What was worked out already, scope by scope.
+        scopes: That of the rule itself, and then that of the part that is being recorded.
         families: The pointwise definitions that were made.
     """
 
@@ -64,15 +77,13 @@ class Recorder:
     still: Row
     varies: Callable[[Cell], bool]
     mobile: frozenset[Name]
-    scopes: list[Asked] = field(default_factory=lambda: [{}])
-    taken: set[Cell] = field(default_factory=set)
-    known: list[dict[Any, Any]] = field(default_factory=lambda: [{}])
+    scopes: list[Scope] = field(default_factory=lambda: [Scope()])
     families: list[Any] = field(default_factory=list)
 
     def read(self, cell: Cell) -> Any:
         """Return the value of a cell, and note its skeleton; what its observations say is noted as it is asked."""
         if not self.varies(cell):
-            self.taken.add(cell)
+            self.scopes[-1].taken.add(cell)
             return self.still.read(cell)
         skeleton = self._note(Ask(cell), lambda: self.source.skeleton(cell))
         return put_together(skeleton, lambda hole: Heard(self, cell, hole))
@@ -80,7 +91,7 @@ class Recorder:
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
         """Ask a cell, and note the yes or no."""
         if not self.varies(cell):
-            self.taken.add(cell)
+            self.scopes[-1].taken.add(cell)
             return question(self.still.read(cell), *constants)
         ask = Ask(cell, None, question, constants)
         answer: bool = self._note(ask, lambda: question(self.source.skeleton(cell), *constants))
@@ -109,29 +120,27 @@ class Recorder:
         """Return that nothing was written."""
         return frozenset()
 
-    def apart(self, part: Callable[[], Part]) -> tuple[Part, Asked]:
+    def apart(self, part: Callable[[], Part]) -> tuple[Part, Scope]:
         """Return a part with what it asked beyond the rule itself."""
-        self.scopes.append({})
-        self.known.append({})
+        self.scopes.append(Scope())
         try:
             return part(), self.scopes[-1]
         finally:
             self.scopes.pop()
-            self.known.pop()
 
     def once(self, what: Any, work: Callable[[], Any]) -> Any:
         """Work something out once where it is wanted: what it asks belongs to whoever wanted it."""
-        for known in self.known:
-            if what in known:
-                return known[what]
-        self.known[-1][what] = found = work()
+        for scope in self.scopes:
+            if what in scope.known:
+                return scope.known[what]
+        self.scopes[-1].known[what] = found = work()
         return found
 
     def _note(self, ask: Ask, answer: Callable[[], Any]) -> Any:
         for scope in self.scopes:
-            if ask in scope:
-                return scope[ask]
-        self.scopes[-1][ask] = found = answer()
+            if ask in scope.asked:
+                return scope.asked[ask]
+        self.scopes[-1].asked[ask] = found = answer()
         return found
 
 

@@ -90,10 +90,9 @@ class Space:
         self.choosing = choosing
         self.compact = compact
         self.state = np.zeros(kernel.STATE, np.int64)
-        self.walked = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
         self.beside = ThreadPoolExecutor(1) if cores() > 1 else None
-        self.storing: Future[int] | None = None
+        self.storing: Future[None] | None = None
         self.packing: Packing
         self.batch: kernel.Batch
         self.full: kernel.Batch
@@ -101,10 +100,13 @@ class Space:
         self.learned: list[tuple[int, int, int, int]] = []
         self.clauses = [learner.tree(Actor(by_clause, clause)) for clause in learner.setting.environment]
         self.actors = len(self.clauses)
+        self.groups: list[tuple[Name, ...]] = []
+        self.trees: tuple[NDArray[np.int32], ...] = ()
         self.counts = Growing(np.int64)
         self.met = self.counts if choosing is None else Growing(np.int64)
         self.masks = Growing(np.uint64)
         self.located = 0
+        self.grown = -1
         self.rows = Rows(1, FIRST_ROWS, self.ORIGIN)
         self.table = Pages(np.uint32, 1)
         self._add_first()
@@ -144,7 +146,8 @@ class Space:
     @property
     def bytes_used(self) -> int:
         """How many bytes rows, origins and the visited set take; of room that was never written, nothing."""
-        return self.rows.held(self.size) + self.table.room.nbytes
+        paths = 0 if self.choosing is None else self.choosing.held(self.size)
+        return self.rows.held(self.size) + self.table.room.nbytes + paths
 
     def rules(self, *, followed: bool = True) -> Counter[str]:
         """Return how many transitions each rule has: those that were followed, or all."""
@@ -165,26 +168,48 @@ class Space:
 
     def codes(self, number: int) -> list[int]:
         """Return the code of each column in a row."""
-        at, where = number * self.packing.words, self.packing
-        words = self.rows.words[at : at + where.words]
-        return [int(code) for code in (words[where.word] >> where.shift) & where.mask]
+        return self.packing.codes(self._words(number))
+
+    def _words(self, number: int) -> NDArray[np.uint64]:
+        at = number * self.packing.words
+        return self.rows.words[at : at + self.packing.words]
 
     # --- expanding ------------------------------------------------------------------------------------------------
 
     def advance(self, until: int) -> None:
         """Expand rows up to a number, learning what is not known on the way."""
         self.state[AT], self.state[GATHERED] = self.expanded, 0
+        if self.choosing is not None:
+            self._advance_by(self.choosing, until)
+            return
         try:
-            while self.state[AT] < until or not self._stored():
+            while self.state[AT] < until:
                 known = kernel.gather(self.model, self.rows.words, self.batch, self.state, until)
-                if self._stored():
-                    self._hand_over()
-                    if not known and self._stored():
-                        self._miss()
+                self._stored()
+                self._hand_over()
+                if not known:
+                    self._stored()
+                    self._miss()
         finally:
-            if self.storing is not None:  # something has stopped it
-                self.storing.result()
-                self.storing = None
+            self._stored()
+
+    def _advance_by(self, choosing: "Choosing", until: int) -> None:
+        """Expand rows up to a number, following what is chosen."""
+        while self.state[AT] < until:
+            new = 2 * len(self.batch.steps)
+            self._make_room(new)
+            choosing.reserve(self.rows.room)
+            if not self._expand(choosing, until, self.size + new):
+                self._miss()
+
+    def _expand(self, choosing: "Choosing", until: int, room: int) -> bool:
+        """Expand rows up to a number, or until there are so many; False at what is not known."""
+        from checker.engines.fast.ample import expand_reduced  # noqa: PLC0415  # compiled where something is reduced
+
+        loop: Callable[..., bool] = expand_reduced
+        known = (self.model, choosing.members, choosing.trails)
+        arrays = (self.rows.words, self.rows.origins, self.table.room, self.batch)
+        return loop(*known, *arrays, until, room, self.met.room, self.counts.room, self.state)
 
     def _hand_over(self) -> None:
         """Let what was gathered be stored, and another batch take what comes next."""
@@ -194,37 +219,23 @@ class Space:
         if self.beside is not None and gathered >= WORTH:
             self.storing = self.beside.submit(self._store, gathered, int(self.state[AT]))
         else:
-            missed = self._store(gathered, int(self.state[AT]))
-            self.storing = Future()
-            self.storing.set_result(missed)
+            self._store(gathered, int(self.state[AT]))
 
-    def _store(self, gathered: int, at: int) -> int:
-        """Store what was gathered of the rows before one; return the first row whose actors are not known, if any."""
+    def _store(self, gathered: int, at: int) -> None:
+        """Store what was gathered of the rows before one."""
         arrays = (self.rows.words, self.rows.origins, self.table.room, self.full, gathered, at)
-        if self.choosing is not None:
-            from checker.engines.fast.ample import store_reduced  # noqa: PLC0415  # compiled where something is reduced
-
-            counts = (self.met.room, self.counts.room, self.state, self.walked)
-            return int(store_reduced(self.model, self.choosing.members, *arrays, *counts))
         if self.compact is None:
             kernel.store(*arrays, self.counts.room, self.state)
-            return kernel.ALL_KNOWN
+            return
         from checker.engines.fast.compacting import store_tags  # noqa: PLC0415  # compiled where it is wanted
 
         store_tags(*arrays, self.counts.room, self.state, self.compact)
-        return kernel.ALL_KNOWN
 
-    def _stored(self) -> bool:
-        """Wait until what was handed over is stored; if not all was known, learn that, and go back to there."""
-        if self.storing is None:
-            return True
-        missed = self.storing.result()
-        self.storing = None
-        if missed == kernel.ALL_KNOWN:
-            return True
-        self.state[AT], self.state[GATHERED] = missed, 0
-        self._learn(missed, self.walked)
-        return False
+    def _stored(self) -> None:
+        """Wait until what was handed over is stored."""
+        if self.storing is not None:
+            storing, self.storing = self.storing, None
+            storing.result()
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the leaf that each row leads to in a tree, learning what is not known on the way."""
@@ -234,7 +245,7 @@ class Space:
             look()
             done += kernel.classify(self.model, self.rows.words, rows[done:], tree, found[done:], self.state)
             if done < len(rows):
-                self._learn(int(rows[done]), self.state)
+                self._learn(int(rows[done]))
         return found
 
     def edges(self, rows: range) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int64]]]:
@@ -256,23 +267,23 @@ class Space:
             self._make_batches(2 * len(self.batch.hashes))
             self._see()
         else:
-            self._learn(int(self.state[AT]), self.state)
+            self._learn(int(self.state[AT]))
 
-    def _learn(self, row: int, walked: NDArray[np.int64]) -> None:
+    def _learn(self, row: int) -> None:
         """Learn what was not known of a row, as it was noted where a walk ended."""
-        unknown = (row, int(walked[TREE]), int(walked[NODE]), int(walked[CODE]))
+        unknown = (row, int(self.state[TREE]), int(self.state[NODE]), int(self.state[CODE]))
         self.learned.append(unknown)
-        self._learn_from(self.codes(row), *unknown[1:])
+        self._learn_from(self.packing, self._words(row), *unknown[1:])
         self._see()
 
-    def _learn_from(self, codes: list[int], tree: int, node: int, code: int) -> None:
-        """Learn what was not known at a node of a tree, from the codes of a row that came there."""
+    def _learn_from(self, where: Packing, words: NDArray[np.uint64], tree: int, node: int, code: int) -> None:
+        """Learn what was not known at a node of a tree, from a row that came there."""
         learner = self.learner
         if node >= 0:
             column = learner.columns.all[learner.trees.column_of(node)]
             if learner.trees.settle(node, code, column):
                 return
-        learner.learn(tree, CodedSource(learner.columns, codes))
+        learner.learn(tree, CodedSource(learner.columns, where, words.tolist()))
 
     def restore(
         self,
@@ -293,11 +304,9 @@ class Space:
             if not 0 <= row < len(rows):
                 raise ValueError("it learned from no row")
             self.learned.append((row, tree, node, code))
-            self._learn_again(
-                ((rows[row][where.word] >> where.shift) & where.mask).tolist(), tree, node, code
-            )
+            self._learn_again(where, rows[row], tree, node, code)
             self._agents(self._groups())  # plants the trees of agents that are new, in the same order
-        sizes = np.array([len(column.values) for column in self.learner.columns.all], np.int64)
+        sizes = np.array(self.learner.columns.sizes, np.int64)
         begins = np.concatenate(([0], np.cumsum(sizes)))
         if len(where.mask) != len(sizes) or not kernel.mark_used(
             words, where.words, where.columns, begins, np.zeros(begins[-1], np.bool_)
@@ -315,13 +324,15 @@ class Space:
         self._make_room(BATCH)
         self._see()
 
-    def _learn_again(self, codes: list[int], tree: int, node: int, code: int) -> None:
+    def _learn_again(
+        self, where: Packing, words: NDArray[np.uint64], tree: int, node: int, code: int
+    ) -> None:
         """Learn from a row of another space what that had learned there; raises ValueError where it can't have."""
         trees = self.learner.trees
         if not (0 <= tree < len(trees.root) and UNPLANTED <= node < len(trees.asks)):
             raise ValueError("it learned of what no rule asks")
         try:
-            self._learn_from(codes, tree, node, code)
+            self._learn_from(where, words, tree, node, code)
         except Exception as error:  # rules may do anything where a row is no configuration
             raise ValueError(f"a rule does not run on its rows: {type(error).__name__}: {error}") from error
 
@@ -329,9 +340,12 @@ class Space:
         """Let the loops see what is known now."""
         self._pack()
         groups = self._groups()
-        agents, begins = self._agents(groups)
+        if groups != self.groups:
+            self.groups = list(groups)
+            agents, begins = self._agents(groups)
+            self._take_turns(len(self.clauses) + max(end - begin for begin, end in pairwise(begins)))
+            self.trees = tuple(np.array(numbers, np.int32) for numbers in (begins, agents, self.clauses))
         trees, leaves = self.learner.trees, self.learner.leaves
-        self._take_turns(len(self.clauses) + max(end - begin for begin, end in pairwise(begins)))
         self._locate()
         self._make_masks()
         learned = (
@@ -343,9 +357,8 @@ class Space:
             leaves.copies,
             leaves.part,
         )
-        actors = (np.array(numbers, np.int32) for numbers in (begins, agents, self.clauses))
         self.model = kernel.Model._make(
-            (*(each.room for each in learned), self.masks.room, self.packing.columns, *actors)
+            (*(each.room for each in learned), self.masks.room, self.packing.columns, *self.trees)
         )
         if self.choosing is not None:
             self.choosing.see(groups, self.packing, len(self.batch.hashes))
@@ -391,11 +404,14 @@ class Space:
 
     def _pack(self) -> None:
         """Pack the rows anew where a column has outgrown its bits; the batch is empty of rows that matter."""
-        sizes = [len(column.values) for column in self.learner.columns.all]
+        columns = self.learner.columns
+        if self.grown == columns.growth.times:
+            return
+        self.grown, sizes = columns.growth.times, columns.sizes
         self.packing = self.packing.extended(sizes)
         if self.packing.holds(sizes):
             return
-        old, new = self.packing, packing(sizes, self.packing.words)
+        old, new = self.packing, packing(columns.room(self.learner.varying), self.packing.words)
         self._pack_as(new, len(self.batch.hashes))
         kernel.repack(self.rows.words, self.size, shifts(old, new), old.words, new.words)
         self._rebuild(len(self.table.room))
@@ -408,6 +424,7 @@ class Space:
         """
         self.rows.widen(where.words)
         self.packing, self.state[WORDS] = where, where.words
+        self.grown = -1
         self.masks.size = self.located = 0
         self._make_batches(successors)
 
@@ -415,7 +432,7 @@ class Space:
 
     def _add_first(self) -> None:
         codes = self.learner.columns.codes(self.learner.still)
-        where = packing([len(column.values) for column in self.learner.columns.all])
+        where = packing(self.learner.columns.sizes)
         self._pack_as(where, BATCH)
         for word, shift, code in zip(where.word, where.shift, codes, strict=True):
             self.rows.words[word] |= np.uint64(code) << shift

@@ -16,11 +16,19 @@ from semantics.state.signature import Name
 
 
 class Relearn(Exception):
-    """A cell was taken for what never varies (or the number of its holes: None): what was learned so must go."""
+    """A cell is not what it was taken for: what was learned so must go."""
 
-    def __init__(self, cell: Cell | None = None) -> None:
+    def __init__(self, cell: Cell) -> None:
         super().__init__(cell)
         self.cell = cell
+
+
+class Varies(Relearn):
+    """A cell was taken for what never varies."""
+
+
+class Deeper(Relearn):
+    """A cell was taken to hold fewer observations than it may: who writes it must write of the others, too."""
 
 
 @dataclass(slots=True)
@@ -60,7 +68,7 @@ class Writing:
         """Return what a transition writes.
 
         Raises:
-            Relearn: It writes a cell that was taken for what never varies.
+            Relearn: It writes a cell that was taken for what never varies, or to hold fewer observations.
         """
         found = Concluded(step)
         state = step.target.state
@@ -98,10 +106,10 @@ class Writing:
             if cell in self.still.layout.index and self.still.read(cell) == value:
                 return
             self.varying.add(cell)
-            raise Relearn(cell)
+            raise Varies(cell)
         found.effect.writes.append(self._coded((cell,), skeleton))
         if self.columns.dig(cell, len(families)):
-            raise Relearn
+            raise Deeper(cell)
         for number in range(self.columns.holes.get(cell, 0)):
             self._say(cell, number, families[number] if number < len(families) else {}, found)
 

@@ -1,6 +1,8 @@
 """Decide the temporal properties of a mission, on the edges that an exploration stored."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -18,7 +20,7 @@ from checker.properties.temporal.deadlock import Deadlocks
 from checker.properties.temporal.evaluation import is_true_on
 from checker.properties.temporal.fairness import EACH_RULE_AND_REQUEST, classes, conditions_of, optional
 from checker.properties.temporal.lassos import Lasso
-from checker.properties.temporal.linear import shortest_counterexample
+from checker.properties.temporal.linear import counterexample, shortest_counterexample
 from checker.properties.temporal.progress import Pending, Progress, Starved, owed, pending_requests
 from checker.properties.temporal.truth import Truth, Valuation, valuation
 from checker.properties.temporal.vacuity import Judged, is_judged, judge_branching, judge_linear
@@ -28,7 +30,7 @@ from checker.verdicts import Outcome, Verdict, Violation
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property, Ranges
 from semantics.properties.propositions import Proposition
-from semantics.properties.temporal import Fairness, Now, Temporal, atoms
+from semantics.properties.temporal import ENVIRONMENTS, Fairness, Now, Steps, Temporal, atoms
 from semantics.successors import expand
 
 
@@ -69,6 +71,20 @@ def where_pending(found: Exploration) -> Pending:
     if found.survey is not None:
         return found.survey.pending()
     return pending_requests(found.configurations)
+
+
+_RULES, _REQUESTS = EACH_RULE_AND_REQUEST
+_WORLD = Fairness(False, Steps(ENVIRONMENTS), (), "environment")
+ENOUGH: Final = {
+    "weak fairness of rules, requests": (_RULES, _REQUESTS),
+    "weak fairness of rules, requests, environment": (_RULES, _REQUESTS, _WORLD),
+    "strong fairness of requests and weak fairness of rules, environment": (
+        replace(_REQUESTS, strong=True),
+        _RULES,
+        _WORLD,
+    ),
+}
+"""Fairness that a mission usually means, as it is written, the less the earlier."""
 
 
 class Decider:
@@ -126,10 +142,11 @@ class Decider:
                 note=note,
                 remarks=(*remarks, *judged.remarks),
             )
-        message = f"false{'' if lasso.loop else ', whatever follows'}: {asked.temporal}"
+        message = f"false{'' if lasso.loop else ', whatever follows'}: {asked.shown}"
         if lasso.loop and is_true_on(lasso, asked.temporal, self.truth):
             raise AssertionError(f"the counterexample is none: {asked.temporal}")
-        violation = Violation(asked.kind, message, self.trace(lasso), tuple(self.pauses(lasso)))
+        details = (*self.pauses(lasso), *self.unfair(asked, self.is_fairly_true))
+        violation = Violation(asked.kind, message, self.trace(lasso), details)
         return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
 
     def judged(self, formula: Temporal, fairness: Conditions, ranges: Ranges) -> Judged:
@@ -163,11 +180,35 @@ class Decider:
                 remarks=remarks,
             )
         lasso = tree.evidence(formula, claimed=False)
-        details = tuple(self.pauses(lasso))
+        shown = tuple(self.pauses(lasso))
         if not len(lasso):
-            details = ("no single run shows it: it is about all that may follow",)
-        violation = Violation(asked.kind, f"false at c0: {formula}", self.trace(lasso), details)
+            shown = ("no single run shows it: it is about all that may follow",)
+        details = (*shown, *self.unfair(asked, self.is_fairly_true_of_all))
+        violation = Violation(asked.kind, f"false at c0: {asked.shown}", self.trace(lasso), details)
         return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
+
+    # --- fairness that would do
+
+    def unfair(self, asked: Property, holds: Callable[[Temporal, Conditions], bool]) -> Iterator[str]:
+        """Yield that a violated property holds under fairness, where it asks for none and everything was explored."""
+        if asked.fairness or not self.found.complete:
+            return
+        assert asked.temporal is not None
+        for words, fairness in ENOUGH.items():
+            if holds(asked.temporal, self.conditions(fairness)):
+                yield f"only unfair runs violate it: it holds under {words}"
+                return
+
+    def is_fairly_true(self, formula: Temporal, fairness: Conditions) -> bool:
+        """Tell whether a formula of linear time is true of all fair runs, as far as its automata are small."""
+        try:
+            return counterexample(self.graph, self.truth, formula, fairness) is None
+        except TooLargeError:
+            return False
+
+    def is_fairly_true_of_all(self, formula: Temporal, fairness: Conditions) -> bool:
+        """Tell whether a formula of branching time is true at the first configuration, of fair runs."""
+        return bool(Branching(self.graph, self.truth, fairness).where(formula)[0])
 
     # --- progress
 

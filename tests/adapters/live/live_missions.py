@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from adapters.live.core import advance, started
-from adapters.live.state import Batch, Heard, Plan
+from adapters.live.state import Batch, Heard, LiveState, Plan
 from adapters.plugin import Accepted
 from bigactors.cli import main
 from physical import PhysicalProperty, point
@@ -66,6 +66,11 @@ def seen(entity, at, time, plugin="autopilot", kind="UAV", channels=("control:gc
 
 def boat(at, time, name="boat0"):
     return seen(name, at, time, "ais", "Vessel", ())
+
+
+def known_of(state, **more):
+    """What a recording of a run knows of its state."""
+    return LiveState(state.configuration, number=state.number, told=state.told, **more)
 
 
 class Run:

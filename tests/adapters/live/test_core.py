@@ -1,5 +1,5 @@
 import pytest
-from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
+from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, known_of, plan_of, seen
 
 from adapters.live.core import is_refused, resumed, watch
 from adapters.live.state import Batch, GivingBack, Heard, Plan, Saying
@@ -396,8 +396,7 @@ def test_a_run_that_is_resumed_gives_no_vehicle_back_by_itself():
     run = Run(plan_of(TOUR + GO))
     run.turn(0.0, seen("uav0", WEST, 0.0))
     again = Run(run.plan)
-    first = run.state.configuration
-    again.state = resumed(run.plan, first, run.state.number, run.state.told, 100.0, {"uav0": "it is in RTL"})
+    again.state = resumed(run.plan, known_of(run.state, taken={"uav0": "it is in RTL"}), 100.0)
     again.turn(101.0, seen("uav0", EAST, 101.0))
     assert again.rules == []
 
@@ -579,7 +578,7 @@ def test_a_rule_that_moves_two_is_committed_when_both_are_there():
 
 def after_a_crash(run):
     resumed_run = Run(run.plan)
-    resumed_run.state = resumed(run.plan, run.state.configuration, run.state.number, run.state.told, 100.0)
+    resumed_run.state = resumed(run.plan, known_of(run.state), 100.0)
     return resumed_run
 
 

@@ -27,6 +27,8 @@ from adapters.simulated import Disturbance, Kind, Vehicle
 from bigactors.mistakes import Mistake
 from physical import PhysicalProperty, box, point, write_geojson
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture
 def flying(tmp_path, monkeypatch):

@@ -1,4 +1,5 @@
 import asyncio
+import json
 import stat
 import time
 
@@ -7,9 +8,11 @@ from live_missions import BETWEEN, EAST, TOUR, WEST, plan_of
 
 from adapters.live.core import started
 from adapters.live.loop import LiveRun, NotAsAssumed, NotHeard, PluginFailed
-from adapters.live.operator_socket import NobodyListens, listening, say
+from adapters.live.operator_socket import NobodyListens, acknowledge, listening, order, say, status
+from adapters.live.state import Acknowledging, Answer, GivingBack, Ordering, Saying
 from adapters.plugin import Accepted, Aged, GoTo, HandOver, LinkLost, Refused
 from physical import PhysicalProperty, centroid, point
+from semantics.contingencies import Fallback
 
 GO = """
 BigActor a hosted_at uav0 with_behavior {
@@ -102,7 +105,7 @@ def test_a_machine_that_was_suspended_has_the_systems_time_and_finds_nobody_sile
             told.cancel()
             began, system = world.now(), time.time
             monkeypatch.setattr(time, "time", lambda: system() + 3_600)
-            assert 3_600 <= world.now() - began < 3_601
+            assert 3_600 <= world.now() - began < 3_660
             await asyncio.sleep(0.2)
             await super().run(world)
 
@@ -121,7 +124,7 @@ def test_a_run_that_is_interrupted_ends_even_if_something_has_just_come_in():
             await asyncio.sleep(0.1)
             run.inbox.awake.set()
             going.cancel()
-            await asyncio.wait([going], timeout=5.0)
+            await asyncio.wait([going], timeout=60.0)
             return going.cancelled()
 
     assert asyncio.run(interrupted())
@@ -195,7 +198,7 @@ def _fields(said):
 async def _talk(path, *messages):
     async def listener(said):
         await asyncio.sleep(0)
-        return "" if said.message == "go" else f"{said.agent} is not told {said.message}"
+        return Answer(said, "" if said.message == "go" else f"{said.agent} is not told {said.message}")
 
     async with listening(path, listener):
         mode = stat.S_IMODE(path.stat().st_mode)
@@ -225,8 +228,8 @@ def test_a_second_run_does_not_take_the_first_ones_place(tmp_path):
         asyncio.run(both())
 
 
-async def _nothing(_agent, _message):
-    return ""
+async def _nothing(said):
+    return Answer(said)
 
 
 def test_what_is_no_saying_is_refused(tmp_path):
@@ -243,3 +246,72 @@ def test_what_is_no_saying_is_refused(tmp_path):
             return answers
 
     assert all(b"no saying" in answer for answer in asyncio.run(babble()))
+
+
+LINES = [
+    (b'{"agent": "op", "message": "go"}', Saying("op", "go")),
+    (b'{"agent": "op", "message": "go", "by": "Ana"}', Saying("op", "go", "Ana")),
+    (b'{"give_back": "uav0", "at": ""}', GivingBack("uav0")),
+    (b'{"give_back": "uav0", "by": "Ana"}', GivingBack("uav0", "", "Ana")),
+    (b'{"order": "hold", "vehicle": "uav0", "by": ""}', Ordering(Fallback.HOLD, "uav0")),
+    (b'{"order": "return", "vehicle": null, "by": "Ana"}', Ordering(Fallback.RETURN, None, "Ana")),
+    (b'{"acknowledge": 3, "by": "Ana"}', Acknowledging(3, "Ana")),
+]
+NONSENSE = [
+    b'{"order": "continue", "vehicle": "uav0"}',
+    b'{"order": "hold"}',
+    b'{"order": "hold", "vehicle": 7}',
+    b'{"order": "hold", "vehicle": "uav0", "by": 7}',
+    b'{"order": "hold", "vehicle": "uav0", "by": "a\\nb"}',
+    b'{"order": "hold", "vehicle": "uav0", "by": "' + b"a" * 201 + b'"}',
+    b'{"order": "hold", "vehicle": "' + b"a" * 2_001 + b'"}',
+    b'{"acknowledge": true}',
+    b'{"acknowledge": "3"}',
+    b'{"give_back": "uav0", "at": 5}',
+]
+
+
+def test_each_word_of_an_operator_is_understood_and_nothing_else(tmp_path):
+    path, heard = tmp_path / "run.sock", []
+
+    async def listener(said):
+        heard.append(said)
+        return Answer(said, left_out={"uav1": "it is in RTL"} if isinstance(said, Ordering) else {})
+
+    async def talk():
+        async with listening(path, listener, lambda: "well"):
+            answers = []
+            for line in (*(line for line, _ in LINES), *NONSENSE):
+                reader, writer = await asyncio.open_unix_connection(path)
+                writer.write(line + b"\n")
+                answers.append(json.loads(await reader.readline()))
+                writer.close()
+            return (
+                answers,
+                await order(path, "hold", None, "Ana"),
+                await acknowledge(path, 3),
+                await status(path),
+            )
+
+    answers, ordered, acknowledged, stands = asyncio.run(talk())
+    assert heard[: len(LINES)] == [said for _, said in LINES]
+    assert [answer["refusal"] for answer in answers[: len(LINES)]] == [""] * len(LINES)
+    assert all("this is no saying" in answer["refusal"] for answer in answers[len(LINES) :])
+    assert answers[4] == {"refusal": "", "left_out": {"uav1": "it is in RTL"}}
+    assert heard[len(LINES) :] == [Ordering(Fallback.HOLD, None, "Ana"), Acknowledging(3)]
+    assert ordered == ("", {"uav1": "it is in RTL"}, ())
+    assert (acknowledged, stands) == ("", "well")
+
+
+def test_what_listens_and_does_not_tell_how_it_stands_is_said(tmp_path):
+    async def old():
+        async def serve(reader, writer):
+            await reader.readline()
+            writer.write(b'{"refusal": "this is no saying"}\n')
+            writer.close()
+
+        async with await asyncio.start_unix_server(serve, tmp_path / "s"):
+            await status(tmp_path / "s")
+
+    with pytest.raises(NobodyListens, match="a version that does not tell how it stands"):
+        asyncio.run(old())

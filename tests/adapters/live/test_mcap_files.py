@@ -14,7 +14,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.writer import CompressionType, Writer
 
-from adapters.recording.mcap_files import MAGIC, MOST_BYTES, MOST_CHUNK, SPARE, Reading, RecordingError
+from adapters.recording.mcap_files import (
+    MAGIC,
+    MOST_BYTES,
+    MOST_CHUNK,
+    SPARE,
+    McapReader,
+    Message,
+    RecordingError,
+)
 
 MANY = int(os.environ.get("BIGACTORS_FUZZ", "0")) // 10
 DATA = [{"step": number, "of": "uav0"} for number in range(200)]
@@ -36,8 +44,8 @@ def written(compression, data=DATA):
 def read(tmp_path, data):
     path = tmp_path / "x.mcap"
     path.write_bytes(data)
-    reading = Reading()
-    return list(reading.messages(path)), reading.torn
+    reader = McapReader(path)
+    return list(reader.messages()), not reader.ended
 
 
 def record(kind, content):
@@ -53,6 +61,15 @@ def chunk(compression, data, size, checksum=0):
 
 CHANNEL = record(4, struct.pack("<HHI", 1, 0, 5) + b"steps" + struct.pack("<II", 4, 0) + bytes(4))
 EMPTY = record(5, struct.pack("<HIQQ", 1, 0, 0, 0) + b"{}")
+
+
+def test_messages_that_nobody_reads_are_not_parsed(tmp_path):
+    path = tmp_path / "x.mcap"
+    path.write_bytes(MAGIC + CHANNEL + EMPTY[:-2] + b"[[")
+    with pytest.raises(RecordingError, match="cannot be read"):
+        list(McapReader(path).messages())
+    [message] = McapReader(path, unread=("st",)).messages()
+    assert message == Message("steps", 0.0, None)
 
 
 @pytest.mark.parametrize("compression", CompressionType)
@@ -73,6 +90,40 @@ def test_a_chunk_yields_no_more_than_it_declares(tmp_path, compression):
     for size in (0, whole - 1, whole + 1, MOST_CHUNK + 1, 2**63):
         with pytest.raises(RecordingError, match="declares"):
             read(tmp_path, MAGIC + chunk(compression, packed, size))
+
+
+@pytest.mark.parametrize("compression", CompressionType)
+def test_a_file_that_grows_byte_by_byte_is_read_as_a_whole_one(tmp_path, compression):
+    data, path = written(compression, DATA[:15]), tmp_path / "x.mcap"
+    path.write_bytes(b"")
+    reader = McapReader(path)
+    found = []
+    for size in range(len(data) + 1):
+        path.write_bytes(data[:size])
+        found += reader.messages()
+    assert [message.data for message in found] == DATA[:15]
+    assert reader.ended
+
+
+@pytest.mark.parametrize("compression", CompressionType)
+def test_reading_goes_on_from_any_message(tmp_path, compression):
+    path = tmp_path / "x.mcap"
+    path.write_bytes(written(compression))
+    reader = McapReader(path)
+    places = [reader.place for _ in reader.messages()]
+    for number in range(0, 200, 7):
+        rest = [message.data for message in reader.going_on(places[number]).messages()]
+        assert rest == DATA[number + 1 :]
+
+
+def test_a_file_that_becomes_shorter_is_no_longer_read(tmp_path):
+    path = tmp_path / "x.mcap"
+    path.write_bytes(written(CompressionType.NONE))
+    reader = McapReader(path)
+    next(reader.messages())
+    path.write_bytes(MAGIC)
+    with pytest.raises(RecordingError, match="shorter"):
+        list(reader.messages())
 
 
 def bombs(compression):

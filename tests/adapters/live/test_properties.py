@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
 from adapters.live.core import advance, started
-from adapters.live.state import Batch, GivingBack, Saying
-from adapters.plugin import LinkLost, LinkRestored, Rejected, TakenOver
+from adapters.live.state import Acknowledging, Batch, GivingBack, Ordering, Saying
+from adapters.plugin import GiveBack, Hold, LinkLost, LinkRestored, Rejected, Return, TakenOver
 from adapters.recording.encoding import step_json
 from checker import replay
 from checker.traces import SCHEMA, candidates
@@ -72,7 +72,15 @@ def batches(draw, now):
         )
     )
     sayings = draw(
-        st.lists(st.sampled_from([Saying("op", "hand"), Saying("op", "x"), GivingBack("uav0")]), max_size=1)
+        st.lists(
+            st.sampled_from(
+                [
+                    *(Saying("op", "hand"), Saying("op", "x"), GivingBack("uav0"), Acknowledging(1)),
+                    *(Ordering(Fallback.HOLD, "uav0"), Ordering(Fallback.RETURN)),
+                ]
+            ),
+            max_size=2,
+        )
     )
     return Batch(tuple(heard), tuple(reports), tuple(sayings))
 
@@ -119,7 +127,10 @@ def test_who_was_taken_over_is_told_nothing_and_arrives_nowhere_until_it_is_give
     for now, batch in history:
         turn = run.turn(now, *batch.heard, reports=batch.reports, sayings=batch.sayings)
         if run.state.taken and GivingBack("uav0") not in batch.sayings:
-            assert turn.commands == ()
+            ordered = any(isinstance(each, Ordering) for each in batch.sayings)
+            allowed = (Hold, Return, GiveBack) if ordered else ()
+            assert all(isinstance(each, allowed) for each in turn.commands)
+            assert turn.state.bidden.keys() <= turn.state.taken.keys()
             assert "commit" not in [step.transition.label.rule for step in turn.steps]
 
 

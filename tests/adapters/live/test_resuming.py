@@ -8,12 +8,15 @@ import sys
 import time
 from contextlib import contextmanager
 
+import pytest
 from live_missions import TOUR, verify
 
 from adapters.recording.mcap_files import RecordingError
 from adapters.recording.reading import read_recording
 from bigactors.cli import main
 from bigactors.recordings import mission_of, open_recording, trace_of
+
+pytestmark = pytest.mark.long
 
 MISSION = (
     "mission tour\n"
@@ -61,7 +64,7 @@ def started(*line, stderr=None):
         process.stdout.close()
 
 
-def until(what, seconds=30.0):
+def until(what, seconds=120.0):
     end = time.monotonic() + seconds
     while not what():
         assert time.monotonic() < end, "it did not come to pass in time"
@@ -93,11 +96,11 @@ def test_a_killed_run_is_resumed_after_its_vehicle_was_compared(tmp_path, capsys
         assert read_recording(first).torn
         assert "commit" not in rules(first)
         resumed = [*line, "--resume", str(first), "--record", str(second)]
-        with started(*resumed, "--for", "25") as run:
+        with started(*resumed, "--for", "110") as run:
             until(lambda: "commit" in rules(second))
             assert main(["say", "op", "status", "--socket", str(tmp_path / "s")]) == 0
             run.send_signal(signal.SIGINT)
-            shown = run.communicate(timeout=10)[0]
+            shown = run.communicate(timeout=120)[0]
     assert "commit" in shown
     recording = open_recording(str(second))
     trace = trace_of(recording, mission_of(recording))

@@ -4,9 +4,12 @@ import signal
 import socket
 import time
 
+import pytest
 from live_missions import TOUR
 from pyais.encode import encode_dict
 from test_resuming import SIMULATOR, free_port, started
+
+pytestmark = pytest.mark.long
 
 MISSION = (
     "mission tour\n"
@@ -51,7 +54,7 @@ def test_a_run_that_is_stopped_finds_nobody_silent_when_it_goes_on(tmp_path):
         run.send_signal(signal.SIGCONT)
         heard_for(2)
         run.send_signal(signal.SIGINT)
-        run.wait(timeout=10)
+        run.wait(timeout=120)
     told = shown.read_text()
     assert "this process did not listen for" in told
     assert "nothing was heard of uav0" not in told

@@ -115,8 +115,8 @@ def test_a_vehicle_that_an_operator_gives_back_flies_its_mission_to_the_end(flyi
     assert flown.witness.kinds() == {"taken over", "given back"}
     recording = open_recording("r.mcap")
     assert [message.data for message in recording.of("given_back")] == [
-        {"vehicle": "uav1", "refusal": answers[0]},
-        {"vehicle": "uav0", "refusal": ""},
+        {"vehicle": "uav1", "by": "", "refusal": answers[0]},
+        {"vehicle": "uav0", "by": "", "refusal": ""},
     ]
     told = [message.data["command"] for message in recording.of("commands")]
     assert told == ["GoTo", "GoTo", "GiveBack", "GoTo", "GoTo", "GoTo"]

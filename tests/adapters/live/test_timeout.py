@@ -84,9 +84,18 @@ def test_a_recorded_wait_replays_without_a_clock(tmp_path):
     recorder = Recorder(
         path, {"mission": "tour.mission", "text": TOUR + WAIT, "digest": "", "version": "0"}, 0.0
     )
-    for now in (0.0, 10.0):
-        recorder.turn(run.turn(now), now, lambda _finding: ())
-    recorder.close("done", 10.0)
-    trace = replay(mission(TOUR + WAIT).initial, read_recording(path).trace(SCHEMA))
+    for now, missed in ((0.0, 0.0), (4.0, 2.0), (12.0, 0.0)):
+        recorder.turn(run.turn(now, missed=missed), now, lambda _finding: ())
+    recorder.close("done", 12.0)
+    recording = read_recording(path)
+    deadlines = [message.data for message in recording.of("deadlines")]
+    assert deadlines == [{"agent": "a", "until": until} for until in (10.0, 12.0, None)]
+    again = tmp_path / "again.mcap"
+    recorder = Recorder(again, {"mission": "tour.mission", "text": "", "digest": "", "version": "0"}, 13.0)
+    recorder.copy(message for message in recording.messages if message.time < 10.0)
+    recorder.turn(run.turn(13.0), 13.0, lambda _finding: ())
+    recorder.close("done", 14.0)
+    assert read_recording(again).of("deadlines")[-1].data == {"agent": "a", "until": None}
+    trace = replay(mission(TOUR + WAIT).initial, recording.trace(SCHEMA))
     assert [step.label.rule for step in trace.steps] == ["timeout", "fun"]
     assert trace.configurations[-1] == run.state.configuration

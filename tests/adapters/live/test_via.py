@@ -4,7 +4,7 @@ import asyncio
 
 import pytest
 from audited import LOOK, PLACES, flown_in
-from live_missions import EAST, TOUR, WEST, Run, plan_of, seen
+from live_missions import EAST, TOUR, WEST, Run, known_of, plan_of, seen
 
 from adapters.live.core import resumed
 from adapters.live.state import Heard
@@ -150,7 +150,7 @@ def test_a_way_is_told_again_when_any_of_it_has_moved(name, moved):
 
 def test_a_way_that_is_resumed_is_told_once_more():
     run = flying()
-    again = resumed(run.plan, run.state.configuration, run.state.number, run.state.told, 5.0)
+    again = resumed(run.plan, known_of(run.state), 5.0)
     (order,) = again.orders.values()
     assert order.command.path == run.commands[0].path
     assert not order.through

@@ -5,7 +5,11 @@ from contextlib import ExitStack
 import pytest
 from company import EAST, NOWHERE, WEST, WORLD, Cable, Station, agree, free_port, peers_toml, running, until
 
+from adapters.console.history import History
 from adapters.recording.reading import read_recording
+from bigactors.console import rules_of
+
+pytestmark = pytest.mark.long
 
 MISSION = (
     "mission company\n"
@@ -43,6 +47,14 @@ def three(tmp_path):
             yield stations, cables
 
 
+def a_console_reaches(station):
+    """Return which stations a console that looks at one says to be reached."""
+    history = History(station.recording, rules_of)
+    while history.read_on(1.0):
+        pass
+    return {name: each["reached"] for name, each in history.newest().sections["stations"].items()}
+
+
 def test_all_come_to_one_world_though_one_is_killed_and_one_is_cut_off(three):
     stations, cables = three
     gcs0, gcs1, gcs2 = stations
@@ -58,6 +70,7 @@ def test_all_come_to_one_world_though_one_is_killed_and_one_is_cut_off(three):
     agree([gcs0], boat0="east0", boat1="east0")
     agree([gcs2], boat0="west0", boat1="west0")
     until(lambda: "gcs2 is not reached" in gcs0.said and "gcs1 is not reached" in gcs0.said)
+    until(lambda: a_console_reaches(gcs0) == {"gcs0": None, "gcs1": False, "gcs2": False})
 
     gcs1.resume()
     agree([gcs1], boat0="east0", boat1="east0")
@@ -65,6 +78,7 @@ def test_all_come_to_one_world_though_one_is_killed_and_one_is_cut_off(three):
         cable.joined = True
     agree(stations, boat0="east0", boat1="west0")
     until(lambda: "gcs2 is reached again" in gcs0.said)
+    until(lambda: a_console_reaches(gcs0) == {"gcs0": None, "gcs1": True, "gcs2": True})
 
     gcs1.see(boat0=NOWHERE)
     agree(stations, boat0="region", boat1="west0")

@@ -8,9 +8,13 @@ from contextlib import contextmanager
 import pytest
 from company import WORLD, Station, free_port, peers_toml, running, until
 
+from adapters.console.history import History
 from adapters.recording.reading import read_recording
 from bigactors.cli import main
+from bigactors.console import rules_of
 from checker.reports.lanes import lanes_of
+
+pytestmark = pytest.mark.long
 
 MISSION = (
     "mission handover\n"
@@ -81,6 +85,14 @@ def stations(tmp_path):
         yield found
 
 
+def as_a_console_has_it(station):
+    """Return the configuration to which a console comes that reads a station's recording."""
+    history = History(station.recording, rules_of)
+    while history.read_on(1.0):
+        pass
+    return history.facts.standing.configuration
+
+
 def test_both_stations_show_where_the_uav_is_before_during_and_after(stations):
     gcs0, gcs1, gcs2 = stations
     until(lambda: all("handover begins" in each.said for each in stations))
@@ -108,4 +120,5 @@ def test_both_stations_show_where_the_uav_is_before_during_and_after(stations):
     for each in stations:
         trace = each.trace()
         assert "environment" in lanes_of(trace.configurations, [step.label for step in trace.steps]).names
+        until(lambda each=each: as_a_console_has_it(each) == each.trace().configurations[-1])
         assert main(["replay", str(each.recording)]) == 0

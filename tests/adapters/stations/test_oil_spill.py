@@ -17,6 +17,8 @@ from bigactors.cli import main
 from physical import contains, point
 from semantics.state.abstraction import as_it_is
 
+pytestmark = pytest.mark.long
+
 MISSION = "spill_watch"
 IDS = {"gcs0": 255, "gcs1": 254, "gcs2": 253}
 DRIFTERS = {"drifter0": 263999001, "drifter1": 263999002}
@@ -63,6 +65,8 @@ def flown(folder):
     }
     stations = [Station(folder, name, peers, MISSION, "--verdict", verdict, *has[name]) for name in IDS]
     with Water(vehicle, ais, camera).going_on() as water, running(stations):
+        until(lambda: has_shown(stations, "pilot: {"), 120)
+        assert main(["say", "tower", "handover", "--socket", str(stations[0].socket)]) == 0
         until(lambda: has_shown(stations, "shore: {airfield0, gcs0, uav0}"), 120)
         until(lambda: all(whole(station) == HOME for station in stations))
         for station in stations:

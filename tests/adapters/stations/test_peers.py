@@ -76,7 +76,7 @@ def test_without_zenoh_the_extra_is_named(monkeypatch):
     with pytest.raises(PhysicalError) as caught:
         _library()
     assert caught.value.message == "stations need Zenoh, which is not installed"
-    assert "bigactors[stations]" in caught.value.hint
+    assert "'.[stations]'" in caught.value.hint
 
 
 def test_a_certificate_may_say_and_ask_only_what_its_name_allows(tmp_path):

@@ -4,6 +4,7 @@ import asyncio
 import time
 from contextlib import asynccontextmanager, suppress
 from dataclasses import replace
+from itertools import groupby, pairwise
 
 import pytest
 from certificates import Authority
@@ -20,6 +21,7 @@ from adapters.plugin import (
     HandOver,
     Hold,
     Hosts,
+    Presence,
     Refused,
     Rejected,
     Trouble,
@@ -28,6 +30,7 @@ from adapters.plugin import (
 from adapters.stations.entries import Broke, Posted, Sent, Took
 from adapters.stations.journal import Journal
 from adapters.stations.peers import peers_of
+from adapters.stations.remote_station import SELDOM
 from adapters.stations.sharing import Sharing
 from physical import PhysicalError, PhysicalProperty, point
 from semantics.state.configuration import Label, Transition
@@ -202,6 +205,28 @@ def test_a_parcel_comes_again_until_it_is_taken_and_the_acknowledgement_ends_it(
     again = Node(peers_of(table, "gcs0", tmp_path), tmp_path)
     assert again.journal.sent("gcs1") == 2
     again.journal.close()
+
+
+def test_who_is_reached_and_when_each_was_heard_is_told_on_change_and_seldom(tmp_path):
+    table = both()
+    gcs0, gcs1 = (Node(peers_of(table, name, tmp_path), tmp_path) for name in ("gcs0", "gcs1"))
+
+    async def sharing():
+        async with running(gcs0):
+            await until(lambda: gcs0.world.of(Presence))
+            async with running(gcs1):
+                await until(lambda: len([each for each in gcs0.world.of(Presence) if each.reached]) > 1)
+            await until(lambda: gcs0.world.of(Presence)[-1].reached is False, 15.0)
+
+    asyncio.run(sharing())
+    told = gcs0.world.of(Presence)
+    reached = [reached for reached, _ in groupby(each.reached for each in told)]
+    assert reached in ([None, True, False], [False, True, False], [None, False, True, False])
+    assert {each.station for each in told} == {"gcs1"}
+    assert told[0].heard is None
+    assert told[-1].heard >= told[-2].heard
+    for before, after in pairwise(told):
+        assert before.reached != after.reached or after.time - before.time >= SELDOM
 
 
 def test_a_clock_that_is_off_is_measured_and_said_and_what_is_too_far_ahead_does_not_count(tmp_path):

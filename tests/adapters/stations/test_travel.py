@@ -9,6 +9,8 @@ from company import EAST, WEST, WORLD, Cable, Station, free_port, peers_toml, ru
 from bigactors.cli import main
 from checker.reports.lanes import lanes_of
 
+pytestmark = pytest.mark.long
+
 MISSION = (
     "mission post\n"
     + WORLD

@@ -71,7 +71,7 @@ class Water:
     def going_on(self):
         thread = threading.Thread(target=lambda: run(self._go_on(), SPEED), daemon=True)
         thread.start()
-        assert self._begun.wait(10)
+        assert self._begun.wait(60)
         try:
             yield self
         finally:

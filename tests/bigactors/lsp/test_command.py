@@ -13,4 +13,4 @@ def test_without_the_extra_the_way_to_install_it_is_told():
         [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False
     )
     assert ended.returncode == 2
-    assert "pip install 'bigactors[lsp]'" in ended.stderr
+    assert "pip install '.[lsp]'" in ended.stderr

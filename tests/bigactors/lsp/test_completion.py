@@ -54,6 +54,14 @@ def test_names_of_the_sorts_that_fit_are_offered(text, expected):
     assert names == expected
 
 
+def test_quantifiers_go_through_kinds_all_bigactors_and_families():
+    family = "\nBigActor patrol[i] for u in UAV hosted_at u with_behavior { skip }"
+    found = offered(TAKEOVER + family + CHECK + 'invariant "i": forall x: ')
+    assert (found["kind"], found["family"]) == (KINDS, {"patrol"})
+    assert "agents" in found["word"]
+    assert "agents" not in offered(TAKEOVER + "\nworld {\n  uav9: ").get("word", set())
+
+
 def test_a_statement_may_begin_where_one_has_ended():
     found = offered(TAKEOVER + BODY, "\n}\n")
     assert {"observe", "control", "loop", "let"} <= found["word"]

@@ -1,5 +1,6 @@
 """The engine's search against the naive enumerator and against a SAT solver."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
@@ -10,12 +11,14 @@ from hypothesis import strategies as st
 from naive_matching import naive_matches
 
 from bigraphs.algebra import atom, close, ion, merge, nest
+from bigraphs.bigraph import assemble
 from bigraphs.engine.contexts import Surroundings
 from bigraphs.engine.patterns import check_solid, compile_pattern
 from bigraphs.engine.search import Matcher
 from bigraphs.engine.state import make_state
 from bigraphs.engine.world import World
 from bigraphs.errors import BigraphError
+from bigraphs.matching import find_matches
 
 SLOT, ONE = merge(1), merge(0)
 
@@ -53,14 +56,28 @@ def test_occurrences_are_those_of_the_naive_enumerator(redex, target):
         assert found == in_order(pattern, redex, naive)
 
 
-@settings(deadline=None)
-@given(solid_redexes(max_nodes=2, sharing=True), targets(max_nodes=4, sharing=True))
-def test_occurrences_in_shared_places_are_those_of_the_naive_enumerator(redex, target):
-    pattern, found = engine_matches(redex, target, sharing=True)
-    naive = [
-        (match.nodes, dict(match.links)) for match in naive_matches(redex, target, sharing=True, nowhere=True)
+@st.composite
+def redexes_in_places_of_their_own(draw):
+    """Draw a redex and a target where its nodes are in no place but each other, as far as they can be."""
+    redex = draw(solid_redexes(max_nodes=3, sharing=True))
+    nodes = [
+        replace(node, parents=tuple(place for place in node.parents if place >= 0) or (~0,))
+        for node in redex.nodes
     ]
-    assert found == in_order(pattern, redex, naive)
+    return redex, assemble(SIGNATURE, nodes, edges=redex.edges, outer_names=redex.outer_names)
+
+
+@settings(deadline=None)
+@given(
+    st.tuples(solid_redexes(max_nodes=2, sharing=True), targets(max_nodes=4, sharing=True))
+    | redexes_in_places_of_their_own()
+)
+def test_occurrences_in_shared_places_are_those_of_the_naive_enumerator_and_of_the_reference(pair):
+    redex, target = pair
+    pattern, found = engine_matches(redex, target, sharing=True)
+    naive = naive_matches(redex, target, sharing=True)
+    assert found == in_order(pattern, redex, [(match.nodes, dict(match.links)) for match in naive])
+    assert set(find_matches(redex, target)) == naive
 
 
 @given(solid_redexes(max_nodes=5), grounds(max_nodes=12, max_edges=4, controls=PLAIN))

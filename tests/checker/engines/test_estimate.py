@@ -12,11 +12,11 @@ from checker.engines.estimate import MOST, Estimate, estimate
 from specs.elaboration import load_mission
 
 MISSIONS = Path(__file__).parents[3] / "specs" / "missions"
-LARGE = ("rendezvous", "spill_watch")
+LARGE = ("rendezvous",)
 """Missions of which the layers rise and fall once, or on the whole: where an estimate is given it is right."""
 
-WAVES = ("takeover", "broken_deadlock")
-"""Small ones that rise and fall again and again: there an estimate may be too low."""
+WAVES = ("takeover", "broken_deadlock", "spill_watch", "convoy")
+"""Those that rise and fall again and again: there an estimate may be too low."""
 
 
 @cache

@@ -2,12 +2,15 @@
 
 from dataclasses import replace
 
+import pytest
 from checked_missions import WORLD, load, moves, start, verdict, violation
 
 from checker import Trace
 from checker.reports.comparison import Pair, compare, comparison_text
-from checker.reports.lanes import lanes_of_trace, lanes_text
+from checker.reports.lanes import LeftOut, Repetition, bounded, folded, lanes_of_trace, lanes_text, steps_of
 from checker.traces import candidates
+from semantics.state.configuration import Label
+from semantics.state.differences import Difference
 
 DRIFTS = moves("gate0", "a", "uav0") + "environment { uav0 drifts among south0 }"
 RACE = """
@@ -139,3 +142,53 @@ def test_traces_of_missions_with_other_entities_are_compared_by_their_steps_alon
     other = other.extended(candidates(other.initial)[0])
     said = list(comparison_text(one, other, ("x", "y")))
     assert said[-1] == "their ends are not compared: the missions have different entities"
+
+
+LOOK = "BigActor a hosted_at gcs0 with_behavior { while true { observe(ALL) react { case seen => skip } } }"
+COUNT = """
+BigActor a hosted_at gcs0 with_behavior {
+  let n = 0
+  while n < 9 { observe(ALL) react { case seen => n = n + 1 } }
+}
+"""
+
+
+def follow_first(text, count):
+    trace = Trace(start(text))
+    for _ in range(count):
+        trace = trace.extended(candidates(trace.configurations[-1])[0])
+    return lanes_of_trace(trace)
+
+
+@pytest.mark.parametrize("text", [LOOK, COUNT], ids=["an observation loop", "a loop that counts"])
+def test_steps_that_only_repeat_others_are_one_line(text):
+    lanes = follow_first(text, 24)
+    rows = list(folded(lanes.steps))
+    assert isinstance(rows[-1], Repetition)
+    assert len(rows[-1].steps) >= 16
+    assert [step for row in rows for step in steps_of(row)] == list(lanes.steps)
+    assert f"↻ {len(rows[-1].steps)} steps, to c24" in "\n".join(lanes_text(lanes, 200))
+    assert "↻" not in "\n".join(lanes_text(lanes, 200, unfolded=True))
+
+
+def test_what_changes_the_world_is_never_folded():
+    lanes = follow_first(LOOK, 24)
+    drop = replace(lanes.steps[0], label=Label("env", None, "x"), changes=(Difference("P", "x", "x drops"),))
+    rows = list(folded([*lanes.steps, *[drop] * 20]))
+    assert rows[-20:] == [drop] * 20
+
+
+def test_a_few_steps_that_repeat_are_not_folded():
+    steps = follow_first(LOOK, 24).steps
+    first = list(folded(steps))
+    assert list(folded(steps[: len(first) + 6])) == list(steps[: len(first) + 6])
+
+
+def test_of_too_many_rows_the_ends_and_those_around_a_step_are_kept():
+    steps = follow_first(COUNT, 24).steps
+    rows = list(bounded(steps, 6, 12))
+    assert [(row.number, row.last) for row in rows] == [
+        (1, 1), (2, 2), (3, 10), (11, 11), (12, 12), (13, 22), (23, 23), (24, 24)
+    ]  # fmt: skip
+    assert [isinstance(row, LeftOut) for row in rows] == [number in (2, 5) for number in range(8)]
+    assert list(bounded(steps, 24)) == list(steps)

@@ -271,6 +271,7 @@ def test_the_data_say_what_the_report_says():
             "gaps": [],
         },
         "notes": ["a note"],
+        "times": None,
     }
     assert data["seconds"] >= 0
     assert [(each["name"], each["kind"], each["verdict"]) for each in data["properties"]] == [

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from bigraphs.canonical import canonical, equal
 from bigraphs.errors import NotationError
+from bigraphs.exploration import explore
 from bigraphs.notation import read_bgm
 from bigraphs.notation.bgm.parser import parse_bgm
 from bigraphs.notation.bgm.syntax import Hole, ModelLine, Prefix
@@ -130,6 +131,8 @@ def test_declared_names_are_outer_names_of_the_first_state():
 
 MISTAKES = [
     ("syntax", "%active a : ;", "found ';', expected a number"),
+    ("syntax", "u:UAV[p:x].nil;", "'u:UAV' names a node, as another dialect of .bgm does"),
+    ("syntax", "UAV[x, p : y].nil;", "'p:y' names a port, as another dialect of .bgm does"),
     ("name", "b;", "unknown control 'b'"),
     ("name", "a; %active a : 1;", "control 'a' is declared twice"),
     ("name", "a; %rule r a -> a; %rule r a -> a;", "rule 'r' is declared twice"),
@@ -215,3 +218,24 @@ def test_any_text_is_read_or_refused_with_places_in_it(text):
     else:
         places = []
     assert all(0 <= place <= len(text) for place in places)
+
+
+def test_controls_that_no_file_declares_are_inferred_with_a_warning():
+    system = read_bgm(
+        "l0_Location.(u0_UAV[net] | $0) | l1_Location.$1 -> l0_Location.$0 | l1_Location.(u0_UAV[net] | $1);\n"
+        "l0_Location.(u0_UAV[net] | u1_UAV[net]) | l1_Location | sea;"
+    )
+    (warning,) = system.warnings
+    assert warning.message == "no control is declared, so they are inferred from their uses"
+    assert warning.hint == "declare them: %active Location : 0, %active UAV : 1, %active sea : 0"
+    assert sorted((node.name, node.control) for node in system.initial.nodes if node.name) == [
+        ("l0", "Location"),
+        ("l1", "Location"),
+        ("u0", "UAV"),
+        ("u1", "UAV"),
+    ]
+    found = explore(system)
+    assert (len(found), len(found.starts)) == (2, 1)
+    with pytest.raises(NotationError, match="node 'u0' is there twice"):
+        read_bgm("u0_UAV | u0_UAV;")
+    assert read_bgm("%active l0_Location : 0; l0_Location;").initial.nodes[0].name is None

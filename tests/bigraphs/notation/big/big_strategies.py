@@ -19,6 +19,7 @@ from bigraphs.notation.big.declarations import (
     SystemTerm,
 )
 from bigraphs.notation.big.syntax import (
+    Absolute,
     Arithmetic,
     Chain,
     Close,
@@ -65,6 +66,7 @@ values = st.recursive(
     st.builds(Literal, literals) | st.builds(Variable, words),
     lambda inner: st.one_of(
         st.builds(Negated, inner),
+        st.builds(Absolute, inner),
         _sums(inner),
         st.builds(Arithmetic, inner, st.tuples(st.tuples(st.just("^"), inner))),
     ),

@@ -11,7 +11,7 @@ MISTAKES = [
     ("name", {"preds": "q"}, "unknown bigraph 'q'"),
     ("name", {"init": "t"}, "unknown bigraph 't'"),
     ("name", {"declarations": "fun ctrl K(i) = 0; big b = K(n);"}, "unknown value 'n'"),
-    ("name", {"declarations": "fun big b(i) = c;"}, "unknown bigraph 'c'"),
+    ("name", {"declarations": "fun big b(i) = c; big t = b(1);"}, "unknown bigraph 'c'"),
     ("name", {"declarations": "ctrl A = 1;"}, "control 'A' is declared twice"),
     ("name", {"declarations": "int s = 1;"}, "'s' is declared twice"),
     ("name", {"declarations": "int n = 1;", "block": "int n = {1, 2};"}, "'n' is declared twice"),
@@ -88,6 +88,11 @@ MISTAKES = [
     ),
     (
         "interface",
+        {"declarations": "big b = share Z{x} by ([{0, 1}], 2) in (A.id | A.id);"},
+        "this does not pass on the name 'x' of what is shared",
+    ),
+    (
+        "interface",
         {"declarations": "big b = share s by ([{0, 1}], 2) in A;"},
         "this has 1 sites, and the placing is over 2",
     ),
@@ -96,7 +101,11 @@ MISTAKES = [
         {"declarations": "big b = share s by ([{0}], 1) in (A || id{q});"},
         "this waits for the name 'q', which what is shared does not have",
     ),
-    ("parent", {"declarations": "big b = ([{}], 1);"}, "site 0 has no parent"),
+    (
+        "parent",
+        {"declarations": "big b = ([{3}], 1);"},
+        "site 0 is in region 3, which the bigraph does not have",
+    ),
     ("syntax", {"declarations": "big b = 2;"}, "a number is no bigraph"),
     (
         "redex",

@@ -100,6 +100,18 @@ def test_words_of_the_language_beyond_bigrapher_may_be_names():
     assert format_model(model).startswith("big place = 1;\nbig sort = place;")
 
 
+def test_a_guarded_number_is_refused_by_name():
+    text = "atomic fun ctrl Num(n) = 0; react r = Num([n, $ >= 0]) --> Num(n);"
+    with pytest.raises(NotationError) as caught:
+        parse_model(text)
+    assert caught.value.message == "'[n, $ >= 0]' guards a number, as no published BigraphER does"
+    assert (
+        caught.value.hint
+        == "write 'n' in 'fun react r(n)', and list in the system the values that '$ >= 0' admits"
+    )
+    assert caught.value.offset == text.index("[")
+
+
 @given(st.text(st.sampled_from('aAB{}().|/10*+xid ,;=-[]>\n"^!@'), max_size=30))
 def test_any_text_is_read_or_refused_with_a_place_in_it(text):
     for parse in (parse_model, parse_expression):

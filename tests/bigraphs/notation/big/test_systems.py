@@ -1,11 +1,13 @@
 import math
 
 import pytest
-from big_files import read, rules, system
+from big_files import mistakes, read, rules, system
 
 from bigraphs.canonical import equal
 from bigraphs.errors import NotationError
-from bigraphs.notation import read_big, read_system
+from bigraphs.exploration import explore
+from bigraphs.matching import find_matches
+from bigraphs.notation import read_big, read_system, write_system
 from bigraphs.system import Action, Position, SystemKind, Where
 
 
@@ -151,3 +153,118 @@ def test_a_bigraph_for_given_arguments_goes_before_none():
 
 def test_names_in_links_and_in_values_are_apart():
     assert rules("fun ctrl K(a) = 1; fun react r(a) = K(a){a} --> K(a){a};", rules="{r(1)}")
+
+
+def test_an_abrs_is_an_nbrs_and_abs_is_a_function_of_numbers():
+    text = """
+        fun ctrl A(n) = 0; float f = 2.5;
+        react r = A(abs(1 - 3)) -[1 / abs(-f) ^ 2]-> A(abs(2));
+        big s = A(2).1;
+        begin abrs init s; rules = [ {r} ]; actions = [ go[2] = {r} ]; end
+    """
+    found = read_system(text)
+    assert found.actions == (Action("go", 2),)
+    (rule,) = found.rules()
+    assert (found.kind, rule.weight) == (SystemKind.NBRS, 1 / 2.5**2)
+    assert rule.redex == rule.reactum
+    assert read_system(write_system(found)) == found
+
+
+def test_zero_is_a_site_without_a_region():
+    text = """
+        ctrl A = 0;
+        big pick = A * (id + 0 + 0);
+        big none = A * ([{0}, {}, {}], 1); big same = none * (A.1 || 1 || 1); big gone = split(0) * 1;
+        big s = A.1; react r = A --> A;
+        begin brs init s; rules = [ {r} ]; end
+    """
+    assert len(list(read_system(text).rules())) == 1
+    wide = text.replace("big pick = A * (id + 0 + 0);", "big pick = A * (id + 0) * (id + id + id);")
+    (found,) = mistakes(wide)
+    assert (found.code, found.message[:10]) == ("interface", "this shows")
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "found"),
+    [
+        ("big s = (A || 0) * (B.1 || B.1);", "parent", "B has no parent"),
+        ("big s = A.1; react r = A.id --> A.1 || 0;", "rule", "site 0 of the reactum is in no region"),
+        ("big s = A.1; react r = A.id || 0 --> A;", "redex", "site 1 of the redex is in no node"),
+    ],
+)
+def test_what_would_be_an_orphan_is_refused(text, code, found):
+    system = (
+        f"ctrl A = 0; ctrl B = 0; react keep = A --> A; {text} begin brs init s; rules = [ {{keep}} ]; end"
+    )
+    assert any(each.code == code and each.message.startswith(found) for each in mistakes(system))
+
+
+def test_an_action_lists_rules_that_there_are_once():
+    text = """
+        ctrl A = 0; react r = A -[1]-> A; big s = A.1;
+        begin abrs init s; rules = [ {r} ]; actions = [ go = {r, q}, stay = {r} ]; end
+    """
+    assert [each.message for each in mistakes(text)] == ["rule 'r' is in action 'go', too"]
+    found = read_system(text.replace(", stay = {r}", ""))
+    assert [each.message for each in found.warnings] == ["unknown rule 'q'"]
+
+
+def test_a_name_that_only_an_uncalled_declaration_uses_is_told_as_a_warning():
+    text = """
+        ctrl A = 0; fun ctrl K(n) = 0; big s = A.1; react r = A --> A;
+        fun react lost(n) = Bee --> K(m); fun big far(n) = Sea | near(n); fun big near(n) = Dee;
+        begin brs init s; rules = [ {r} ]; end
+    """
+    found = ["unknown control 'Bee'", "unknown value 'm'", "unknown control 'Sea'", "unknown control 'Dee'"]
+    assert [each.message for each in read_system(text).warnings] == found
+    called = mistakes(text.replace("big s = A.1;", "big s = A.far(1);"))
+    assert [each.message for each in called] == found[2:]
+
+
+AMBIENT = """
+    fun ctrl K(n) = 0; ctrl A = 0; big s = A.(K(1).1 | K(2).1);
+    fun big near(y) = K(m).1 | K(y).1;
+    fun big far(z, x) = A.(near(x) | id); fun big own(m, x) = A.(near(x) | id);
+    fun react make(x) = K(m).1 --> K(x + 5).1;
+    begin brs
+      int m = {1, 2}; int k = {1, 2};
+      init s; rules = [ {make(m)} ]; preds = { CALL };
+    end
+"""
+
+
+@pytest.mark.parametrize(
+    ("call", "occurring"),
+    [
+        ("near(m)", []),
+        ("far(m, k)", ["far(1,2)", "far(2,1)"]),
+        ("own(k, k)", []),
+        ("own(1, 2)", ["own(1,2)"]),
+        ("own(k, m)", ["own(1,2)", "own(2,1)"]),
+    ],
+)
+def test_a_free_name_in_a_declaration_means_what_it_means_to_the_caller_as_in_bigrapher(call, occurring):
+    system = read_system(AMBIENT.replace("CALL", call))
+    made = [
+        (rule.label, rule.redex.nodes[0].control, rule.reactum.nodes[0].control) for rule in system.rules()
+    ]
+    assert made == [("make(2)", "K(2)", "K(7)"), ("make(1)", "K(1)", "K(6)")]
+    patterns = {predicate.label: predicate.pattern for predicate in system.predicates}
+    found = {label for label, pattern in patterns.items() if any(find_matches(pattern, system.initial))}
+    assert sorted(found) == occurring
+    assert len(explore(system).keys) == 4
+
+
+def test_a_single_value_of_the_systems_parameter_needs_no_giving():
+    system = read_system(AMBIENT.replace("m = {1, 2}", "m = 1").replace("CALL", "near(k)"))
+    controls = [[node.control for node in each.pattern.nodes] for each in system.predicates]
+    assert controls == [["K(1)", "K(2)"], ["K(1)", "K(1)"]]
+
+
+@pytest.mark.parametrize(("call", "used"), [("near(k)", "near"), ("far(1, k)", "far")])
+def test_a_parameter_of_the_system_that_a_call_does_not_give_is_told(call, used):
+    (found, *_) = mistakes(AMBIENT.replace("CALL", call))
+    assert found.message.startswith(
+        f"'{used}' uses the system's parameter 'm', which this call does not give"
+    )
+    assert found.hint == "call it from the system with 'm' among its arguments"

@@ -9,14 +9,16 @@ from types import SimpleNamespace
 
 import pytest
 from scale import IS_WHOLE
+from shipped import UNTIMED
 
 from bigactors.cli import main
 from checker import Cluster, ClusterError, Engine, Keeping, Limits, MachineError, check, explore
 from checker.engines.cluster import explorer, ray_crew
 from specs.elaboration import load_mission
 
+pytestmark = pytest.mark.long
+
 MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
-NAMES = sorted(path.stem for path in MISSIONS.glob("*.mission"))
 TWO = Cluster(2)
 
 
@@ -63,8 +65,8 @@ def compared(name, workers):
 
 @pytest.mark.fuzz
 def test_shipped_missions_are_judged_alike_by_two_workers_and_by_one_process():
-    assert len(NAMES) > 15
-    for name in NAMES if IS_WHOLE else NAMES[::7]:  # six seconds each: workers are started anew
+    assert len(UNTIMED) > 15
+    for name in UNTIMED if IS_WHOLE else UNTIMED[::7]:  # six seconds each: workers are started anew
         compared(name, 2)
 
 
@@ -199,7 +201,7 @@ def test_what_does_not_fit_together_is_a_mistake(options, words, capsys):
 def test_without_ray_it_is_said_how_to_have_it(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "ray", None)
     assert main(["check", "--engine", "ray", str(MISSIONS / "oil_spill.mission")]) == 2
-    assert "pip install 'bigactors[cluster]'" in capsys.readouterr().err
+    assert "pip install '.[cluster]'" in capsys.readouterr().err
 
 
 def test_a_cluster_that_does_not_start_is_the_machines_fault(tmp_path):

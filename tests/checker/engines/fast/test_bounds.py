@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from checked_missions import interrupted_at
 from local_crew import LocalCrew
+from shipped import UNTIMED
 
 import checker.limits
 from checker import Engine, Keeping, Limits, check, explore
@@ -27,7 +28,6 @@ from specs.elaboration import Variation, load_mission
 
 ROOT = Path(__file__).parents[4]
 MISSIONS = ROOT / "specs" / "missions"
-NAMES = sorted(path.stem for path in MISSIONS.glob("*.mission"))
 LIMITS = Limits(configurations=3_000)
 FEW = 12
 """Below so many configurations every size is cut at; then each that is a third larger."""
@@ -91,14 +91,14 @@ def test_the_loops_are_compiled_with_checks_of_bounds():
 
 
 @checked
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", UNTIMED)
 def test_searches_go_on_from_every_size(tmp_path, name):
     for number, initial in enumerate(initials(name)):
         goes_on_from_every_size(initial, tmp_path / str(number))
 
 
 @checked
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", UNTIMED)
 def test_searches_stop_at_every_limit_of_configurations(name):
     initial = load_mission(MISSIONS / f"{name}.mission").initial
     for size in sizes(len(fast(initial).configurations)):
@@ -106,7 +106,7 @@ def test_searches_stop_at_every_limit_of_configurations(name):
 
 
 @checked
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", UNTIMED)
 def test_searches_spill_at_every_size(tmp_path, monkeypatch, name):
     initial = load_mission(MISSIONS / f"{name}.mission").initial
     whole = seen(fast(initial))
@@ -133,7 +133,7 @@ def test_searches_spill_at_every_size(tmp_path, monkeypatch, name):
 
 
 @checked
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", UNTIMED)
 def test_searches_end_at_every_limit_of_memory(monkeypatch, name):
     initial = load_mission(MISSIONS / f"{name}.mission").initial
     for size in sizes(len(fast(initial).configurations)):
@@ -149,7 +149,7 @@ def test_searches_end_at_every_limit_of_memory(monkeypatch, name):
 
 
 @checked
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", UNTIMED)
 def test_all_that_is_decided_is_decided_within_bounds(name):
     mission = load_mission(MISSIONS / f"{name}.mission")
     wide = check(mission.initial, mission.properties, LIMITS, engine=Engine.FAST)
@@ -159,7 +159,7 @@ def test_all_that_is_decided_is_decided_within_bounds(name):
 
 @checked
 @pytest.mark.parametrize("bits", [16, 32, 64])
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", UNTIMED)
 def test_tags_stay_within_bounds(name, bits):
     initial = load_mission(MISSIONS / f"{name}.mission").initial
     found = fast(initial, keeping=Keeping(compact=bits))
@@ -167,7 +167,7 @@ def test_tags_stay_within_bounds(name, bits):
 
 
 @checked
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", UNTIMED)
 def test_reduced_searches_stay_within_bounds(name):
     mission = load_mission(MISSIONS / f"{name}.mission")
     formulas = [each.formula for each in mission.properties if each.kind in {"invariant", "reachable"}]
@@ -177,7 +177,7 @@ def test_reduced_searches_stay_within_bounds(name):
 
 
 @checked
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", UNTIMED)
 def test_workers_go_on_from_every_round(tmp_path, monkeypatch, name):
     monkeypatch.setattr(cluster, "ROUND", 7)
     initial = load_mission(MISSIONS / f"{name}.mission").initial

@@ -6,6 +6,7 @@ import pytest
 from checked_missions import load
 from hypothesis import given
 from scale import crossed, examples
+from shipped import UNTIMED
 
 from checker import Engine, Limits, Outcome, check, explore
 from checker.properties.temporal.decide import kept_graph
@@ -14,7 +15,6 @@ from semantics.races.monitor import monitored
 from specs.elaboration import Variation, load_mission
 
 MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
-NAMES = sorted(path.stem for path in MISSIONS.glob("*.mission"))
 FEW = Limits(configurations=400)
 
 VARIATIONS = {
@@ -55,13 +55,13 @@ def explored(initial, engine, limits=FEW):
     return (*visited, found.transitions, found.rules, found.bounds)
 
 
-@crossed(NAMES, VARIATIONS)
+@crossed(UNTIMED, VARIATIONS)
 def test_a_mission_is_explored_alike_by_both_engines(name, variation):
     initial = load_mission(MISSIONS / f"{name}.mission", variation).initial
     assert explored(initial, Engine.FAST) == explored(initial, Engine.REFERENCE)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", UNTIMED)
 def test_a_monitored_mission_is_explored_alike_by_both_engines(name):
     initial = monitored(load_mission(MISSIONS / f"{name}.mission").initial)
     assert explored(initial, Engine.FAST) == explored(initial, Engine.REFERENCE)
@@ -74,7 +74,7 @@ def test_generated_missions_are_explored_alike_by_both_engines(initial):
     assert explored(initial, Engine.FAST, limits) == explored(initial, Engine.REFERENCE, limits)
 
 
-@crossed(NAMES, VARIATIONS)
+@crossed(UNTIMED, VARIATIONS)
 def test_both_engines_come_to_the_same_report(name, variation):
     mission = load_mission(MISSIONS / f"{name}.mission", variation)
     reports = [check(mission.initial, mission.properties, FEW, engine=engine) for engine in ENGINES]
@@ -133,7 +133,7 @@ def test_the_rules_are_run_far_less_often_than_there_are_transitions():
     assert found.rule_runs < 600
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", UNTIMED)
 def test_both_engines_keep_the_same_graph(name):
     initial = load_mission(MISSIONS / f"{name}.mission").initial
     graphs = [kept_graph(explore(initial, limits=FEW, engine=engine, edges=True)) for engine in ENGINES]

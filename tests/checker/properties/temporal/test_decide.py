@@ -235,3 +235,57 @@ def test_nothing_is_said_never_to_be_where_not_everything_was_explored(claim):
     slow = ONCE.replace("{ ", "{ let n = 1  n = n + 1  observe(HOST)  ")
     found = verdict(slow, claim, Limits(configurations=1))
     assert (found.outcome, found.remarks) == (Outcome.INCOMPLETE, ())
+
+
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_formulas_are_told_as_they_were_written(engine):
+    text = """BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) }
+    check {
+      invariant "i": forall u: UAV . // of both
+        not u in gate0
+      reachable "r": exists u: UAV . u in gate0 and u in south0
+      ltl "l" under weak fairness of a: always forall u: UAV . not (u in gate0)
+      ctl "c": EF exists u: UAV . u in gate0 and ended a and u in south0
+    }"""
+    mission = load(text)
+    verdicts = check(mission.initial, mission.properties, engine=engine).verdicts
+    told = [each.violations[0].message if each.violations else each.note for each in verdicts[:4]]
+    assert told == [
+        "not true here: forall u: UAV . not u in gate0",
+        "no reachable configuration satisfies: exists u: UAV . u in gate0 and u in south0",
+        "false, whatever follows: always forall u: UAV . not (u in gate0)",
+        "false at c0: EF exists u: UAV . u in gate0 and ended a and u in south0",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("claim", "told"),
+    [
+        (
+            'ltl "q": <> ended g',
+            ["only unfair runs violate it: it holds under weak fairness of rules, requests"],
+        ),
+        (
+            'ctl "q": AF ended g',
+            ["only unfair runs violate it: it holds under weak fairness of rules, requests"],
+        ),
+        ('ltl "q": [] not uav0 in gate0', []),
+        ('ltl "q" under weak fairness of a: <> ended g', []),
+    ],
+)
+def test_what_only_unfair_runs_violate_is_told_the_fairness_that_would_do(claim, told):
+    (violation,) = verdict(THERE_AND_BACK, claim).violations
+    assert [each for each in violation.details if "unfair" in each] == told
+
+
+def test_a_deadlock_while_a_link_is_down_that_returns_names_the_fairness_that_counts_on_it():
+    talks = """BigActor a hosted_at uav0 with_behavior { send "x" to b }
+    BigActor b hosted_at uav1 with_behavior { react { case "x" => skip } }
+    environment { mesh drops and returns }"""
+    (violation,) = verdict(talks, "deadlock_freedom").violations
+    assert violation.details[0] == (
+        'SND(a, b, "x"): their hosts, uav0 and uav1, share no link: mesh is down; '
+        "it may return: deadlock_freedom under weak fairness of environment counts on that"
+    )
+    (violation,) = verdict(talks.replace(" and returns", ""), "deadlock_freedom").violations
+    assert violation.details[0].endswith("share no link: mesh is down")

@@ -1,0 +1,38 @@
+"""The libraries of the extra `camera`, loaded when they are needed, with bounds on what they decode."""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+from typing import Any, Final
+
+from physical import PhysicalError
+from physical.messages import install_extra
+
+MOST_PIXELS: Final = 100_000_000
+
+
+@cache
+def opencv() -> Any:
+    """Return OpenCV; raises PhysicalError where it is not installed."""
+    os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(MOST_PIXELS))  # read when it is loaded
+    os.environ.setdefault("OPENCV_LOG_LEVEL", "SILENT")  # what it cannot decode is counted
+    try:
+        import cv2  # noqa: PLC0415 - an extra, and slow to load
+    except ImportError as missing:
+        raise PhysicalError("camera-extra", "cameras need OpenCV", install_extra("camera")) from missing
+    cv2.setNumThreads(1)  # a run has other things to do
+    return cv2
+
+
+@cache
+def geotiffs() -> Any:
+    """Return rasterio; raises PhysicalError where it is not installed."""
+    try:
+        import rasterio  # noqa: PLC0415 - an extra, and slow to load
+        import rasterio.warp  # noqa: PLC0415
+    except ImportError as missing:
+        raise PhysicalError(
+            "camera-extra", "satellite pictures need rasterio", install_extra("camera")
+        ) from missing
+    return rasterio

@@ -1,0 +1,221 @@
+"""The vehicles' cards: what each is to do, what it does, and how much it needs an operator."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import floor
+from operator import attrgetter
+from typing import Final, NamedTuple
+
+from adapters.console.agents import agents
+from adapters.console.facts import Authority, Facts, Link, Order, Position
+from adapters.console.flights import concerned
+from adapters.console.parsing import text
+from adapters.console.view import Json
+from adapters.console.whereabouts import UNKNOWN, Whereabouts, is_under_way, known_whereabouts
+from adapters.live.state import Waiting
+from semantics.behaviours.durations import duration_text
+from semantics.contingencies import Fallback, TimeLimit
+from semantics.state.requests import CTR, FLY, Request
+from semantics.state.signature import Name
+
+WELL, WATCHED, WRONG, LOST = range(4)
+"""How much a vehicle needs an operator."""
+
+OLD: Final = 5.0
+"""Seconds after which a link is watched."""
+
+LOW: Final = 25
+"""Percent of a battery that are too few."""
+
+UNTOLD: Final = Authority(())
+
+
+class Asked(NamedTuple):
+    """A request that a vehicle is to serve, and how long it may take."""
+
+    waiting: Waiting
+    limit: TimeLimit | None
+
+
+def vehicles(facts: Facts, now: float) -> dict[str, Json]:
+    """Return the section `vehicles`."""
+    if facts.run is None:
+        return {}
+    asked, where = _asked(facts), known_whereabouts(facts)
+    return {
+        name: _card(facts, name, now, asked.get(name), where.get(name, UNKNOWN))
+        for name in sorted(facts.run.vehicles)
+    }
+
+
+def _card(facts: Facts, name: Name, now: float, asked: Asked | None, where: Whereabouts) -> Json:
+    """Return a vehicle's card, which doesn't change with each of the positions that it sends ten times a second."""
+    seen, status = facts.seen.get(name), facts.status.get(name, {})
+    order, link = _order(facts, name), facts.links.get(name, Link())
+    reasons = sorted(_reasons(facts, name, now, asked, where), key=lambda reason: -reason[0])
+    heading, authority = status.get("heading"), facts.authority.get(name, UNTOLD)
+    return {
+        "kind": _kind(facts, name),
+        "believed": where.believed,
+        "actual": where.actual,
+        "differs": where.differs,
+        "request": None if asked is None else _request_json(asked),
+        "order": None if order is None else _order_json(order, _way(facts, name)),
+        "link": {"heard": None if link.heard is None else floor(link.heard), "lost": link.lost},
+        "mode": status.get("mode"),
+        "armed": status.get("armed"),
+        "battery": status.get("battery"),
+        "heading": heading if heading is not None or seen is None else seen.course,
+        "altitude": None if seen is None or seen.altitude is None else round(seen.altitude),
+        "height": status.get("height"),
+        "home": status.get("home"),
+        "returning": status.get("returning", False),
+        "authority": [*authority.stations],
+        "handed": authority.handed,
+        "said": facts.words.get(name),
+        "taken": facts.taken.get(name) or facts.bidden.get(name),
+        "level": max((level for level, _ in reasons), default=WELL),
+        "why": "; ".join(why for _, why in reasons),
+    }
+
+
+def _kind(facts: Facts, name: Name) -> str | None:
+    if facts.standing is not None:
+        return facts.standing.configuration.setting.kinds.get(name)
+    return facts.seen[name].kind if name in facts.seen else None
+
+
+def _request_json(asked: Asked) -> Json:
+    request, limit = asked.waiting.request, asked.limit
+    return {
+        "text": text(str(request)),
+        "agent": request.agent,
+        "since": asked.waiting.since,
+        "limit": None if limit is None else limit.seconds,
+        "fallback": None if limit is None else limit.fallback.value,
+    }
+
+
+# --- orders -------------------------------------------------------------------------------------------
+
+
+def _order(facts: Facts, name: Name) -> Order | None:
+    """Return what a vehicle was told last: of its authority, until that is done, else where to be."""
+    handing = facts.handing.get(name)
+    return handing if handing is not None and handing.state != "arrived" else facts.orders.get(name)
+
+
+def _way(facts: Facts, name: Name) -> tuple[Position, ...]:
+    going = facts.orders.get(name)
+    return () if going is None else going.way
+
+
+def _order_json(order: Order, way: tuple[Position, ...]) -> Json:
+    return {
+        "command": order.command,
+        "to": order.to,
+        "way": way,
+        "since": order.since,
+        "state": order.state,
+        "why": order.why,
+    }
+
+
+# --- requests -----------------------------------------------------------------------------------------
+
+
+def _asked(facts: Facts) -> Mapping[Name, Asked]:
+    """Return the request of each vehicle: that which moves it, else that of an agent aboard."""
+    if facts.standing is None or facts.run is None:
+        return {}
+    limits = facts.standing.rules.limits if facts.run.limits is None else facts.run.limits
+    found: dict[Name, Asked] = {}
+    for waiting in facts.standing.heads.values():
+        moving = isinstance(waiting.request, CTR | FLY)
+        for name in concerned(facts.standing.configuration, waiting.request):
+            if name in facts.run.vehicles and (moving or name not in found):
+                found[name] = Asked(waiting, limit_of(waiting.request, limits))
+    return found
+
+
+def limit_of(request: Request, limits: tuple[TimeLimit, ...]) -> TimeLimit | None:
+    """Return the shortest limit of a request, None where nothing limits it."""
+    kind = type(request).__name__
+    covering = (limit for limit in limits if limit.covers(kind, request.agent))
+    return min(covering, key=attrgetter("seconds"), default=None)
+
+
+# --- levels -------------------------------------------------------------------------------------------
+
+
+def _reasons(
+    facts: Facts, name: Name, now: float, asked: Asked | None, where: Whereabouts
+) -> Iterator[tuple[int, str]]:
+    """Yield why a vehicle needs an operator, and how much."""
+    yield from _of_link(facts.links.get(name, Link()), now)
+    if name in facts.taken:
+        yield LOST, f"taken over: {facts.taken[name]}"
+    elif name in facts.bidden:
+        yield WATCHED, facts.bidden[name]
+    for alert in facts.alerts.values():
+        if alert["kind"] == "broken assumption" and alert["about"] == name and alert["acknowledged"] is None:
+            yield LOST, f"broken assumption: {alert['message']}"
+    for station in facts.authority.get(name, UNTOLD).stations:
+        if facts.stations.get(station, {}).get("reached") is False:
+            yield WRONG, f"{station}, which it obeys, is not reached"
+    away = name in facts.taken or name in facts.bidden
+    yield from _of_request(asked, now, idle=away)
+    if asked is None and not away and facts.status.get(name, {}).get("armed"):
+        yield from _of_idleness(facts)
+    for order in (facts.orders.get(name), facts.handing.get(name)):
+        if order is not None and order.state == "refused":
+            yield WRONG, f"it refuses {order.command}{f': {order.why}' if order.why else ''}"
+    battery = facts.status.get(name, {}).get("battery")
+    if battery is not None and battery["percent"] is not None and battery["percent"] < LOW:
+        yield WRONG, f"its battery has less than {LOW} %"
+    if where.differs and not _is_flying(facts, name):
+        yield WATCHED, "where it is believed to be and where it is differ"
+
+
+def _of_link(link: Link, now: float) -> Iterator[tuple[int, str]]:
+    if link.lost:
+        yield LOST, "the link is lost"
+    elif link.heard is not None and now - link.heard > OLD:
+        yield WATCHED, f"nothing was heard of it for more than {OLD:g} s"
+
+
+def _of_request(asked: Asked | None, now: float, *, idle: bool) -> Iterator[tuple[int, str]]:
+    """Yield what its request's limit calls for; `idle`: the mission does not command the vehicle."""
+    if asked is None or asked.limit is None:
+        return
+    stood, limit = now - asked.waiting.since, asked.limit.seconds
+    if stood >= limit:
+        yield WRONG, f"its request stands for longer than {duration_text(limit)}"
+    elif stood > limit / 2:
+        yield WATCHED, f"its request stands for more than half of {duration_text(limit)}"
+    if idle and stood < limit:
+        then = "" if asked.limit.fallback is Fallback.CONTINUE else f"; then {_grounded(asked)}"
+        yield WATCHED, f"the {duration_text(limit)} of its request run on meanwhile{then}"
+
+
+def _grounded(asked: Asked) -> str:
+    return f"nothing that {asked.waiting.request.agent} orders is carried out any more"
+
+
+def _of_idleness(facts: Facts) -> Iterator[tuple[int, str]]:
+    """Yield for whom a vehicle waits of which nothing is asked: who would ask waits itself, or has ended."""
+    states = agents(facts)
+    if any(each["state"] == "goes on" or each["request"] is not None for each in states.values()):
+        return
+    waiting = [
+        f"{name} {each['state']}" for name, each in states.items() if each["state"].startswith("waits")
+    ]
+    if waiting:
+        yield WELL, f"nothing is asked of it: {waiting[0]}"
+    elif states:
+        yield WATCHED, "nothing will be asked of it any more: every bigActor of the mission has ended"
+
+
+def _is_flying(facts: Facts, name: Name) -> bool:
+    return facts.standing is not None and is_under_way(facts.standing.configuration, name)

@@ -1,0 +1,169 @@
+"""What vehicles are told, what becomes of it, and what they say of themselves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any, Final
+
+from adapters.console.actions import confirm
+from adapters.console.draft import Draft, Table
+from adapters.console.facts import Link, Order, Position
+from adapters.console.parsing import count, number, text, texts
+from adapters.console.stations import obeys
+from physical import PhysicalError, waypoint
+from physical.frame import E7
+from semantics.behaviours.reaction_rules import moved
+from semantics.state.configuration import Configuration, Label
+from semantics.state.observation_serialization import geometry_of
+from semantics.state.requests import CTR, FLY, Request
+from semantics.state.signature import Name
+
+STATES: Final = {"Accepted": "accepted", "Arrived": "arrived", "Rejected": "refused"}
+"""What becomes of an order, by the report."""
+
+MOST_WAY: Final = 100
+MOST_VEHICLES: Final = 1_000
+
+
+def take_command(draft: Draft, time: float, data: Any) -> None:
+    """Take in what a vehicle is told; the same request with other places goes on where it was."""
+    match data:
+        case {
+            "command": "GoTo" | "Follow" | "Hold" | "Return" as command,
+            "request": str(),
+            "entity": str(name),
+        }:
+            order = _order(command, time, data)
+            known = draft.orders.get(name)
+            if known is not None and known.request == order.request:
+                order = replace(order, since=known.since, state=known.state, why=known.why)
+            draft.orders[name] = order
+            if command in ("Hold", "Return"):
+                draft.handing.pop(name, None)
+            draft.orders.bounded(MOST_VEHICLES)
+        case {"command": "HandOver", "request": str(), "entity": str(name)}:
+            draft.handing[name] = _order("HandOver", time, data)
+            draft.handing.bounded(MOST_VEHICLES)
+
+
+def _order(command: str, time: float, data: Any) -> Order:
+    places = data.get("path", [data["ring"]] if "ring" in data else [])
+    points = [_waypoint(each) for each in places[:MOST_WAY]] if isinstance(places, list) else []
+    way = tuple(each for each in points if each is not None)
+    to = text(data.get("join") if command == "HandOver" else data.get("name"))
+    return Order(text(data["request"]), command, to, way, time)
+
+
+def _waypoint(place: Any) -> Position | None:
+    try:
+        north, east = waypoint(geometry_of({"ring": place})).ring[0]
+    except (ValueError, PhysicalError):
+        return None
+    return north / E7, east / E7
+
+
+def take_report(draft: Draft, time: float, data: Any) -> None:
+    """Take in what a plugin reports of a request or a link."""
+    match data:
+        case {
+            "report": "Accepted" | "Arrived" | "Rejected" as report,
+            "request": str(request),
+            "entity": str(name),
+        }:
+            why = text(data.get("reason"))
+            _becomes(draft.orders, name, request, STATES[report], why)
+            _becomes(draft.handing, name, request, STATES[report], why)
+            confirm(draft, time, request, why if report == "Rejected" else None)
+        case {"report": "TakenOver", "entity": str(name)}:
+            draft.taken[name] = text(data.get("reason"))
+            draft.bidden.pop(name, None)
+            draft.taken.bounded(MOST_VEHICLES)
+        case {"report": "LinkLost", "entity": str(name)}:
+            heard = draft.links.get(name, Link()).heard
+            draft.links[name] = Link(number(data.get("since")) if heard is None else heard, lost=True)
+            draft.links.bounded(MOST_VEHICLES)
+        case {"report": "LinkRestored", "entity": str(name)}:
+            draft.links[name] = Link(draft.links.get(name, Link()).heard)
+            confirm(draft, time, f"link {name}", None)
+
+
+def _becomes(orders: Table[Order], name: str, request: str, state: str, why: str) -> None:
+    order: Order | None = orders.get(name)
+    if order is not None and order.request == request:
+        orders[name] = replace(order, state=state, why=why)
+
+
+def arrive(draft: Draft, label: Label, c: Configuration) -> None:
+    """Note that what vehicles were told is done, by the step that says so: `commit`, or `actuate` of a hand-over."""
+    table = {"commit": draft.orders, "actuate": draft.handing}.get(label.rule)
+    if table is not None and isinstance(label.about, CTR | FLY):
+        for name in concerned(c, label.about):
+            if name in table:
+                _becomes(table, name, table[name].request, "arrived", "")
+
+
+@lru_cache(maxsize=1 << 10)
+def concerned(c: Configuration, request: Request) -> tuple[Name, ...]:
+    """Return the nodes that a request moves or relinks, else the host of who asked."""
+    host = (c.alpha.host(request.agent),) if request.agent in c.alpha else ()
+    match request:
+        case FLY(_, reaction, match):
+            return tuple(node for node, _ in moved(reaction, match)) or host
+        case CTR(_, reaction):
+            changed = [node for node, _ in reaction.moves]
+            changed += [node for _, node in {*reaction.redex.links} ^ {*reaction.reactum.links}]
+            return tuple(sorted({node for node in changed if isinstance(node, str)})) or host
+    return host
+
+
+# --- what vehicles say of themselves ------------------------------------------------------------------
+
+
+def take_status(draft: Draft, time: float, data: Any) -> None:
+    """Take in what a vehicle says of itself."""
+    match data:
+        case {"entity": str(name)}:
+            draft.status[name] = {
+                "mode": text(data.get("mode")) or None,
+                "armed": data.get("armed") if isinstance(data.get("armed"), bool) else None,
+                "battery": _battery(data.get("battery")),
+                "heading": number(data.get("heading")),
+                "authority": texts(data.get("authority")),
+                "height": number(data.get("height")),
+                "home": _position(data.get("home")),
+                "returning": data.get("returning") is True,
+            }
+            draft.status.bounded(MOST_VEHICLES)
+            obeys(draft, time, name, tuple(texts(data.get("authority"))))
+            heard, link = number(data.get("heard")), draft.links.get(name, Link())
+            if heard is not None and (link.heard is None or heard > link.heard):
+                draft.links[name] = replace(link, heard=heard)
+
+
+def _position(value: Any) -> Position | None:
+    match value:
+        case [float() | int() as north, float() | int() as east] if abs(north) <= 90 and abs(east) <= 180:
+            return north, east
+    return None
+
+
+def _battery(value: Any) -> dict[str, float | None] | None:
+    match value:
+        case {"percent": percent, "volts": volts}:
+            return {"percent": number(percent), "volts": number(volts)}
+    return None
+
+
+def take_words(draft: Draft, time: float, data: Any) -> None:
+    """Take in a text that a vehicle says."""
+    match data:
+        case {"entity": str(name), "text": str(said)}:
+            stamp = number(data.get("time"))
+            severity = count(data.get("severity"))
+            draft.words[name] = {
+                "text": text(said),
+                "time": time if stamp is None else stamp,
+                "severity": severity,
+            }
+            draft.words.bounded(MOST_VEHICLES)

@@ -1,0 +1,78 @@
+"""The fold: from what a recording has told and its next messages to what it has told then."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+from adapters.console.actions import take_acknowledgement, take_giving_back, take_order, take_saying
+from adapters.console.agents import take_deadline
+from adapters.console.alerts import take_finding, tell
+from adapters.console.arrivals import take_arrival
+from adapters.console.draft import Draft
+from adapters.console.facts import Change, Facts, Opening, Standing, Unreplayable
+from adapters.console.flights import take_command, take_report, take_status, take_words
+from adapters.console.parsing import text
+from adapters.console.runs import run_of
+from adapters.console.stations import take_presence
+from adapters.console.steps import take_step
+from adapters.live.limits import heads_of
+from adapters.recording.foxglove import OTHERS
+from adapters.recording.mcap_files import Message
+from adapters.recording.reading import checked_run
+
+TOPICS: Final[dict[str, Callable[[Draft, float, Any], None]]] = {
+    "arrivals": take_arrival,
+    "steps": take_step,
+    "deadlines": take_deadline,
+    "commands": take_command,
+    "reports": take_report,
+    "sayings": take_saying,
+    "given_back": take_giving_back,
+    "orders": take_order,
+    "findings": take_finding,
+    "acknowledged": take_acknowledgement,
+    "status": take_status,
+    "said": take_words,
+    "stations": take_presence,
+}
+"""What each topic's messages are taken in by; of all other topics nothing is shown."""
+
+
+def take(draft: Draft, message: Message, opening: Opening) -> None:
+    """Take in a message; raises RecordingError if the recording is none of a run."""
+    draft.changed = True
+    if draft.run is None:
+        if message.topic == "run":
+            _begin(draft, message, opening)
+        return
+    draft.time = time_of(draft, message)
+    if isinstance(message.data, dict):
+        if message.topic == "end":
+            draft.end(text(message.data.get("reason")) or "the run has ended", broken_off=False)
+        elif message.topic in TOPICS:
+            draft.begin = draft.time if draft.begin is None else draft.begin
+            TOPICS[message.topic](draft, draft.time, message.data)
+
+
+def time_of(facts: Facts | Draft, message: Message) -> float:
+    """Return when a message counts: time never goes back, though the first ones of a resumed run are older.
+
+    The end of a run on another clock says no time of it, nor does what is there for other programs.
+    """
+    if facts.run is None or (facts.begin is None and message.topic != "end"):
+        return message.time
+    timeless = message.topic == "end" or message.topic.startswith(OTHERS)
+    return facts.time if timeless else max(facts.time, message.time)
+
+
+def _begin(draft: Draft, message: Message, opening: Opening) -> None:
+    run = checked_run(message.data if isinstance(message.data, dict) else None)
+    draft.run, draft.time = run_of(run, message.time), message.time
+    try:
+        rules = opening(run)
+    except Unreplayable as error:
+        tell(draft, f"what is believed is not known: {error}")
+        return
+    first = rules.initial
+    draft.standing = Standing(rules, first, Change(0, first, first), heads_of(first, {}, message.time))

@@ -1,0 +1,71 @@
+/** The red line: what is wrong, until someone acknowledges it. It has its place when nothing is, so that nothing moves. */
+import { html, useEffect, useSections, useState, useWatched } from "./ui.js";
+import { Age } from "./clock.js";
+import { utc } from "./units.js";
+
+/** The newest first; of those of one second what is about a vehicle. */
+const standing = (alerts, vehicles) =>
+  [...alerts]
+    .filter(([, alert]) => alert.wrong && !alert.acknowledged)
+    .sort(([, a], [, b]) => Math.floor(b.time) - Math.floor(a.time) || vehicles.has(b.about) - vehicles.has(a.about) || b.time - a.time);
+
+/** What somebody here is waited for to say. */
+function asked(sayings, agents) {
+  const saying = [...sayings.values()].find(({ awaited, left }) => awaited && left !== 0);
+  if (!saying) return null;
+  const until = agents.get(saying.agent)?.until;
+  return `${saying.agent} waits for somebody to say “${saying.message}”${until ? `, until ${utc(until)}` : ""}. `;
+}
+
+/** What is said where nothing stands: who is to be watched all the same, and why. */
+function calm(vehicles) {
+  const watched = [...vehicles].filter(([, card]) => card.level > 0);
+  const [name, card] = watched.sort(([, a], [, b]) => b.level - a.level)[0] ?? [];
+  if (!card) return "Nothing is wrong.";
+  return `${watched.length} to be watched: ${name}${card.why ? `, ${card.why}` : ""}${watched.length > 1 ? ", ..." : "."}`;
+}
+
+const endOf = (why, file) => `The run has ended: ${why}.${file ? ` It is recorded in ${file}.` : ""}`;
+
+/** Milliseconds for which an alert that took the place of another cannot be acknowledged: the press was meant for that one. */
+const TO_READ = 1_000;
+
+function Acknowledge({ app, number, about }) {
+  const [read, setRead] = useState(number);
+  useEffect(() => {
+    const timer = setTimeout(() => setRead(number), TO_READ);
+    return () => clearTimeout(timer);
+  }, [number]);
+  return html`<button type="button" class="acknowledge" disabled=${read !== number} onClick=${() => app.act({ acknowledge: { alert: number } }, { what: "acknowledge", about })}>Acknowledge</button>`;
+}
+
+export function Alert({ app }) {
+  const [alerts, vehicles, sayings, agents] = useSections(app.store, ["alerts", "vehicles", "sayings", "agents", "clock"], 200);
+  const connected = useWatched(app.link.state).state === "open";
+  const act = useWatched(app.mayAct);
+  const open = useWatched(app.listing);
+  const wrong = standing(alerts, vehicles);
+  const [number, newest] = wrong[0] ?? [];
+  const all = [...alerts].sort(([, a], [, b]) => b.time - a.time);
+  const shown = open && all.length > 0;
+  const broken = app.clock.get("broken_off") && app.clock.atEnd;
+  const welcome = useWatched(app.link.welcome);
+  const question = act ? asked(sayings, agents) : null;
+  return html`<div class="alerts">
+    <div role="alert" class=${`alert ${newest ? "standing" : ""}`} key="line">
+      ${newest && html`<span class="message" key=${number} title=${newest.message} onClick=${() => app.listing.set(!open)}><b>${newest.about ? `${newest.about}: ` : ""}</b>${newest.message}${newest.fallback ? ` · ${newest.fallback}` : ""}</span>`}
+    </div>
+    ${!newest && html`<span class=${`calm ${broken ? "wrong" : question ? "asked" : ""}`} key="calm">${broken ? `Unknown: ${app.clock.get("ended")}.` : app.clock.atEnd ? endOf(app.clock.get("ended"), welcome?.recording) : connected ? `${question ?? ""}${calm(vehicles)}` : "Unknown: not connected."}</span>`}
+    ${all.length > 0 && html`<div class=${`alert-tools ${newest ? "standing" : ""}`} key="tools">
+      ${newest && html`<span class="quiet-red when">${utc(newest.time)} · <${Age} clock=${app.clock} time=${newest.time} /> ago</span>`}
+      ${newest && act && html`<${Acknowledge} app=${app} number=${number} about=${newest.about} />`}
+      <button type="button" class="others" aria-expanded=${String(shown)} onClick=${() => app.listing.set(!open)}>${wrong.length > 1 ? `${wrong.length - 1} more` : `all ${all.length}`} ▾</button>
+    </div>`}
+    ${shown && html`<ol class="alert-list" key="list">${all.map(([key, alert]) => html`<li key=${key} class=${alert.wrong && !alert.acknowledged ? "unread" : ""}>
+      <time>${utc(alert.time)}</time> <span class="kind">${alert.kind}</span> <b>${alert.about}</b> ${alert.message}${alert.fallback ? ` · ${alert.fallback}` : ""}
+      ${alert.verdicts?.length > 0 && html` <span class="quiet">rests on it: ${alert.verdicts.map((each) => (typeof each === "string" ? each : each.property)).join(", ")}</span>`}
+      ${alert.acknowledged && html` <span class="quiet">acknowledged by ${alert.acknowledged.by || "someone"} at ${utc(alert.acknowledged.time)}</span>`}
+      ${act && alert.wrong && !alert.acknowledged && html` <button type="button" onClick=${() => app.act({ acknowledge: { alert: key } }, { what: "acknowledge", about: alert.about })}>Acknowledge</button>`}
+    </li>`)}</ol>`}
+  </div>`;
+}

@@ -1,0 +1,356 @@
+/** The operator's console: one screen on what a recording tells, and on what may be said and done. */
+import { first, html, render, memo, kept, owed, useEffect, useLayoutEffect, useRef, useSections, useWatched, Watched } from "./ui.js";
+import { Alert } from "./alert.js";
+import { Announcer } from "./announce.js";
+import { Brief, Cards, worstFirst } from "./cards.js";
+import { Clock } from "./clock.js";
+import { Door } from "./door.js";
+import { Help, listenForKeys } from "./keys.js";
+import { Link } from "./link.js";
+import { Mission, NotConnected } from "./mission.js";
+import { NoticeList, Notices } from "./notices.js";
+import { Orders } from "./orders.js";
+import { Store } from "./store.js";
+import { openTab, Panel, PANELS, TabList, usePhone } from "./tabs.js";
+import { neighbour, SPEEDS, Timeline } from "./timeline.js";
+import { Who } from "./who.js";
+
+/** Milliseconds in which a connection with a new name is made, or the action is not sent. */
+const CONNECTS = 10_000;
+
+const PAST = "The past is shown: to act, go to the newest moment (L).";
+
+/** What the link's fragment says: the token is in no request's address. */
+const fragment = () => new URLSearchParams(location.hash.slice(1));
+
+class App {
+  store = new Store();
+  clock = new Clock(this.store);
+  notices = new Notices(this.store);
+  tell = this.notices.tell;
+  chosen = new Watched(null);
+  following = new Watched(false);
+  measuring = new Watched(false);
+  enlarged = new Watched(false);
+  help = new Watched(false);
+  /** Whether all alerts are listed. */
+  listing = new Watched(false);
+  tab = new Watched("map");
+  hiddenSorts = new Watched(new Set());
+  mayAct = new Watched(false);
+  past = new Watched(false);
+  /** Whether all that hinders this page from acting is that the past is shown. */
+  inPast = new Watched(false);
+  /** What waits for a name: `{action, words}`. */
+  pending = new Watched(null);
+  /** Whether a name is asked for before there is anything to do, as once at the beginning. */
+  asking = new Watched(false);
+  /** How fast the past is played, once it is. */
+  speed = new Watched(1);
+  /** The only vehicle there is, or null. */
+  only = new Watched(null);
+  /** The vehicles as the cards show them; empty where no cards are shown. */
+  order = [];
+  whyNot = new Watched("");
+  name = kept("name", "");
+  look = kept("look", "");
+  singleKeys = kept("keys", "on");
+  theme = new Watched("light");
+  tabs = PANELS;
+  map = null;
+  seeking = null;
+
+  constructor() {
+    this.link = new Link(this.store, { token: fragment().get("token") ?? "", name: this.name.value, nameless: () => this.#nameless() });
+    this.link.state.on(({ state }) => (this.clock.connected = state === "open"));
+    this.link.state.on(() => this.#judge());
+    this.link.error.on((message) => message && this.tell(message));
+    this.store.on(["clock"], () => this.#judge());
+    const off = this.mayAct.on((may) => {
+      if (!may) return;
+      off();
+      this.asking.set(!this.name.value);
+    });
+    this.name.on((name) => {
+      this.link.name = name;
+      this.link.connect(); // who acts is said at the beginning of a connection
+    });
+    this.chosen.on((name) => this.map?.choose(name));
+    this.store.on(["vehicles"], () => this.only.set(onlyOf(this.store.section("vehicles"))));
+    this.store.on(["clock"], () => {
+      this.past.set(this.clock.get("live") === false && !this.clock.atEnd);
+      const { playing, speed } = this.clock.wanted;
+      if (playing) this.speed.set(speed);
+    });
+    for (const watched of [this.chosen, this.following, this.only]) watched.on(() => this.#follow());
+    this.measuring.on((on) => this.map?.measure(on));
+    const dark = matchMedia("(prefers-color-scheme: dark)");
+    const dress = () => this.theme.set(this.look.value || (dark.matches ? "dark" : "light"));
+    dark.addEventListener("change", dress);
+    this.look.on(dress);
+    this.theme.on((theme) => {
+      document.documentElement.dataset.theme = theme;
+      this.map?.setTheme(theme);
+    });
+    dress();
+    document.documentElement.dataset.theme = this.theme.value;
+    owed.on(() => queueMicrotask(this.#tellDrawn));
+  }
+
+  /** Say which frame is drawn whole, to whoever drives this page by a program: `<html data-drawn="7">`. */
+  #tellDrawn = () => {
+    if (owed.value === 0 && this.link.frame > 0) document.documentElement.dataset.drawn = this.link.frame;
+  };
+
+  /** What is chosen, or the only vehicle. */
+  get subject() {
+    return this.chosen.value ?? this.only.value;
+  }
+
+  #follow() {
+    this.map?.follow(this.following.value ? this.subject : null);
+  }
+
+  /** Whether this page may act now, and if not, why. */
+  #judge() {
+    const { role, mode } = this.link.welcome.value ?? {};
+    const why =
+      mode === "replay" ? "This is a recording that has ended: nothing can be done in it."
+      : role !== "act" ? "This link lets you watch. To act, open the link that the program printed for it."
+      : this.link.state.value.state !== "open" ? "Not connected: nothing can be done from here now."
+      : this.clock.get("ended") ? "The run has ended: nothing can be done any more."
+      : this.clock.get("live") === false ? PAST
+      : "";
+    this.whyNot.set(why);
+    this.mayAct.set(why === "");
+    this.inPast.set(why === PAST);
+  }
+
+  /** Ask for an action, and say what becomes of it; `words` are `{what, about}` as the recording will have them. */
+  act = async (action, words) => {
+    if (!this.name.value) return this.pending.set({ action, words });
+    const notice = this.notices.asked(words, this.name.value);
+    this.notices.answered(notice, await this.link.act(action), !action.acknowledge);
+  };
+
+  /** Take a name, and do what has waited for it as soon as the connection with that name is there. */
+  async actAs(name) {
+    this.asking.set(false);
+    if (!this.pending.value) return this.name.set(name);
+    const { action, words } = this.pending.value;
+    this.pending.set(null);
+    if (!this.mayAct.value) return this.tell(`Not sent: ${words.what} ${words.about}. ${this.whyNot.value}`);
+    this.name.set(name);
+    if (await this.#opened()) this.act(action, words);
+    else this.tell(`Not sent: ${words.what} ${words.about}: there is no connection.`);
+  }
+
+  forgetPending() {
+    if (this.pending.value) this.tell("Nothing was sent.");
+    this.pending.set(null);
+    this.asking.set(false);
+  }
+
+  /** Whether there is a connection within a few seconds. */
+  #opened() {
+    return new Promise((resolve) => {
+      const off = this.link.state.on(({ state }) => state === "open" && settle(true));
+      const timer = setTimeout(() => settle(false), CONNECTS);
+      const settle = (opened) => {
+        off();
+        clearTimeout(timer);
+        resolve(opened);
+      };
+      if (this.link.state.value.state === "open") settle(true);
+    });
+  }
+
+  #nameless() {
+    this.tell(`“${this.name.value}” cannot be recorded as a name: give another.`);
+    this.name.set("");
+  }
+
+  seek = (time) => {
+    this.link.send({ type: "seek", time });
+    this.clock.ask({ playing: this.clock.wanted.playing });
+  };
+  live = () => {
+    clearTimeout(this.seeking); // what was asked for before is not wanted any more
+    this.link.send({ type: "live" });
+    this.clock.ask({ live: true });
+  };
+  play = (speed) => {
+    this.link.send({ type: "play", speed });
+    this.clock.ask({ playing: true, speed });
+  };
+  pause = () => {
+    this.link.send({ type: "pause" });
+    this.clock.ask({});
+  };
+  /** At the end of a run that has ended, play begins anew. */
+  playOrPause = () => {
+    const { live, playing } = this.clock.wanted;
+    if (this.clock.atEnd) this.seek(this.clock.get("begin"));
+    if (!this.clock.atEnd && (playing || live)) this.pause();
+    else this.play(this.speed.value);
+  };
+  /** Choose how fast the past is played; what stands still or is live goes on to. */
+  setSpeed = (speed) => {
+    this.speed.set(speed);
+    if (this.clock.wanted.playing) this.play(speed);
+  };
+  back = (seconds) => this.goTo(this.clock.now - seconds);
+  /** Show a moment and stay there. */
+  goTo = (time) => {
+    const within = Math.max(this.clock.get("begin") ?? time, time);
+    if (this.clock.wanted.playing) this.pause();
+    this.seek(within);
+    this.clock.expect(within); // what is asked next starts from there
+  };
+  step = (direction) => {
+    const time = neighbour(this.store.section("ticks"), this.clock.now, direction, this.hiddenSorts.value);
+    if (time === null) this.tell(direction < 0 ? "There is no tick before." : "There is no later tick.");
+    else this.goTo(time);
+  };
+  faster = (by) => {
+    const at = SPEEDS.findIndex((speed) => speed >= this.speed.value);
+    this.setSpeed(SPEEDS[Math.max(0, Math.min(SPEEDS.length - 1, at + by))]);
+  };
+
+  chooseNext = (by) => {
+    const names = this.order.length ? this.order : worstFirst(this.store.section("vehicles"));
+    if (names.length === 0) return;
+    const at = names.indexOf(this.chosen.value);
+    this.chosen.set(names[at < 0 ? (by > 0 ? 0 : names.length - 1) : (at + by + names.length) % names.length]);
+  };
+  focusCard = () => {
+    this.showTab("vehicles");
+    requestAnimationFrame(() => document.querySelector(".card.chosen .name, .card .name")?.focus());
+  };
+  focusMap = () => {
+    this.showTab("map");
+    requestAnimationFrame(() => document.querySelector("#map .leaflet-container, #map")?.focus());
+  };
+  showTab = (key) => this.tab.set(key);
+  escape = () => {
+    const unfolded = [...document.querySelectorAll("details.verdict[open], details.map-legend[open]")];
+    if (this.help.value) this.help.set(false);
+    else if (this.listing.value) this.listing.set(false);
+    else if (unfolded.length > 0) unfolded.forEach((each) => (each.open = false));
+    else if (this.enlarged.value) this.enlarged.set(false);
+    else if (this.measuring.value) this.measuring.set(false);
+    else this.chosen.set(null);
+  };
+  otherTheme = () => this.look.set(this.theme.value === "dark" ? "light" : "dark");
+
+  admit(token) {
+    this.link.token = token;
+    history.replaceState(null, "", `#token=${encodeURIComponent(token)}`);
+    this.link.connect();
+  }
+
+  /** Get JSON from the program that serves this page, with the token. */
+  fetchJson = async (path) => {
+    const answer = await fetch(path, { headers: { Authorization: `Bearer ${this.link.token}` } });
+    if (!answer.ok) throw new Error(`${path}: ${answer.status}`);
+    return answer.json();
+  };
+
+  async openMap(element) {
+    const { createMap } = await import("./map/map.js");
+    const { tiles } = await first(this.link.welcome);
+    this.map = createMap(element, this.store, {
+      select: (name) => this.chosen.set(name),
+      fetchJson: this.fetchJson,
+      tiles: tiles ? { url: "/tiles", headers: { Authorization: `Bearer ${this.link.token}` } } : null,
+      followed: () => this.following.set(false),
+      measured: (on) => this.measuring.set(on),
+      covers: () => document.querySelectorAll(".map-tools button, .subject"),
+    });
+    this.map.setTheme(this.theme.value);
+    this.map.choose(this.chosen.value);
+    this.#follow();
+  }
+
+  closeMap() {
+    this.map?.destroy();
+    this.map = null;
+  }
+}
+
+const onlyOf = (vehicles) => (vehicles.size === 1 ? vehicles.keys().next().value : null);
+
+function Page({ app }) {
+  const { state, why, asks } = useWatched(app.link.state);
+  const known = app.clock.now !== null; // what was shown before stays: another run may be served here now
+  return state === "refused" && !known ? html`<${Door} app=${app} why=${why} asks=${asks} />` : html`<${Screen} app=${app} />`;
+}
+
+function Screen({ app }) {
+  const phone = usePhone();
+  const tab = openTab(useWatched(app.tab), phone);
+  const large = useWatched(app.enlarged) && !phone;
+  const past = useWatched(app.past);
+  useLayoutEffect(() => app.map?.redraw(), [phone, tab, large]);
+  return html`<div class=${`screen ${phone ? "phone" : "desk"} ${large ? "large" : ""} ${past ? "past" : ""}`} data-tab=${tab}>
+    <${Mission} app=${app} />
+    <${NotConnected} app=${app} />
+    <${Alert} app=${app} />
+    ${phone && html`<${TabList} key="tabs" app=${app} phone=${true} />`}
+    <main key="main">
+      <section class="map-area" id="area-map" aria-label="Map" key="map"><${MapElement} app=${app} /><${MapTools} app=${app} />${phone && html`<${Subject} app=${app} />`}</section>
+      <aside key="side" id="area-vehicles">
+        ${(!phone || tab === "vehicles") && html`<${Cards} app=${app} key="cards" />`}
+        ${!phone && html`<${TabList} key="tabs" app=${app} phone=${false} />`}
+        <${Panel} app=${app} phone=${phone} key="panel" />
+      </aside>
+    </main>
+    <${Timeline} app=${app} key="timeline" />
+    <${NoticeList} app=${app} key="notices" />
+    <${Help} app=${app} key="help" />
+    <${Who} app=${app} key="who" />
+  </div>`;
+}
+
+/** On a phone's map: the vehicle that is chosen, or the only one, how it is and what can be ordered. */
+function Subject({ app }) {
+  useWatched(app.chosen);
+  useWatched(app.only);
+  const [vehicles] = useSections(app.store, ["vehicles", "entities"], 200);
+  const card = vehicles.get(app.subject);
+  if (!card) return null;
+  return html`<div class=${`subject level-${card.level}`}>
+    <p><b class="mark">${app.subject}</b> <${Brief} app=${app} name=${app.subject} card=${card} /></p>
+    <${Orders} app=${app} name=${app.subject} taken=${card.taken} /></div>`;
+}
+
+/** The map's element, which is drawn once: what is in it is the map's own. */
+const MapElement = memo(({ app }) => {
+  const element = useRef(null);
+  useEffect(() => {
+    app.openMap(element.current).catch((problem) => app.tell(`There is no map: ${problem.message}`));
+    return () => app.closeMap();
+  }, []);
+  return html`<div id="map" ref=${element}></div>`;
+});
+
+function MapTools({ app }) {
+  const chosen = useWatched(app.chosen);
+  const only = useWatched(app.only);
+  const following = useWatched(app.following);
+  const measuring = useWatched(app.measuring);
+  return html`<div class="map-tools" role="toolbar" aria-label="Map">
+    <button type="button" title="fit  F" onClick=${() => app.map?.fit()}>Fit</button>
+    <button type="button" title="follow the chosen  O" aria-pressed=${String(following)} disabled=${chosen === null && only === null && !following} onClick=${() => app.following.set(!following)}>Follow</button>
+    <button type="button" title="measure  R" aria-pressed=${String(measuring)} onClick=${() => app.measuring.set(!measuring)}>Measure</button>
+    ${chosen !== null && html`<button type="button" class="chosen-name" title="choose nothing  Esc" onClick=${() => app.chosen.set(null)}>${chosen} ×</button>`}
+  </div>`;
+}
+
+const app = new App();
+const place = document.getElementById("app");
+place.replaceChildren();
+render(html`<${Page} app=${app} />`, place);
+listenForKeys(app);
+new Announcer(app, document.body.appendChild(document.createElement("div")));
+app.link.connect();

@@ -1,0 +1,130 @@
+/** The picture of L, which can be moved and enlarged, and the same as text. */
+import { html, useEffect, useLayoutEffect, useRef, useSections, useState } from "./ui.js";
+
+const SVG = "http://www.w3.org/2000/svg";
+const ELEMENTS = new Set(["svg", "g", "path", "text", "tspan", "use", "defs", "clipPath", "rect", "circle", "ellipse", "line", "polygon", "polyline", "title"]);
+const ATTRIBUTES = new Set(["d", "x", "y", "x1", "x2", "y1", "y2", "dx", "dy", "width", "height", "transform", "clip-path", "id", "r", "cx", "cy", "rx", "ry", "points",
+  "viewBox", "fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "opacity", "fill-opacity", "stroke-opacity",
+  "font-family", "font-size", "font-weight", "font-style", "text-anchor", "textLength", "lengthAdjust", "class"]);
+/** A reference to something that is not in the picture. */
+const ELSEWHERE = /url\s*\((?!\s*['"]?#)/i;
+const LARGEST = 12;
+
+/**
+ * A picture as elements of this page: shapes and text only. What is said in `style` is set by script, as the page's policy
+ * refuses such attributes; nothing in the picture refers to anything outside of it.
+ */
+export function picture(text) {
+  // Else each style is reported as refused when it is parsed, before it is set by script or left out.
+  const renamed = text.replaceAll(' style="', ' data-style="').replace(/<style[\s\S]*?<\/style>/g, "");
+  const root = new DOMParser().parseFromString(renamed, "image/svg+xml").documentElement;
+  if (root.localName !== "svg" || root.namespaceURI !== SVG) return null;
+  const styles = [];
+  for (const element of [root, ...root.querySelectorAll("*")]) {
+    if (element.namespaceURI !== SVG || !ELEMENTS.has(element.localName)) {
+      element.remove();
+      continue;
+    }
+    const style = element.getAttribute("data-style");
+    if (style && !ELSEWHERE.test(style)) styles.push([element, style]);
+    for (const { name, value } of [...element.attributes]) if (!kept(name, value)) element.removeAttribute(name);
+  }
+  const size = sizeOf(root);
+  document.adoptNode(root);
+  for (const [element, style] of styles) element.style.cssText = style;
+  root.removeAttribute("width");
+  root.removeAttribute("height");
+  return { root, size };
+}
+
+function kept(name, value) {
+  if (name === "href" || name === "xlink:href") return value.startsWith("#");
+  return ATTRIBUTES.has(name) && !ELSEWHERE.test(value);
+}
+
+function sizeOf(root) {
+  const box = (root.getAttribute("viewBox") ?? "").trim().split(/[\s,]+/).map(Number);
+  if (box.length === 4 && box.every(Number.isFinite) && box[2] > 0 && box[3] > 0) return box;
+  const [width, height] = ["width", "height"].map((name) => Number.parseFloat(root.getAttribute(name)) || 100);
+  return [0, 0, width, height];
+}
+
+export function Bigraph({ app }) {
+  const [bigraph] = useSections(app.store, ["bigraph"], 200);
+  const [svg, text, step] = ["svg", "text", "step"].map((key) => bigraph.get(key) ?? null);
+  const frame = useRef(null);
+  const view = useRef({ box: null, whole: null });
+  const [words, setWords] = useState(false);
+
+  const show = () => frame.current?.firstElementChild?.setAttribute("viewBox", view.current.box.join(" "));
+  const fit = () => {
+    if (!view.current.whole) return;
+    view.current.box = [...view.current.whole];
+    show();
+  };
+  /** Enlarge around a point, which is given as parts of the frame. */
+  const zoom = (factor, across = 0.5, down = 0.5) => {
+    const { box, whole } = view.current;
+    if (!whole) return;
+    const width = Math.min(whole[2] * 2, Math.max(whole[2] / LARGEST, box[2] / factor));
+    const height = (width * box[3]) / box[2];
+    view.current.box = [box[0] + (box[2] - width) * across, box[1] + (box[3] - height) * down, width, height];
+    show();
+  };
+  const move = (across, down) => {
+    const { box } = view.current;
+    if (!box) return;
+    view.current.box = [box[0] + across * box[2], box[1] + down * box[3], box[2], box[3]];
+    show();
+  };
+
+  useLayoutEffect(() => {
+    if (words || !svg || !frame.current) return;
+    const drawn = picture(svg);
+    frame.current.replaceChildren(...(drawn ? [drawn.root] : []));
+    if (!drawn) return;
+    drawn.root.setAttribute("aria-hidden", "true"); // the text tells it
+    const same = view.current.whole?.join() === drawn.size.join();
+    view.current = { whole: drawn.size, box: same ? view.current.box : [...drawn.size] };
+    show();
+  }, [svg, words]);
+
+  useEffect(() => {
+    const element = frame.current;
+    if (!element) return;
+    const wheel = (event) => {
+      event.preventDefault();
+      const box = element.getBoundingClientRect();
+      zoom(Math.exp(-event.deltaY / 400), (event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height);
+    };
+    element.addEventListener("wheel", wheel, { passive: false });
+    return () => element.removeEventListener("wheel", wheel);
+  }, [words, svg === null]);
+
+  const drag = (event) => {
+    if (!(event.buttons & 1)) return;
+    const box = event.currentTarget.getBoundingClientRect();
+    move(-event.movementX / box.width, -event.movementY / box.height);
+  };
+  const keys = (event) => {
+    const does = { "+": () => zoom(1.25), "=": () => zoom(1.25), "-": () => zoom(0.8), 0: fit, ArrowLeft: () => move(-0.1, 0), ArrowRight: () => move(0.1, 0), ArrowUp: () => move(0, -0.1), ArrowDown: () => move(0, 0.1) }[event.key];
+    if (!does || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    event.stopPropagation();
+    does();
+  };
+
+  if (!svg && !text) return html`<p class="none">No picture yet.</p>`;
+  return html`<div class="bigraph">
+    <p class="tools">
+      <button type="button" onClick=${() => zoom(1.25)} disabled=${words} aria-label="enlarge">+</button>
+      <button type="button" onClick=${() => zoom(0.8)} disabled=${words} aria-label="make smaller">−</button>
+      <button type="button" onClick=${fit} disabled=${words}>Fit</button>
+      <button type="button" aria-pressed=${String(words)} onClick=${() => setWords(!words)}>Text</button>
+      <span class="quiet">what is believed${step !== null ? `, after step ${step}` : ""}</span></p>
+    ${words || !svg
+      ? html`<pre tabindex="0" key="text">${text}</pre>`
+      : html`<div key="picture" class="frame" ref=${frame} tabindex="0" role="img" aria-label=${`The bigraph: ${text ?? "see the picture"}`} onPointerMove=${drag} onKeyDown=${keys}
+          onPointerDown=${(event) => event.currentTarget.setPointerCapture(event.pointerId)} onDblClick=${fit}></div>`}
+  </div>`;
+}

@@ -1,0 +1,188 @@
+/** One card a vehicle, worst first. */
+import { html, memo, byName, useEffect, useRef, useSections, useWatched } from "./ui.js";
+import { Age, Ticking, say } from "./clock.js";
+import { distance, distanceToArea } from "./map/geodesy.js";
+import { fallbackWords, fateOf, isUnderWay, orderWords, requestWords, wayOf, whereabouts } from "./plainly.js";
+import { Orders } from "./orders.js";
+import { useStillness } from "./stillness.js";
+import { angle, age, duration, metres, position, range, speed, system } from "./units.js";
+
+export const LEVELS = ["well", "watch", "wrong", "lost"];
+const MARKS = ["●", "▲", "■", "✖"];
+const MANY = 8;
+/** Seconds for which a change of authority is marked, a finished action is shown, and what was said is not dimmed. */
+const NEW = 60;
+/** Seconds after which what a vehicle said is not shown any more. */
+const STALE = 900;
+
+export const worstFirst = (vehicles) => [...vehicles].sort(([one, a], [other, b]) => b.level - a.level || byName(one, other)).map(([name]) => name);
+
+export function Cards({ app }) {
+  const [vehicles, entities] = useSections(app.store, ["vehicles", "entities"], 200);
+  const chosen = useWatched(app.chosen);
+  useWatched(system);
+  const list = useRef(null);
+  const [isStill, hand] = useStillness(list);
+  const sorted = worstFirst(vehicles);
+  const known = new Set(app.order);
+  app.order = isStill() ? [...app.order.filter((name) => vehicles.has(name)), ...sorted.filter((name) => !known.has(name))] : sorted;
+  useEffect(() => () => (app.order = []), []);
+
+  useEffect(() => {
+    if (chosen !== null) list.current?.querySelector(`[data-name="${CSS.escape(chosen)}"]`)?.scrollIntoView({ block: "nearest" });
+  }, [chosen]);
+
+  const many = vehicles.size > MANY;
+  const counts = LEVELS.map((_, level) => [...vehicles.values()].filter((card) => card.level === level).length);
+  return html`<section class="cards" aria-labelledby="cards-title" id="cards">
+    <h2 id="cards-title">Vehicles <span class="count">${vehicles.size}</span>
+      ${LEVELS.map((name, level) => counts[level] > 0 && html`<span key=${name} class=${`tally level-${level}`}>${MARKS[level]} ${counts[level]} ${name}</span>`)}
+    </h2>
+    <div class="scroll" ref=${list} ...${hand} tabindex="-1"><div class="stack">
+      ${chosen !== null && !vehicles.has(chosen) && entities.has(chosen) && html`<${Entity} key="*chosen" app=${app} name=${chosen} entity=${entities.get(chosen)} />`}
+      ${vehicles.size === 0 && html`<p class="none">No vehicle is known yet.</p>`}
+      ${app.order.map((name) => html`<${Card} key=${name} app=${app} name=${name} card=${vehicles.get(name)}
+        chosen=${name === chosen} units=${system.value} small=${many && name !== chosen} />`)}
+    </div></div>
+  </section>`;
+}
+
+const Card = memo(({ app, name, card, chosen, small }) => {
+  const choose = () => app.chosen.set(chosen ? null : name);
+  return html`<article class=${`card level-${card.level} ${small ? "small" : ""} ${chosen ? "chosen" : ""}`} data-name=${name} aria-label=${name}>
+    <header>
+      <h3>
+        <span class="mark" aria-hidden="true">${MARKS[card.level]}</span>
+        <button type="button" class="name" aria-pressed=${String(chosen)} onClick=${choose}>${name}</button>
+        <span class="kind">${card.kind}</span>
+        <span class=${`level ${card.level ? "" : "quiet"}`}>${LEVELS[card.level]}</span>
+        <${LinkAge} app=${app} link=${card.link} />
+        <${Battery} battery=${card.battery} />
+      </h3>
+      ${!small && html`<${Orders} app=${app} name=${name} taken=${card.taken} />`}
+    </header>
+    ${card.why && html`<p class="why">${card.why}</p>`}
+    ${small ? html`<p class="brief"><${Place} card=${card} /> ${card.request && html`<${Request} app=${app} card=${card} />`}</p>` : html`
+    <dl>
+      <dt>Place</dt><dd><${Place} card=${card} /></dd>
+      <dt>Request</dt><dd>${card.request ? html`<${Request} app=${app} card=${card} />` : html`<span class="quiet">none</span>`}</dd>
+      ${card.order && html`<dt>Order</dt><dd><${Order} app=${app} order=${card.order} returning=${card.returning} /></dd>`}
+      ${motion(app.store, name, card) && html`<dt>Motion</dt><dd><${Ticking} clock=${app.clock} apply=${(element) => say(element, motion(app.store, name, card))} /></dd>`}
+      ${status(card) && html`<dt>Mode</dt><dd>${status(card)}</dd>`}
+      ${card.authority?.length > 0 && html`<dt>Authority</dt><dd><${Authority} app=${app} card=${card} /></dd>`}
+      ${card.said && app.clock.now - card.said.time < STALE && html`<dt>Said</dt><dd><${Said} app=${app} said=${card.said} /></dd>`}
+      ${card.taken && html`<dt>Taken over</dt><dd class="bad">${card.taken}</dd>`}
+    </dl>
+    <${LastAction} app=${app} about=${name} />`}
+  </article>`;
+});
+
+/** What a vehicle said of itself; "" of one that said nothing, as in a recording of before. */
+function status({ mode, armed, heading }) {
+  const parts = [mode, typeof armed === "boolean" && (armed ? "armed" : "disarmed"), isNumber(heading) && `heading ${angle(heading)}`];
+  return parts.filter(Boolean).join(" · ");
+}
+
+/** How fast and how high a vehicle is, and how far it has to go; "" where nothing is known. */
+function motion(store, name, card) {
+  const { height, altitude } = card;
+  const { speed: fast } = store.section("entities").get(name) ?? {};
+  const high = isNumber(height) ? `${metres(height)} above home` : isNumber(altitude) ? `${metres(altitude)} above the sea` : "";
+  return [isNumber(fast) ? speed(fast) : "", high, toGo(store, name, card)].filter(Boolean).join(" · ");
+}
+
+/** How far a vehicle has to go, as the crow flies: into the place to which it was sent, not to its middle. */
+function toGo(store, name, card, brief = false) {
+  const { at, speed: fast } = store.section("entities").get(name) ?? {};
+  const goal = wayOf(card).at(-1);
+  if (!at || !goal) return "";
+  const ring = card.returning ? [] : store.section("places").get(card.order.to)?.ring ?? [];
+  const left = ring.length > 2 ? distanceToArea(at, ring) : distance(at, goal);
+  const where = card.returning ? "home" : ring.length > 2 && !brief ? `to the edge of ${card.order.to}` : "to go";
+  return left > 0 ? `${range(left)} ${where}${fast > 1 ? `, ${duration(left / fast)} or more` : ""}` : `in ${card.order.to}`;
+}
+
+/** A vehicle in one line, for a phone's map. */
+export function Brief({ app, name, card }) {
+  const { height, mode } = card;
+  const facts = [mode, isNumber(height) && metres(height), toGo(app.store, name, card, true)].filter(Boolean).join(" · ");
+  return html`<${Battery} battery=${card.battery} /> <${LinkAge} app=${app} link=${card.link} /> <span class="quiet">${facts}</span>`;
+}
+
+const isNumber = (value) => typeof value === "number";
+
+function Place({ card }) {
+  return html`<span class=${`place ${card.differs && !card.returning && !isUnderWay(card.order) ? "differs" : ""}`}>${whereabouts(card)}</span>`;
+}
+
+/** How long ago the vehicle was heard: the older, the more it is marked. */
+function LinkAge({ app, link }) {
+  if (link.lost) return html`<span class="link bad">link lost${link.heard !== null && html` <${Age} clock=${app.clock} time=${link.heard} />`}</span>`;
+  if (link.heard === null) return html`<span class="link quiet">not heard</span>`;
+  const apply = (element, now) => {
+    say(element, `link ${age(link.heard, now)}`);
+    element.className = now - link.heard > 5 ? "link late" : "link";
+  };
+  return html`<${Ticking} clock=${app.clock} apply=${apply} class="link" />`;
+}
+
+function Battery({ battery }) {
+  if (!battery || !isNumber(battery.percent)) return null;
+  const low = battery.percent < 25;
+  return html`<span class=${`battery ${low ? "bad" : ""}`} title=${isNumber(battery.volts) ? `battery, ${battery.volts.toFixed(1)} V` : "battery"}>
+    <span class="cell" aria-hidden="true"><i style=${{ width: `${Math.max(0, Math.min(100, battery.percent))}%` }}></i></span>
+    <span class="unseen">battery </span>${Math.round(battery.percent)} %</span>`;
+}
+
+/** A request, how long it has stood, of how long it may, and what comes then; the mission's own words are its title. */
+function Request({ app, card: { request, taken, returning } }) {
+  const { since, limit, fallback } = request;
+  const stood = (now) => Math.max(0, now - since);
+  const then = limit && fallbackWords(fallback) ? `, ${fallbackWords(fallback)}` : "";
+  const words = (element, now) => say(element, limit ? `${duration(stood(now))} of ${duration(limit)}${then}` : `for ${duration(stood(now))}`);
+  const bar = (element, now) => {
+    const part = stood(now) / limit;
+    element.style.setProperty("--part", Math.min(1, part).toFixed(3));
+    element.className = `bar ${part > 1 ? "over" : part > 0.5 ? "half" : ""}`;
+  };
+  return html`<span class="request" title=${request.text}><span>${taken || returning ? "not now: " : ""}${requestWords(request)}</span> <${Ticking} clock=${app.clock} apply=${words} class="stood" />
+    ${limit ? html`<${Ticking} clock=${app.clock} apply=${bar} class="bar" aria-hidden="true" />` : null}</span>`;
+}
+
+function Order({ app, order, returning }) {
+  return html`<span class=${order.state === "refused" ? "bad" : ""}>${orderWords(order, returning)} · <${Age} clock=${app.clock} time=${order.since} /> ago</span>`;
+}
+
+/** The stations that a vehicle obeys, and for a minute that this has changed. */
+function Authority({ app, card: { authority, handed } }) {
+  const told = handed && ((element, now) => {
+    const isNew = now - handed.time < NEW;
+    say(element, isNew ? ` changed ${age(handed.time, now)} ago, was ${handed.from.join(", ") || "nobody"}` : "");
+    element.className = isNew ? "changed" : "";
+  });
+  return html`${authority.join(", ")}${told && html`<${Ticking} clock=${app.clock} apply=${told} />`}`;
+}
+
+/** What a vehicle said last: dimmed when it is old. */
+function Said({ app, said }) {
+  const dim = (element, now) => (element.className = now - said.time > NEW ? "said quiet" : "said");
+  return html`<${Ticking} clock=${app.clock} apply=${dim} class="said">“${said.text}” <${Age} clock=${app.clock} time=${said.time} class="quiet" /><span class="quiet"> ago</span><//>`;
+}
+
+/** What became of the last action about this vehicle; a finished one is shown for a minute. */
+function LastAction({ app, about }) {
+  const [actions] = useSections(app.store, ["actions"], 200);
+  const last = [...actions.values()].filter((action) => action.about === about).sort((a, b) => b.time - a.time)[0];
+  if (!last || (last.answered && app.clock.now - last.answered > NEW)) return null;
+  return html`<p class=${`fate ${last.state}`}><b>${last.what}</b> by ${last.by || "someone"}: ${fateOf(last)}${last.why ? `: ${last.why}` : ""}</p>`;
+}
+
+/** What was chosen on the map and is no vehicle of the mission. */
+const Entity = memo(({ app, name, entity }) => html`<article class="card entity chosen" data-name=${name} aria-label=${name}>
+    <h3><button type="button" class="name" aria-pressed="true" onClick=${() => app.chosen.set(null)}>${name}</button> <span class="kind">${entity.kind}</span>
+      <span class="quiet">${entity.source}</span></h3>
+    <dl><dt>Place</dt><dd><${Place} card=${entity} /></dd>
+      <dt>Position</dt><dd>${position(entity.at)}</dd>
+      <dt>Motion</dt><dd>${isNumber(entity.course) ? `course ${angle(entity.course)}` : "course not told"} · ${isNumber(entity.speed) ? speed(entity.speed) : "speed not told"}</dd>
+      <dt>Seen</dt><dd><${Age} clock=${app.clock} time=${entity.seen} /> ago</dd></dl>
+  </article>`);

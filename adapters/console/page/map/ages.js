@@ -1,0 +1,16 @@
+/** How far a position may still be believed, by its age. */
+
+export const FRESH = "fresh";
+export const OLD = "old";
+export const LOST = "lost";
+export const OPACITY = { [FRESH]: 1, [OLD]: 0.8, [LOST]: 0.6 };
+
+/** Seconds after which a position is old, and lost: a vehicle tells of itself all the time, a ship at anchor every three minutes. */
+const LIMITS = { vehicle: [5, 30], other: [200, 600] };
+
+export function ageClass(entity, now) {
+  if ((entity.seen ?? null) === null) return OLD;
+  const [old, lost] = entity.vehicle ? LIMITS.vehicle : LIMITS.other;
+  const age = now - entity.seen;
+  return age > lost ? LOST : age > old ? OLD : FRESH;
+}

@@ -1,0 +1,33 @@
+/** What an operator does on the map by pointer and keys. */
+
+export const TOLERANCE = { mouse: 8, touch: 24 };
+
+/** Tell the chart of clicks and of where the pointer is. */
+export function listenForPointer(map, chart) {
+  map.on("click", ({ containerPoint: { x, y }, latlng, originalEvent }) => {
+    const isTouch = originalEvent?.pointerType === "touch" || (!originalEvent?.pointerType && "ontouchstart" in globalThis);
+    if (!isTouch) chart.point([x, y], [latlng.lat, latlng.lng]); // a busy browser tells of a click before it tells of the way to it
+    chart.click([x, y], [latlng.lat, latlng.lng], isTouch ? TOLERANCE.touch : TOLERANCE.mouse);
+  });
+  map.on("mousemove", ({ containerPoint: { x, y }, latlng }) => chart.point([x, y], [latlng.lat, latlng.lng]));
+  map.on("mouseout", () => chart.point(null, null));
+  map.on("dragstart", () => chart.drag());
+}
+
+/** The keys of the map while it has the focus; Leaflet has the arrows, + and -. */
+export function listenForKeys(element, chart) {
+  element.addEventListener("keydown", (event) => {
+    if (event.target !== element || event.altKey) return;
+    if (keyDeed(event, chart)) event.preventDefault();
+  });
+}
+
+/** Do what a key says; whether that was something. */
+function keyDeed(event, chart) {
+  const withControl = event.ctrlKey || event.metaKey;
+  if (withControl) return event.key.toLowerCase() === "c" && !String(getSelection()) && Boolean(chart.copyPosition());
+  if (event.key === "Tab") return chart.nextVehicle(event.shiftKey ? -1 : 1);
+  if (event.key === "Enter") return chart.clickMiddle();
+  if (event.key === "Backspace") return chart.undo();
+  return event.key === "Escape" && chart.escape();
+}

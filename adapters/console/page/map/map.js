@@ -1,0 +1,471 @@
+/**
+ * The chart: what the store has, over a coast or over tiles. It is drawn only when something has changed, with all
+ * where it was last known to be: nothing is interpolated.
+ */
+import { Coast } from "./coast.js";
+import { describe, summary } from "./describe.js";
+import { bearing, boundsOf, distance } from "./geodesy.js";
+import { hitAt } from "./hits.js";
+import { element, northArrow, say, Scale } from "./instruments.js";
+import { listenForKeys, listenForPointer, TOLERANCE } from "./input.js";
+import { Legend } from "./legend.js";
+import { Measure } from "./measure.js";
+import { drawMoving, pointOf } from "./moving.js";
+import { drawStill } from "./still.js";
+import { Surface } from "./surface.js";
+import { Tiles } from "./tiles.js";
+import { Tracks } from "./tracks.js";
+import { angle, position, range, system } from "../units.js";
+
+const { L } = globalThis;
+
+const EARTH = 40075016.7;
+const SECTIONS = ["places", "fences", "entities", "vehicles", "tracks", "clock"];
+const STILL = ["places", "fences"];
+const SUMMARY = 3000; // milliseconds between two texts for readers of the screen
+const CREDIT = "Coast: Natural Earth, good to about 1 km. Not for navigation.";
+const EDGE = 20; // pixels that something chosen is at least away from the edge
+const NAMES = new Intl.Collator("en", { numeric: true });
+
+/**
+ * Show a store's state on a map in an element. `select(name)` hears what is chosen on the map, null of nothing.
+ * `followed(null)` and `measured(false)`, which may be left out, hear when the map itself ends following or measuring;
+ * `covers()` returns elements of the page that lie over the map.
+ */
+export function createMap(container, store, options) {
+  return new Chart(container, store, options);
+}
+
+class Chart {
+  #store;
+  #options;
+  #parts;
+  #surface;
+  #coast;
+  #tiles = null;
+  #tracks;
+  #measure = new Measure();
+  #theme = "light";
+  #drawn = { hits: [], labels: [] };
+  #slots = new Map();
+  #chosen = null;
+  #hovered = null;
+  #following = null;
+  #pointer = null;
+  #pixel = null;
+  #isFitted = false;
+  #isLeaving = false;
+  #second = NaN;
+  #summaryTimer = null;
+  #ends = [];
+
+  constructor(container, store, { select, fetchJson, tiles = null, followed = () => {}, measured = () => {}, covers = () => [] }) {
+    this.#store = store;
+    this.#options = { select, followed, measured, covers };
+    this.#tracks = new Tracks(store.section("tracks"));
+    this.#tracks.update([]);
+    this.#parts = addParts(container);
+    this.#surface = new Surface(this.#parts.leaflet, { still: (pen) => this.#drawStill(pen), moving: (pen) => this.#drawMoving(pen) });
+    L.control.zoom({ position: "topleft", zoomInTitle: "closer  +", zoomOutTitle: "farther  −" }).addTo(this.#surface.map);
+    this.#coast = new Coast(this.#surface.map, { fetchJson, tell: (problem) => say(this.#parts.problem, problem) });
+    this.setTheme("light");
+    this.#listen();
+    this.#fitFirst();
+    this.#coast.show();
+    this.#describeSoon();
+    if (tiles) this.#openTiles(tiles);
+  }
+
+  // --- what the page calls ---------------------------------------------------------------------------------------
+
+  /** Mark something as chosen, and bring it into view; null: nothing. */
+  choose(name) {
+    this.#chosen = name;
+    const at = name === null ? null : this.pointOf(name);
+    if (at && !this.#surface.view.sees(at, -EDGE)) this.#centreOn(name);
+    this.#sayPosition();
+    this.#surface.invalidate("moving");
+  }
+
+  /** Keep something in the middle; null: nothing. */
+  follow(name) {
+    this.#following = name;
+    if (name !== null) this.#centreOn(name);
+  }
+
+  /** Begin measuring anew, or end it. */
+  measure(on) {
+    this.#measure.set(on);
+    this.#parts.leaflet.classList.toggle("measuring", on);
+    this.#sayMeasure();
+    this.#surface.invalidate("moving");
+  }
+
+  /** Show all that the mission knows, and other targets where it knows of nothing; whether there is anything. */
+  fit() {
+    const bounds = boundsOf(pointsToFit(this.#store));
+    if (!bounds || this.#surface.isHidden) return false;
+    const [south, west, north, east] = bounds;
+    this.#surface.map.fitBounds([[south, west], [north, east]], { padding: [48, 48], maxZoom: 16, animate: false });
+    return true;
+  }
+
+  /** Look from above a position, at a zoom of Leaflet's. */
+  look(at, zoom) {
+    this.#isFitted = true;
+    this.#surface.map.setView(at, zoom, { animate: false });
+  }
+
+  /** Draw anew, where the element has another size too. */
+  redraw() {
+    this.#surface.map.invalidateSize({ animate: false });
+    this.#surface.invalidate();
+    this.#fitFirst();
+  }
+
+  setTheme(theme) {
+    this.#theme = theme === "dark" ? "dark" : "light";
+    this.#parts.leaflet.parentElement.dataset.theme = this.#theme;
+    this.#surface.dress(this.#theme);
+    this.#parts.legend.dress(this.#surface.palette);
+    this.#coast.dress(this.#surface.palette);
+    this.#tiles?.dress(this.#theme);
+  }
+
+  /** Copy where the pointer is, or the middle where it is not on the map; returns the text. */
+  copyPosition() {
+    const text = position(this.#pointer ?? this.#surface.centre);
+    const told = (words) => say(this.#parts.told, words);
+    const copied = navigator.clipboard?.writeText(text) ?? Promise.reject(new Error("no clipboard"));
+    copied.then(() => told(`${text} copied`), () => told(`The browser does not let this page copy ${text}`));
+    return text;
+  }
+
+  // --- what tests and readers of the screen ask ------------------------------------------------------------------
+
+  /** What is at a pixel of the map: {name, section}, or null. */
+  hit(x, y, tolerance = TOLERANCE.mouse) {
+    this.#surface.draw();
+    return hitAt([x, y], this.#drawn.hits, this.#store.section("places"), this.#surface.view, tolerance);
+  }
+
+  /** The pixel [x, y] of something, null of what is nowhere. */
+  pointOf(name) {
+    return pointOf(this.#surface.view, this.#store, name);
+  }
+
+  /** The pixel [x, y] of a position. */
+  pixelOf(position) {
+    return this.#surface.view.point(position);
+  }
+
+  /** What was drawn last: its things and labels, the window [south, west, north, east], zoom, and frames till now. */
+  drawn() {
+    this.#surface.draw();
+    const { map, window, frames } = this.#surface;
+    return { ...this.#drawn, window, zoom: map.getZoom(), frames };
+  }
+
+  /** What the chart shows, in words. */
+  summary() {
+    return summary(this.#store, this.#now, this.#surface.centre);
+  }
+
+  destroy() {
+    clearTimeout(this.#summaryTimer);
+    for (const end of this.#ends) end();
+    this.#surface.destroy();
+    for (const part of Object.values(this.#parts)) (part.element ?? part).remove?.();
+  }
+
+  // --- what an operator does -------------------------------------------------------------------------------------
+
+  click(pixel, at, tolerance) {
+    if (this.#measure.on) return this.#addPoint(this.#snapped(pixel, at, tolerance));
+    this.#select(this.hit(...pixel, tolerance)?.name ?? null);
+  }
+
+  /** Do at the middle of the map what a click does: the keyboard's way to measure. */
+  clickMiddle() {
+    if (!this.#measure.on) return false;
+    this.#addPoint(this.#surface.centre);
+    return true;
+  }
+
+  point(pixel, at) {
+    this.#pointer = at;
+    this.#pixel = pixel;
+    this.#hover(pixel);
+    if (this.#measure.on) {
+      this.#measure.point(at && this.#snapped(pixel, at, TOLERANCE.mouse));
+      this.#sayMeasure();
+      this.#surface.invalidate("moving");
+    }
+    this.#sayPosition();
+  }
+
+  drag() {
+    if (this.#following === null) return;
+    this.#following = null;
+    this.#options.followed(null);
+  }
+
+  undo() {
+    if (!this.#measure.on) return false;
+    this.#measure.undo();
+    this.#sayMeasure();
+    this.#surface.invalidate("moving");
+    return true;
+  }
+
+  /** End measuring, or choose nothing and let the next Tab leave the map. */
+  escape() {
+    if (this.#measure.on) {
+      this.measure(false);
+      this.#options.measured(false);
+      return true;
+    }
+    this.#isLeaving = true;
+    if (this.#chosen === null) return false;
+    this.#select(null);
+    return true;
+  }
+
+  /** Choose the vehicle after or before; false after the last, so that Tab leaves the map. */
+  nextVehicle(by) {
+    const names = [...this.#store.section("vehicles").keys()].sort(NAMES.compare);
+    const now = names.indexOf(this.#chosen);
+    const next = now < 0 ? (by > 0 ? 0 : names.length - 1) : now + by;
+    if (this.#isLeaving || next < 0 || next >= names.length) {
+      this.#isLeaving = false;
+      return false;
+    }
+    this.#select(names[next]);
+    say(this.#parts.told, describe(names[next], this.#store, this.#now).join(", "));
+    return true;
+  }
+
+  /** Show or hide what the signs mean. */
+  toggleLegend() {
+    this.#parts.legend.toggle();
+  }
+
+  // --- within ----------------------------------------------------------------------------------------------------
+
+  get #now() {
+    return this.#store.section("clock").get("now") ?? Date.now() / 1000;
+  }
+
+  #listen() {
+    const { map } = this.#surface;
+    this.#ends.push(this.#store.on(SECTIONS, (changed) => this.#hear(changed)));
+    listenForPointer(map, this);
+    listenForKeys(this.#parts.leaflet, this);
+    map.on("move zoomend resize", () => this.#sayScale());
+    map.on("moveend", () => this.#pointAgain());
+    this.#ends.push(system.on(() => this.#measureAnew()));
+    const sizes = new ResizeObserver(() => this.redraw());
+    sizes.observe(this.#parts.leaflet);
+    this.#ends.push(() => sizes.disconnect());
+    this.#sayScale();
+  }
+
+  #hear(changed) {
+    const isStill = STILL.some((name) => changed[name]);
+    const isTrack = changed.tracks ? this.#tracks.update(changed.tracks) : false;
+    if (isStill || isTrack) this.#surface.invalidate("still");
+    const second = Math.floor(this.#now);
+    const isOnlyClock = Object.keys(changed).length === 1 && changed.clock;
+    if (isOnlyClock && second === this.#second) return; // ages alone change once a second
+    this.#second = second;
+    this.#surface.invalidate("moving");
+    this.#fitFirst();
+    if (this.#following !== null) this.#centreOn(this.#following);
+    this.#describeSoon();
+  }
+
+  /** Show all at the beginning, as soon as there is something; then the operator says where to look. */
+  #fitFirst() {
+    if (!this.#isFitted) this.#isFitted = this.fit();
+  }
+
+  #centreOn(name) {
+    const at = whereIs(this.#store, name);
+    if (!at) return;
+    const { map, view } = this.#surface;
+    const [x, y] = view.point(at);
+    if (Math.hypot(x - view.width / 2, y - view.height / 2) >= 1) map.setView(map.containerPointToLatLng([x, y]), map.getZoom(), { animate: false });
+  }
+
+  #select(name) {
+    if (name === this.#chosen) return;
+    this.choose(name);
+    this.#options.select(name);
+  }
+
+  /** Under a pointer that rests the map has moved on, as it does where something is followed. */
+  #pointAgain() {
+    if (!this.#pixel) return;
+    const { lat, lng } = this.#surface.map.containerPointToLatLng(this.#pixel);
+    this.point(this.#pixel, [lat, lng]);
+  }
+
+  /** Say and draw all figures again, in other units. */
+  #measureAnew() {
+    this.#sayScale();
+    this.#sayPosition();
+    this.#sayMeasure();
+    this.#surface.invalidate();
+  }
+
+  /** The position of a thing or of a place's corner that is as near as that, else the point itself. */
+  #snapped(pixel, at, tolerance) {
+    const { view } = this.#surface;
+    const corners = [...this.#store.section("places").values()].flatMap(({ ring }) => ring);
+    const positions = [...this.#drawn.hits.map(({ name }) => whereIs(this.#store, name)), ...corners].filter(Boolean);
+    return nearestWithin(positions, (each) => view.point(each), pixel, tolerance) ?? at;
+  }
+
+  #addPoint(at) {
+    this.#measure.add(at);
+    this.#sayMeasure();
+    this.#surface.invalidate("moving");
+  }
+
+  #hover(pixel) {
+    const hit = pixel && !this.#measure.on ? this.hit(...pixel) : null;
+    const name = hit?.name ?? null;
+    if (name !== this.#hovered) this.#surface.invalidate("moving");
+    this.#hovered = name;
+    this.#parts.leaflet.classList.toggle("pointing", name !== null);
+    showTip(this.#parts.tip, name === null ? [] : describe(name, this.#store, this.#now), pixel, this.#surface.view);
+  }
+
+  #sayMeasure() {
+    say(this.#parts.measured, this.#measure.on ? this.#measure.words() : "");
+  }
+
+  /** The pointer's position, and its range and bearing from what is chosen. */
+  #sayPosition() {
+    const from = this.#chosen === null ? null : whereIs(this.#store, this.#chosen);
+    const at = this.#pointer;
+    say(this.#parts.position, at ? position(at) : `middle of the map: ${position(this.#surface.centre)}`);
+    say(this.#parts.from, at && from ? `${range(distance(from, at))} ${angle(bearing(from, at))} from the chosen` : "");
+  }
+
+  #sayScale() {
+    const { view, centre } = this.#surface;
+    this.#parts.scale.show((EARTH * Math.cos((centre[0] * Math.PI) / 180)) / view.side);
+    if (!this.#pointer) this.#sayPosition();
+  }
+
+  #describeSoon() {
+    this.#summaryTimer ??= setTimeout(() => {
+      this.#summaryTimer = null;
+      say(this.#parts.summary, this.summary());
+    }, Number.isNaN(this.#second) ? 0 : SUMMARY);
+  }
+
+  async #openTiles(tiles) {
+    try {
+      const [opened, credit] = await Tiles.open(this.#surface.map, tiles);
+      this.#tiles = opened;
+      opened.dress(this.#theme);
+      if (credit) say(this.#parts.credit, `${CREDIT} Tiles: ${credit}`);
+    } catch (problem) {
+      say(this.#parts.problem, `No tiles: ${problem.message}`);
+    }
+  }
+
+  /** The boxes of what lies over the chart: no label is to be under it. */
+  get #covered() {
+    const { left, top } = this.#parts.leaflet.getBoundingClientRect();
+    const over = [...this.#parts.leaflet.querySelectorAll(".leaflet-control"), this.#parts.north, this.#parts.legend.element, ...this.#parts.foot.children, ...this.#options.covers()];
+    return over.map((each) => each.getBoundingClientRect()).filter(({ width }) => width > 0)
+      .map((box) => [box.left - left, box.top - top, box.right - left, box.bottom - top]);
+  }
+
+  #drawStill(pen) {
+    drawStill(pen, this.#store, this.#tracks, this.#covered);
+  }
+
+  #drawMoving(pen) {
+    const marks = { now: this.#now, chosen: this.#chosen, hovered: this.#hovered, slots: this.#slots, covered: this.#covered };
+    this.#drawn = drawMoving(pen, this.#store, this.#tracks, marks);
+    this.#measure.draw(pen);
+  }
+}
+
+/** The elements of a map, in the order in which they are read. */
+function addParts(container) {
+  container.classList.add("chart");
+  const scale = new Scale();
+  const parts = {
+    leaflet: element("div", "map-leaflet"),
+    summary: element("p", "map-summary"),
+    north: northArrow(),
+    foot: element("div", "map-foot"),
+    tip: element("div", "map-tip"),
+  };
+  const legend = new Legend();
+  const foot = {
+    scaleElement: scale.element,
+    position: element("output", "map-position"),
+    from: element("output", "map-from"),
+    measured: element("output", "map-measured"),
+    told: element("output", "map-told"),
+    problem: element("output", "map-problem"),
+    credit: element("span", "map-credit", CREDIT),
+  };
+  parts.foot.append(...Object.values(foot));
+  parts.summary.id = `map-summary-${Math.random().toString(36).slice(2)}`;
+  parts.leaflet.tabIndex = 0;
+  describeForReaders(parts);
+  for (const part of [foot.from, foot.measured, foot.told, foot.problem]) part.hidden = true;
+  parts.tip.hidden = true;
+  container.append(...Object.values(parts), legend.element);
+  return { ...parts, ...foot, scale, legend };
+}
+
+function describeForReaders({ leaflet, summary: words, tip }) {
+  leaflet.setAttribute("role", "application");
+  leaflet.setAttribute("aria-roledescription", "chart");
+  leaflet.setAttribute("aria-label", "Chart. Arrows move it, plus and minus enlarge it, Tab goes from vehicle to vehicle, Escape and Tab leave it.");
+  leaflet.setAttribute("aria-describedby", words.id);
+  tip.setAttribute("aria-hidden", "true"); // the summary says it
+}
+
+/** Show lines beside a pixel, on the side where there is room. */
+function showTip(tip, lines, pixel, { width, height }) {
+  tip.hidden = lines.length === 0;
+  if (tip.hidden) return;
+  tip.replaceChildren(...lines.map((line) => element("div", "", line)));
+  const [x, y] = pixel;
+  const left = x + 18 + tip.offsetWidth > width ? x - 18 - tip.offsetWidth : x + 18;
+  const top = y + 14 + tip.offsetHeight > height ? y - 14 - tip.offsetHeight : y + 14;
+  tip.style.transform = `translate(${Math.max(0, Math.round(left))}px, ${Math.max(0, Math.round(top))}px)`;
+}
+
+/** The position that is drawn nearest to a pixel, null if none is as near as a tolerance. */
+function nearestWithin(positions, pixelOf, [x, y], tolerance) {
+  let best = { position: null, distance: tolerance };
+  for (const position of positions) {
+    const [east, south] = pixelOf(position);
+    const distance = Math.hypot(east - x, south - y);
+    if (distance <= best.distance) best = { position, distance };
+  }
+  return best.position;
+}
+
+/** The position of an entity, or the first point of a place's ring. */
+function whereIs(store, name) {
+  return store.section("entities").get(name)?.at ?? store.section("places").get(name)?.ring[0] ?? null;
+}
+
+function pointsToFit(store) {
+  const entities = [...store.section("entities").values()];
+  const known = entities.filter(({ vehicle, named }) => vehicle || named);
+  const rings = ["places", "fences"].flatMap((name) => [...store.section(name).values()].map(({ ring }) => ring));
+  const points = [...rings.flat(), ...known.map(({ at }) => at)];
+  return points.length ? points : entities.map(({ at }) => at);
+}

@@ -1,0 +1,17 @@
+/** Hold, Return and Give back of one vehicle; while the past is shown the way to now, in the same place. */
+import { html, useWatched } from "./ui.js";
+import { HeldButton } from "./press.js";
+
+/** The last button has the same place whatever else is there, the first one comes and goes. */
+export function Orders({ app, name, taken }) {
+  const act = useWatched(app.mayAct);
+  const past = useWatched(app.inPast);
+  if (past) return html`<div class="orders"><button type="button" class="now" onClick=${app.live}>Go to now (L) to act</button></div>`;
+  if (!act) return null;
+  const order = (which) => () => app.act({ order: { order: which, vehicle: name } }, { what: which, about: name });
+  return html`<div class="orders">
+    ${taken && html`<${HeldButton} key="back" label=${`Give ${name} back`} tell=${app.tell} act=${() => app.act({ give_back: { vehicle: name } }, { what: "give back", about: name })}>Give back<//>`}
+    <${HeldButton} key="hold" label=${`Hold ${name}`} tell=${app.tell} act=${order("hold")}>Hold<//>
+    <${HeldButton} key="return" label=${`Return ${name}`} tell=${app.tell} act=${order("return")}>Return<//>
+  </div>`;
+}

@@ -1,0 +1,66 @@
+/** A list that stands still under a hand: nothing in it changes places while someone is about to press something there. */
+import { useLayoutEffect, useRef, useState } from "./ui.js";
+
+/** Milliseconds after a pointer's last motion, or the last key, until the order may change; on a button it never does. */
+const STILL = 5000;
+const BUTTON = ".held";
+const HOVERS = matchMedia("(hover: hover)"); // a finger leaves a hover behind
+
+/**
+ * Return whether a list has to stand still, and the handlers that tell of hands. What is under the hand also keeps its
+ * place on the screen when something above it grows or shrinks: the list is scrolled by as much.
+ */
+export function useStillness(list) {
+  const [, again] = useState(0);
+  const touched = useRef(-Infinity);
+  const timer = useRef(null);
+  const held = useRef(null);
+
+  const isOnButton = () => {
+    const busy = [`${BUTTON}:focus-visible`, `${BUTTON}.pressed`, ...(HOVERS.matches ? [`${BUTTON}:hover`] : [])];
+    return Boolean(list.current?.querySelector(busy.join()));
+  };
+  const isStill = () => isOnButton() || performance.now() - touched.current < STILL;
+  const hold = (element) => (held.current = element && { element, top: topOf(list.current, element) });
+  /** Look again whether the hand has gone. */
+  const wait = () => {
+    clearTimeout(timer.current);
+    timer.current = setTimeout(() => (isStill() ? wait() : release()), STILL);
+  };
+  const touch = (event) => {
+    touched.current = performance.now();
+    hold(event.target.closest?.(".card"));
+    wait();
+  };
+  const release = () => {
+    touched.current = -Infinity;
+    if (isOnButton()) return wait();
+    clearTimeout(timer.current);
+    hold(null);
+    Object.assign(list.current.style, { paddingTop: "", paddingBottom: "" });
+    again((n) => n + 1);
+  };
+  useLayoutEffect(() => {
+    const observer = new ResizeObserver(() => held.current?.element.isConnected && keep(list.current, held.current));
+    observer.observe(list.current.firstElementChild);
+    return () => {
+      observer.disconnect();
+      clearTimeout(timer.current);
+    };
+  }, []);
+  const scrolled = () => held.current && hold(held.current.element);
+  const hand = { onPointerMove: touch, onPointerDown: touch, onKeyDown: touch, onFocusIn: touch, onPointerLeave: ({ pointerType }) => (pointerType === "mouse" ? release() : wait()), onFocusOut: wait, onScroll: scrolled };
+  return [isStill, hand];
+}
+
+const topOf = (list, element) => element.getBoundingClientRect().top - list.getBoundingClientRect().top;
+
+/** Scroll a list so that an element is where it was; room for that is made where there is none. */
+function keep(list, { element, top }) {
+  const moved = () => topOf(list, element) - top;
+  if (Math.abs(moved()) < 1) return;
+  list.style.paddingBottom = `${list.clientHeight}px`;
+  list.scrollTop += moved();
+  const missing = -moved();
+  if (missing >= 1) list.style.paddingTop = `${Number.parseFloat(getComputedStyle(list).paddingTop) + missing}px`;
+}

@@ -1,0 +1,57 @@
+/** The panels under the cards; on a phone the map and the cards are tabs as well. */
+import { html, useEffect, useRef, useState, useWatched } from "./ui.js";
+import { Actions } from "./actions.js";
+import { Bigraph } from "./bigraph.js";
+import { Agents, Steps } from "./lanes.js";
+import { Stations } from "./stations.js";
+
+export const PANELS = [
+  ["actions", "Actions", Actions],
+  ["bigraph", "Bigraph", Bigraph],
+  ["steps", "Steps", Steps],
+  ["agents", "Agents", Agents],
+  ["stations", "Stations", Stations],
+];
+const AREAS = [["map", "Map"], ["vehicles", "Vehicles"]];
+const PHONE = matchMedia("(max-width: 760px)");
+
+export function usePhone() {
+  const [phone, set] = useState(PHONE.matches);
+  useEffect(() => {
+    const changed = () => set(PHONE.matches);
+    PHONE.addEventListener("change", changed);
+    return () => PHONE.removeEventListener("change", changed);
+  }, []);
+  return phone;
+}
+
+/** The tab that is open; on a desk the map and the cards are always there, so it is a panel. */
+export const openTab = (tab, phone) => (!phone && AREAS.some(([key]) => key === tab) ? "actions" : tab);
+
+export function TabList({ app, phone }) {
+  const tab = openTab(useWatched(app.tab), phone);
+  const list = useRef(null);
+  const tabs = phone ? [...AREAS, ...PANELS] : PANELS;
+  const go = (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    const at = tabs.findIndex(([key]) => key === tab);
+    app.tab.set(tabs[(at + step + tabs.length) % tabs.length][0]);
+    requestAnimationFrame(() => list.current?.querySelector("[aria-selected=true]")?.focus());
+  };
+  return html`<div role="tablist" class="tabs" ref=${list} aria-label="Panels" onKeyDown=${go}>
+    ${tabs.map(([key, title]) => html`<button type="button" role="tab" key=${key} id=${`tab-${key}`} aria-controls=${AREAS.some(([each]) => each === key) ? `area-${key}` : "panel"}
+      aria-selected=${String(key === tab)} tabindex=${key === tab ? 0 : -1} onClick=${() => app.tab.set(key)}>${title}</button>`)}
+  </div>`;
+}
+
+export function Panel({ app, phone }) {
+  const tab = openTab(useWatched(app.tab), phone);
+  const large = useWatched(app.enlarged);
+  const found = PANELS.find(([key]) => key === tab);
+  if (!found) return null;
+  return html`<div role="tabpanel" id="panel" class="panel" aria-labelledby=${`tab-${tab}`} tabindex="-1">
+    ${!phone && html`<button type="button" class="enlarge icon" aria-pressed=${String(large)} title="enlarge  E" aria-label="enlarge the panel" onClick=${() => app.enlarged.set(!large)}>⤢</button>`}
+    <${found[2]} app=${app} /></div>`;
+}

@@ -1,0 +1,36 @@
+"""Actions of operators, passed on to the run by its socket."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+
+from adapters.console.requests import Acknowledge, Action, GiveBack, Order, Say
+from adapters.live.operator_socket import NobodyListens, Outcome, acknowledge, give_back, order, say
+
+Performing = Callable[[Action, str], Awaitable[Outcome]]
+"""Performs an action for somebody, and returns what came of it."""
+
+
+def performing(socket: Path) -> Performing:
+    """Return what has the run at a socket perform actions."""
+
+    async def perform(action: Action, by: str) -> Outcome:
+        try:
+            return await _perform(socket, action, by)
+        except NobodyListens as nobody:
+            return Outcome(str(nobody))
+
+    return perform
+
+
+async def _perform(socket: Path, action: Action, by: str) -> Outcome:
+    match action:
+        case Say(agent, message):
+            return Outcome(await say(socket, agent, message, by))
+        case Order(what, vehicle):
+            return await order(socket, what, vehicle, by)
+        case GiveBack(vehicle):
+            return Outcome(await give_back(socket, vehicle, by=by))
+        case Acknowledge(finding):
+            return Outcome(await acknowledge(socket, finding, by))

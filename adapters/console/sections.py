@@ -1,0 +1,63 @@
+"""The sections of a view, each made of what was told."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from adapters.console.agents import agents, sayings
+from adapters.console.arrivals import tracks
+from adapters.console.cards import vehicles
+from adapters.console.facts import Facts
+from adapters.console.stations import stations
+from adapters.console.view import Json, Section, View, keeping
+from adapters.console.whereabouts import entities, places
+from bigraphs import draw_text
+from semantics.state.configuration import Configuration
+
+
+def view_of(facts: Facts, now: float, head: Facts, picture: Section, before: View) -> View:
+    """Return what is shown of facts at a time; what is as it was in the view before is the same object.
+
+    `head` are the newest facts of the recording, and `picture` is the newest picture of L.
+    """
+    if facts.run is None:
+        return before
+    cards, shown = vehicles(facts, now), places(facts)
+    sections: dict[str, Section] = {
+        "mission": facts.run.mission,
+        "clock": _clock(facts, head),
+        "places": shown,
+        "fences": facts.run.fences,
+        "entities": entities(facts, now, shown),
+        "vehicles": cards,
+        "tracks": tracks(facts),
+        "agents": agents(facts),
+        "steps": facts.steps,
+        "ticks": head.ticks,
+        "bigraph": _bigraph(facts, picture),
+        "alerts": facts.alerts,
+        "sayings": sayings(facts),
+        "actions": facts.actions,
+        "stations": stations(facts, cards),
+    }
+    return View({name: keeping(before.sections.get(name, {}), each) for name, each in sections.items()})
+
+
+def _clock(facts: Facts, head: Facts) -> dict[str, Json]:
+    """Return the section `clock`, as far as the recording tells it: what is shown of it is up to who looks."""
+    begin = head.time if head.begin is None else head.begin
+    rate = None if facts.run is None else facts.run.rate
+    ended = {"ended": head.ended, "broken_off": head.broken_off}
+    return {"begin": begin, "head": head.time, **ended, "step": facts.step, "rate": rate}
+
+
+def _bigraph(facts: Facts, picture: Section) -> dict[str, Json]:
+    if facts.standing is None:
+        return {}
+    change = facts.standing.change
+    return {**picture, "text": _drawn_in_text(change.after), "step": change.number}
+
+
+@lru_cache(maxsize=64)
+def _drawn_in_text(c: Configuration) -> str:
+    return draw_text(c.structure.logical.bigraph())

@@ -1,0 +1,50 @@
+"""Stations: which are reached, when they were heard, and whose authority each vehicle is under."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from adapters.console.draft import Draft
+from adapters.console.facts import Authority, Facts
+from adapters.console.parsing import number, text
+from adapters.console.view import Json
+from semantics.state.signature import Name
+
+MOST: Final = 1_000
+
+
+def take_presence(draft: Draft, _time: float, data: Any) -> None:
+    """Take in whether another station of the run is reached."""
+    station = text(data.get("station"))
+    if draft.run is not None and station in draft.run.stations:
+        reached = data.get("reached")
+        draft.stations[station] = {
+            "reached": reached if isinstance(reached, bool) else None,
+            "heard": number(data.get("heard")),
+        }
+
+
+def obeys(draft: Draft, time: float, name: Name, stations: tuple[str, ...]) -> None:
+    """Note which stations a vehicle obeys; none is *not told*."""
+    known = draft.authority.get(name)
+    if not stations or (known is not None and known.stations == stations):
+        return
+    handed = None if known is None else {"time": time, "from": [*known.stations], "to": [*stations]}
+    draft.authority[name] = Authority(stations, handed)
+    draft.authority.bounded(MOST)
+
+
+def stations(facts: Facts, cards: Mapping[str, Json]) -> dict[str, Json]:
+    """Return the section `stations`; nothing where there is but one."""
+    if facts.run is None:
+        return {}
+    unknown = {"reached": None, "heard": None}
+    return {
+        name: {
+            "here": name == facts.run.station,
+            **facts.stations.get(name, unknown),
+            "vehicles": [vehicle for vehicle, card in cards.items() if name in card["authority"]],
+        }
+        for name in facts.run.stations
+    }

@@ -1,0 +1,96 @@
+"""The steps of the run, taken again by its rules."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Any, Final
+
+from adapters.console.alerts import tell
+from adapters.console.draft import Draft
+from adapters.console.facts import Change, Standing, Unreplayable
+from adapters.console.flights import arrive
+from adapters.console.parsing import count, text, texts
+from adapters.console.ticks import tick
+from adapters.live.limits import heads_of
+from adapters.live.state import Waiting
+from adapters.live.watchers import TOLD
+from semantics.state.brief import cut
+from semantics.state.canonical import written
+from semantics.state.configuration import Configuration, Label
+from semantics.state.differences import differences
+from semantics.state.requests import REQUESTS, SND
+
+MOST: Final = 200
+"""Steps that are shown."""
+
+MOST_CHANGES: Final = 40
+
+SORTS: Final = {"env": "world", "commit": "world", "say": "say"}
+"""The sorts of ticks, by the rule; all others that are told are of sort `control`."""
+
+STRUCTURE: Final = frozenset({"parent", "links", "placement", "channels", "down", "names"})
+"""The cells of L and P."""
+
+
+def take_step(draft: Draft, time: float, data: Any) -> None:
+    """Take in a step: the configuration after it, and what it has changed."""
+    label, number = data.get("label"), count(data.get("number"))
+    if not isinstance(label, str) or number is None:
+        return
+    before = draft.standing
+    found = None if before is None else _followed(draft, before, number, time, data)
+    rule = label.removeprefix("⟨").partition(" ")[0] if found is None else found.rule
+    shown = texts(data.get("shown"))
+    told = rule in TOLD or bool(shown)
+    changed: tuple[str, ...] = ()
+    if before is not None and draft.standing is not None:
+        changed = changes(before.configuration, draft.standing.configuration)
+    draft.step = number
+    draft.steps[str(number)] = {
+        "time": time,
+        "label": text(label),
+        "rule": text(rule),
+        "agent": None if found is None else found.agent,
+        "about": text(label.partition(" : ")[2].removesuffix("⟩") if found is None else str(found.about)),
+        "changes": changed,
+        "shown": shown,
+        "told": told,
+    }
+    draft.steps.bounded(MOST)
+    if rule in TOLD:
+        tick(draft, time, SORTS.get(rule, "control"))
+
+
+def _followed(draft: Draft, standing: Standing, number: int, time: float, data: Any) -> Label | None:
+    """Go on by the rules where they allow the step, and without them from here on where they don't."""
+    before = standing.configuration
+    try:
+        label, after = standing.rules.follow(before, data)
+    except Unreplayable as error:
+        tell(draft, f"what is believed is not known any more: {error}")
+        draft.standing = None
+        return None
+    change = Change(number, before, after) if is_structural(before, after) else standing.change
+    draft.standing = Standing(standing.rules, after, change, _heads(standing, label, after, time))
+    arrive(draft, label, before)
+    return label
+
+
+def _heads(standing: Standing, label: Label, after: Configuration, time: float) -> Mapping[str, Waiting]:
+    """Return the heads of lines after a step: the next request waits from now on, even if it is an equal one."""
+    served = isinstance(label.about, REQUESTS) and not isinstance(label.about, SND)
+    known = {key: each for key, each in standing.heads.items() if not (served and key == label.agent)}
+    return heads_of(after, known, time)
+
+
+@lru_cache(maxsize=1 << 12)
+def changes(before: Configuration, after: Configuration) -> tuple[str, ...]:
+    """Return what a step has changed, in words; runs that observe in a loop take the same steps over and over."""
+    return tuple(cut(each, 200) for each in differences(before, after)[:MOST_CHANGES])
+
+
+@lru_cache(maxsize=1 << 12)
+def is_structural(before: Configuration, after: Configuration) -> bool:
+    """Tell whether a step has changed L or P."""
+    return any(cell[0] in STRUCTURE for cell in written(before, after))

@@ -1,0 +1,232 @@
+"""Take in what operators say: messages to agents, orders to vehicles, vehicles given back, findings seen.
+
+An order is no rule of the calculus, and changes nothing in the configuration: the vehicle is *taken over*, by an
+operator, and told to hold or to return. What the mission asks of it stays pending until it is given back.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from ipaddress import ip_address
+
+from adapters.live.flying import ask_anew
+from adapters.live.limits import due_fallback
+from adapters.live.orders import is_authority, stopping
+from adapters.live.state import (
+    Acknowledging,
+    Answer,
+    Bidden,
+    GivingBack,
+    Ordering,
+    Said,
+    Saying,
+    operator,
+)
+from adapters.live.turn import Turning
+from adapters.plugin import Follow, GiveBack, GoTo, HandOver, Hold, Rebind, Return
+from semantics.behaviours.values import show
+from semantics.contingencies import Fallback
+from semantics.environment import Says
+from semantics.extension import say
+from semantics.state.partition import is_here, station_of
+from semantics.state.signature import Name
+
+_ADDRESS = re.compile(r"\[?([0-9a-fA-F:.]+)\]?:([0-9]{1,5})")
+"""Where a vehicle sends from: a number, since nobody waits for names."""
+
+MOST_PORT = 65_535
+
+
+def answer(turning: Turning, said: Said) -> None:
+    """Take what someone outside says, and answer it."""
+    match said:
+        case Saying():
+            say_to(turning, said)
+        case Ordering():
+            turning.answers.append(order(turning, said))
+        case GivingBack():
+            turning.answers.append(Answer(said, _hear_operator(turning, said)))
+        case Acknowledging(number):
+            known = 0 < number <= turning.before.findings
+            refusal = "" if known else f"there is no finding {number}; there are {turning.before.findings}"
+            turning.answers.append(Answer(said, refusal))
+
+
+# --- orders
+
+
+def order(turning: Turning, said: Ordering) -> Answer:
+    """Tell a vehicle, or all, to hold or to return: from now on the mission does not command it."""
+    named = sorted(turning.plan.vehicles) if said.vehicle is None else [said.vehicle]
+    left_out = {entity: why for entity in named if (why := _objection(turning, entity, said))}
+    told = [entity for entity in named if entity not in left_out]
+    if not told:
+        return Answer(said, "; ".join(left_out.values()) or "there is no vehicle")
+    notes = tuple(note for entity in told for note in _notes(turning, entity))
+    requests = {entity: _bid(turning, entity, said) for entity in told}
+    who, are = ", ".join(told), "is" if len(told) == 1 else "are"
+    message = f"{who} {are} told to {said.fallback.value} by {operator(said.by)}"
+    back = f"until `bigactors give-back {said.vehicle or 'VEHICLE'}`"
+    rest = "; ".join([*notes, *left_out.values(), f"the mission does not command {_it(told)} {back}"])
+    turning.find("ordered", said.vehicle or "", f"{message}; {rest}")
+    return Answer(said, "", requests, left_out, notes)
+
+
+def _it(told: list[Name]) -> str:
+    return "it" if len(told) == 1 else "them"
+
+
+def _objection(turning: Turning, entity: Name, said: Ordering) -> str:
+    """Return why a vehicle is not told.
+
+    An order to all overrules no pilot and no fail-safe, and an order to one only what the operator can know of.
+    """
+    if entity not in turning.plan.vehicles:
+        return _no_vehicle(turning, entity)
+    if not turning.answers_for(entity):
+        return f"{entity} is under the authority of {_authority(turning, entity)}: order it there"
+    if not _is_foreign(turning, entity):
+        return ""
+    why = turning.taken[entity]
+    if said.vehicle is None:
+        return f"{entity} was taken over, and is not overruled: {why}"
+    if turning.before.taken.get(entity) != why:
+        return f"{entity} was taken over just now: {why}; order it again to overrule that"
+    return ""
+
+
+def _is_foreign(turning: Turning, entity: Name) -> bool:
+    """Tell whether a pilot, another station or a fail-safe has taken a vehicle over."""
+    return entity in turning.taken and entity not in turning.bidden
+
+
+def _authority(turning: Turning, entity: Name) -> str:
+    """Return the stations that a vehicle obeys, as P has it."""
+    channels = turning.before.configuration.structure.physical.channels(entity)
+    stations = (channel.partition(":")[2] for channel in channels if is_authority(channel))
+    return " and ".join(sorted(stations)) or "another station"
+
+
+def _notes(turning: Turning, entity: Name) -> Iterator[str]:
+    """Yield what an operator should know of a vehicle that is told something."""
+    if _is_foreign(turning, entity):
+        yield f"that overrules who took {entity} over: {turning.taken[entity]}"
+    if entity in turning.lost or entity not in turning.seen:
+        yield f"{entity} is not heard: it is told as soon as it is, unless it was taken over by then"
+
+
+def _bid(turning: Turning, entity: Name, said: Ordering) -> str:
+    """Take a vehicle over and tell it, in place of what this turn was to tell it; return the request."""
+    flies = (GoTo, Follow, HandOver, Hold, Return)
+    turning.commands[:] = (c for c in turning.commands if c.entity != entity or not isinstance(c, flies))
+    if _is_foreign(turning, entity):
+        turning.commands.append(GiveBack(turning.request_of("operator"), entity))
+    command = stopping(said.fallback, turning.request_of("operator"), entity)
+    turning.bidden[entity] = Bidden(command, said.by)
+    turning.taken[entity] = turning.bidden[entity].reason
+    turning.commands.append(command)
+    return command.request
+
+
+def confirm(turning: Turning, entity: Name, request: str) -> None:
+    """Report, once, that a vehicle does what an operator ordered."""
+    bidden = turning.bidden.get(entity)
+    if bidden is None or bidden.command.request != request or bidden.confirmed:
+        return
+    turning.bidden[entity] = replace(bidden, confirmed=True)
+    turning.find("confirmed", entity, f"{entity} {bidden.does}, as {operator(bidden.by)} ordered")
+
+
+def is_bidden(turning: Turning, entity: Name, request: str) -> bool:
+    """Tell whether a request is the operator's order that stands for a vehicle."""
+    bidden = turning.bidden.get(entity)
+    return bidden is not None and bidden.command.request == request
+
+
+# --- vehicles given back
+
+
+def _hear_operator(turning: Turning, said: GivingBack) -> str:
+    """Do what an operator says of a vehicle; return why not, nothing if it is done."""
+    if said.vehicle not in turning.plan.vehicles:
+        return _no_vehicle(turning, said.vehicle)
+    return _rebind(turning, said.vehicle, said.at) if said.at else _give_back(turning, said.vehicle, said.by)
+
+
+def _no_vehicle(turning: Turning, name: str) -> str:
+    vehicles = ", ".join(sorted(turning.plan.vehicles))
+    return f"there is no vehicle '{name:.60}'; there are {vehicles or 'none'}"
+
+
+def _give_back(turning: Turning, entity: Name, by: str) -> str:
+    """Command a vehicle again that was taken over or has refused; return why not, or an empty text."""
+    told = (turning.orders.get(entity), turning.handing.get(entity))
+    refused = any(order.refused for order in told if order is not None)
+    if entity not in turning.taken and not refused:
+        return f"{entity} was not taken over here, and has refused nothing"
+    turning.taken.pop(entity, None)
+    turning.bidden.pop(entity, None)
+    turning.quiet = None
+    turning.commands.append(GiveBack(turning.request_of("give-back"), entity))
+    ask_anew(turning, entity)
+    given = f"{entity} was given back{f' by {by}' if by else ''}"
+    fallback = due_fallback(turning, entity)
+    if fallback is Fallback.CONTINUE:
+        turning.find("given back", entity, f"{given}, and is commanded again")
+    else:  # its flight was given up meanwhile, and nobody else flies it
+        turning.find(
+            "given back", entity, f"{given}; what it was to do was given up: it is told to {fallback.value}"
+        )
+        turning.fall_back(fallback, (entity,))
+    return ""
+
+
+def say_to(turning: Turning, saying: Saying) -> None:
+    """Put a message into a mailbox, if the environment section allows it, and not too often."""
+    agents = turning.c.alpha
+    if saying.agent in agents and not is_here(turning.c, saying.agent):
+        there = station_of(turning.c, saying.agent)
+        turning.answers.append(
+            Answer(saying, f"{saying.agent} runs at {there or 'no station'}: say it there")
+        )
+        return
+    clauses = [each for each in turning.c.setting.environment if isinstance(each, Says)]
+    for clause in clauses:
+        if clause.agent == saying.agent and saying.message in (clause.message, show(clause.message)):
+            found = tuple(say(turning.c, clause))
+            if found:
+                turning.take(found[0], found)
+                turning.idle.discard(clause.agent)
+                turning.answers.append(Answer(saying))
+                return
+    left = [f"{show(each.message)} to {each.agent}" for each in clauses if turning.c.read(each.counter)]
+    is_vehicle = saying.agent in turning.plan.vehicles
+    nobody = f"there is no bigActor '{saying.agent:.60}'{', which is a vehicle' if is_vehicle else ''}; "
+    who = "" if saying.agent in agents else nobody
+    what = f"what may be said now: {', '.join(left)}" if left else "nothing may be said any more"
+    turning.answers.append(Answer(saying, f"{who}the mission does not say that this is said; {what}"))
+
+
+def _rebind(turning: Turning, entity: Name, at: str) -> str:
+    """Believe a vehicle from another address; return why not, nothing if it is told so."""
+    found = _ADDRESS.fullmatch(at)
+    if found is None or not _is_number(found[1]) or int(found[2]) > MOST_PORT:
+        return (
+            f"'{at:.60}' is no HOST:PORT with HOST as a number, such as 192.168.1.7:14555 or [fd00::7]:14555"
+        )
+    if entity not in turning.lost:
+        return (
+            f"the link to {entity} is not lost; it can be believed elsewhere once it is silent where it was"
+        )
+    turning.commands.append(Rebind(turning.request_of("operator"), entity, at))
+    return ""
+
+
+def _is_number(host: str) -> bool:
+    try:
+        ip_address(host)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,213 @@
+"""The section `timing`, watched: what takes longer than it says, or is over sooner, breaks an assumption.
+
+The clocks are those of a check, as the moments at which they began.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Final, NamedTuple
+
+from semantics.environment import Drifts
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.physical_model import Placed
+from semantics.state.requests import FLY
+from semantics.state.signature import Name
+from semantics.timing.bounds import Bound, bound_of, going_on, running_in, timed_by
+from semantics.timing.clocks import Clock, Situation, Sort, TimedStep
+from semantics.timing.dates import lapse_text
+from semantics.timing.timing import Every
+from semantics.timing.voyages import travelling
+
+GRACE: Final = 0.25
+"""Seconds that a run itself may need before it sees that something is done."""
+
+FULL: Final = frozenset({Sort.EVERY, Sort.RESTORED})
+"""Clocks that are past their bound as the mission begins."""
+
+
+class Broken(NamedTuple):
+    """An assumption about time that does not hold, in words, and what it is about."""
+
+    about: Name
+    message: str
+
+
+class Flying(NamedTuple):
+    """A flight under way: who, where to, for how many seconds, and how long it takes at least and at most."""
+
+    vehicle: Name
+    destination: Name
+    elapsed: float
+    least: float
+    most: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Timers:
+    """Since when everything runs that the mission times.
+
+    Attributes:
+        situation: What time means in the configuration.
+        since: When the clocks began, the oldest of equal ones first.
+    """
+
+    situation: Situation
+    since: Mapping[Clock, tuple[float, ...]]
+
+    @property
+    def seconds(self) -> float:
+        """How many seconds a tick has."""
+        return self.situation.timing.tick / 1000
+
+    def later(self, seconds: float) -> Timers:
+        """Return them shifted by a time without listening."""
+        return replace(
+            self, since={clock: tuple(at + seconds for at in began) for clock, began in self.since.items()}
+        )
+
+
+def begun(c: Configuration, now: float) -> Timers:
+    """Return the timers at the start of a run."""
+    situation = Situation(c)
+    since = {
+        clock: (-math.inf if clock.sort in FULL else now,) * count
+        for clock, count in running_in(situation).items()
+    }
+    return Timers(situation, since)
+
+
+def stepped(timers: Timers, transition: Transition, now: float) -> Timers:
+    """Return the timers after a step of the run."""
+    source = timers.situation
+    after = Situation(transition.target)
+    step = _step_of(source, transition)
+    done = (*(step.done if step is not None else ()), *_drifted(source, after))
+    since = going_on(timers.since, source, done, after, now)
+    for vehicle, endurance in after.timing.endurances:
+        restored, aloft = Clock(Sort.RESTORED, vehicle), Clock(Sort.ALOFT, vehicle)
+        left = restored in source.first and restored not in after.first
+        if left and now - timers.since[restored][0] >= endurance.after * timers.seconds:
+            since[aloft] = (now,)
+    return Timers(after, since)
+
+
+def _step_of(situation: Situation, transition: Transition) -> TimedStep | None:
+    return next((each for each in situation.steps if each.transition.label == transition.label), None)
+
+
+def _drifted(source: Situation, after: Situation) -> Iterator[Clock]:
+    """Yield the clocks of the clauses whose entities have moved into other places."""
+    for number, clause in enumerate(source.c.setting.environment):
+        if isinstance(clause, Drifts) and _has_moved(source.c, after.c, clause.entity):
+            yield Clock(Sort.EVERY, number)
+
+
+def _has_moved(before: Configuration, now: Configuration, entity: Name) -> bool:
+    one, other = (each.structure.physical for each in (before, now))
+    if not (isinstance(one.placement(entity), Placed) and isinstance(other.placement(entity), Placed)):
+        return False
+    return one.abstract_parent(entity) != other.abstract_parent(entity)
+
+
+# --- what does not hold
+
+
+def too_soon(timers: Timers, transition: Transition, after: Timers, now: float) -> Iterator[Broken]:
+    """Yield what a step shows to be over, or to come again, before it can."""
+    source = timers.situation
+    step = _step_of(source, transition)
+    request = None if step is None or step.transition.served is None else step.transition.served.request
+    if step is not None and isinstance(request, FLY):
+        flight = Clock(Sort.FLIGHT, request)
+        least = timed_by(source, step).interval.lo * timers.seconds
+        if flight in timers.since and now - timers.since[flight][0] < least:
+            lasted = _text(now - timers.since[flight][0])
+            yield from _said(source, step, f"is over after {lasted}, sooner than {_text(least)}")
+    for clock in _drifted(source, after.situation):
+        assert isinstance(clock.of, int)
+        said, clause = source.timing.clause(clock.of).step, source.c.setting.environment[clock.of]
+        if isinstance(said, Every) and isinstance(clause, Drifts) and clock in timers.since:
+            elapsed = now - timers.since[clock][0]
+            if elapsed < said.least * timers.seconds:
+                words = _line_of(source, f"{clause.entity} drifts ")
+                yield Broken(
+                    clause.entity, f"{clause.entity} drifts again after {_text(elapsed)}{_because(words)}"
+                )
+
+
+def too_late(timers: Timers, now: float) -> Iterator[Broken]:
+    """Yield what takes longer than it can, and the vehicles that are aloft for longer than they last."""
+    situation = timers.situation
+    for step, end, most in _ends(timers):
+        if now > end + GRACE:
+            yield from _said(situation, step, f"takes longer than {_text(most)}")
+    for vehicle, end, lasts in _batteries(timers):
+        if now > end + GRACE:
+            words = _line_of(situation, f"{vehicle} lasts ", f"{situation.c.setting.kind(vehicle)} lasts ")
+            yield Broken(vehicle, f"{vehicle} is aloft for longer than {_text(lasts)}{_because(words)}")
+
+
+def next_end(timers: Timers, now: float) -> float:
+    """Return when to look again, infinitely late where nothing ends."""
+    ends = (end for found in (_ends(timers), _batteries(timers)) for _, end, _ in found)
+    return min((end + GRACE + 0.001 for end in ends if end + GRACE >= now), default=math.inf)
+
+
+def _ends(timers: Timers) -> Iterator[tuple[TimedStep, float, float]]:
+    """Yield what has to be done by some time: the step, that time, and how many seconds it takes at most."""
+    situation = timers.situation
+    steps = {clock: step for step in reversed(situation.steps) if step.in_turn for clock in step.done}
+    for index, most, unless in situation.deadlines:
+        clock = situation.clocks[index]
+        if unless is None and clock in steps:
+            seconds = most * timers.seconds
+            yield steps[clock], timers.since[clock][index - situation.first[clock]] + seconds, seconds
+
+
+def _batteries(timers: Timers) -> Iterator[tuple[Name, float, float]]:
+    situation = timers.situation
+    for vehicle, endurance in situation.timing.endurances:
+        if vehicle in situation.c.structure.physical and not situation.is_restored(vehicle):
+            lasts = endurance.lasts * timers.seconds
+            yield vehicle, timers.since[Clock(Sort.ALOFT, vehicle)][0] + lasts, lasts
+
+
+def _said(situation: Situation, step: TimedStep, what: str) -> Iterator[Broken]:
+    request = None if step.transition.served is None else step.transition.served.request
+    words = _because(bound_of(situation, step))
+    flying = travelling(situation.c, request) if isinstance(request, FLY) else ()
+    for vehicle, place in flying:
+        yield Broken(vehicle, f"the flight of {vehicle} to {place} {what}{words}")
+    if not flying:
+        yield Broken(step.transition.label.agent or "", f"{step.transition.label} {what}{words}")
+
+
+def _line_of(situation: Situation, *begins: str) -> Bound:
+    found = (Bound(*said) for begin in begins for said in situation.timing.lines if said[0].startswith(begin))
+    return next(found, Bound())
+
+
+def _because(bound: Bound) -> str:
+    return f"; the mission says: {bound}" if bound.words else ""
+
+
+def _text(seconds: float) -> str:
+    return lapse_text(round(seconds * 10) * 100)
+
+
+# --- what is under way
+
+
+def flying(timers: Timers, now: float) -> Iterator[Flying]:
+    """Yield the flights under way, with how long they have gone on and how long they take."""
+    situation = timers.situation
+    for clock, began in timers.since.items():
+        if clock.sort is Sort.FLIGHT and isinstance(clock.of, FLY):
+            most = situation.bounds.get(Clock(Sort.AIM, clock.of))
+            hi = None if most is None or most.hi is None else most.hi * timers.seconds
+            least = situation.bounds[clock].lo * timers.seconds if clock in situation.bounds else 0.0
+            for vehicle, place in travelling(situation.c, clock.of):
+                yield Flying(vehicle, place, now - began[0], least, hi)

@@ -1,0 +1,21 @@
+"""Frozen values that change with every packet, made anew quickly."""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+Value = TypeVar("Value")
+
+
+def changed(value: Value, **changes: Any) -> Value:
+    """Return a frozen value with some attributes changed: `dataclasses.replace`, ten times as fast.
+
+    For dataclasses without slots and without `__post_init__`, of many attributes: a hundred vehicles say a thousand
+    things a second, and each makes some values anew.
+    """
+    made = object.__new__(type(value))
+    attributes = made.__dict__
+    attributes.update(value.__dict__)
+    assert changes.keys() <= attributes.keys(), changes.keys() - attributes.keys()
+    attributes.update(changes)
+    return made

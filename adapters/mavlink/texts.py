@@ -1,0 +1,72 @@
+"""The texts of a vehicle: STATUSTEXT, whose long texts MAVLink 2 sends in chunks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+CHUNK: Final = 50
+"""Characters of a chunk that another one follows; a shorter one is the last."""
+
+PATIENCE: Final = 2.0
+"""Seconds after which the rest of a text is not waited for."""
+
+LOST: Final = "..."
+"""What stands for chunks that did not come."""
+
+LEAST_SEVERE: Final = 7
+"""MAV_SEVERITY_DEBUG."""
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """A whole text, and how severe it is: from 0 (emergency) to 7 (debug)."""
+
+    text: str
+    severity: int
+
+
+@dataclass(frozen=True, slots=True)
+class Chunks:
+    """What has come of a long text: its number, its chunks, which is the next, and when the last came."""
+
+    number: int
+    severity: int
+    parts: tuple[str, ...] = ()
+    next: int = 0
+    at: float = 0.0
+
+
+Joined = tuple[Chunks | None, tuple[Text, ...]]
+"""The text that is not complete yet, and those that are."""
+
+
+def join(chunks: Chunks | None, said: Mapping[str, Any], now: float) -> Joined:
+    """Take a STATUSTEXT; a text of which chunks are missing is given with what has come."""
+    number, index = said.get("id", 0), said.get("chunk_seq", 0)
+    text, severity = str(said["text"]), min(said["severity"], LEAST_SEVERE)
+    if not number:
+        return chunks, _whole((text,), severity)
+    before: tuple[Text, ...] = ()
+    if chunks is not None and chunks.number != number:
+        before, chunks = _whole((*chunks.parts, LOST), chunks.severity), None
+    known = chunks or Chunks(number, severity)
+    if index < known.next:  # it came twice, or late
+        return known, before
+    parts = (*known.parts, *([LOST] if index > known.next else []), text)
+    if len(text) < CHUNK:
+        return None, (*before, *_whole(parts, known.severity))
+    return replace(known, parts=parts, next=index + 1, at=now), before
+
+
+def give_up(chunks: Chunks | None, now: float) -> Joined:
+    """Return what has come of a text whose rest does not come."""
+    if chunks is None or now - chunks.at <= PATIENCE:
+        return chunks, ()
+    return None, _whole((*chunks.parts, LOST), chunks.severity)
+
+
+def _whole(parts: tuple[str, ...], severity: int) -> tuple[Text, ...]:
+    text = "".join(filter(str.isprintable, "".join(parts))).strip()
+    return (Text(text, severity),) if text else ()

@@ -1,0 +1,168 @@
+"""`bigactors console`: a recording, or a run, in the browser."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import ssl
+import sys
+from argparse import Namespace
+from contextlib import AsyncExitStack, suppress
+from ipaddress import ip_address
+from pathlib import Path
+from typing import Final
+
+from adapters.addresses import LOOPBACK
+from adapters.console.access import Access
+from adapters.console.history import History
+from adapters.console.looker import Console
+from adapters.console.performing import performing
+from adapters.console.server import Site, lacks_parts, serving
+from adapters.recording.mcap_files import McapReader, RecordingError
+from adapters.recording.reading import checked_run
+from bigactors import __version__
+from bigactors.console import history_of
+from bigactors.exits import Exit
+from bigactors.mistakes import Mistake, unreadable
+from bigactors.niceness import give_way
+from bigactors.terminal import say, tell
+from physical import open_file
+
+PORT: Final = 8765
+"""Where a console listens if nothing is said and nobody else does."""
+
+NICENESS: Final = 5
+"""How much a console gives way to the run beside it: where both want the same core it gets a quarter."""
+
+PARTING: Final = 0.5
+"""Seconds from the end of a run to that of its console."""
+
+READING: Final = 2.0
+"""Seconds in which what a run has recorded last is read, after its end."""
+
+KILLED: Final = (
+    "the run ended without a word: it was killed, or has crashed; vehicles go on as they were told last"
+)
+
+PMTILES: Final = b"PMTiles"
+
+
+def run(options: Namespace) -> Exit:
+    """Serve until interrupted."""
+    _check(options)
+    _look_into(options)
+    if options.beside:
+        give_way(NICENESS)
+    with history_of(Path(options.recording), live=options.follow) as history, suppress(KeyboardInterrupt):
+        asyncio.run(_serve(options, history))
+    return Exit.HOLDS
+
+
+def _check(options: Namespace) -> None:
+    """Refuse what cannot be served, or not safely; raises Mistake."""
+    if lacks_parts():
+        raise Mistake(
+            "the console's page is not whole: npm has not fetched its parts", "say `make parts` in the clone"
+        )
+    if options.socket is not None and not options.follow:
+        raise Mistake(
+            "nobody hears what is said in a recording that has ended", "give --follow with --socket"
+        )
+    host = LOOPBACK if options.listen is None else options.listen[0]
+    if not (_is_near(host) or options.tls or options.insecure):
+        hint = "give --tls CERT KEY, or listen on this machine only and come by ssh -L; or --insecure"
+        raise Mistake(f"others on the network could read the token of a console at {host}", hint)
+    if options.tiles is not None:
+        try:
+            with open_file(options.tiles) as file:
+                begins = file.read(len(PMTILES))
+        except OSError as error:
+            raise unreadable(options.tiles, error) from error
+        if begins != PMTILES:
+            raise Mistake(
+                "this is no map in PMTiles", "the pmtiles program makes one of MBTiles", options.tiles
+            )
+
+
+def _is_near(host: str) -> bool:
+    if host == "localhost":
+        return True
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+def _look_into(options: Namespace) -> None:
+    """Read the beginning, so that a file that is no recording is told at once; raises Mistake."""
+    path = options.recording
+    try:
+        first = next(McapReader(Path(path)).messages(), None)
+        if first is None and not options.follow:
+            raise Mistake("it records no run of a mission", "a run that begins is shown with --follow", path)
+        if first is not None:
+            checked_run(first.data if first.topic == "run" and isinstance(first.data, dict) else None)
+    except RecordingError as error:
+        raise Mistake(str(error), place=path) from error
+    except OSError as error:
+        if not (options.follow and isinstance(error, FileNotFoundError)):
+            raise unreadable(path, error) from error
+        tell(f"{path} is not there yet: the console waits for the run that writes it")
+
+
+async def _serve(options: Namespace, history: History) -> None:
+    access = Access()
+    perform = None if options.socket is None else performing(Path(options.socket))
+    tiles = None if options.tiles is None else Path(options.tiles)
+    kept = "" if options.beside == "unkept" else options.recording
+    console = Console(history, access, __version__, perform, options.follow, tiles, kept)
+    tls = None if options.tls is None else _tls(*options.tls)
+    async with AsyncExitStack() as stack:
+        host, port = await _listen(stack, console, options.listen, tls)
+        address = f"{'http' if tls is None else 'https'}://{f'[{host}]' if ':' in host else host}:{port}"
+        if perform is not None:
+            say(f"console, to act:   {address}/#token={access.act}")
+        say(f"console, to watch: {address}/#token={access.watch}")
+        sys.stdout.flush()
+        await (_until_left(history) if options.beside else asyncio.Event().wait())
+
+
+async def _listen(
+    stack: AsyncExitStack, console: Console, listen: tuple[str, int] | None, tls: ssl.SSLContext | None
+) -> tuple[str, int]:
+    """Listen where it is said, else at the usual port or at any free one; raises Mistake."""
+    host, port = listen or (LOOPBACK, PORT)
+    try:
+        return host, await stack.enter_async_context(serving(console, Site(port, host, tls)))
+    except OSError as error:
+        if listen is not None:
+            raise Mistake(
+                error.strerror or str(error), "give another place with --listen", f"{host}:{port}"
+            ) from error
+    tell(f"port {port} is taken: the console listens at another one")
+    return host, await stack.enter_async_context(serving(console, Site(0, host, tls)))
+
+
+def _tls(certificate: str, key: str) -> ssl.SSLContext:
+    context = ssl.create_default_context(ssl.Purpose.CLIENT_AUTH)
+    try:
+        context.load_cert_chain(certificate, key)
+    except (OSError, ValueError) as error:
+        raise Mistake(
+            f"this is no certificate with its key: {error}", "give both as PEM", certificate
+        ) from error
+    return context
+
+
+async def _until_left(history: History) -> None:
+    """Wait until the run beside which this console is has ended: its end of the pipe is closed then."""
+    loop, closed, pipe = asyncio.get_running_loop(), asyncio.Event(), sys.stdin.fileno()
+    loop.add_reader(pipe, lambda: None if os.read(pipe, 4096) else closed.set())
+    await closed.wait()
+    loop.remove_reader(pipe)
+    with suppress(TimeoutError):
+        async with asyncio.timeout(READING):
+            while history.ended is None and history.read_on(0.0):
+                await asyncio.sleep(0)
+    history.end(KILLED)
+    await asyncio.sleep(PARTING)  # in which all see how it ended

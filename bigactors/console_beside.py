@@ -1,0 +1,78 @@
+"""The console of a run: a process of its own beside it, which reads what the run records."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+from argparse import Namespace
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Final
+
+from bigactors.arguments.serving import ANYWHERE
+from bigactors.terminal import say, tell
+
+PATIENCE: Final = 5.0
+"""Seconds that a console has to end."""
+
+
+@contextmanager
+def recorded(options: Namespace) -> Iterator[Path | None]:
+    """Yield where the run is recorded: where it is said, else for a console in a folder that is removed afterwards."""
+    if options.record is not None:
+        yield Path(options.record)
+    elif options.console is None:
+        yield None
+    else:
+        with TemporaryDirectory(prefix="bigactors-") as folder:
+            yield Path(folder) / "run.mcap"
+
+
+@contextmanager
+def console_beside(options: Namespace, recording: Path | None, socket: Path) -> Iterator[None]:
+    """Let a console look on, if one is asked for; the run goes on without it if it ends."""
+    if options.console is None or recording is None:
+        yield
+        return
+    say("console: it starts beside the run; its links follow")
+    sys.stdout.flush()
+    process = subprocess.Popen(
+        _line(options, recording, socket), stdin=subprocess.PIPE, start_new_session=True
+    )
+    leaving = threading.Event()
+    threading.Thread(target=_watch, args=(process, leaving), daemon=True).start()
+    try:
+        yield
+    finally:
+        leaving.set()
+        assert process.stdin is not None
+        with suppress(OSError):
+            process.stdin.close()
+        try:
+            process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def _line(options: Namespace, recording: Path, socket: Path) -> list[str]:
+    """Return the command line of the console."""
+    kept = "unkept" if options.record is None else "kept"
+    line = [sys.executable, "-m", "bigactors", "console", str(recording), "--follow", "--beside", kept]
+    line += ["--socket", str(socket)]
+    if options.console != ANYWHERE:
+        host, port = options.console
+        line += ["--listen", f"[{host}]:{port}" if ":" in host else f"{host}:{port}"]
+    line += [] if options.tiles is None else ["--tiles", options.tiles]
+    line += [] if options.tls is None else ["--tls", *options.tls]
+    return line + (["--insecure"] if options.insecure else [])
+
+
+def _watch(process: subprocess.Popen[bytes], leaving: threading.Event) -> None:
+    """Say it if a console ends before its run."""
+    code = process.wait()
+    if not leaving.is_set():
+        tell(f"the console has ended with code {code}; the run goes on without it")

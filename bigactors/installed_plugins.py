@@ -1,0 +1,103 @@
+"""Plugins of other packages: they are found by their entry points, and loaded when a command line names them.
+
+`importlib.metadata` reads what packages declare, and imports none of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any, Final
+
+from adapters.assigned import Assigned
+from adapters.camera.sightings import load_detector
+from adapters.camera.slick import Detector
+from adapters.plugin import Plugin
+from bigactors.mistakes import Mistake, suggestion
+from physical import PhysicalError
+
+VEHICLES: Final = "bigactors.plugins.vehicles"
+"""Entry points of this group name a scheme, and a function of a name, an address and the vehicles assigned."""
+
+FEEDS: Final = "bigactors.plugins.feeds"
+"""Entry points of this group name a kind of feed, and a function of a name and an address."""
+
+
+DETECTORS: Final = "bigactors.plugins.detectors"
+"""Entry points of this group name a function from a `Frame` to `Patch`es."""
+
+
+def installed(group: str) -> tuple[EntryPoint, ...]:
+    """Return what the installed packages declare in a group, each once, in the order of its names."""
+    return tuple(sorted(set(entry_points(group=group)), key=lambda each: (each.name, each.value)))
+
+
+def package_of(entry: EntryPoint) -> str:
+    """Return the name and the version of the package that declares an entry point."""
+    return "an unknown package" if entry.dist is None else f"{entry.dist.name} {entry.dist.version}"
+
+
+def make_vehicles(scheme: str, name: str, address: str, vehicles: tuple[Assigned, ...]) -> Plugin:
+    """Let an installed plugin make what drives some vehicles; raises Mistake."""
+    plugin, blame = _made(VEHICLES, scheme, (name, address, vehicles))
+    missing = [each.entity for each in vehicles if not plugin.owns(each.entity)]
+    if missing:
+        raise blame(f"does not own {', '.join(missing)}, which it shall drive")
+    return plugin
+
+
+def make_feed(kind: str, name: str, address: str) -> Plugin:
+    """Let an installed plugin make a feed; raises Mistake."""
+    return _made(FEEDS, kind, (name, address))[0]
+
+
+def find_detector(word: str) -> Detector:
+    """Return an installed detector by its name, or MODULE:NAME; raises Mistake, PhysicalError."""
+    if ":" in word:
+        return load_detector(word)
+    require_known(word, DETECTORS, (), f"there is no detector '{word:.40}'")
+    return load_detector(_only(DETECTORS, word).value)
+
+
+def require_known(word: str, group: str, ours: Collection[str], message: str) -> None:
+    """Raise Mistake where no installed package declares a name, with what there is."""
+    known = [*ours, *dict.fromkeys(entry.name for entry in installed(group))]
+    if word not in known:
+        hint = suggestion(word, known) or f"there are {', '.join(known) or 'none'}"
+        raise Mistake(message, f"{hint}; bigactors plugins lists what is installed")
+
+
+def _only(group: str, called: str) -> EntryPoint:
+    """Return the one entry point of a name that is declared; raises Mistake if two packages declare it."""
+    found = [entry for entry in installed(group) if entry.name == called]
+    if len(found) > 1:
+        packages = " and ".join(map(package_of, found))
+        raise Mistake(f"'{called}' is declared by {packages}", "uninstall all but one of them")
+    return found[0]
+
+
+def _made(group: str, called: str, arguments: tuple[Any, ...]) -> tuple[Plugin, Callable[[str], Mistake]]:
+    """Return what an entry point's function makes, and how to blame its package for a fault."""
+    entry = _only(group, called)
+
+    def blame(fault: str) -> Mistake:
+        hint = f"this is a fault of {package_of(entry)} ({entry.value}), not of bigactors or the mission"
+        return Mistake(f"the plugin '{called}' {fault}", hint)
+
+    make = _guarded(entry.load, (), lambda reason: blame(f"cannot be loaded: {reason}"))
+    plugin = _guarded(make, arguments, lambda reason: blame(f"cannot be made: {reason}"))
+    if not isinstance(plugin, Plugin):
+        raise blame(f"makes a {type(plugin).__name__}, which lacks something of adapters.plugin.Plugin")
+    if plugin.name != arguments[0]:
+        raise blame(f"is named {plugin.name!r:.60}, not '{arguments[0]}' as it was asked to be")
+    return plugin, blame
+
+
+def _guarded(call: Callable[..., Any], arguments: tuple[Any, ...], blame: Callable[[str], Mistake]) -> Any:
+    """Call what another package has written; a PhysicalError of it is the user's mistake, all else its own."""
+    try:
+        return call(*arguments)
+    except PhysicalError:
+        raise
+    except (Exception, SystemExit) as error:
+        raise blame(f"{type(error).__name__}: {error}") from error

@@ -1,0 +1,134 @@
+"""One run of a mission, step by step: what may be done next, and when, where the mission says how long things take."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from copy import copy
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+from checker import Step, Trace
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.printing import print_changes
+from semantics.successors import Expansion, expand
+
+if TYPE_CHECKING:
+    from semantics.timing.dated_runs import DatedRun
+
+MINUTE = 60_000
+
+
+class Choice(NamedTuple):
+    """A step that may be taken next; with times at the earliest and at the latest (None: whenever), in ticks."""
+
+    transition: Transition
+    earliest: int | None = None
+    latest: int | None = None
+
+
+@dataclass
+class OneRun:
+    """A run that grows and shrinks.
+
+    Attributes:
+        initial: Its first configuration.
+        taken: Its steps.
+        dates: When each was taken, in ticks; empty where nothing says how long things take.
+        shown: What `display` showed in each.
+    """
+
+    initial: Configuration
+    taken: list[Step] = field(default_factory=list)
+    dates: list[int] = field(default_factory=list)
+    shown: list[tuple[str, ...]] = field(default_factory=list)
+    _dated: list[DatedRun] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        if self.initial.setting.timing is not None:
+            from semantics.timing.dated_runs import DatedRun  # noqa: PLC0415 - geometry takes its time to load
+
+            self._dated.append(DatedRun(self.initial))
+
+    @property
+    def at(self) -> Configuration:
+        """Where the run is."""
+        return self.taken[-1].target if self.taken else self.initial
+
+    @property
+    def trace(self) -> Trace:
+        """The run so far."""
+        return Trace(self.initial, tuple(self.taken), dates=tuple(self.dates))
+
+    def expansion(self) -> Expansion:
+        """Return what follows, whenever that is."""
+        return expand(self.at)
+
+    def choices(self) -> tuple[Choice, ...]:
+        """Return what may be done next."""
+        if self._dated:
+            return tuple(Choice(*offer) for offer in self._dated[-1].offers())
+        return tuple(map(Choice, self.expansion().transitions))
+
+    def take(self, choice: Choice, date: int | None = None) -> None:
+        """Take a step, where there are times at a date, or as early as may be.
+
+        Raises:
+            UntimelyError: The clocks do not allow it then.
+        """
+        transition = choice.transition
+        if self._dated:
+            date = choice.earliest if date is None else date
+            assert date is not None
+            run = copy(self._dated[-1])
+            run.take(transition.label, transition.target, date)
+            self._dated.append(run)
+            self.dates.append(date)
+        alike = [each.target for each in self.expansion().transitions if each.label == transition.label]
+        self.taken.append(Step(transition.label, alike.index(transition.target), transition.target))
+        self.shown.append(transition.shown)
+
+    def take_by_chance(self, chance: random.Random) -> bool:
+        """Take one of the steps, at one of its dates, each as likely as any other; tell whether there was one."""
+        choices = self.choices()
+        if not choices:
+            return False
+        choice = chance.choice(choices)
+        if choice.earliest is None:
+            self.take(choice)
+            return True
+        from semantics.timing.dated_runs import UntimelyError  # noqa: PLC0415 - geometry takes its time to load
+
+        try:
+            self.take(choice, chance.randint(choice.earliest, self._last(choice)))
+        except UntimelyError:  # not all moments between the two need be allowed
+            self.take(choice)
+        return True
+
+    def _last(self, choice: Choice) -> int:
+        """Return the latest date that chance takes: within a minute where there is no end."""
+        assert choice.earliest is not None
+        assert self.initial.setting.timing is not None
+        a_minute_on = choice.earliest + max(1, MINUTE // self.initial.setting.timing.tick)
+        return a_minute_on if choice.latest is None else choice.latest
+
+    def undo(self) -> None:
+        """Take the last step back."""
+        for each in (self.taken, self.shown, self.dates, self._dated):
+            if each:
+                each.pop()
+
+
+def print_step(run: OneRun, number: int) -> Iterator[str]:
+    """Print a step of a run, what it changed and what was displayed."""
+    step, date = run.taken[number], run.trace.date(number)
+    source = run.taken[number - 1].target if number else run.initial
+    yield f"c{number} --{f'at {date} ' if date else ''}{step.label}--> c{number + 1}"
+    yield from (f"      {line}" for line in print_changes(source, step.target))
+    yield from (f"      displayed: {text}" for text in run.shown[number])
+
+
+def nothing_more(run: OneRun) -> str:
+    """Say why a run has ended."""
+    reasons = "".join(f"; {fault.agent}: {fault}" for fault in run.expansion().faults)
+    return f"nothing more is enabled{reasons}"

@@ -1,0 +1,403 @@
+"""The contract that every plugin keeps to, as tests of pytest: for plugins of this project and of others.
+
+    class TestMine(PluginContract):
+        @asynccontextmanager
+        async def connect(self, folder):
+            yield Connection(Mine("mine", ...), told, spoil)
+
+Its tests run in an event loop whose clock jumps (`adapters.simulated.clock`), so that a minute takes no time. What is
+at the other end of the plugin must run in the same loop, or be there at once. A failure, a `ContractBrokenError`,
+says which clause is broken; the clauses are in docs/reference/plugins.md, "The contract". Needs the extra `testing`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import Counter
+from collections.abc import AsyncIterator, Callable, Coroutine
+from contextlib import AbstractAsyncContextManager, asynccontextmanager, suppress
+from dataclasses import dataclass, field
+from enum import Enum
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, Final, TypeVar
+
+from adapters.plugin import (
+    Accepted,
+    Aged,
+    Arrived,
+    Command,
+    Gone,
+    GoTo,
+    HandOver,
+    Plugin,
+    Published,
+    Refused,
+    Report,
+    Status,
+    Trouble,
+    entity_of,
+)
+from adapters.recording.reading import read_recording
+from adapters.recording.schemas import SCHEMAS
+from adapters.recording.writing import Recorder
+from adapters.simulated.clock import run
+from physical import Geometry, PhysicalProperty, contains, point
+
+EPOCH: Final = 1_600_000_000.0
+"""When the clock of a test begins, in seconds since 1970 UTC."""
+
+PAGE: Final = "docs/reference/plugins.md#the-contract"
+Found = TypeVar("Found")
+
+
+class Clause(Enum):
+    """A clause of the contract, in the words of its page."""
+
+    INTERFACE = "it has all of the interface, and a printable name"
+    STAMPED = "each publication is stamped, never in the future, and says its source"
+    REFUSES = "it refuses a command for what it does not own, by name, and reports nothing of it"
+    JUNK = "unusable input does not end it, and is reported as a Trouble with its name"
+    REPORTS = "what it reports fits the recording, and a vehicle's Status comes at most once a second"
+    ENDS = "cancelled, it ends, leaves no task behind, publishes nothing more, and can run again"
+    DRIVES = "a vehicle's state confirms a command: Accepted, then Arrived, from inside the place"
+
+
+class ContractBrokenError(AssertionError):
+    """A plugin breaks a clause of the contract."""
+
+    def __init__(self, clause: Clause, seen: str) -> None:
+        super().__init__(
+            f"the contract is broken: {clause.value}\n  but: {seen}\n  see {PAGE} ({clause.name})"
+        )
+        self.clause = clause
+
+
+def require(clause: Clause, kept: object, seen: str) -> None:
+    """Raise ContractBrokenError unless a clause is kept."""
+    if not kept:
+        raise ContractBrokenError(clause, seen)
+
+
+@dataclass(frozen=True)
+class Connection:
+    """A plugin that does not run yet, and what is at its other end.
+
+    Attributes:
+        plugin: The plugin.
+        fed: What lets it hear something to publish, while the context lasts.
+        spoil: What sends it unusable input; None where it is there from the beginning.
+        drives: A vehicle that it owns, and a place elsewhere to which it can go; None for a feed.
+    """
+
+    plugin: Plugin
+    fed: Callable[[], AbstractAsyncContextManager[Any]]
+    spoil: Callable[[], object] | None = None
+    drives: tuple[str, Geometry] | None = None
+
+
+@dataclass
+class World:
+    """A world that remembers what plugins have told, in the event loop's time."""
+
+    published: list[Published] = field(default_factory=list)
+    reports: list[Report] = field(default_factory=list)
+
+    def publish(self, published: Published) -> None:
+        """Remember a publication."""
+        self.published.append(published)
+
+    def report(self, report: Report) -> None:
+        """Remember a report."""
+        self.reports.append(report)
+
+    def now(self) -> float:
+        """Return the time."""
+        return EPOCH + asyncio.get_running_loop().time()
+
+    def of(self, kind: type[Found], **wanted: object) -> list[Found]:
+        """Return the reports of a kind that have some values."""
+        return [
+            report
+            for report in self.reports
+            if isinstance(report, kind)
+            and all(getattr(report, name) == value for name, value in wanted.items())
+        ]
+
+    def troubles(self) -> set[str]:
+        """Return what troubles were reported."""
+        return {report.what for report in self.of(Trouble)}
+
+    def property(self, entity: str) -> PhysicalProperty | None:
+        """Return what was published last of an entity, None if nothing or that it is gone."""
+        newest = next((each for each in reversed(self.published) if entity_of(each) == entity), None)
+        said = newest.property if isinstance(newest, Aged) else newest
+        return None if isinstance(said, Gone) else said
+
+
+async def until(what: Callable[[], Found], seconds: float = 600.0, every: float = 0.2) -> Found:
+    """Wait until something holds, and return it; raises AssertionError if it doesn't in time."""
+    loop = asyncio.get_running_loop()
+    end = loop.time() + seconds
+    while not (found := what()):
+        if loop.time() >= end:
+            raise AssertionError(f"{what} did not come to hold in {seconds} s")
+        await asyncio.sleep(every)
+    return found
+
+
+@asynccontextmanager
+async def running(*coroutines: Coroutine[Any, Any, Any]) -> AsyncIterator[None]:
+    """Run something beside a test; what fails there fails the test."""
+    tasks = [asyncio.ensure_future(coroutine) for coroutine in coroutines]
+    try:
+        yield
+        for task in tasks:
+            if task.done():
+                task.result()
+    finally:
+        for task in tasks:
+            task.cancel()
+            with suppress(asyncio.CancelledError):
+                await task
+
+
+async def opened(plugin: Plugin) -> None:
+    """Wait until a plugin has opened what it opens: one that listens tells where by `local` or `port`."""
+    await asyncio.sleep(0.5)
+    await until(lambda: getattr(plugin, "local", True) and getattr(plugin, "port", True))
+
+
+async def _heard(clause: Clause, world: World) -> None:
+    try:
+        await until(lambda: world.published)
+    except AssertionError:
+        raise ContractBrokenError(clause, "nothing is published in ten minutes of what it was fed") from None
+
+
+class PluginContract:
+    """The tests of one plugin: derive a class `Test...` from it, and define `connect`.
+
+    Attributes:
+        speed: How much faster than the clock on the wall time passes. None lets it jump when nothing is to be done: for
+            a plugin whose other end is in the same event loop, or is reached by local sockets. One that is told by a
+            thread of its own needs a number: 20 lets a minute take three seconds.
+    """
+
+    speed: float | None = None
+
+    def connect(self, folder: Path) -> AbstractAsyncContextManager[Connection]:
+        """Make a new plugin and its other end; `folder` is empty."""
+        raise NotImplementedError(f"{type(self).__name__} must define connect(self, folder)")
+
+    def test_it_is_a_plugin_with_a_name(self, tmp_path: Path) -> None:
+        """Hold it to `Clause.INTERFACE`."""
+
+        async def main() -> None:
+            async with self.connect(tmp_path) as connection:
+                plugin = connection.plugin
+                require(
+                    Clause.INTERFACE, isinstance(plugin, Plugin), f"{type(plugin).__name__} lacks some of it"
+                )
+                require(Clause.INTERFACE, plugin.name and plugin.name.isprintable(), f"it is {plugin.name!r}")
+
+        run(main(), self.speed)
+
+    def test_it_publishes_properties_that_are_stamped_and_never_in_the_future(self, tmp_path: Path) -> None:
+        """Hold it to `Clause.STAMPED`."""
+
+        async def main() -> None:
+            async with self.connect(tmp_path) as connection:
+                world = World()
+                async with running(connection.plugin.run(world)):
+                    await opened(connection.plugin)
+                    async with connection.fed():
+                        await _heard(Clause.STAMPED, world)
+                        await asyncio.sleep(5)
+                for published in world.published:
+                    require(Clause.STAMPED, not (flaw := _flaw(published, world.now())), flaw)
+
+        run(main(), self.speed)
+
+    def test_it_refuses_commands_for_what_it_does_not_own(self, tmp_path: Path) -> None:
+        """Hold it to `Clause.REFUSES`."""
+
+        async def main() -> None:
+            async with self.connect(tmp_path) as connection:
+                plugin, world = connection.plugin, World()
+                async with running(plugin.run(world)):
+                    await opened(plugin)
+                    require(Clause.REFUSES, not plugin.owns("nobody0"), "it owns nobody0")
+                    at = point(37.0, -8.7)
+                    for command in (
+                        GoTo("r1", "nobody0", at),
+                        HandOver("r2", "nobody0", "control:a", "control:b"),
+                    ):
+                        await _refused(plugin, command)
+                    answers = [each for each in world.reports if isinstance(each, Accepted | Arrived)]
+                    require(Clause.REFUSES, not answers, f"it reports {answers}")
+
+        run(main(), self.speed)
+
+    def test_junk_does_not_end_it_and_is_reported_with_its_name(self, tmp_path: Path) -> None:
+        """Hold it to `Clause.JUNK`."""
+
+        async def main() -> None:
+            async with self.connect(tmp_path) as connection:
+                plugin, world = connection.plugin, World()
+                task = asyncio.ensure_future(plugin.run(world))
+                async with running(_blamed(task)):
+                    await opened(plugin)
+                    if connection.spoil is not None:
+                        connection.spoil()
+                    await asyncio.sleep(3)
+                    troubles = world.of(Trouble)
+                    require(Clause.JUNK, troubles, "no Trouble is reported in three seconds")
+                    sources = {report.source for report in troubles}
+                    require(Clause.JUNK, sources == {plugin.name}, f"the sources are {sorted(sources)}")
+                    counted = all(report.what and report.count > 0 for report in troubles)
+                    require(Clause.JUNK, counted, f"one says not what, or how often: {troubles}")
+                    async with connection.fed():
+                        await _heard(Clause.JUNK, world)
+
+        run(main(), self.speed)
+
+    def test_all_that_it_reports_is_recorded_as_the_schemas_say(self, tmp_path: Path) -> None:
+        """Hold it to `Clause.REPORTS`."""
+        world = World()
+
+        async def main() -> tuple[Plugin, tuple[str, Geometry] | None]:
+            async with self.connect(tmp_path) as connection, running(connection.plugin.run(world)):
+                await opened(connection.plugin)
+                async with connection.fed():
+                    await asyncio.sleep(30)
+                    if connection.spoil is not None:
+                        connection.spoil()
+                    await asyncio.sleep(3)
+                return connection.plugin, connection.drives
+
+        plugin, drives = run(main(), self.speed)
+        _validate(world.reports, tmp_path / "contract.mcap")
+        told = Counter(status.entity for status in world.of(Status))
+        foreign = [entity for entity in told if not plugin.owns(entity)]
+        require(Clause.REPORTS, not foreign, f"it has a Status of {foreign}, which it does not own")
+        for entity in told:
+            times = [status.time for status in world.of(Status, entity=entity)]
+            close = any(after - before < 1.0 for before, after in pairwise(times))
+            require(Clause.REPORTS, not close, f"{entity} has two within a second")
+        silent = drives is not None and not told[drives[0]]
+        require(Clause.REPORTS, not silent, "it has no Status of the vehicle that it drives")
+
+    def test_it_ends_when_cancelled_and_can_run_again(self, tmp_path: Path) -> None:
+        """Hold it to `Clause.ENDS`."""
+
+        async def main() -> None:
+            async with self.connect(tmp_path) as connection:
+                before = asyncio.all_tasks()
+                for _ in range(2):
+                    world = World()
+                    task = asyncio.ensure_future(connection.plugin.run(world))
+                    await opened(connection.plugin)
+                    async with connection.fed():
+                        await asyncio.sleep(15)
+                    await _cancel(task)
+                    count = len(world.published)
+                    await asyncio.sleep(5)
+                    require(Clause.ENDS, len(world.published) == count, "it publishes after its end")
+                own = {task for task in asyncio.all_tasks() - before if not _is_a_servers(task)}
+                require(Clause.ENDS, not own, f"these go on: {own}")
+
+        run(main(), self.speed)
+
+    def test_it_drives_its_vehicle_into_a_place(self, tmp_path: Path) -> None:
+        """Hold it to `Clause.DRIVES`, if it drives one."""
+
+        async def main() -> None:
+            async with self.connect(tmp_path) as connection:
+                if connection.drives is not None:
+                    await _drive(connection, *connection.drives)
+
+        run(main(), self.speed)
+
+
+async def _drive(connection: Connection, entity: str, place: Geometry) -> None:
+    """Send a vehicle into a place."""
+    plugin, world = connection.plugin, World()
+    require(Clause.DRIVES, plugin.owns(entity), f"it does not own {entity}")
+    async with running(plugin.run(world)):
+        await opened(plugin)
+        async with connection.fed():
+            await until(lambda: world.property(entity))
+            await plugin.command(GoTo("r1", entity, place))
+            with suppress(AssertionError):
+                await until(lambda: [each for each in world.reports if isinstance(each, Arrived)])
+            answers = [each for each in world.reports if getattr(each, "request", "") == "r1"]
+            kinds = [type(each).__name__ for each in answers]
+            right = kinds[:1] == ["Accepted"] and kinds[-1:] == ["Arrived"] and "Rejected" not in kinds
+            require(Clause.DRIVES, right, f"in ten minutes it answers {answers or 'nothing'}")
+            at = world.property(entity)
+            inside = at is not None and contains(place, at.geometry)
+            require(Clause.DRIVES, inside, f"{entity} is published at {at and at.geometry}")
+
+
+def _flaw(published: object, now: float) -> str:
+    """Return what a publication lacks, or nothing."""
+    match published:
+        case Aged(PhysicalProperty(time=time, source=source), time_to_live):
+            if time is None or not EPOCH <= time <= now or time_to_live <= 0 or not source:
+                return f"{published} at {now:.0f}"
+        case PhysicalProperty() | Gone():
+            return ""
+        case _:
+            return f"{published!r} is none of PhysicalProperty, Aged and Gone"
+    return ""
+
+
+async def _refused(plugin: Plugin, command: Command) -> None:
+    try:
+        await plugin.command(command)
+    except Refused as refusal:
+        named = command.entity in refusal.reason
+        require(Clause.REFUSES, named, f"the reason does not name {command.entity}: {refusal.reason}")
+    else:
+        raise ContractBrokenError(Clause.REFUSES, f"it takes {command}")
+
+
+async def _blamed(task: asyncio.Task[None]) -> None:
+    """Wait for a plugin's task, and blame junk for its end."""
+    try:
+        await task
+    except Exception as error:
+        raise ContractBrokenError(Clause.JUNK, f"it ends by {type(error).__name__}: {error}") from error
+    raise ContractBrokenError(Clause.JUNK, "it ends")
+
+
+async def _cancel(task: asyncio.Task[None]) -> None:
+    ended = task.done()
+    task.cancel()
+    try:
+        await task
+    except asyncio.CancelledError:
+        return
+    seen = "it ends before it is cancelled" if ended else "it does not let the cancellation pass"
+    raise ContractBrokenError(Clause.ENDS, seen)
+
+
+def _is_a_servers(task: asyncio.Task[Any]) -> bool:
+    """Whether a task is one of a web server or client at the other end."""
+    return "aiohttp" in repr(task) or "web" in repr(task)
+
+
+def _validate(reports: list[Report], path: Path) -> None:
+    """Record some reports, and compare what is read again with the schemas of recordings."""
+    import jsonschema  # noqa: PLC0415 - of the extra `testing`; nothing else here needs it
+
+    recorder = Recorder(path, {"mission": "", "text": "", "digest": ""}, EPOCH)
+    for report in reports:
+        recorder.report(report, report.time)
+    recorder.close("done", max((report.time for report in reports), default=EPOCH))
+    for message in read_recording(path).messages:
+        try:
+            jsonschema.validate(message.data, SCHEMAS[message.topic][1])
+        except jsonschema.ValidationError as error:
+            raise ContractBrokenError(Clause.REPORTS, f"{message.data}: {error.message}") from error

@@ -1,0 +1,77 @@
+"""The tracks of a recording or a trace, as GeoJSON: where each thing was, and when."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from adapters.recording.mcap_files import McapReader, RecordingError
+from bigactors.files import write_text
+from bigactors.mistakes import Mistake, unreadable
+from checker import Trace
+from physical.shape import Geometry
+from physical.tracks import Fix, Track, write_tracks
+from semantics.state.configuration import Configuration
+from semantics.state.physical_model import Placed
+
+
+def write_recorded(path: str, output: str) -> int:
+    """Write the tracks of all that a recording has positions of; return how many there are; raises Mistake."""
+    kinds: dict[str, str] = {}
+    found: defaultdict[str, list[Fix]] = defaultdict(list)
+    try:
+        for message in McapReader(Path(path)).messages():
+            match message.data:
+                case {"entity": str(entity), "ring": [[int(north), int(east)]], **more} if (
+                    message.topic == "arrivals"
+                ):
+                    kinds[entity] = str(more.get("kind") or "")
+                    found[entity].append(_fix(north, east, message.time, more))
+    except RecordingError as error:
+        raise Mistake(str(error), place=path) from error
+    except OSError as error:
+        raise unreadable(path, error) from error
+    return _write([Track(name, kinds[name], tuple(fixes)) for name, fixes in sorted(found.items())], output)
+
+
+def _fix(north: int, east: int, time: float, more: Mapping[Any, Any]) -> Fix:
+    """Return a position when it was observed, or else when it came."""
+    height = None
+    match more.get("altitude"):
+        case [int() | float() as low, int() | float() as high]:
+            height = (low + high) / 2
+    seen = more.get("time")
+    return Fix((north, east), seen if isinstance(seen, int | float) else time, height)
+
+
+def write_traced(trace: Trace, times: Sequence[float], output: str) -> int:
+    """Write the tracks of the points that a trace moves; return how many there are; raises Mistake."""
+    kinds = trace.initial.setting.kinds
+    found = ((name, tuple(_stands(trace.configurations, times, name))) for name in sorted(kinds))
+    return _write([Track(name, kinds[name], fixes) for name, fixes in found if len(fixes) > 1], output)
+
+
+def _stands(configurations: Iterable[Configuration], times: Sequence[float], name: str) -> Iterator[Fix]:
+    """Yield where a point stands, whenever that changes; where it starts is where it is first known to be."""
+    before: Geometry | None = None
+    for number, each in enumerate(configurations):
+        at = each.structure.physical.placement(name)
+        if isinstance(at, Placed) and at.geometry.is_point and at.geometry is not before:
+            before = at.geometry
+            time = times[max(number - 1, 0)] if times else None
+            yield Fix(
+                before.ring[0],
+                time,
+                None if at.altitude is None else (at.altitude.low + at.altitude.high) / 2,
+            )
+
+
+def _write(tracks: Sequence[Track], output: str) -> int:
+    if not tracks:
+        raise Mistake(
+            "nothing in it moves: there are no tracks to be written", "draw it: --output FILE.svg", output
+        )
+    write_text(output, write_tracks(tracks))
+    return len(tracks)

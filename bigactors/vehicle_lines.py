@@ -1,0 +1,121 @@
+"""What each vehicle does, in a line of words; and how a run stands, on a screen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from adapters.live.scheduling import in_turn
+from adapters.live.state import LiveState, Plan
+from adapters.live.timing import flying
+from adapters.plugin import Follow, GoTo, Status
+from physical import distance
+from physical.messages import counted
+from semantics.behaviours.values import show
+from semantics.environment import Says
+from semantics.state.requests import READY, Request
+from semantics.state.signature import Name
+from semantics.timing.dates import lapse_text
+
+OLD = 5.0
+"""Seconds of silence that are told."""
+
+MOST = 4
+"""How many vehicles one line tells of."""
+
+
+def vehicles_line(vehicles: Iterable[Name], state: LiveState, said: Mapping[Name, Status], now: float) -> str:
+    """Return one line about all vehicles, the first of them in words; those that need attention come first."""
+    names = sorted(vehicles, key=lambda name: (name not in state.lost, name not in state.taken, name))
+    lines = [vehicle_line(name, state, said.get(name), now) for name in names[:MOST]]
+    more = [f"and {len(names) - MOST} more"] if len(names) > MOST else []
+    return " | ".join([*lines, *more])
+
+
+def vehicle_line(name: Name, state: LiveState, said: Status | None, now: float) -> str:
+    """Return where a vehicle is, what it is on its way to, and what it says of itself."""
+    return f"{name} {', '.join((*_does(name, state, now), *_tells(said), *_heard(name, state, said, now)))}"
+
+
+def situation(plan: Plan, state: LiveState, said: Mapping[Name, Status], now: float) -> str:
+    """Return how a run stands: its vehicles, what is asked and not done yet, and what may be said."""
+    c = state.configuration
+    vehicles = [vehicle_line(name, state, said.get(name), now) for name in sorted(plan.vehicles)]
+    pending = (each.request for each in in_turn(c))
+    requests = [_request(each, state, now) for each in pending if not isinstance(each, READY)]
+    clauses = (clause for clause in c.setting.environment if isinstance(clause, Says))
+    left = [(clause, c.read(clause.counter)) for clause in clauses]
+    may = [
+        f"{each.agent} {show(each.message)} ({counted(times, 'time')} more)" for each, times in left if times
+    ]
+    served = ["no more controls are served: an assumption broke"] if state.suspended else []
+    parts = {"vehicles": vehicles, "requests": requests, "may be said": may, "suspended": served}
+    return "\n".join(
+        line for title, lines in parts.items() if lines for line in (title, *(f"  {each}" for each in lines))
+    )
+
+
+def _request(request: Request, state: LiveState, now: float) -> str:
+    """Return a request that is not done, and how long it has waited, if there is a limit on that."""
+    waiting = state.heads.get(request.agent)
+    known = waiting is not None and waiting.request == request
+    return f"{request}, for {now - waiting.since:.0f} s" if waiting is not None and known else str(request)
+
+
+def _does(name: Name, state: LiveState, now: float) -> Iterator[str]:
+    structure = state.configuration.structure
+    if name in state.taken:
+        yield state.taken[name]
+    order, seen = state.orders.get(name), state.seen.get(name)
+    if order is not None and isinstance(order.command, GoTo | Follow) and name not in state.taken:
+        to = order.command.path[-1] if isinstance(order.command, Follow) else order.command.place
+        far = "" if seen is None else f", {_metres(distance(seen.property.geometry, to))} away"
+        refused = "has refused to go" if order.refused else "is on its way"
+        yield f"{refused} to {order.command.name}{far}"
+        yield from _lasts(name, state, now)
+    else:
+        yield f"is in {structure.logical.parent(name) or 'no place'}"
+
+
+def _lasts(name: Name, state: LiveState, now: float) -> Iterator[str]:
+    """Yield how long a flight has gone on, and how long it still takes, where the mission has times."""
+    flights = () if state.timers is None else flying(state.timers, now)
+    for flight in (each for each in flights if each.vehicle == name):
+        least = _lapse(flight.least - flight.elapsed)
+        left = (
+            f"{least} or more"
+            if flight.most is None
+            else f"{least} to {_lapse(flight.most - flight.elapsed)}"
+        )
+        yield f"for {_lapse(flight.elapsed)}, {left} to go"
+
+
+def _lapse(seconds: float) -> str:
+    return lapse_text(round(max(0.0, seconds)) * 1000)
+
+
+def _tells(said: Status | None) -> Iterator[str]:
+    if said is None:
+        return
+    if said.mode is not None:
+        yield f"{said.mode}{'' if said.armed else ', disarmed'}"
+    battery = said.battery
+    if battery is not None and battery.percent is not None:
+        yield f"battery {battery.percent} %"
+    elif battery is not None and battery.volts is not None:
+        yield f"battery {battery.volts:.1f} V"
+
+
+def _heard(name: Name, state: LiveState, said: Status | None, now: float) -> Iterator[str]:
+    if said is not None and said.heard is not None and (name in state.lost or now - said.heard > OLD):
+        yield f"not heard for {now - said.heard:.0f} s"
+    elif name in state.lost:
+        yield "not heard"
+
+
+def _metres(metres: float) -> str:
+    """Say how far something is.
+
+    >>> _metres(12.4), _metres(3249.0)
+    ('12 m', '3.2 km')
+    """
+    return f"{metres:.0f} m" if metres < 1000 else f"{metres / 1000:.1f} km"

@@ -1,0 +1,90 @@
+"""Which of thousands of rules may occur in a state, and which of them a change concerns, as masks of their numbers."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+
+from bigraphs.engine.reactions import Reaction
+from bigraphs.engine.state import State, bits
+
+
+class RuleIndex:
+    """Patterns by the controls of their nodes; pattern `n` is bit `n` of a mask.
+
+    `short[control][k]` are the patterns for which k nodes of a control are too few, so that a state is asked once
+    for each control, however many patterns there are.
+    """
+
+    def __init__(self, needs: Sequence[Counter[int]]) -> None:
+        self.all = (1 << len(needs)) - 1
+        short: dict[int, list[int]] = {}
+        for number, need in enumerate(needs):
+            for control, count in need.items():
+                few = short.setdefault(control, [])
+                few += [0] * (count - len(few))
+                for fewer in range(count):
+                    few[fewer] |= 1 << number
+        self._short = sorted(short.items())
+
+    def possible(self, state: State) -> int:
+        """Return the patterns for all of whose nodes a state has nodes enough."""
+        nodes, lacking = state.by_control, 0
+        for control, few in self._short:
+            there = nodes[control].bit_count()
+            if there < len(few):
+                lacking |= few[there]
+        return self.all & ~lacking
+
+
+class ReactionIndex(RuleIndex):
+    """The reactions of a system, by what may make or end an occurrence of each."""
+
+    def __init__(self, reactions: Sequence[Reaction]) -> None:
+        super().__init__([reaction.controls for reaction in reactions])
+        self.reactions = tuple(reactions)
+        self._holding = _by_control((reaction.number, reaction.controls) for reaction in reactions)
+        self._exact = _by_control((reaction.number, reaction.exact) for reaction in reactions)
+        self._closed = sum(1 << reaction.number for reaction in reactions if reaction.closed)
+
+    def concerned(self, before: State, after: State, changed: int, emptied: int, linked: int) -> int:
+        """Return the reactions whose occurrences may be others now that these slots were touched (see `Spot`)."""
+        holding = self._holding
+        if after.world.sharing:
+            return _union(holding, _controls(before, after, changed | emptied | linked))
+        found = _union(holding, _controls(before, after, changed))
+        found |= _union(self._exact, _controls(before, after, emptied))
+        if linked and self._closed:
+            found |= _union(holding, _controls(before, after, linked)) & self._closed
+        return found
+
+
+def _by_control(mentions: Iterable[tuple[int, Iterable[int]]]) -> dict[int, int]:
+    found: dict[int, int] = {}
+    for number, controls in mentions:
+        for control in controls:
+            found[control] = found.get(control, 0) | 1 << number
+    return found
+
+
+def _controls(before: State, after: State, slots: int) -> set[int]:
+    """Return the controls of the nodes that are in these slots or were in them."""
+    labels = {
+        each.labels[slot] for slot in bits(slots) for each in (before, after) if slot < len(each.labels)
+    }
+    return {after.world.control_of[label] for label in labels if label >= 0}
+
+
+def _union(masks: dict[int, int], controls: Iterable[int]) -> int:
+    found = 0
+    for control in controls:
+        found |= masks.get(control, 0)
+    return found
+
+
+def numbers_in(mask: int) -> Iterator[int]:
+    """Yield the numbers in a mask that is seldom asked for twice, from the least."""
+    while mask:
+        low = mask & -mask
+        mask ^= low
+        yield low.bit_length() - 1

@@ -1,0 +1,157 @@
+"""Runs in whole ticks, and which of many is shown.
+
+The first run to something is the one with the fewest steps; of those the first by the numbers of its steps in their
+order; and each of them is taken as early as all before it allow. So it depends on no engine which run a report shows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import Generic, NamedTuple, TypeVar
+
+from checker.limits import look
+
+DELAY = -1
+"""In the place of the number of a step: a tick passes."""
+
+
+class Edge(NamedTuple):
+    """What leads from one state to another: a step of the situation by its number, or `DELAY`."""
+
+    step: int
+    target: int
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A run.
+
+    Attributes:
+        steps: The numbers of its steps, each in the situation that it is taken in.
+        dates: When each is taken, in ticks from the start.
+        end: How long it goes on.
+    """
+
+    steps: tuple[int, ...] = ()
+    dates: tuple[int, ...] = ()
+    end: int = 0
+
+    def then(self, step: int) -> Run:
+        """Return the run with one more step at its end."""
+        return replace(self, steps=(*self.steps, step), dates=(*self.dates, self.end))
+
+
+Node = TypeVar("Node", bound=Hashable)
+Follow = Callable[[Node], Iterable[tuple[int, Node]]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Group(Generic[Node]):
+    """The states that a sequence of steps leads to first, whenever they are taken."""
+
+    states: tuple[Node, ...]
+    step: int = DELAY
+    before: Group[Node] | None = None
+
+    @property
+    def steps(self) -> tuple[int, ...]:
+        """The steps that lead here."""
+        found, group = [], self
+        while group.before is not None:
+            found.append(group.step)
+            group = group.before
+        return tuple(reversed(found))
+
+
+def groups(start: Node, follow: Follow[Node]) -> Iterator[Group[Node]]:
+    """Yield all states by the first sequences of steps that lead to them, the fewest first, then by number."""
+    met = {start}
+    layer = [Group(tuple(_waiting([start], follow, met)))]
+    while layer:
+        following: list[Group[Node]] = []
+        for group in layer:
+            look()
+            yield group
+            by_step: dict[int, list[Node]] = {}
+            for step, target in (edge for state in group.states for edge in follow(state)):
+                if step != DELAY and target not in met:
+                    by_step.setdefault(step, []).append(target)
+            for step, targets in sorted(by_step.items()):
+                fresh = [each for each in dict.fromkeys(targets) if each not in met]
+                met.update(fresh)
+                if fresh:
+                    following.append(Group(tuple(_waiting(fresh, follow, met)), step, group))
+        layer = following
+
+
+def _waiting(states: list[Node], follow: Follow[Node], met: set[Node]) -> list[Node]:
+    """Return some states with those that waiting there leads to; what was met before is left out."""
+    for state in states:  # grows on the way
+        later = [target for step, target in follow(state) if step == DELAY and target not in met]
+        met.update(later)
+        states += later
+    return states
+
+
+def first_run(start: Node, follow: Follow[Node], is_end: Callable[[Node], bool]) -> Run | None:
+    """Return the first run from a state to an end, None if there is none."""
+    for group in groups(start, follow):
+        if any(map(is_end, group.states)):
+            run, _ = dated(start, follow, group.steps, is_end)
+            return run
+    return None
+
+
+def dated(
+    start: Node, follow: Follow[Node], steps: tuple[int, ...], is_end: Callable[[Node], bool]
+) -> tuple[Run, tuple[Node, ...]]:
+    """Return a sequence of steps with its earliest dates on which it leads to an end, and to which ends it leads."""
+    leading = _leading(start, follow, steps, is_end)
+    now, dates, states = 0, list[int](), [start]
+    for done, step in enumerate((*steps, None)):
+        while True:
+            if step is None:
+                ends = tuple(state for state in states if is_end(state))
+            else:
+                ends = tuple(
+                    dict.fromkeys(
+                        to
+                        for state in states
+                        for at, to in follow(state)
+                        if at == step and (done + 1, to) in leading
+                    )
+                )
+            if ends:
+                break
+            states = [
+                to for state in states for at, to in follow(state) if at == DELAY and (done, to) in leading
+            ]
+            assert states, "the steps lead to no end"
+            now += 1
+        states = list(ends)
+        dates += [] if step is None else [now]
+    return Run(steps, tuple(dates), now), tuple(states)
+
+
+def _leading(
+    start: Node, follow: Follow[Node], steps: tuple[int, ...], is_end: Callable[[Node], bool]
+) -> set[tuple[int, Node]]:
+    """Return how many steps are done in which states, if the others lead from there to an end."""
+    sources: dict[tuple[int, Node], list[tuple[int, Node]]] = {(0, start): []}
+    waiting = [(0, start)]
+    for done, state in waiting:  # grows on the way
+        for step, target in follow(state):
+            if step == DELAY or (done < len(steps) and step == steps[done]):
+                node = (done + (step != DELAY), target)
+                if node not in sources:
+                    waiting.append(node)
+                sources.setdefault(node, []).append((done, state))
+    ends = [(done, state) for done, state in sources if done == len(steps) and is_end(state)]
+    found = set(ends)
+    while ends:
+        for source in sources[ends.pop()]:
+            if source not in found:
+                found.add(source)
+                ends.append(source)
+    return found

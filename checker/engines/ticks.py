@@ -1,0 +1,96 @@
+"""The reference explorer of missions with timing: whole ticks, one after the other.
+
+All bounds are closed and whole, so that whole ticks reach the same configurations as real time, and decide the same
+(Henzinger, Manna, Pnueli 1992).
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Iterable
+
+from checker.engines.contract import Exploration, Inspect, Options, Progress
+from checker.engines.reference import crowded
+from checker.engines.runs import DELAY, groups
+from checker.engines.tick_times import Ticks
+from checker.engines.timeline import Timeline
+from checker.engines.times import inspect_in_time
+from checker.limits import Stop, is_full
+from semantics.state.configuration import Configuration
+
+
+def explore_in_ticks(initial: Configuration, inspect: Iterable[Inspect], options: Options) -> Exploration:
+    """Visit everything that is reachable in time, then show each configuration to the inspections."""
+    started = time.monotonic()
+    found = Exploration([], [])
+    timeline = Timeline(initial)
+    while True:
+        _visit_all(timeline, found, options, started)
+        if not timeline.grown or found.bounds:
+            break
+        timeline.begin()  # a constant is larger than it was taken for: clocks are counted further
+    found.times = _summarise(timeline, found)
+    inspect_in_time(found.times, tuple(inspect))
+    found.seconds = time.monotonic() - started
+    return found
+
+
+def _visit_all(timeline: Timeline, found: Exploration, options: Options, started: float) -> None:
+    limits, reported, count = options.limits, started, 0
+    while timeline.waiting:
+        index = timeline.waiting.popleft()
+        now, count = time.monotonic(), count + 1
+        stop = limits.end(now - started)
+        if stop is None and count % 1024 == 0 and is_full(limits):
+            stop = limits.bound(Stop.MEMORY)
+        if (
+            stop is None
+            and limits.configurations is not None
+            and len(timeline.states) > limits.configurations
+        ):
+            stop = limits.bound(Stop.CONFIGURATIONS)
+        if stop is not None:
+            found.bounds.append(stop)
+            return
+        if options.report is not None and now - reported >= options.every:
+            options.report(_progress(timeline, count, now - started))
+            reported = now
+        if crowded(timeline.situations[timeline.configuration(index)].c, limits.pending):
+            bound = limits.bound(Stop.PENDING)
+            found.bounds += [] if bound in found.bounds else [bound]
+        else:
+            timeline.expand(index)
+
+
+def _progress(timeline: Timeline, count: int, seconds: float) -> Progress:
+    states, waiting = len(timeline.states), len(timeline.waiting)
+    return Progress(states, sum(map(len, timeline.edges)), 0, waiting, count / max(seconds, 1e-9))
+
+
+def _summarise(timeline: Timeline, found: Exploration) -> Ticks:
+    """Write down the configurations in the order of discovery, and each transition that is taken, once."""
+    places: dict[int, int] = {}
+    origins: list[int] = []
+    for group in groups(0, timeline.edges.__getitem__):
+        number = timeline.configuration(group.states[0])
+        if number not in places:
+            places[number] = len(origins)
+            before = group.states[0] if group.before is None else group.before.states[0]
+            origins.append(places[timeline.configuration(before)])
+            found.depth = len(group.steps)
+    timeline.order = list(places)
+    found.expanded, found.origins = len(origins), origins
+    found.configurations = [timeline.situations[number].c for number in timeline.order]
+    taken = {
+        (number, step)
+        for (number, _), edges in zip(timeline.states, timeline.edges, strict=True)
+        for step, _ in edges
+        if step != DELAY
+    }
+    timeline.taken = taken
+    found.transitions = found.allowed = len(taken)
+    found.rules = Counter(
+        timeline.situations[number].steps[step].transition.label.rule for number, step in taken
+    )
+    return Ticks(timeline)

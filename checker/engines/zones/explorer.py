@@ -1,0 +1,106 @@
+"""Explore a mission with times by zones, up to the same bounds as the reference explorer."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Iterable
+
+from checker.engines.contract import EngineError, Exploration, Inspect, Options, Progress
+from checker.engines.fast.compiling import compilation_reported
+from checker.engines.times import inspect_in_time
+from checker.engines.zones.automaton import TooLargeError
+from checker.engines.zones.network import Network
+from checker.engines.zones.search import CHUNK, Search
+from checker.engines.zones.zone_times import ZoneTimes
+from checker.limits import Bound, Limits, Stop, is_full
+from semantics.state.configuration import Configuration
+
+
+class _Learning(Search):
+    """A search that runs the rules where a step leads somewhere new."""
+
+    def __init__(self, network: Network) -> None:
+        self.network = network
+        super().__init__(network.automaton, network.first, network.first_ages)
+
+    def learn(self, location: int, step: int) -> None:
+        """Run the rules where a step leads that is taken for the first time."""
+        self.network.learn(location, step)
+
+
+def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options: Options) -> Exploration:
+    """Visit everything that is reachable in time, then show each configuration to the inspections.
+
+    Raises:
+        EngineError: A constant is too large.
+    """
+    started = time.monotonic()
+    found = Exploration([], [])
+    try:
+        with compilation_reported(options.report):
+            network = Network(initial, options.limits.pending)
+            search = _Learning(network)
+            _visit_all(network, search, found, options, started)
+    except TooLargeError as error:
+        raise EngineError(str(error)) from error
+    if network.is_crowded:
+        found.bounds.append(options.limits.bound(Stop.PENDING))
+    times = ZoneTimes(network, search)
+    _summarise(times, found)
+    inspect_in_time(times, tuple(inspect))
+    found.seconds = time.monotonic() - started
+    return found
+
+
+def _visit_all(
+    network: Network, search: Search, found: Exploration, options: Options, started: float
+) -> None:
+    reported, goes_on = started, True
+    most = options.limits.configurations
+    while goes_on:
+        goes_on = search.advance(CHUNK if most is None else min(CHUNK, max(most - search.count, 0) + 1))
+        if network.grown:  # a constant is larger than it was taken for: what was kept may be too much
+            network.compare()
+            search.again()
+            goes_on = True
+        now = time.monotonic()
+        stop = _stop(search, options.limits, now - started, goes_on=goes_on)
+        if stop is not None:
+            found.bounds.append(stop)
+            return
+        if options.report is not None and now - reported >= options.every:
+            options.report(_progress(search, now - started))
+            reported = now
+
+
+def _stop(search: Search, limits: Limits, seconds: float, *, goes_on: bool) -> Bound | None:
+    if limits.configurations is not None and search.count > limits.configurations:
+        return limits.bound(Stop.CONFIGURATIONS)
+    if not goes_on:
+        return None
+    end = limits.end(seconds)
+    return end or (limits.bound(Stop.MEMORY) if is_full(limits) else None)
+
+
+def _progress(search: Search, seconds: float) -> Progress:
+    followed, groups = search.progress
+    return Progress(search.count, 0, 0, groups - followed, search.count / max(seconds, 1e-9))
+
+
+def _summarise(times: ZoneTimes, found: Exploration) -> None:
+    """Write down the configurations in the order of discovery, and each transition that is taken, once."""
+    places = {number: place for place, number in enumerate(times.order)}
+    records = times.search.group_records()
+    for group in times.firsts:
+        before = max(int(records[group, 0]), 0)
+        found.origins.append(places[int(times.numbers[before])])  # type: ignore[attr-defined]  # a list
+    found.times, found.expanded = times, len(places)
+    found.configurations = [each.c for each in times.situations]
+    found.depth = len(times.search.steps_to(times.firsts[-1]))
+    found.rules = Counter(
+        situation.steps[step].transition.label.rule
+        for place, situation in enumerate(times.situations)
+        for step in times.taken(place)
+    )
+    found.transitions = found.allowed = found.rules.total()

@@ -1,0 +1,122 @@
+"""A mission's automaton with one clock more, which measures since when something is awaited."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import Enum, auto
+from typing import NamedTuple
+
+from checker.engines.zones.automaton import Automaton, Constraint, Edge, Location
+from checker.engines.zones.bounds import NONE
+from checker.engines.zones.network import NOWHERE, Network
+
+
+class Watch(Enum):
+    """What the clock does in a location."""
+
+    OFF = auto()
+    ON = auto()
+    START = auto()
+    END = auto()
+    """It is looked at, and nothing follows."""
+
+
+class Spot(NamedTuple):
+    """A location of the mission's automaton, and whether the clock runs, or has come to its end."""
+
+    location: int
+    watch: Watch
+
+
+Rule = Callable[[Watch, int], Watch | None]
+"""What the clock does in a location after what it did before; None where that need not be followed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Meter:
+    """What the clock is compared with.
+
+    Attributes:
+        lower, upper: From below, from above.
+        most: No step is taken after it has come to so much.
+        goal: What is looked for: where, and that it shows at least so much.
+    """
+
+    lower: int = NONE
+    upper: int = NONE
+    most: int = NONE
+    goal: tuple[Watch, int] | None = None
+
+
+@dataclass(slots=True)
+class Observer:
+    """A mission's automaton, watched.
+
+    Attributes:
+        network: The mission's.
+        rule: When the clock runs.
+        meter: What it is compared with.
+        is_exact: Whether clocks are compared with the larger of both constants, so that nothing that may follow is
+            taken for something else.
+    """
+
+    network: Network
+    rule: Rule
+    meter: Meter
+    is_exact: bool = False
+    automaton: Automaton = field(default_factory=Automaton)
+    spots: list[Spot] = field(default_factory=list)
+    numbers: dict[Spot, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        watch = self.rule(Watch.OFF, self.network.first)
+        assert watch is not None
+        self._add(self.network.first, watch)
+        for number, spot in enumerate(self.spots):  # grows on the way
+            if spot.watch is not Watch.END:
+                self.automaton.leave(number, list(self._edges(spot)))
+
+    def clock(self, number: int) -> int:
+        """Return the number of the clock in a location, 0 where it does not run."""
+        off = self.spots[number].watch is Watch.OFF
+        return 0 if off else len(self.automaton.all[number].lower)
+
+    def first_ages(self) -> tuple[int, ...]:
+        """Return what the clocks show at first."""
+        ages = self.network.first_ages
+        return ages if self.spots[0].watch is Watch.OFF else (*ages, 0)
+
+    def _add(self, location: int, watch: Watch) -> int:
+        spot = Spot(location, Watch.ON if watch is Watch.START else watch)
+        if spot in self.numbers:
+            return self.numbers[spot]
+        lower, upper = self.network.constants(location)
+        if self.is_exact:
+            lower = upper = tuple(map(max, lower, upper))
+        deadlines, goal = self.network.automaton.all[location].deadlines, None
+        if spot.watch is not Watch.OFF:
+            lower, upper = (*lower, self.meter.lower), (*upper, self.meter.upper)
+            if self.meter.goal is not None and self.meter.goal[0] is spot.watch:
+                goal = Constraint(len(lower), self.meter.goal[1])
+            if spot.watch is Watch.END:
+                deadlines = (NOWHERE,)
+            elif self.meter.most >= 0:
+                deadlines = (*deadlines, (len(lower), self.meter.most))
+        self.spots.append(spot)
+        number = self.numbers[spot] = self.automaton.add(Location(lower, upper, deadlines, goal))
+        return number
+
+    def _edges(self, spot: Spot) -> list[Edge]:
+        found = []
+        clock = len(self.network.automaton.all[spot.location].lower) + 1
+        runs = spot.watch is Watch.ON
+        for step, tests, target, sources in self.network.automaton.out[spot.location]:
+            watch = None if target < 0 else self.rule(spot.watch, target)
+            if watch is None:
+                continue
+            if watch is not Watch.OFF:
+                sources = (*sources, clock if runs and watch is not Watch.START else 0)  # noqa: PLW2901
+            late = (Constraint(clock, 0, self.meter.most),) if runs and self.meter.most >= 0 else ()
+            found.append(Edge(step, (*tests, *late), self._add(target, watch), sources))
+        return found

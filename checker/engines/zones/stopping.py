@@ -1,0 +1,153 @@
+"""Whether time stops: from which ages nothing but steps that take no time can follow, for ever.
+
+Steps that take no time compare clocks with constants and start them, so the ages from which time may still pass are
+found backwards, as unions of zones: first those at which it may pass at once, then those from which a step leads to
+them. That is worked out only where steps may go round with deadlines all the way.
+"""
+
+from __future__ import annotations
+
+import networkx as nx
+import numpy as np
+
+from checker.engines.runs import Run
+from checker.engines.times import Stop
+from checker.engines.zones.automaton import Automaton, Constraint
+from checker.engines.zones.bounds import close
+from checker.engines.zones.dates import (
+    Dates,
+    Moment,
+    Zone,
+    before_edge,
+    moved,
+    passes,
+    spread,
+    tested,
+    whole,
+    without,
+)
+from checker.engines.zones.network import Network
+from checker.engines.zones.observers import Meter, Observer, Watch
+from checker.engines.zones.search import Search
+from checker.limits import look
+from semantics.timing.clocks import Sort
+
+
+def first_stop(network: Network) -> Stop | None:
+    """Return the first run after which no time can pass any more, None if there is none."""
+    risky = _risky(network.automaton)
+    if not risky:
+        return None
+    passing = _passing(network.automaton, risky)
+    observer = Observer(network, lambda _, __: Watch.OFF, Meter(), is_exact=True)
+    exact = Search(observer.automaton, 0, observer.first_ages())
+    exact.finish(look)
+    stopped = [_without(place, network, passing) for place, _ in observer.spots]
+    for group in range(len(exact.group_records())):
+        for zone in exact.zones_of(group):
+            if any(_meet(exact.matrix(zone), other) for other in stopped[exact.place(zone)]):
+                first = Moment(0, observer.first_ages())
+                dates = Dates(observer.automaton, first, exact.steps_to(group), stopped.__getitem__)
+                return _going_round(network, observer, dates)
+    return None
+
+
+def _risky(automaton: Automaton) -> set[int]:
+    """Return the locations with deadlines from which steps may go round among such locations."""
+    graph = nx.DiGraph()
+    ending = {place for place, each in enumerate(automaton.all) if each.deadlines}
+    for place in ending:
+        graph.add_edges_from((place, edge.target) for edge in automaton.out[place] if edge.target in ending)
+    rounds = {
+        place
+        for component in nx.strongly_connected_components(graph)
+        for place in component
+        if len(component) > 1 or graph.has_edge(place, place)
+    }
+    return rounds.union(*(nx.ancestors(graph, place) for place in rounds))
+
+
+def _passing(automaton: Automaton, risky: set[int]) -> dict[int, list[Zone]]:
+    """Return for each risky location the ages from which time passes sooner or later."""
+    found = {place: _passing_at_once(automaton, place) for place in risky}
+    sources: dict[int, set[int]] = {place: set() for place in risky}
+    for place in risky:
+        for edge in automaton.out[place]:
+            if edge.target in risky:
+                sources[edge.target].add(place)
+    waiting = dict.fromkeys(sorted(risky))
+    while waiting:
+        look()
+        place = next(iter(waiting))
+        del waiting[place]
+        size = len(automaton.all[place].lower)
+        more = list(found[place])
+        for edge in automaton.out[place]:
+            if edge.target >= 0:
+                after = found[edge.target] if edge.target in risky else [whole(len(edge.sources))]
+                more += (
+                    zone for each in after for zone in [before_edge(edge, size, each)] if zone is not None
+                )
+        grown = spread(more)
+        if _is_more(grown, found[place]):
+            found[place] = grown
+            waiting |= dict.fromkeys(sorted(sources[place]))
+    return found
+
+
+def _passing_at_once(automaton: Automaton, place: int) -> list[Zone]:
+    location = automaton.all[place]
+    if any(most < 0 for _, most in location.deadlines):
+        return [whole(len(location.lower))]  # it is not known what follows
+    if any(most == 0 for _, most in location.deadlines):
+        return []
+    zone = tested(
+        whole(len(location.lower)), [Constraint(clock, 0, most - 1) for clock, most in location.deadlines]
+    )
+    return [] if zone is None else [zone]
+
+
+def _is_more(zones: list[Zone], before: list[Zone]) -> bool:
+    """Tell whether some zones hold more than others."""
+    for zone in zones:
+        rest = [zone]
+        for each in before:
+            rest = without(rest, each)
+        if rest:
+            return True
+    return False
+
+
+def _without(place: int, network: Network, passing: dict[int, list[Zone]]) -> list[Zone]:
+    if place not in passing:
+        return []
+    rest = [whole(len(network.automaton.all[place].lower))]
+    for each in passing[place]:
+        rest = without(rest, each)
+    return rest
+
+
+def _meet(one: Zone, other: Zone) -> bool:
+    both = np.minimum(one, other)
+    return bool(close(both, len(both)))
+
+
+def _going_round(network: Network, observer: Observer, dates: Dates) -> Stop:
+    """Return the run to where time stops, and then the first steps that may be taken, until they come round."""
+
+    def shown(moment: Moment) -> tuple[int, tuple[int, ...]]:
+        """Return a state as `Timeline` has it."""
+        location = observer.spots[moment.location].location
+        place = network.places[location]
+        windows, ages = iter(place.windows), iter(network.capped(location, moment.ages))
+        clocks = network.situations[place.number].clocks
+        return place.number, tuple(next(windows if each.sort is Sort.WINDOW else ages) for each in clocks)
+
+    run: Run = dates.run()
+    state = min(dates.ends, key=shown)
+    seen: dict[object, int] = {}
+    while shown(state) not in seen:
+        seen[shown(state)] = len(run.steps)
+        edge = next(each for each in observer.automaton.out[state.location] if passes(each, state.ages))
+        run, state = run.then(edge.step), Moment(edge.target, moved(edge, state.ages))
+    return Stop(run, seen[shown(state)])

@@ -1,0 +1,333 @@
+"""What zones tell of time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from checker.engines.runs import Run
+from checker.engines.tick_times import control_pairs
+from checker.engines.times import Moments, Stop, Wait
+from checker.engines.zones.automaton import Automaton, Constraint
+from checker.engines.zones.bounds import MOST
+from checker.engines.zones.dates import (
+    Dates,
+    Moment,
+    Zone,
+    tested,
+    whole,
+)
+from checker.engines.zones.network import Network
+from checker.engines.zones.observers import Meter, Observer, Rule, Watch
+from checker.engines.zones.search import Search
+from checker.limits import look
+from checker.properties.durations import NEVER
+from semantics.environment import Says
+from semantics.properties.propositions import Proposition, holds
+from semantics.state.configuration import Transition
+from semantics.timing.clocks import Clock, Situation, Sort, TimedStep
+
+
+class ZoneTimes:
+    """Answers from a search through zones."""
+
+    def __init__(self, network: Network, search: Search) -> None:
+        self.network = network
+        self.search = search
+        self.initial = network.initial
+        numbers = np.array([place.number for place in network.places], np.int64)
+        records = search.group_records()
+        self.numbers: NDArray[np.int64] = numbers[search.places.room[records[:, 2]]]
+        """The number of the configuration of each group."""
+        met, first = np.unique(self.numbers, return_index=True)
+        order = np.argsort(first)
+        self.order: list[int] = met[order].tolist()
+        self.firsts: list[int] = first[order].tolist()
+        """The first group of each configuration, in their order."""
+        self.located: dict[int, list[int]] = {}
+        for location, place in enumerate(network.places):
+            self.located.setdefault(place.number, []).append(location)
+
+    @property
+    def searched(self) -> str:
+        """Over what it searched, in words."""
+        return f"{self.search.count:,} zones"
+
+    @cached_property
+    def situations(self) -> Sequence[Situation]:
+        """What time means in each configuration."""
+        return tuple(self.network.situations[number] for number in self.order)
+
+    @cached_property
+    def _by_place(self) -> dict[int, list[int]]:
+        return self.search.by_place()
+
+    def _zones(self, place: int) -> Iterator[tuple[int, Zone]]:
+        """Yield the zones of a configuration, each with its location."""
+        for location in self.located[self.order[place]]:
+            for zone in self._by_place.get(location, ()):
+                yield location, self.search.matrix(zone)
+
+    # --- of configurations
+
+    def firsts_of(self, place: int) -> dict[int, int]:
+        """Return each step that is taken in a configuration, with the group that it is first taken in."""
+        found: dict[int, int] = {}
+        for location in self.located[self.order[place]]:
+            for step, group in self.network.automaton.firsts(location):
+                found[step] = min(group, found.get(step, group))
+        return found
+
+    def taken(self, place: int) -> set[int]:
+        """Return the steps of a configuration that are taken at some time."""
+        return set(self.firsts_of(place))
+
+    def together(self, place: int) -> Iterator[tuple[Transition, ...]]:
+        """Yield each pair of pending controls that may be served at one moment."""
+        for one, other in control_pairs(self.situations[place]):
+            if any(self._meet(zone, location, one, other) for location, zone in self._zones(place)):
+                yield tuple(step.transition for step in (*one, *other))
+
+    def _meet(self, zone: Zone, location: int, one: Sequence[TimedStep], other: Sequence[TimedStep]) -> bool:
+        return any(
+            tested(zone, (*first, *second)) is not None
+            for first in self._ways(location, one)
+            for second in self._ways(location, other)
+        )
+
+    def _ways(self, location: int, steps: Sequence[TimedStep]) -> Iterator[tuple[Constraint, ...]]:
+        for step in steps:
+            yield from self.network.tests(self.network.places[location], step) if step.in_turn else [()]
+
+    def unsayable(self, place: int) -> set[int]:
+        """Return the clauses whose message cannot be said any more at some time in a configuration."""
+        situation, number = self.situations[place], self.order[place]
+        clauses = situation.c.setting.environment
+        if Clock(Sort.MISSION) not in situation.first or not any(isinstance(each, Says) for each in clauses):
+            return set()
+        mission = self.network.columns[number].index(situation.first[Clock(Sort.MISSION)])
+        latest = max(int(zone[mission + 1, 0]) for _, zone in self._zones(place))
+        ages = [0] * len(situation.clocks)
+        ages[situation.first[Clock(Sort.MISSION)]] = latest
+        return set(situation.unsayable(tuple(ages)))
+
+    # --- runs
+
+    def transitions(self, run: Run) -> tuple[Transition, ...]:
+        """Return what is done in a run."""
+        number, found = 0, list[Transition]()
+        for at in run.steps:
+            found.append(self.network.situations[number].steps[at].transition)
+            number = self.network.passages[number, at][0]
+        return tuple(found)
+
+    def run_before(self, place: int, by: Transition | None) -> Run:
+        """Return the first run to a configuration, and then a transition if that is ever taken there."""
+        situation = self.situations[place]
+        steps = {
+            at: group for at, group in self.firsts_of(place).items() if situation.steps[at].transition == by
+        }
+        group = min(steps.values()) if steps else self.firsts[place]
+
+        def goal(location: int) -> list[Zone]:
+            size = len(self.network.automaton.all[location].lower)
+            if not steps:
+                return [whole(size)]
+            edges = (edge for edge in self.network.automaton.out[location] if edge.step in steps)
+            return [zone for edge in edges for zone in [tested(whole(size), edge.tests)] if zone is not None]
+
+        run = self._dates(self.network.automaton, self.search.steps_to(group), goal).run()
+        return run.then(min(steps)) if steps else run
+
+    def _dates(
+        self,
+        automaton: Automaton,
+        steps: Sequence[int],
+        goal: Callable[[int], list[Zone]],
+        *,
+        watched: bool = False,
+    ) -> Dates:
+        ages = (*self.network.first_ages, 0) if watched else self.network.first_ages
+        first = 0 if automaton is not self.network.automaton else self.network.first
+        return Dates(automaton, Moment(first, ages), steps, goal)
+
+    # --- durations
+
+    def true_in(self, formula: Proposition) -> list[bool]:
+        """Return for each location whether a proposition is true there."""
+        met = set(self.order)
+        true = {
+            number: number in met and holds(formula, situation.c)
+            for number, situation in enumerate(self.network.situations)
+        }
+        return [true[place.number] for place in self.network.places]
+
+    def waiting(self, asked: Proposition | None, awaited: Proposition) -> Rule:
+        """Return when something is waited for: from the start, or from wherever something else is true."""
+        inside = [not true for true in self.true_in(awaited)]
+        begins = None if asked is None else self.true_in(asked)
+
+        def rule(before: Watch, location: int) -> Watch | None:
+            if not inside[location]:
+                return Watch.OFF if begins is not None or location == self.network.first else None
+            if before is Watch.ON:
+                return Watch.ON
+            starts = location == self.network.first if begins is None else begins[location]
+            return Watch.START if starts else Watch.OFF
+
+        return rule
+
+    def within(self, asked: Proposition | None, awaited: Proposition, most: int) -> Wait:
+        """Return how long something is waited for from the start, or from wherever something else is true."""
+        rule = self.waiting(asked, awaited)
+        if asked is None and rule(Watch.OFF, self.network.first) is Watch.OFF:
+            return Wait(0)
+        meter = Meter(most + 1, goal=(Watch.ON, most + 1))
+        observer, search = self._explored(Observer(self.network, rule, meter))
+        if search.found < 0:
+            return Wait(max(_shown(observer, search, Watch.ON), default=0))
+        run = self._measured(observer, search).run()
+        longest = self._longest(rule, Watch.ON, most)
+        return Wait(longest, run, math.isinf(longest))
+
+    def moments(self, formula: Proposition) -> Moments:
+        """Return when something is first true."""
+        true = self.true_in(formula)
+        if true[self.network.first]:
+            return Moments(Run(), 0, may_wait=False)
+
+        def rule(before: Watch, location: int) -> Watch:
+            if true[location]:
+                return Watch.END
+            return Watch.ON if before is Watch.ON else Watch.START
+
+        first = self._first(rule)
+        latest = NEVER if first is None else self._longest(rule, Watch.END)
+        return Moments(first, latest, math.isinf(self._longest(rule, Watch.ON)))
+
+    def _first(self, rule: Rule) -> Run | None:
+        """Return the first run of those that come first to an end."""
+        observer, search = self._explored(Observer(self.network, rule, Meter(upper=MOST)))
+        ends = [
+            -int(zone[0, observer.clock(place)])
+            for place, zone in search
+            if observer.spots[place].watch is Watch.END
+        ]
+        if not ends:
+            return None
+        earliest = min(ends)
+        meter = Meter(upper=earliest, most=earliest, goal=(Watch.END, 0))
+        return self._measured(*self._explored(Observer(self.network, rule, meter))).run()
+
+    def _explored(self, observer: Observer) -> tuple[Observer, Search]:
+        search = Search(observer.automaton, 0, observer.first_ages())
+        search.finish(look)
+        return observer, search
+
+    def _measured(self, observer: Observer, search: Search) -> Dates:
+        """Return the first run to what an observer looked for, and found."""
+
+        def goal(place: int) -> list[Zone]:
+            location = observer.automaton.all[place]
+            if location.goal is None:
+                return []
+            zone = tested(whole(len(location.lower)), [location.goal])
+            return [] if zone is None else [zone]
+
+        steps = search.steps_to(search.found)
+        first = Moment(0, observer.first_ages())
+        return Dates(observer.automaton, first, steps, goal)
+
+    def _longest(self, rule: Rule, where: Watch, least: int = 0) -> float:
+        """Return how long a clock may run at most somewhere; infinite where a run that goes round shows that.
+
+        It is counted up to a constant that grows until either is found.
+        """
+        most = max(least, 2 * max(self.network.caps.values(), default=0) + 1)
+        while True:
+            observer, search = self._explored(
+                Observer(self.network, rule, Meter(most + 1, goal=(where, most + 1)))
+            )
+            if search.found < 0:
+                return max(_shown(observer, search, where), default=NEVER)
+            if self._goes_round(observer, self._measured(observer, search)):
+                return math.inf
+            most *= 4
+
+    def _goes_round(self, observer: Observer, dates: Dates) -> bool:
+        """Tell whether a run comes to the same again, as far as what may follow is concerned, while a clock runs."""
+        history = dates.history()
+        seen: dict[tuple[int, tuple[int, ...]], int] = {}
+        for at, (now, (place, ages)) in enumerate(history[:-1]):
+            location, watch = observer.spots[place]
+            clock = observer.clock(place)
+            if not clock or ages[clock - 1] == 0:
+                seen.clear()
+            if not clock or watch is Watch.END:
+                continue
+            measured = ages[: clock - 1]
+            capped = self.network.capped(location, measured)
+            if seen.setdefault((location, capped), now) < now:
+                return True
+            stays = history[at + 1][0] - now
+            left = [
+                self.network.caps[each] - age
+                for each, age in zip(self.network.clocks(location), measured, strict=True)
+            ]
+            if stays > max(left, default=0) and stays > 0:
+                return True
+        return False
+
+    # --- endurance, and whether time goes on
+
+    def exhausted(self) -> tuple[dict[str, Run], int]:
+        """Return the first run on which each vehicle is aloft for too long, and how many configurations show that."""
+        tests = [self.exhaustion(location) for location in range(len(self.network.places))]
+        first: dict[str, int] = {}
+        where: set[int] = set()
+        for group, number in enumerate(self.numbers.tolist() if any(tests) else ()):
+            for zone in self.search.zones_of(group):
+                shown = self.search.matrix(zone)
+                for vehicle, test in tests[self.search.place(zone)].items():
+                    if shown[test.clock, 0] >= test.least:
+                        first.setdefault(vehicle, group)
+                        where.add(number)
+        return {vehicle: self._exhausting(vehicle, group, tests) for vehicle, group in first.items()}, len(
+            where
+        )
+
+    def exhaustion(self, location: int) -> dict[str, Constraint]:
+        """Return what the clocks show in a location where a vehicle is aloft for too long."""
+        number = self.network.places[location].number
+        situation = self.network.situations[number]
+        return {
+            vehicle: Constraint(at, endurance.lasts + 1)
+            for vehicle, endurance in situation.timing.endurances
+            if vehicle in situation.c.structure.physical and not situation.is_restored(vehicle)
+            for at in [self.network.columns[number].index(situation.first[Clock(Sort.ALOFT, vehicle)]) + 1]
+        }
+
+    def _exhausting(self, vehicle: str, group: int, tests: Sequence[dict[str, Constraint]]) -> Run:
+        def goal(location: int) -> list[Zone]:
+            size = len(self.network.automaton.all[location].lower)
+            zone = tested(whole(size), [tests[location][vehicle]]) if vehicle in tests[location] else None
+            return [] if zone is None else [zone]
+
+        return self._dates(self.network.automaton, self.search.steps_to(group), goal).run()
+
+    def stop(self) -> Stop | None:
+        """Return the first run after which no time can pass any more."""
+        from checker.engines.zones.stopping import first_stop  # noqa: PLC0415 - few missions go round in no time
+
+        return first_stop(self.network)
+
+
+def _shown(observer: Observer, search: Search, where: Watch) -> Iterator[int]:
+    """Yield the most that the clock shows in each zone of some locations."""
+    for place, zone in search:
+        if observer.spots[place].watch is where:
+            yield int(zone[observer.clock(place), 0])

@@ -1,0 +1,171 @@
+"""The critical path of a run with dates: the steps, one after the other, that its last date is made of."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+from checker.engines.runs import Run
+from semantics.state.configuration import Configuration, Label, Transition
+from semantics.timing.bounds import Bound, bound_of, going_on, running_in, timed_by
+from semantics.timing.clocks import Clock, Situation, TimedStep
+from semantics.timing.dates import clock_text, lapse_text
+from semantics.timing.intervals import Interval
+
+BEGINNING: Final = -1
+"""In the place of the number of a step: the start of the mission."""
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """One stretch of a critical path: how long a step was waited for once it could be waited for.
+
+    Attributes:
+        begin: The tick from which on.
+        end: The tick at which it was taken, or which the path ends at.
+        label: The step.
+        interval: How long it takes, in ticks.
+        bound: What says so.
+        tick: Milliseconds of a tick.
+        going_on: Whether the path ends before it is taken.
+    """
+
+    begin: int
+    end: int
+    label: Label
+    interval: Interval
+    bound: Bound
+    tick: int
+    going_on: bool = False
+
+    def __str__(self) -> str:
+        lasted = lapse_text((self.end - self.begin) * self.tick)
+        so_far = " so far" if self.going_on else ""
+        return f"{lasted}{so_far} from {clock_text(self.begin * self.tick)} on: {self.label}, {self.why}"
+
+    @property
+    def why(self) -> str:
+        """How long it may take, and what says so."""
+        if not self.bound.words:
+            return "and nothing says how long that takes"
+        line = f", line {self.bound.line}" if self.bound.line else ""
+        return f"{interval_text(self.interval, self.tick)} ({self.bound.words}{line})"
+
+
+def interval_text(interval: Interval, tick: int) -> str:
+    """Say how long something takes.
+
+    >>> interval_text(Interval(0, 5), 1000), interval_text(Interval(60), 1000), interval_text(Interval(2, 2), 1000)
+    ('at most 5 s', 'at least 1 min', '2 s')
+    >>> interval_text(Interval(90, 120), 1000), interval_text(Interval(), 1000)
+    ('90 s to 2 min', 'any time')
+    """
+    lo, hi = interval.lo, interval.hi
+    if hi is None:
+        return f"at least {lapse_text(lo * tick)}" if lo else "any time"
+    if lo == hi:
+        return lapse_text(lo * tick) if lo else "no time"
+    most = lapse_text(hi * tick)
+    return f"{lapse_text(lo * tick)} to {most}" if lo else f"at most {most}"
+
+
+def critical_path(
+    initial: Configuration,
+    done: Sequence[Transition],
+    run: Run,
+    onward: Sequence[Transition] = (),
+    since: int = 0,
+) -> tuple[Leg, ...]:
+    """Return what the time of a run is made of, in order, from one tick on.
+
+    Each leg ends with the step that the next one waits for. A leg begins with what made its step possible, or gave it
+    its turn.
+
+    Args:
+        initial: Where it begins.
+        done: What is done in it.
+        run: When.
+        onward: How it could go on to what is awaited at its end.
+        since: From when on.
+    """
+    dates = (*run.dates[: len(done)], *(run.end for _ in onward))
+    taken = tuple(_taken(initial, (*done, *onward), dates))
+    legs: list[Leg] = []
+    number = len(taken) - 1
+    while number != BEGINNING and taken[number].date > since:
+        leg, before = taken[number].leg(taken)
+        begin = max(leg.begin, since)
+        if begin < leg.end:
+            legs.append(replace(leg, begin=begin, going_on=number >= len(done)))
+        number = before
+    return tuple(reversed(legs))
+
+
+def way_to(
+    c: Configuration, is_end: Callable[[Configuration], bool], situations: Iterable[Situation]
+) -> tuple[Transition, ...]:
+    """Return the fewest steps in turn from a configuration to an end, none if none lead there."""
+    known = {each.c: each for each in situations}
+    ways: dict[Configuration, tuple[Transition, ...]] = {c: ()}
+    waiting = deque([c])
+    while waiting:
+        at = waiting.popleft()
+        if is_end(at):
+            return ways[at]
+        for step in known[at].steps:
+            target = step.transition.target
+            if step.in_turn and target in known and target not in ways:
+                ways[target] = (*ways[at], step.transition)
+                waiting.append(target)
+    return ()
+
+
+@dataclass(frozen=True, slots=True)
+class _Taken:
+    """A step of a run.
+
+    Attributes:
+        situation: Where it was taken.
+        step: The step.
+        date: When, in ticks.
+        since: The steps since which it may have been waited for, the likeliest first.
+    """
+
+    situation: Situation
+    step: TimedStep
+    date: int
+    since: tuple[int, ...]
+
+    def leg(self, taken: Sequence[_Taken]) -> tuple[Leg, int]:
+        """Return how long it was waited for, and the number of the step that this began with."""
+        interval = timed_by(self.situation, self.step).interval
+        begins = {each: 0 if each == BEGINNING else taken[each].date for each in self.since}
+        fit = (each for each in self.since if interval.hi is None or self.date - begins[each] <= interval.hi)
+        number = next(fit, max(self.since))
+        bound = bound_of(self.situation, self.step)
+        label, tick = self.step.transition.label, self.situation.timing.tick
+        return Leg(begins[number], self.date, label, interval, bound, tick), number
+
+
+def _taken(initial: Configuration, done: Sequence[Transition], dates: Sequence[int]) -> Iterator[_Taken]:
+    """Yield the steps of a run, each with since when it was waited for."""
+    situation = Situation(initial)
+    running = {each: (BEGINNING,) * count for each, count in running_in(situation).items()}
+    in_turn = dict.fromkeys(_in_turn(situation), BEGINNING)
+    for number, (transition, date) in enumerate(zip(done, dates, strict=True)):
+        step = next(each for each in situation.steps if each.transition == transition)
+        clocks = timed_by(situation, step).clocks
+        begins = (running[each][0] for each in clocks)
+        turns = [in_turn[each] for each in clocks if each in in_turn]
+        yield _Taken(situation, step, date, (*dict.fromkeys([*begins, *turns]),) or (BEGINNING,))
+        after = Situation(transition.target)
+        running = going_on(running, situation, step.done, after, number)
+        turned = {each: at for each, at in in_turn.items() if each not in step.done}
+        in_turn = {each: turned.get(each, number) for each in _in_turn(after)}
+        situation = after
+
+
+def _in_turn(situation: Situation) -> set[Clock]:
+    return {clock for step in situation.steps if step.in_turn for clock in step.done}

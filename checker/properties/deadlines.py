@@ -1,0 +1,216 @@
+"""Verdicts about time: deadlines, responses, endurance, when something is first true, and whether time stops."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from functools import cached_property
+
+from checker.engines.contract import Exploration
+from checker.engines.runs import Run
+from checker.engines.tick_times import Ticks
+from checker.engines.times import Times
+from checker.limits import BoundMet
+from checker.properties.critical_path import Leg, critical_path, way_to
+from checker.properties.durations import NEVER
+from checker.properties.schedule import Milestone, Moments, Schedule, flights_of
+from checker.traces import Trace, dated_trace
+from checker.verdicts import Outcome, Verdict, Violation
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property
+from semantics.properties.propositions import holds
+from semantics.state.configuration import Configuration
+from semantics.timing.clocks import Situation
+from semantics.timing.dates import clock_text, lapse_text
+from semantics.timing.timing import Timing
+
+REFUSED = "not decided: this is not known to be right for missions that say how long things take"
+
+
+class Deadlines:
+    """Decides the properties of one exploration that are about time."""
+
+    def __init__(self, found: Exploration, times: Times, timing: Timing) -> None:
+        self.found = found
+        self.times = times
+        self.timing = timing
+
+    def decide(self, asked: Property) -> Verdict:
+        """Return the verdict on a property; what is not violated holds only where everything was explored."""
+        match asked.kind:
+            case PropertyKind.WITHIN:
+                return self.within(asked)
+            case PropertyKind.TIME:
+                return self.time(asked)
+            case PropertyKind.ENDURANCE:
+                return self.endurance(asked)
+            case _:
+                raise AssertionError(f"{asked.kind} is not about time")
+
+    def judge(self, asked: Property, decided: Callable[[Property], Verdict]) -> Verdict:
+        """Return the verdict on any property of a mission with timing; none that time which stops makes hold."""
+        if asked.is_of_runs:
+            return Verdict(asked, Outcome.INCOMPLETE, note=REFUSED)
+        try:
+            return self._judged(asked, decided(asked), self.stop)
+        except BoundMet as met:
+            return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {met.bound} was met")
+
+    def _judged(self, asked: Property, verdict: Verdict, stop: Violation | None) -> Verdict:
+        if stop is None:
+            return verdict
+        if asked.kind is PropertyKind.COMPUTATION:
+            shown = (*verdict.violations, stop)
+            count, different = verdict.count + 1, verdict.different + 1
+            return replace(
+                verdict,
+                outcome=Outcome.VIOLATED,
+                violations=shown,
+                count=count,
+                different=different,
+                witness=None,
+            )
+        by_a_run = Outcome.HOLDS if asked.kind is PropertyKind.REACHABLE else Outcome.VIOLATED
+        if verdict.outcome is by_a_run and not asked.kind.is_of_time:
+            return verdict
+        return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: time stops; {stop.message}")
+
+    def notes(self) -> tuple[str, ...]:
+        """Return what all verdicts rest on: the scheduler, the bounds that were said; and what was not said."""
+        scheduler = self.found.configurations[0].setting.scheduler.value
+        bounds = (f"{words} (line {line})" if line else words for words, line in self.timing.lines)
+        unsaid = sorted({label.rule for each in self.times.situations for label in each.unbounded()})
+        searched = f"{self.times.searched}, in ticks of {self.text(1)}"
+        said = f"searched over {searched}; times are those under 'scheduler {scheduler}'"
+        return (
+            said,
+            *(f"times rest on: {bound}" for bound in bounds),
+            *([f"nothing says how long some of these take: {', '.join(unsaid)}"] if unsaid else []),
+        )
+
+    @property
+    def outcome(self) -> Outcome:
+        """What is to be said of what nothing was found against."""
+        return Outcome.HOLDS if self.found.complete else Outcome.INCOMPLETE
+
+    # --- deadlines
+
+    def within(self, asked: Property) -> Verdict:
+        """Return whether F is true in time on every run; whether G follows in time wherever F is true."""
+        responds = asked.then is not None
+        awaited = asked.formula if asked.then is None else asked.then
+        wait = self.times.within(asked.formula if responds else None, awaited, asked.bound)
+        whole = [each.c for each in self.times.situations] if responds else [self.times.initial]
+        examined = sum(not holds(awaited, c) and (not responds or holds(asked.formula, c)) for c in whole)
+        if wait.late is not None:
+            late = (self._late(asked, wait.late, ever=wait.ever),)
+            return Verdict(asked, Outcome.VIOLATED, late, 1, examined, different=1)
+        vacuous = responds and not examined and self.found.complete
+        note = "" if vacuous else f"after {self.text(wait.most)} at the latest"
+        remarks = (f"vacuous: never true: {asked.formula}",) if vacuous else ()
+        return Verdict(asked, self.outcome, examined=examined, note=note, remarks=remarks)
+
+    def _late(self, asked: Property, run: Run, *, ever: bool) -> Violation:
+        trace, begun = dated_trace(self.times, run), run.end - asked.bound - 1
+        since = "" if asked.then is None else f", {self.text(asked.bound + 1)} after {self.clock(begun)}"
+        awaited = asked.shown if asked.then is None else str(asked.then)
+        message = f"still not true at {self.clock(run.end)}{since}: {awaited}"
+        details = (*(["it may stay so for ever"] if ever else []), *self._unsaid(trace.configurations[-1]))
+        path = self._path(
+            run, trace, lambda c: holds(asked.then or asked.formula, c), begun if asked.then else 0
+        )
+        return Violation("late", message, trace, details, path=path)
+
+    def _path(
+        self, run: Run, trace: Trace, is_awaited: Callable[[Configuration], bool], since: int = 0
+    ) -> tuple[Leg, ...]:
+        """Return the steps that the date of a run is made of, with those that are awaited at its end."""
+        onward = way_to(trace.configurations[-1], is_awaited, self.times.situations)
+        return critical_path(self.times.initial, self.times.transitions(run), run, onward, since)
+
+    def _unsaid(self, c: Configuration) -> Iterator[str]:
+        """Yield in words what might be done in a configuration, and is nowhere said to be done in time."""
+        for words in dict.fromkeys(map(str, Situation(c).unbounded())):
+            yield f"nothing says how long {words} takes"
+
+    # --- when
+
+    def time(self, asked: Property) -> Verdict:
+        """Return when a proposition is first true: the earliest, the latest, whether it may never be."""
+        moments, examined = self.times.moments(asked.formula), len(self.times.situations)
+        if moments.first is None:
+            note = "never" if self.found.complete else "never so far"
+            return Verdict(asked, self.outcome, examined=examined, note=note)
+        latest = moments.latest
+        last = "at any time" if math.isinf(latest) else f"at {self.clock(latest)} at the latest"
+        never = " if at all: it may never" if moments.may_wait else ""
+        said = [f"at {self.clock(moments.first.end)} at the earliest", last + never]
+        note = ", ".join(said if self.found.complete else said[:1])
+        witness = dated_trace(self.times, moments.first)
+        return Verdict(asked, self.outcome, examined=examined, witness=witness, note=note)
+
+    # --- endurance
+
+    def endurance(self, asked: Property) -> Verdict:
+        """Return whether no vehicle is ever aloft for longer than it lasts."""
+        runs, count = self.times.exhausted()
+        examined = len(self.times.situations)
+        if not runs:
+            vacuous = () if self.timing.endurances else ("vacuous: nothing says how long any vehicle lasts",)
+            return Verdict(asked, self.outcome, examined=examined, remarks=vacuous)
+        found = sorted(runs.items(), key=lambda each: (len(each[1].steps), each[0]))
+        violations = tuple(self._exhausted(vehicle, run) for vehicle, run in found)
+        return Verdict(asked, Outcome.VIOLATED, violations, count, examined, different=len(found))
+
+    def _exhausted(self, vehicle: str, run: Run) -> Violation:
+        lasts, trace = dict(self.timing.endurances)[vehicle].lasts, dated_trace(self.times, run)
+        message = f"{vehicle} lasts {self.text(lasts)}, and is aloft for longer at {self.clock(run.end)}"
+        details = tuple(self._unsaid(trace.configurations[-1]))
+        since = run.end - lasts - 1
+        path = self._path(run, trace, lambda c: Situation(c).is_restored(vehicle), since)
+        return Violation("exhausted", message, trace, details, subject=vehicle, path=path)
+
+    def schedule(self, asked: Iterable[Property]) -> Schedule | None:
+        """Return when flights may begin and end, and what `time` properties ask for may first be true.
+
+        Whole ticks know that; None of an exploration by zones.
+        """
+        if not isinstance(self.times, Ticks):
+            return None
+        times = [each for each in asked if each.kind is PropertyKind.TIME]
+        found = tuple(Milestone(each.name, self._first(each)) for each in times)
+        return Schedule(self.timing.tick, flights_of(self.times.timeline), found, self.found.complete)
+
+    def _first(self, asked: Property) -> Moments:
+        found = self.times.moments(asked.formula)
+        if found.first is None:
+            return Moments(math.inf, NEVER, may_never=True)
+        return Moments(found.first.end, found.latest, found.may_wait)
+
+    # --- whether time goes on
+
+    @cached_property
+    def stop(self) -> Violation | None:
+        """The first run after which no time can ever pass, with what goes on there for ever; None if there is none."""
+        stop = self.times.stop()
+        if stop is None:
+            return None
+        trace: Trace = replace(dated_trace(self.times, stop.run), loop=stop.steps)
+        done = ", ".join(dict.fromkeys(str(step.label) for step in trace.steps[stop.steps :]))
+        message = f"no time can pass any more after {self.clock(stop.run.end)}: {done}, again and again"
+        taken = self.times.transitions(stop.run)
+        path = critical_path(self.times.initial, taken[: stop.steps], stop.run, taken[stop.steps :][:1])
+        return Violation("time stops", message, trace, path=path)
+
+    # --- words
+
+    def clock(self, ticks: float) -> str:
+        """Say a moment."""
+        return clock_text(int(ticks) * self.timing.tick)
+
+    def text(self, ticks: float) -> str:
+        """Say a duration."""
+        if ticks == NEVER:
+            return "no time"
+        return "any time" if math.isinf(ticks) else lapse_text(int(ticks) * self.timing.tick)

@@ -1,0 +1,184 @@
+"""The schedule of a mission: how long its flights may take and when, and when what it asks for is first true."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from checker.engines.runs import DELAY
+from checker.engines.timeline import Timeline
+from checker.properties.durations import NEVER, longest
+from semantics.behaviours.reaction_rules import moved
+from semantics.state.configuration import Configuration
+from semantics.state.requests import FLY
+from semantics.state.signature import REGION, Name
+from semantics.timing.bounds import Bound, bound_of, timed_by
+from semantics.timing.clocks import TimedStep
+from semantics.timing.dates import clock_text
+from semantics.timing.intervals import ANY_TIME, Interval
+
+
+@dataclass(frozen=True, slots=True)
+class Moments:
+    """When something happens, in ticks from the start.
+
+    Attributes:
+        earliest: At the earliest; infinite where it never does.
+        latest: At the latest; infinite where nothing bounds it.
+        may_never: Whether there is a run in which it never happens.
+    """
+
+    earliest: float
+    latest: float
+    may_never: bool = False
+
+    @property
+    def is_never(self) -> bool:
+        """Whether it happens in no run."""
+        return math.isinf(self.earliest)
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """A flight that a mission can make: of one vehicle, by one request, from one place to another.
+
+    Attributes:
+        vehicle: Who flies.
+        agent: Who asked for it.
+        origin: Where it begins, the place that L has the vehicle in.
+        destination: Where it ends.
+        takes: How long, in ticks.
+        begins: When, from the first time to the last.
+        ends: When; never where it is not known to arrive.
+        bound: What bounds it.
+    """
+
+    vehicle: Name
+    agent: Name
+    origin: Name
+    destination: Name
+    takes: Interval
+    begins: Moments
+    ends: Moments
+    bound: Bound
+
+
+@dataclass(frozen=True, slots=True)
+class Milestone:
+    """When what a `time` property asks for is first true."""
+
+    name: str
+    moments: Moments
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """The times of a mission over all of its runs.
+
+    Attributes:
+        tick: Milliseconds of a tick.
+        flights: The flights that it can make, in the order of their first beginnings.
+        milestones: The first moments of what its `time` properties ask for.
+        complete: Whether everything was explored: else the latest moments are not known.
+    """
+
+    tick: int
+    flights: tuple[Flight, ...] = ()
+    milestones: tuple[Milestone, ...] = ()
+    complete: bool = True
+
+    def seconds(self, ticks: float | None) -> float | None:
+        """Return ticks in seconds, None where nothing bounds them."""
+        return None if ticks is None or math.isinf(ticks) else ticks * self.tick / 1000
+
+    def clock(self, ticks: float) -> str:
+        """Say a moment; nothing of one that is not bounded."""
+        return "" if math.isinf(ticks) else clock_text(int(ticks) * self.tick)
+
+
+_Key = tuple[Name, Name, Name, Name]
+"""Vehicle, agent, origin, destination."""
+
+_Steps = set[tuple[int, int]]
+"""Steps of configurations, both by their numbers."""
+
+
+def flights_of(timeline: Timeline) -> tuple[Flight, ...]:
+    """Return the flights that are made in time, in the order of their first beginnings."""
+    begun: dict[_Key, _Steps] = {}
+    ended: dict[_Key, _Steps] = {}
+    said: dict[_Key, tuple[Interval, Bound]] = {}
+    for number, at in sorted(timeline.taken):
+        situation = timeline.situations[number]
+        step = situation.steps[at]
+        fly = _flight_of(step)
+        if fly is None:
+            continue
+        steps = begun if step.transition.label.rule == "command" else ended
+        for key in _keys(situation.c, fly):
+            steps.setdefault(key, set()).add((number, at))
+            if steps is ended:
+                interval = timed_by(situation, step).interval
+                known = said.get(key, (interval, Bound()))[0]
+                said[key] = _both(known, interval), bound_of(situation, step)
+    first = _first_ticks(timeline)
+    found = [
+        Flight(
+            *key,
+            said.get(key, (ANY_TIME,))[0],
+            _moments(timeline, first, begun.get(key, set())),
+            _moments(timeline, first, ended.get(key, set())),
+            said.get(key, (ANY_TIME, Bound()))[1],
+        )
+        for key in dict.fromkeys((*begun, *ended))
+    ]
+    return tuple(sorted(found, key=lambda each: (each.begins.earliest, each.ends.earliest, each.vehicle)))
+
+
+def _flight_of(step: TimedStep) -> FLY | None:
+    """Return the flight that a step begins or ends."""
+    label, target = step.transition.label, step.transition.target
+    if label.rule == "command" and label.agent is not None:
+        line = (pending.request for pending in target.eta.in_line(label.agent))
+        return next((each for each in line if isinstance(each, FLY)), None)
+    return label.about if label.rule == "commit" and isinstance(label.about, FLY) else None
+
+
+def _keys(c: Configuration, fly: FLY) -> Iterator[_Key]:
+    """Yield what tells flights apart; L has a vehicle where it set out until it arrives."""
+    for vehicle, place in moved(fly.reaction, fly.match):
+        yield vehicle, fly.agent, c.structure.logical.parent(vehicle) or REGION, place
+
+
+def _both(one: Interval, other: Interval) -> Interval:
+    hi = None if one.hi is None or other.hi is None else max(one.hi, other.hi)
+    return Interval(min(one.lo, other.lo), hi)
+
+
+def _first_ticks(timeline: Timeline) -> list[float]:
+    """Return for each state after how many ticks it is reached first."""
+    first = [math.inf] * len(timeline.states)
+    first[0] = 0
+    waiting = deque([0])
+    while waiting:
+        state = waiting.popleft()
+        for step, target in timeline.edges[state]:
+            ticks = first[state] + (step == DELAY)
+            if ticks < first[target]:
+                first[target] = ticks
+                (waiting.append if step == DELAY else waiting.appendleft)(target)
+    return first
+
+
+def _moments(timeline: Timeline, first: Sequence[float], steps: _Steps) -> Moments:
+    """Return when one of some steps is taken, from the first time to the last."""
+    ends = [
+        any((number, step) in steps for step, _ in edges)
+        for (number, _), edges in zip(timeline.states, timeline.edges, strict=True)
+    ]
+    earliest = min((ticks for ticks, end in zip(first, ends, strict=True) if end), default=math.inf)
+    if math.isinf(earliest):
+        return Moments(math.inf, NEVER)
+    return Moments(earliest, longest(timeline.edges, [True] * len(ends), ends.__getitem__)[0])

@@ -1,0 +1,151 @@
+"""What bounds a step: which clocks time it, how long it takes, and what of the mission's text says so."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple, TypeVar
+
+from semantics.behaviours.values import show
+from semantics.environment import Appears, Drifts, Drops, Leaves, Says, Vanishes
+from semantics.state.requests import CTR, FLY, MGR, OBS, SND
+from semantics.state.setting import Setting
+from semantics.timing.clocks import Clock, Situation, Sort, TimedStep, word_of
+from semantics.timing.intervals import ANY_TIME, Interval
+from semantics.timing.timing import ONE_HOST, Every, Sayable, Window
+from semantics.timing.voyages import travelling
+
+T = TypeVar("T")
+
+
+class Bound(NamedTuple):
+    """An assumption of the section `timing` as it was written, and its line; no words where nothing is said."""
+
+    words: str = ""
+    line: int = 0
+
+    def __str__(self) -> str:
+        return f"{self.words} (line {self.line})" if self.line else self.words
+
+
+class Timed(NamedTuple):
+    """The clocks since whose start a step is waited for, the first to be asked first; and how long it takes."""
+
+    clocks: tuple[Clock, ...]
+    interval: Interval
+
+
+def timed_by(situation: Situation, step: TimedStep) -> Timed:
+    """Return what times a step."""
+    request = None if step.transition.served is None else step.transition.served.request
+    if isinstance(request, FLY):
+        flight, directed = Clock(Sort.FLIGHT, request), Clock(Sort.AIM, request)
+        least, most = situation.bounds.get(flight, ANY_TIME), situation.bounds.get(directed, ANY_TIME)
+        known = tuple(each for each in (flight, directed) if each in situation.first)
+        return Timed(known or step.done[:1], Interval(least.lo, most.hi))
+    if step.transition.label.agent is None:
+        return _timed_clause(situation, step)
+    if request is not None:
+        return Timed(step.done, situation.bounds.get(step.done[0], ANY_TIME))
+    sort = Sort.AFTER if step.transition.label.rule == "timeout" else Sort.AGENT
+    clock = Clock(sort, step.transition.label.agent)
+    return Timed(
+        (clock if clock in situation.first else step.done[0],), situation.bounds.get(clock, ANY_TIME)
+    )
+
+
+def _timed_clause(situation: Situation, step: TimedStep) -> Timed:
+    clock = step.done[0]
+    if clock.sort is Sort.RETURNS:
+        return Timed((clock,), situation.bounds.get(clock, ANY_TIME))
+    assert isinstance(clock.of, int)
+    match situation.timing.clause(clock.of).step:
+        case Every(least):
+            return Timed((clock,), Interval(least))
+        case Window(after, within):
+            return Timed((), Interval(after, within))
+        case Sayable(after, until):
+            return Timed((), Interval(after, until))
+        case None:
+            return Timed((clock,), ANY_TIME)
+
+
+def bound_of(situation: Situation, step: TimedStep) -> Bound:
+    """Return what the mission's text says of how long a step takes."""
+    begins = tuple(_beginnings(situation, step))
+    found = (Bound(*said) for begin in begins for said in situation.timing.lines if said[0].startswith(begin))
+    return next(found, Bound())
+
+
+def _beginnings(situation: Situation, step: TimedStep) -> Iterator[str]:
+    """Yield how a bound of a step may begin, the more special first."""
+    label, setting = step.transition.label, situation.c.setting
+    request = None if step.transition.served is None else step.transition.served.request
+    match request:
+        case FLY():
+            for vehicle, _ in travelling(situation.c, request):
+                yield from flight_beginnings(setting, vehicle)
+        case OBS():
+            yield "sense "
+        case SND():
+            for clock in step.done:
+                yield (
+                    "messages on one host "
+                    if clock.channel == ONE_HOST
+                    else f"messages over {clock.channel} "
+                )
+        case MGR():
+            yield "migrate "
+        case CTR():
+            yield f"{word_of(request)} "
+            if situation.timing.command(word_of(request)) is None:
+                yield "agents "
+        case _ if label.agent is not None:
+            yield "spawn " if label.rule == "spawn" else "agents "
+        case _:
+            yield from _clause_beginnings(setting, step.done[0].of)
+
+
+def flight_beginnings(setting: Setting, vehicle: str) -> tuple[str, str]:
+    """Return how a bound of a vehicle's flights may begin: it is said of the vehicle, or of its kind."""
+    return f"{vehicle} flies ", f"{setting.kind(vehicle)} flies "
+
+
+def _clause_beginnings(setting: Setting, number: object) -> Iterator[str]:
+    assert isinstance(number, int)
+    match setting.environment[number]:
+        case Drifts(entity=entity):
+            yield f"{entity} drifts "
+        case Drops(channel=channel):
+            yield f"{channel} drops "
+        case Leaves(entity=entity, channel=channel):
+            yield f"{entity} leaves {channel} "
+        case Appears(entity=entity):
+            yield f"{entity} appears "
+        case Vanishes(entity=entity):
+            yield f"{entity} vanishes "
+        case Says(message=message, agent=agent):
+            said = f"someone says {show(message, frozenset(setting.kinds))} "
+            yield f"{said}to {agent} "
+            yield said
+
+
+def running_in(situation: Situation) -> Counter[Clock]:
+    """Return how many clocks run of all that may be done, bounded or not, and the others that run."""
+    done = {clock for step in situation.steps for clock in step.done}
+    return Counter(situation.clocks) | Counter(done)
+
+
+def going_on(
+    since: Mapping[Clock, tuple[T, ...]], source: Situation, done: Iterable[Clock], after: Situation, now: T
+) -> dict[Clock, tuple[T, ...]]:
+    """Return since when the clocks run after a step; of equal ones the oldest is the first, and is served first."""
+    kept = dict(since)
+    for clock in done:
+        kept[clock] = kept.get(clock, ())[1:] if clock.sort is Sort.REQUEST else ()
+    for clock, aimed in after.aims.items():
+        if source.aims.get(clock) != aimed:
+            kept[clock] = ()
+    return {
+        clock: (kept.get(clock, ()) + (now,) * count)[:count] for clock, count in running_in(after).items()
+    }

@@ -1,0 +1,206 @@
+"""Voyages: what has to be remembered of flights to know where things may be, and how long they still take.
+
+P says of a vehicle in transit from where to where it was sent; of one that has arrived, the middle of a place of which
+it may be anywhere. So where `timing` is given, a cell of each vehicle remembers more, and it is written after every
+step that changes P (`remembering`), as the race monitor does; the rules know nothing of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from physical import Geometry, Waypoint
+from physical.extents import Extent, extent, span
+from semantics.behaviours.reaction_rules import moved
+from semantics.brr_driver import mobility_commands
+from semantics.control import commits
+from semantics.environment import Drifts
+from semantics.state.cells import Cell, Changes
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.physical_model import Carried, InTransit, PhysicalModel
+from semantics.state.requests import FLY
+from semantics.state.setting import Setting
+from semantics.state.signature import REGION, Name
+
+
+@dataclass(frozen=True, slots=True)
+class Voyage:
+    """A flight under way, from its `command` on.
+
+    Attributes:
+        origin: Where the vehicle may have been at the `command`.
+        toward: What it was sent by (VIA, in order) and to.
+        waypoints: Every point that it was sent to in this flight, sorted.
+        hull: Where it may be: the hull of its origin and of everything that it was sent to or by. None where nothing
+            is known of one of them.
+    """
+
+    origin: Extent
+    toward: tuple[Name, ...]
+    waypoints: tuple[Geometry, ...]
+    hull: Extent | None
+
+
+Memory = Voyage | Extent | None
+"""What is remembered of a vehicle: its flight; the place in which it arrived last, as that was then; or nothing."""
+
+
+def memory_cell(vehicle: Name) -> Cell:
+    """Address what is remembered of a vehicle."""
+    return ("voyage", vehicle)
+
+
+def remembered_at_first(setting: Setting) -> Changes:
+    """Return the cells of all vehicles, as they are at first."""
+    return {} if setting.timing is None else {memory_cell(name): None for name in vehicles(setting)}
+
+
+def vehicles(setting: Setting) -> tuple[Name, ...]:
+    """Return the entities that can be driven, sorted."""
+    return tuple(sorted(name for name, kind in setting.kinds.items() if setting.signature[kind].driven))
+
+
+# --- where things may be --------------------------------------------------------------------------
+
+
+def whereabouts(c: Configuration, entity: Name) -> Extent | None:
+    """Return where an entity may be; None where nothing is known: it drifts within a place, or lies in what does.
+
+    In transit it is anywhere in the hull of its flight, arrived anywhere in the place, as that was then; else where P
+    has it. What is carried is where its outermost carrier is.
+    """
+    physical = c.structure.physical
+    bearer = _outermost(physical, entity)
+    kept: Memory = c.read(memory_cell(bearer))
+    if isinstance(kept, Voyage):
+        return kept.hull
+    at = physical.position(bearer)
+    if at is None or _is_adrift(c, bearer):
+        return None
+    return kept or extent(at.geometry)
+
+
+def origin(c: Configuration, vehicle: Name) -> Extent | None:
+    """Return O(u), where a vehicle may be as a flight begins; None where nothing is known.
+
+    The place in which it arrived last, as that was then, enlarged by the circle that it flies there. If it never flew,
+    or drifted or appeared since, the place in which A(P) has it, else where it is by itself.
+    """
+    physical = c.structure.physical
+    if physical.carrier(vehicle) is not None:
+        return whereabouts(c, vehicle)
+    kept: Memory = c.read(memory_cell(vehicle))
+    if isinstance(kept, Voyage):
+        return kept.origin
+    if _is_adrift(c, vehicle):
+        return None
+    if kept is not None:
+        return kept
+    parent = physical.abstract_parent(vehicle)
+    at = physical.position(vehicle if parent == REGION else parent)
+    return None if at is None else extent(at.geometry)
+
+
+def _outermost(physical: PhysicalModel, entity: Name) -> Name:
+    bearer = entity
+    for bearer in physical.carriers(entity):  # noqa: B007 - the last
+        pass
+    return bearer
+
+
+def _is_adrift(c: Configuration, entity: Name) -> bool:
+    """Tell whether something drifts within a place, or lies in something that does."""
+    adrift = {each.entity for each in c.setting.environment if isinstance(each, Drifts) and each.within}
+    around, seen = entity, set[Name]()
+    while around != REGION and around not in seen and adrift:
+        if around in adrift:
+            return True
+        seen.add(around)
+        around = c.structure.physical.abstract_parent(around)
+    return False
+
+
+# --- remembering ----------------------------------------------------------------------------------
+
+
+def remembering(c: Configuration, transition: Transition) -> Transition:
+    """Return the transition with what it changed remembered of flights, where a mission speaks of time."""
+    if c.setting.timing is None:
+        return transition
+    after = transition.target
+    changed = {cell[1] for cell in after.state.changed(c.state) if cell[0] == "placement"}
+    if not changed:
+        return transition
+    begun = {name: _memory(c, after, name) for name in vehicles(c.setting) if name in changed}
+    after = after.with_({memory_cell(name): kept for name, kept in begun.items()})
+    return replace(transition, target=_widened(after))
+
+
+def _memory(c: Configuration, after: Configuration, vehicle: Name) -> Memory:
+    """Return what is to be remembered of a vehicle whose placement a step has changed."""
+    before, now = c.structure.physical.placement(vehicle), after.structure.physical.placement(vehicle)
+    if isinstance(now, InTransit):
+        begin = origin(c, vehicle)
+        return None if begin is None else Voyage(begin, (), (), begin)
+    if isinstance(before, InTransit) and not isinstance(now, Carried):
+        place = after.structure.physical.position(before.to)
+        return None if place is None else extent(place.geometry, circle(c.setting, vehicle))
+    return None
+
+
+def _widened(c: Configuration) -> Configuration:
+    """Return the configuration in which every flight knows all that it was sent to or by, through chains of flights."""
+    points = {
+        (fly, vehicle): waypoints(c, fly, vehicle)
+        for fly in dict.fromkeys(each.request for each in c.eta.all())
+        if isinstance(fly, FLY)
+        for vehicle, _ in travelling(c, fly)
+    }
+    while True:
+        under_way = dict(_sent(c, points))
+        wider = c.with_({memory_cell(vehicle): kept for vehicle, kept in under_way.items()})
+        if wider == c:
+            return c
+        c = wider
+
+
+def _sent(
+    c: Configuration, points: Mapping[tuple[FLY, Name], tuple[Geometry, ...]]
+) -> Iterator[tuple[Name, Voyage]]:
+    """Yield each flight with what it is sent to or by now."""
+    for fly in (each.request for each in c.eta.all()):
+        if not isinstance(fly, FLY):
+            continue
+        for vehicle, place in travelling(c, fly):
+            kept: Memory = c.read(memory_cell(vehicle))
+            if isinstance(kept, Voyage):
+                toward = (*fly.reaction.via, place)
+                where = [whereabouts(c, each) for each in toward]
+                sent_to = tuple(sorted({*kept.waypoints, *points[fly, vehicle]}))
+                yield vehicle, Voyage(kept.origin, toward, sent_to, _hull([kept.hull, *where]))
+
+
+def _hull(extents: Iterable[Extent | None]) -> Extent | None:
+    known = list(extents)
+    return None if None in known else span(each for each in known if each is not None)
+
+
+def travelling(c: Configuration, fly: FLY) -> tuple[tuple[Name, Name], ...]:
+    """Return who is in transit by a request, and where to."""
+    physical = c.structure.physical
+    pairs = moved(fly.reaction, fly.match)
+    return tuple((node, place) for node, place in pairs if isinstance(physical.placement(node), InTransit))
+
+
+def waypoints(c: Configuration, fly: FLY, vehicle: Name) -> tuple[Geometry, ...]:
+    """Return the points to which a vehicle is sent now, as the runtime sends it; none where it can't arrive now."""
+    found = commits(c, fly)
+    told = () if found is None else mobility_commands(c, found)
+    return tuple(each.point for each in told if isinstance(each, Waypoint) and each.entity == vehicle)
+
+
+def circle(setting: Setting, vehicle: Name) -> float:
+    """Return the diameter in metres of the circle that a vehicle flies where it cannot stand, else 0."""
+    motion = None if setting.timing is None else setting.timing.motion(vehicle)
+    return 0.0 if motion is None else motion.circle

@@ -1,0 +1,337 @@
+"""The vehicles' cards: how much each needs an operator, and why."""
+
+import pytest
+from live_missions import mission, seen
+from recorded import BETWEEN, EAST, FLIGHT, WEST, Tape, rules_of_once, uav, written
+
+from adapters.console.history import History
+from adapters.live.state import Acknowledging, GivingBack, Ordering
+from adapters.plugin import Accepted, GoTo, LinkLost, LinkRestored, Rejected, Status, TakenOver
+from bigactors.missions import digest_of
+from semantics.contingencies import Fallback
+
+RUN = {
+    "schema": "bigactors.run/1",
+    "mission": "tour.mission",
+    "text": FLIGHT,
+    "digest": digest_of(mission(FLIGHT)),
+    "version": "0",
+    "verified": True,
+    "vehicles": {"uav0": "autopilot"},
+}
+
+
+@pytest.fixture
+def tape(tmp_path):
+    with Tape(tmp_path / "r.mcap") as begun:
+        yield begun
+
+
+def level(tape, at=None):
+    card = tape.card(at)
+    return card["level"], card["why"]
+
+
+def test_a_vehicle_that_does_what_it_was_told_is_well(tape):
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(3, uav(BETWEEN, 3), sayings=[("op", "status")])
+    card = tape.card()
+    assert (card["level"], card["why"]) == (0, "")
+    assert (card["believed"], card["actual"], card["differs"]) == ("west0", "region", True)
+    assert card["request"] == {
+        "text": "FLY(a, MOVE_HOST_TO east0)",
+        "agent": "a",
+        "since": 1000.0,
+        "limit": 100.0,
+        "fallback": "continue",
+    }
+    assert card["order"] == {
+        "command": "GoTo",
+        "to": "east0",
+        "way": ((37.0099997, -8.61),),
+        "since": 1000.0,
+        "state": "accepted",
+        "why": "",
+    }
+    assert card["link"] == {"heard": 1003.0, "lost": False}
+    assert card["authority"] == ["gcs0"]
+
+
+def test_a_vehicle_of_which_nothing_is_asked_says_for_whom_it_waits(tape):
+    def says(now):
+        status = Status("uav0", now, "autopilot", now, "GUIDED", armed=True, home=(37.01, -8.65))
+        tape.recorder.report(status, now)
+
+    tape.turn(0, uav(WEST, 0))
+    says(1000.5)
+    assert (*level(tape), tape.card()["home"], tape.card()["returning"]) == (0, "", (37.01, -8.65), False)
+    tape.turn(60, uav(EAST, 60))
+    says(1060.5)
+    assert level(tape) == (0, 'nothing is asked of it: op waits for "handover"')
+
+
+def test_arrival_is_what_the_rules_say_it_is(tape):
+    tape.turn(0, uav(WEST, 0))
+    assert tape.card()["order"]["state"] == "sent"
+    tape.turn(1, uav(EAST, 1))
+    assert tape.card(0.5)["order"]["state"] == "sent"
+    card = tape.card()
+    assert card["order"]["state"] == "arrived"
+    assert (card["believed"], card["actual"], card["differs"]) == ("east0", "east0", False)
+
+
+def test_a_request_is_watched_from_half_of_its_time_on_and_wrong_when_that_is_over(tape):
+    for now in range(0, 121, 4):
+        tape.turn(now, uav(WEST if now == 0 else BETWEEN, now))
+    assert level(tape, 50) == (0, "")
+    assert level(tape, 51) == (1, "its request stands for more than half of 100 s")
+    assert level(tape, 100) == (2, "its request stands for longer than 100 s")
+    (late,) = [each for each in tape.history().newest().sections["alerts"].values() if each["wrong"]]
+    assert (late["kind"], late["about"]) == ("late", "a")
+
+
+def test_a_link_is_watched_when_it_is_silent_and_lost_when_the_plugin_says_so(tape):
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(9, seen("boat0", (37.04, -8.7), 1009.0, "ais", "Vessel", ()), sayings=[("op", "status")])
+    assert level(tape, 4.9) == (0, "")
+    assert level(tape, 5.1) == (1, "nothing was heard of it for more than 5 s")
+    tape.turn(10, reports=[LinkLost("uav0", 1010.0, 1000.0)])
+    lost = tape.card()
+    assert lost["level"] == 3
+    assert lost["why"].startswith("the link is lost; ")
+    assert lost["link"] == {"heard": 1000.0, "lost": True}
+    tape.turn(11, uav(WEST, 11), reports=[LinkRestored("uav0", 1011.0)])
+    assert tape.card()["link"] == {"heard": 1011.0, "lost": False}
+
+
+def test_who_was_taken_over_is_lost_until_given_back(tmp_path):
+    with Tape(tmp_path / "r.mcap") as tape:
+        tape.turn(0, uav(WEST, 0))
+        tape.turn(1, uav(WEST, 1), reports=[TakenOver("uav0", 1001.0, "a pilot flies it")])
+        card = tape.card()
+        assert (card["level"], card["why"], card["taken"]) == (
+            3,
+            "taken over: a pilot flies it; the 100 s of its request run on meanwhile",
+            "a pilot flies it",
+        )
+
+
+def test_who_refuses_is_wrong_and_says_why(tape):
+    tape.run.willing = False
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(1, uav(WEST, 1), reports=[Rejected("a-1", "uav0", 1001.0, "it is not armed")])
+    assert level(tape) == (2, "it refuses GoTo: it is not armed")
+    assert tape.card()["order"]["why"] == "it is not armed"
+
+
+def test_where_l_and_p_differ_without_a_flight_is_watched(tape):
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(1, uav(EAST, 1))
+    tape.turn(2, uav(BETWEEN, 2))
+    card = tape.card()
+    assert (card["believed"], card["actual"], card["level"]) == ("east0", "region", 3)
+    broken, differing = card["why"].split("; ", 1)[0], card["why"].rsplit("; ", 1)[1]
+    assert broken.startswith("broken assumption: uav0 ")
+    assert differing == "where it is believed to be and where it is differ"
+
+
+# --- what other parts of the project record -------------------------------------------------------------
+
+
+def told(path, *messages):
+    """Return the view of a run in which a vehicle says of itself what it says."""
+    arrival = {"plugin": "autopilot", "entity": "uav0", "kind": "UAV", "ring": [[370100000, -86500000]]}
+    writer = written(path, RUN, [("arrivals", 1001.0, arrival), *messages])
+    history = History(path, rules_of_once)
+    while history.read_on(1.0):
+        pass
+    writer.close()
+    return history.newest().sections
+
+
+STATUS = {
+    "plugin": "autopilot",
+    "entity": "uav0",
+    "time": 1002.0,
+    "mode": "GUIDED",
+    "armed": True,
+    "battery": {"percent": 24, "volts": 11.1},
+    "heading": 270.0,
+    "authority": ["gcs1"],
+    "heard": 1002.0,
+    "height": 101.5,
+    "home": [37.01, -8.65],
+    "returning": False,
+}
+
+
+def test_what_a_vehicle_says_of_itself_is_on_its_card(tmp_path):
+    said = {"entity": "uav0", "time": 1002.5, "text": "Low battery", "severity": 2}
+    card = told(tmp_path / "r", ("status", 1002.0, STATUS), ("said", 1002.5, said))["vehicles"]["uav0"]
+    members = ("mode", "armed", "battery", "heading", "authority", "height", "said")
+    assert {key: card[key] for key in members} == {
+        "mode": "GUIDED",
+        "armed": True,
+        "battery": {"percent": 24.0, "volts": 11.1},
+        "heading": 270.0,
+        "authority": ["gcs1"],
+        "height": 101.5,
+        "said": {"text": "Low battery", "time": 1002.5, "severity": 2},
+    }
+    assert (card["level"], card["why"]) == (2, "its battery has less than 25 %")
+    assert card["link"] == {"heard": 1002.0, "lost": False}
+
+
+def test_a_card_has_the_newest_altitude_and_the_last_change_of_authority(tmp_path):
+    higher = {"plugin": "autopilot", "entity": "uav0", "kind": "UAV", "ring": [[370100000, -86500000]]}
+    higher |= {"altitude": [120.5, 120.5], "channels": ["control:gcs0", "wifi"]}
+    later = ("arrivals", 1003.0, {**higher, "channels": ["control:gcs1"], "altitude": [121.0, 121.0]})
+    card = told(tmp_path / "a", ("arrivals", 1002.0, higher))["vehicles"]["uav0"]
+    assert (card["altitude"], card["height"], card["authority"], card["handed"]) == (
+        120,
+        None,
+        ["gcs0"],
+        None,
+    )
+    card = told(tmp_path / "b", ("arrivals", 1002.0, higher), later)["vehicles"]["uav0"]
+    assert (card["altitude"], card["authority"]) == (121.0, ["gcs1"])
+    assert card["handed"] == {"time": 1003.0, "from": ["gcs0"], "to": ["gcs1"]}
+    unsure = {**STATUS, "authority": []}
+    statuses = [("status", 1004.0, STATUS), ("status", 1005.0, unsure), ("status", 1006.0, STATUS)]
+    card = told(tmp_path / "c", ("arrivals", 1002.0, higher), *statuses, later)["vehicles"]["uav0"]
+    assert card["handed"] == {"time": 1004.0, "from": ["gcs0"], "to": ["gcs1"]}
+
+
+def actions(tape):
+    return list(tape.history().newest().sections["actions"].values())
+
+
+def test_an_order_is_sent_then_confirmed_by_the_vehicle_until_it_is_given_back(tape):
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(1, sayings=[Ordering(Fallback.HOLD, "uav0", "Ana")])
+    sent = {"time": 1001.0, "by": "Ana", "what": "hold", "about": "uav0", "state": "sent", "why": ""}
+    sent |= {"left_out": {}, "notes": []}
+    assert actions(tape) == [{**sent, "answered": None}]
+    card = tape.card()
+    assert (card["level"], card["taken"]) == (1, "held by the operator (Ana)")
+    assert card["why"].endswith("; the 100 s of its request run on meanwhile")
+    assert (card["order"]["command"], card["order"]["state"]) == ("Hold", "sent")
+    tape.turn(2, uav(WEST, 2), reports=[Accepted("operator-2", "uav0", 1002.0)])
+    assert actions(tape) == [{**sent, "state": "confirmed", "answered": 1002.0}]
+    assert tape.card()["order"]["state"] == "accepted"
+    tape.turn(3, sayings=[GivingBack("uav0", by="Bo")])
+    assert [(each["what"], each["by"], each["state"]) for each in actions(tape)][1:] == [
+        ("give back", "Bo", "confirmed")
+    ]
+    card = tape.card()
+    assert (card["level"], card["taken"], card["order"]["command"]) == (0, None, "GoTo")
+
+
+def test_an_order_that_the_vehicle_refuses_says_why(tape):
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(1, sayings=[Ordering(Fallback.RETURN, None, "Ana")])
+    tape.turn(2, reports=[Rejected("operator-2", "uav0", 1002.0, "it has no home")])
+    (action,) = actions(tape)
+    assert (action["what"], action["about"]) == ("return", "all")
+    assert (action["state"], action["why"]) == ("refused", "it has no home")
+
+
+def test_an_order_overrules_who_has_taken_a_vehicle_over_and_is_overruled_so(tape):
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(1, uav(WEST, 1), reports=[TakenOver("uav0", 1001.0, "a pilot flies it")])
+    tape.turn(2, sayings=[Ordering(Fallback.HOLD, "uav0")])
+    card = tape.card()
+    assert (card["level"], card["taken"]) == (1, "held by the operator")
+    tape.turn(3, uav(WEST, 3), reports=[TakenOver("uav0", 1003.0, "it is in RTL")])
+    card = tape.card()
+    assert (card["level"], card["taken"]) == (3, "it is in RTL")
+
+
+HOLD = {"order": "hold", "vehicle": "uav0", "by": "Ana", "requests": {"uav0": "hold-1"}, "refusal": ""}
+DONE = {"report": "Accepted", "request": "hold-1", "entity": "uav0", "time": 1003.0}
+
+
+def test_an_order_to_all_is_confirmed_when_all_have_confirmed_it(tmp_path):
+    both = {**HOLD, "vehicle": None, "requests": {"uav0": "hold-1", "uav1": "hold-2"}}
+    view = told(tmp_path / "a", ("orders", 1002.0, both), ("reports", 1003.0, DONE))
+    assert (view["actions"]["1"]["about"], view["actions"]["1"]["state"]) == ("all", "sent")
+    also = {**DONE, "request": "hold-2", "entity": "uav1"}
+    view = told(
+        tmp_path / "b", ("orders", 1002.0, both), ("reports", 1003.0, DONE), ("reports", 1004.0, also)
+    )
+    assert view["actions"]["1"]["state"] == "confirmed"
+
+
+def test_an_order_to_all_says_who_was_left_out_and_why(tmp_path):
+    some = {**HOLD, "vehicle": None, "left_out": {"uav1": "a pilot flies it"}, "notes": ["uav0 is not heard"]}
+    (action,) = told(tmp_path / "a", ("orders", 1002.0, some))["actions"].values()
+    assert (action["left_out"], action["notes"]) == ({"uav1": "a pilot flies it"}, ["uav0 is not heard"])
+
+
+GROUNDING = FLIGHT.replace("FLY a within 100 s: continue", "FLY a within 100 s: hold")
+
+
+def test_while_a_vehicle_is_held_its_request_runs_out_and_its_agent_is_grounded(tmp_path):
+    with Tape(tmp_path / "r.mcap", GROUNDING) as tape:
+        tape.turn(0, uav(WEST, 0))
+        tape.turn(1, sayings=[Ordering(Fallback.HOLD, "uav0", "Ana")])
+        assert tape.card()["request"]["fallback"] == "hold"
+        meanwhile = (
+            "the 100 s of its request run on meanwhile; then nothing that a orders is carried out any more"
+        )
+        assert tape.card()["why"].endswith(meanwhile)
+        tape.turn(101, uav(WEST, 101))
+        assert tape.card()["why"] == "its request stands for longer than 100 s; held by the operator (Ana)"
+        tape.turn(102, sayings=[GivingBack("uav0")])
+        assert tape.run.state.grounded == {"a"}
+        assert not any(isinstance(each, GoTo) for each in tape.turn(103, uav(WEST, 103)).commands)
+
+
+def test_a_finding_that_is_wrong_stands_until_it_is_acknowledged(tape):
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(10, reports=[LinkLost("uav0", 1010.0, 1000.0)])
+    tape.turn(11, uav(WEST, 11), reports=[LinkRestored("uav0", 1011.0)])
+    alerts = tape.history().newest().sections["alerts"]
+    kinds = {key: (each["kind"], each["wrong"]) for key, each in alerts.items()}
+    (lost,) = [key for key, each in kinds.items() if each == ("lost link", True)]
+    assert ("link restored", False) in kinds.values()
+    tape.turn(12, sayings=[Acknowledging(int(lost), "Ana")])
+    seen_by = tape.history().newest().sections["alerts"][lost]["acknowledged"]
+    assert seen_by == {"by": "Ana", "time": 1012.0}
+    assert [(each["what"], each["about"]) for each in actions(tape)] == [("acknowledge", "uav0")]
+
+
+def test_what_is_no_such_message_is_passed_over(tmp_path):
+    topics = (
+        "arrivals",
+        "steps",
+        "commands",
+        "reports",
+        "orders",
+        "status",
+        "said",
+        "stations",
+        "given_back",
+        "deadlines",
+    )
+    odd = [None, [], 3, {}, {"entity": 3}, {"entity": "uav0", "ring": [["x", 1]]}, {"requests": []}]
+    odd += [{"agent": "op", "until": "noon"}, {"left_out": [], "notes": {}, "requests": {}, "order": "hold"}]
+    odd += [{"command": "GoTo", "request": "x", "entity": "uav0", "ring": [[1, 2], [3]]}]
+    view = told(tmp_path / "a", *((topic, 1002.0, data) for topic in topics for data in odd))
+    assert view["vehicles"]["uav0"]["level"] == 0
+    assert view["entities"]["uav0"]["at"] == (37.01, -8.65)
+
+
+def test_a_card_stays_as_it_is_while_its_vehicle_is_heard_ten_times_a_second(tmp_path):
+    def card(count):
+        arrivals = [("arrivals", 1002.0 + tenth / 10, flies(1002.0 + tenth / 10)) for tenth in range(count)]
+        return told(tmp_path / f"{count}", *arrivals)["vehicles"]["uav0"]
+
+    def flies(time):
+        at = {"ring": [[370100000, -86500000 + round((time - 1002.0) * 1e3)]], "altitude": [time - 900.3] * 2}
+        return {"plugin": "autopilot", "entity": "uav0", "kind": "UAV", "time": time, **at}
+
+    first = card(1)
+    assert first["link"] == {"heard": 1002, "lost": False}
+    assert first == card(8)
+    assert first != card(11)

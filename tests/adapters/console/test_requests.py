@@ -1,0 +1,77 @@
+"""The protocol of a console: what its reference says of it, and what is read of it."""
+
+import asyncio
+import json
+import re
+import sys
+
+import pytest
+from clients import ACCESS, DOCS, HELLO, OF_CLIENT, SCHEMA, console
+
+from adapters.console.requests import Unreadable, read_request
+
+
+async def test_the_client_of_the_page_follows(recording):
+    page = (DOCS / "console.md").read_text(encoding="utf-8")
+    code = page.partition("```python\n")[2].partition("```")[0]
+    async with console(recording) as address:
+        link = f"{address}/#token={ACCESS.watch}"
+        process = await asyncio.create_subprocess_exec(
+            sys.executable, "-c", code, link, stdout=asyncio.subprocess.PIPE
+        )
+        try:
+            async with asyncio.timeout(20):
+                while not (said := await process.stdout.readline()).startswith(b"{'uav0':"):
+                    assert said == b"{}\n"
+        finally:
+            process.kill()
+            await process.wait()
+
+
+@pytest.mark.parametrize(
+    "said",
+    [HELLO, {"type": "seek", "time": 1.5}, {"type": "play", "speed": 0.5}, {"type": "pause"}, {"type": "live"},
+     *({"type": "act", "id": "1", "action": action} for action in (
+         {"say": {"agent": "tower", "message": "handover"}}, {"order": {"order": "hold", "vehicle": None}},
+         {"order": {"order": "return", "vehicle": "uav0"}}, {"give_back": {"vehicle": "uav0"}},
+         {"acknowledge": {"alert": "17"}}))],
+)  # fmt: skip
+def test_what_a_client_says_is_understood_and_in_the_schema(said):
+    OF_CLIENT.validate(said)
+    assert read_request(json.dumps(said))
+
+
+@pytest.mark.parametrize("change", [{"type": "stop"}, {"speed": 0.4}, {"speed": 101}, {"speed": None}])
+def test_what_the_schema_refuses_is_not_understood(change):
+    said = {"type": "play", "speed": 1} | change
+    assert not OF_CLIENT.is_valid(said)
+    with pytest.raises(Unreadable):
+        read_request(json.dumps(said))
+
+
+def test_the_reference_lists_the_sections_of_the_schema_in_their_order():
+    page = (DOCS / "console.md").read_text(encoding="utf-8")
+    listed = re.findall(
+        r"^\| `(\w+)` \|", page.partition("## The sections")[2].partition("\n## ")[0], re.MULTILINE
+    )
+    assert listed == list(SCHEMA["$defs"]["sections"]["properties"])
+
+
+def objects(part):
+    """Yield all that a schema says of objects with members."""
+    if isinstance(part, dict):
+        if part.get("type") == "object":
+            yield part
+        part = list(part.values())
+    if isinstance(part, list):
+        for each in part:
+            yield from objects(each)
+
+
+def test_a_misspelt_member_is_refused_in_every_object_of_the_schema():
+    loose = [
+        each
+        for each in objects(SCHEMA)
+        if "properties" in each and each.get("additionalProperties") is not False
+    ]
+    assert loose == []

@@ -1,0 +1,93 @@
+"""The recording of one station among several: its part of the mission is folded as the whole would be."""
+
+import pytest
+from live_missions import LIVE, Run, seen
+from recorded import written
+
+from adapters.console.history import History
+from adapters.live.state import Plan, Saying
+from adapters.recording.schemas import VERSION
+from adapters.recording.writing import Recorder
+from bigactors.console import rules_of
+from bigactors.missions import digest_of, open_mission
+from bigactors.stations import parting_json
+from semantics.state.partition import Parting, parted
+
+STATIONS = {name: name for name in ("gcs0", "gcs1", "gcs2")}
+PART = Parting("gcs0", STATIONS, {"gcs1": 0, "gcs2": 0}, {"gcs1": 0, "gcs2": 0})
+
+
+@pytest.fixture(scope="module")
+def mission():
+    return open_mission("distributed_handover", LIVE)
+
+
+def header(mission):
+    return {
+        "mission": "distributed_handover",
+        "text": mission.source.text,
+        "digest": digest_of(mission),
+        "version": "0",
+        "verified": False,
+        "vehicles": {"uav0": "autopilot"},
+        "station": parting_json(PART),
+    }
+
+
+def view(path):
+    history = History(path, rules_of)
+    while history.read_on(1.0):
+        pass
+    return history.newest().sections
+
+
+def test_a_stations_recording_is_replayed_by_its_part_of_the_mission(mission, tmp_path):
+    first = parted(mission.initial, PART)
+    run = Run(Plan(first, {"uav0": "autopilot"}, mission.precautions))
+    recorder = Recorder(tmp_path / "r.mcap", header(mission), 1000.0, mission.setting.kinds)
+    at = first.structure.physical.position("uav0").geometry.ring[0]
+    heard = seen("uav0", (at[0] / 1e7, at[1] / 1e7), 1001.0)
+    recorder.arrival(heard, 1001.0)
+    recorder.turn(run.turn(1001.0, heard), 1001.0, lambda _: ())
+    recorder.turn(run.turn(1002.0, sayings=[Saying("op0", "handover")]), 1002.0, lambda _: ())
+    recorder.close("done", 1003.0)
+    assert "rcv_msg" in run.rules
+    shown = view(tmp_path / "r.mcap")
+    assert "0" not in shown["alerts"]  # all was replayed
+    assert shown["clock"]["step"] == run.state.number
+    assert shown["mission"]["station"] == "gcs0"
+    assert set(shown["sayings"]) == {'op0 "handover"'}
+    assert shown["sayings"]['op0 "handover"']["left"] == 0
+    assert shown["agents"]["op1"]["state"] == "runs at another station"
+    assert {name: (each["here"], each["vehicles"]) for name, each in shown["stations"].items()} == {
+        "gcs0": (True, ["uav0"]),
+        "gcs1": (False, []),
+        "gcs2": (False, []),
+    }
+
+
+def test_other_stations_are_reached_or_not_as_they_were_heard(mission, tmp_path):
+    run = {"schema": f"bigactors.run/{VERSION}", **header(mission)}
+    told = [
+        ("stations", 1001.0, {"station": "gcs1", "time": 1001.0, "reached": True, "heard": 1000.5}),
+        ("stations", 1003.0, {"station": "gcs1", "time": 1003.0, "reached": False, "heard": 1001.5}),
+        ("stations", 1003.0, {"station": "nobody", "time": 1003.0, "reached": True, "heard": 1001.5}),
+    ]
+    written(tmp_path / "r.mcap", run, told).close()
+    shown = view(tmp_path / "r.mcap")["stations"]
+    assert shown["gcs1"] == {"here": False, "reached": False, "heard": 1001.5, "vehicles": []}
+    assert shown["gcs2"] == {"here": False, "reached": None, "heard": None, "vehicles": []}
+    assert set(shown) == set(STATIONS)
+
+
+def test_a_vehicle_whose_station_is_not_reached_is_wrong(mission, tmp_path):
+    run = {"schema": f"bigactors.run/{VERSION}", **header(mission)}
+    obeys = {"plugin": "autopilot", "entity": "uav0", "kind": "UAV", "ring": [[370100000, -86500000]]}
+    told = [
+        ("arrivals", 1001.0, {**obeys, "channels": ["control:gcs1"]}),
+        ("stations", 1002.0, {"station": "gcs1", "time": 1002.0, "reached": False, "heard": 1000.5}),
+    ]
+    for count, level, why in ((1, 0, ""), (2, 2, "gcs1, which it obeys, is not reached")):
+        written(tmp_path / f"{count}.mcap", run, told[:count]).close()
+        card = view(tmp_path / f"{count}.mcap")["vehicles"]["uav0"]
+        assert (card["level"], card["why"]) == (level, why)

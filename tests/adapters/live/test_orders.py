@@ -1,0 +1,326 @@
+"""An operator takes a vehicle: it holds or returns at once, and the mission does not overrule it."""
+
+import pytest
+from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, known_of, plan_of, seen
+
+from adapters.live.core import is_refused, resumed
+from adapters.live.state import (
+    Acknowledging,
+    Bidden,
+    GivingBack,
+    Heard,
+    Ordering,
+    Plan,
+)
+from adapters.plugin import (
+    Accepted,
+    Arrived,
+    GoTo,
+    Hold,
+    LinkLost,
+    LinkRestored,
+    Presence,
+    Rejected,
+    Return,
+    Status,
+    StatusText,
+    TakenOver,
+)
+from physical import PhysicalProperty, box
+from semantics.contingencies import Fallback, Precautions, TimeLimit
+from semantics.state.partition import Parting, parted
+
+GO = "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) observe(CHILDREN(east0)) }"
+HAND = "BigActor op hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }"
+HOLD, RETURN = Fallback.HOLD, Fallback.RETURN
+ANA = "the operator (Ana)"
+TWO = TOUR.replace("boat0: Vessel", "uav1: UAV = point (37.012, -8.652) linked control:gcs0\n  boat0: Vessel")
+
+
+def ordered(vehicle="uav0", what=HOLD, by="Ana"):
+    return Ordering(what, vehicle, by)
+
+
+def told(run):
+    return [type(command).__name__ for command in run.commands]
+
+
+def flying(text=TOUR + GO, precautions=None, **more):
+    run = Run(plan_of(text, precautions), **more)
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    return run
+
+
+@pytest.mark.parametrize(("what", "kind", "reason"), [(HOLD, Hold, "held"), (RETURN, Return, "sent home")])
+def test_a_vehicle_that_an_operator_orders_is_told_at_once_and_its_request_stands_pending(what, kind, reason):
+    run = flying()
+    turn = run.turn(1.0, seen("uav0", BETWEEN, 1.0), sayings=[ordered(what=what)])
+    assert turn.commands == (kind("operator-2", "uav0"),)
+    assert turn.answers[0].refusal == ""
+    assert turn.answers[0].requests == {"uav0": "operator-2"}
+    assert run.state.taken == {"uav0": f"{reason} by {ANA}"}
+    assert [f.message for f in turn.findings] == [
+        f"uav0 is told to {what.value} by {ANA}; the mission does not command it until `bigactors give-back uav0`"
+    ]
+    run.turn(2.0, seen("uav0", EAST, 2.0))
+    assert "commit" not in run.rules
+    assert not is_refused(run.state)
+
+
+def test_an_order_replaces_what_the_same_turn_was_to_tell_the_vehicle():
+    run = flying()
+    moved = PhysicalProperty(
+        "east0", "Location", box((37.02, -8.59), (37.00, -8.61)), time=1.0, source="places"
+    )
+    turn = run.turn(1.0, Heard("places", moved))
+    assert [type(each) for each in turn.commands] == [GoTo]
+    run = flying()
+    turn = run.turn(1.0, Heard("places", moved), sayings=[ordered()])
+    assert turn.commands == (Hold("operator-2", "uav0"),)
+
+
+def test_the_other_vehicles_and_agents_go_on():
+    goes = GO + "BigActor b hosted_at uav1 with_behavior { control(MOVE_HOST_TO east0) }"
+    plan = plan_of(TWO + goes)
+    run = Run(Plan(plan.first, {"uav0": "autopilot", "uav1": "autopilot"}))
+    run.turn(0.0, seen("uav0", WEST, 0.0), seen("uav1", (37.012, -8.652), 0.0))
+    run.turn(1.0, sayings=[ordered()])
+    run.turn(2.0, seen("uav0", EAST, 2.0), seen("uav1", (37.012, -8.612), 2.0))
+    assert [label for label in run.labels if "commit" in label] == ["⟨commit : FLY(b, MOVE_HOST_TO east0)⟩"]
+
+
+def test_an_order_to_all_tells_all_but_those_that_someone_else_has_taken_over():
+    plan = plan_of(TWO)
+    run = Run(Plan(plan.first, {"uav0": "autopilot", "uav1": "autopilot"}))
+    run.turn(0.0, seen("uav0", WEST, 0.0), seen("uav1", WEST, 0.0))
+    run.turn(1.0, reports=[TakenOver("uav1", 1.0, "it is in RTL")])
+    turn = run.turn(2.0, sayings=[ordered(None, RETURN)])
+    left_out = "uav1 was taken over, and is not overruled: it is in RTL"
+    assert turn.commands == (Return("operator-1", "uav0"),)
+    assert turn.answers[0].refusal == ""
+    assert turn.answers[0].left_out == {"uav1": left_out}
+    message = f"uav0 is told to return by {ANA}; {left_out}; the mission does not command it until"
+    (finding,) = turn.findings
+    assert (finding.about, finding.message) == ("", f"{message} `bigactors give-back VEHICLE`")
+    turn = run.turn(3.0, sayings=[ordered(None, HOLD)])
+    assert [each.entity for each in turn.commands] == ["uav0"]
+
+
+def test_an_order_to_a_vehicle_that_was_taken_over_overrules_that_and_says_so():
+    run = flying()
+    run.turn(1.0, reports=[TakenOver("uav0", 1.0, "it is in RTL")])
+    turn = run.turn(2.0, sayings=[ordered()])
+    assert [type(each).__name__ for each in turn.commands] == ["GiveBack", "Hold"]
+    assert "that overrules who took uav0 over: it is in RTL" in turn.findings[0].message
+    assert run.state.taken == {"uav0": f"held by {ANA}"}
+
+
+def test_an_order_does_not_overrule_what_its_operator_cannot_know_of_yet():
+    run = flying()
+    turn = run.turn(1.0, reports=[TakenOver("uav0", 1.0, "it is in RTL")], sayings=[ordered()])
+    assert turn.commands == ()
+    assert turn.answers[0].refusal == (
+        "uav0 was taken over just now: it is in RTL; order it again to overrule that"
+    )
+
+
+@pytest.mark.parametrize("owner", ["stations", "autopilot"])
+def test_a_vehicle_under_another_stations_authority_is_ordered_there(owner):
+    first = parted(plan_of(TOUR + GO).first, Parting("gcs1", {"gcs0": "gcs0", "uav0": "gcs0"}, {}, {}))
+    run = Run(Plan(first, {"uav0": owner}, peers="stations"))
+    for vehicle in ("uav0", None):
+        turn = run.turn(0.0, seen("uav0", WEST, 0.0, owner), sayings=[ordered(vehicle)])
+        assert turn.commands == ()
+        assert turn.answers[0].refusal == "uav0 is under the authority of gcs0: order it there"
+
+
+def test_there_is_no_order_to_what_is_no_vehicle():
+    turn = flying().turn(1.0, sayings=[ordered("boat0")])
+    assert turn.answers[0].refusal == "there is no vehicle 'boat0'; there are uav0"
+
+
+def test_what_was_ordered_is_confirmed_once_by_the_vehicle():
+    run = flying()
+    run.turn(1.0, sayings=[ordered(what=RETURN)])
+    run.turn(2.0, reports=[Accepted("operator-2", "uav0", 2.0)])
+    run.turn(3.0, reports=[Accepted("operator-2", "uav0", 3.0), Arrived("operator-2", "uav0", 3.0)])
+    assert [f.message for f in run.findings[1:]] == [f"uav0 returns, as {ANA} ordered"]
+
+
+def test_a_vehicle_that_refuses_an_order_is_not_commanded_by_the_mission_all_the_same():
+    run = flying()
+    run.turn(1.0, sayings=[ordered()])
+    run.turn(2.0, reports=[Rejected("operator-2", "uav0", 2.0, "no mode of that name")])
+    assert run.findings[-1].message == "uav0 refuses the operator's order operator-2: no mode of that name"
+    run.turn(3.0, seen("uav0", EAST, 3.0))
+    assert "commit" not in run.rules
+
+
+def test_an_order_may_be_given_twice_and_another_after_it():
+    run = flying()
+    for number, what in enumerate((HOLD, HOLD, RETURN), 1):
+        run.turn(float(number), sayings=[ordered(what=what)])
+    assert told(run) == ["GoTo", "Hold", "Hold", "Return"]
+    assert run.state.taken == {"uav0": f"sent home by {ANA}"}
+
+
+def test_a_vehicle_that_was_ordered_does_anew_what_the_mission_asks_once_it_is_given_back():
+    run = flying()
+    run.turn(1.0, sayings=[ordered()])
+    run.turn(2.0, sayings=[GivingBack("uav0", by="Ben")])
+    assert told(run) == ["GoTo", "Hold", "GiveBack", "GoTo"]
+    assert (run.state.taken, run.state.bidden) == ({}, {})
+    assert run.findings[-1].message == "uav0 was given back by Ben, and is commanded again"
+    run.turn(3.0, seen("uav0", EAST, 3.0))
+    assert "commit" in run.rules
+
+
+def test_what_is_said_at_once_counts_in_its_order():
+    run = flying()
+    run.turn(1.0, sayings=[ordered(), GivingBack("uav0"), ordered(what=RETURN)])
+    assert told(run)[-1] == "Return"
+    assert run.state.taken == {"uav0": f"sent home by {ANA}"}
+
+
+def test_a_vehicle_that_was_taken_over_is_given_back_and_held_by_two_words_at_once():
+    run = flying()
+    run.turn(1.0, reports=[TakenOver("uav0", 1.0, "it is in RTL")])
+    run.turn(2.0, sayings=[GivingBack("uav0"), ordered()])
+    assert told(run) == ["GoTo", "GiveBack", "Hold"]
+
+
+def test_an_order_does_not_overrule_who_has_taken_a_held_vehicle_just_now():
+    run = flying()
+    run.turn(1.0, sayings=[ordered()])
+    turn = run.turn(2.0, reports=[TakenOver("uav0", 2.0, "it is in FBWA")], sayings=[ordered()])
+    assert turn.commands == ()
+    assert "just now: it is in FBWA" in turn.answers[0].refusal
+
+
+def test_a_hand_over_that_a_fall_back_ends_is_told_again_if_its_agent_is_still_served():
+    run = Run(plan_of(TOUR + GO + HAND, Precautions(HOLD, (TimeLimit("FLY", "a", 5.0, HOLD),))))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    assert sorted(told(run)) == ["GoTo", "HandOver"]
+    run.turn(6.0, seen("uav0", BETWEEN, 6.0))
+    run.turn(7.0, seen("uav0", BETWEEN, 7.0))
+    assert told(run)[2:] == ["Hold", "HandOver"]
+    run.turn(8.0, seen("uav0", BETWEEN, 8.0, channels=("control:gcs1",)))
+    assert run.rules[-1] == "actuate"
+
+
+@pytest.mark.parametrize("fallback", [HOLD, RETURN])
+def test_what_the_mission_falls_back_on_does_not_overrule_an_operator(fallback):
+    other = RETURN if fallback is HOLD else HOLD
+    run = flying(precautions=Precautions(fallback, (TimeLimit("FLY", None, 5.0, fallback),)))
+    run.turn(1.0, sayings=[ordered(what=other)])
+    run.turn(2.0, boat(WEST, 2.0))
+    run.turn(10.0)
+    assert {"broken assumption", "late"} <= set(run.kinds())
+    assert told(run) == ["GoTo", type(run.commands[-1]).__name__]
+    assert told(run)[-1] == other.value.capitalize()
+    reason = "held" if other is HOLD else "sent home"
+    assert f"uav0 is not told to {fallback.value}: it is {reason} by {ANA}" in [
+        f.message for f in run.findings
+    ]
+
+
+def test_an_operator_is_obeyed_while_the_mission_is_suspended():
+    run = flying(precautions=Precautions(HOLD))
+    run.turn(1.0, boat(WEST, 1.0))
+    assert run.state.suspended
+    run.turn(2.0, sayings=[ordered(what=RETURN)])
+    assert told(run) == ["GoTo", "Hold", "Return"]
+
+
+def test_a_vehicle_that_is_not_heard_is_told_when_it_is_and_the_operator_knows():
+    run = flying()
+    run.turn(1.0, reports=[LinkLost("uav0", 1.0, 0.0)])
+    turn = run.turn(2.0, sayings=[ordered()])
+    assert turn.commands == (Hold("operator-3", "uav0"),)
+    assert "uav0 is not heard: it is told as soon as it is" in turn.findings[0].message
+    run.turn(3.0, seen("uav0", BETWEEN, 3.0), reports=[LinkRestored("uav0", 3.0)])
+    assert told(run) == ["GoTo", "Hold", "Hold"]  # the first for the assumption that the lost link broke
+
+
+def test_a_vehicle_that_is_being_handed_over_is_stopped_and_told_again_once_given_back():
+    run = Run(plan_of(TOUR + HAND))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(1.0, sayings=[ordered()])
+    assert told(run) == ["HandOver", "Hold"]
+    run.turn(2.0, sayings=[GivingBack("uav0")])
+    assert told(run) == ["HandOver", "Hold", "GiveBack", "HandOver"]
+
+
+def test_a_pilot_who_takes_over_a_held_vehicle_ends_the_order():
+    run = flying()
+    run.turn(1.0, sayings=[ordered()])
+    run.turn(2.0, reports=[TakenOver("uav0", 2.0, "it is in FBWA")])
+    assert run.state.taken == {"uav0": "it is in FBWA"}
+    assert run.state.bidden == {}
+
+
+def test_a_resumed_run_keeps_the_operators_order():
+    run = flying()
+    run.turn(1.0, sayings=[ordered()])
+    known = known_of(run.state, taken=run.state.taken, bidden=run.state.bidden)
+    again = Run(run.plan)
+    again.state = resumed(run.plan, known, 100.0)
+    again.turn(101.0, seen("uav0", EAST, 101.0), reports=[Arrived("operator-2", "uav0", 101.0)])
+    assert again.rules == []
+    assert again.kinds() == ["confirmed"]
+    assert again.state.bidden == {"uav0": Bidden(Hold("operator-2", "uav0"), "Ana", confirmed=True)}
+
+
+def test_a_finding_is_acknowledged_by_its_number_if_there_is_one():
+    run = flying()
+    for finding in (1, 0, -1):
+        run.turn(1.0, sayings=[Acknowledging(finding, "Ana")])
+    assert [answer.refusal for answer in run.answers] == [
+        f"there is no finding {n}; there are 0" for n in (1, 0, -1)
+    ]
+    run.turn(2.0, reports=[TakenOver("uav0", 2.0, "x")])
+    run.turn(3.0, sayings=[Acknowledging(1), Acknowledging(2)])
+    assert [answer.refusal for answer in run.answers[3:]] == ["", "there is no finding 2; there are 1"]
+    assert run.state.findings == len(run.findings) == 1
+
+
+def test_what_vehicles_and_stations_say_for_people_alone_changes_nothing():
+    own = (
+        Status("uav0", 1.0, "autopilot", 1.0, "LOITER", True, None, 90.0, ("gcs0",)),
+        StatusText("uav0", 1.0, "Mission: 1 Takeoff", 6),
+        Presence("gcs1", 1.0, reached=True, heard=1.0),
+    )
+    ends = []
+    for reports in ((), own):
+        run = Run(plan_of(TOUR + GO))
+        for now, at in ((0.0, WEST), (1.0, BETWEEN), (2.0, EAST)):
+            run.turn(now, seen("uav0", at, now), reports=reports)
+        ends.append((run.state, run.labels, run.commands, run.findings))
+    assert ends[0][1:] == ends[1][1:]
+    assert ends[0][0].configuration == ends[1][0].configuration
+
+
+@pytest.mark.parametrize("fallback", [Return, Hold])
+def test_a_vehicle_that_is_given_back_after_its_time_limit_is_flown_by_the_fallback_and_not_by_nobody(
+    fallback,
+):
+    then = RETURN if fallback is Return else HOLD
+    run = flying(precautions=Precautions(limits=(TimeLimit("FLY", "a", 60.0, then),)))
+    run.turn(10.0, seen("uav0", BETWEEN, 10.0), sayings=[ordered()])
+    run.turn(100.0, seen("uav0", BETWEEN, 100.0))  # meanwhile the limit is over, and the operator is obeyed
+    assert told(run)[-1] == "Hold"
+    turn = run.turn(110.0, seen("uav0", BETWEEN, 110.0), sayings=[GivingBack("uav0", by="Ana")])
+    assert [type(command).__name__ for command in turn.commands] == ["GiveBack", fallback.__name__]
+    (given,) = (each for each in turn.findings if each.kind == "given back")
+    assert given.message == (
+        f"uav0 was given back by Ana; what it was to do was given up: it is told to {then.value}"
+    )
+
+
+def test_a_vehicle_that_is_given_back_while_the_mission_is_suspended_does_what_a_broken_assumption_asks():
+    run = flying(TWO + GO, Precautions(RETURN))
+    run.turn(1.0, seen("uav0", BETWEEN, 1.0), sayings=[ordered()])
+    run.turn(2.0, boat(WEST, 2.0))  # nothing lets the boat drift
+    assert "broken assumption" in run.kinds()
+    turn = run.turn(3.0, seen("uav0", BETWEEN, 3.0), sayings=[GivingBack("uav0")])
+    assert [type(command).__name__ for command in turn.commands] == ["GiveBack", "Return"]

@@ -1,0 +1,152 @@
+"""The section `timing` in live runs: what takes longer than it says, or is over sooner, breaks an assumption."""
+
+import pytest
+from audited import SHUTTLE, copter, flown_in
+from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
+
+from adapters.live.timing import flying
+from bigactors.vehicle_lines import vehicle_line
+from semantics.contingencies import Fallback, Precautions
+
+FLIGHT = """
+BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) }
+scheduler fcfs
+control timed
+timing {
+  uav0 flies at 18 m/s to 25 m/s
+  uav0 lasts 10 min, restored in west0
+  agents react within 1 s
+}
+"""
+FLIES = "uav0 flies at 18 m/s to 25 m/s (line 21)"
+
+
+def airborne(text=FLIGHT, **more):
+    run = Run(plan_of(TOUR + text, **more))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(0.1, seen("uav0", WEST, 0.1))
+    assert run.rules == ["req_ctr", "command"]
+    return run
+
+
+def broken(run):
+    return [finding.message for finding in run.findings if finding.kind == "broken assumption"]
+
+
+def test_a_flight_has_its_interval_while_it_is_under_way():
+    run = airborne()
+    (flight,) = flying(run.state.timers, 30.0)
+    assert (flight.vehicle, flight.destination, flight.elapsed) == ("uav0", "east0", 30.0)
+    assert (flight.least, flight.most) == (71.0, 255.0)
+
+
+def test_a_line_about_a_vehicle_says_how_long_it_still_flies():
+    run = airborne()
+    said = vehicle_line("uav0", run.state, None, 30.0)
+    assert said == "uav0 is on its way to east0, 2.7 km away, for 30 s, 41 s to 3:45 to go"
+
+
+def test_a_flight_that_ends_in_time_breaks_nothing():
+    run = airborne()
+    run.turn(100.0, seen("uav0", EAST, 100.0))
+    assert run.rules[-1] == "commit"
+    assert broken(run) == []
+
+
+def test_a_flight_that_is_over_before_it_can_be_breaks_its_assumption():
+    run = airborne()
+    run.turn(20.0, seen("uav0", EAST, 20.0))
+    assert broken(run) == [
+        f"the flight of uav0 to east0 is over after 20 s, sooner than 71 s; the mission says: {FLIES}"
+    ]
+
+
+def test_a_flight_that_takes_too_long_breaks_its_assumption_at_once_and_only_once():
+    run = airborne(precautions=Precautions(on_broken=Fallback.RETURN))
+    run.turn(200.0, seen("uav0", BETWEEN, 200.0))
+    assert run.again is not None
+    assert 255.0 < run.again < 256.0
+    assert broken(run) == []
+    for now in (256.0, 257.0):
+        run.turn(now, seen("uav0", BETWEEN, now))
+    assert broken(run) == [f"the flight of uav0 to east0 takes longer than 4:15; the mission says: {FLIES}"]
+    assert type(run.commands[-1]).__name__ == "Return"
+
+
+def test_a_vehicle_that_is_aloft_for_longer_than_it_lasts_breaks_its_assumption():
+    run = airborne()
+    run.turn(100.0, seen("uav0", EAST, 100.0))
+    run.turn(599.0, seen("uav0", EAST, 599.0))
+    assert broken(run) == []
+    run.turn(601.0, seen("uav0", EAST, 601.0))
+    assert broken(run) == [
+        "uav0 is aloft for longer than 10 min; the mission says: uav0 lasts 10 min, restored in west0 (line 22)"
+    ]
+
+
+def test_a_drift_that_comes_too_soon_breaks_its_assumption():
+    run = Run(
+        plan_of(
+            TOUR
+            + """
+BigActor a hosted_at gcs0 with_behavior { react { case "never" => } }
+scheduler fcfs
+control timed
+environment { boat0 drifts among point (37.01, -8.65), point (37.01, -8.61)  someone says "never" to a }
+timing { boat0 drifts at most every 20 min }
+"""
+        )
+    )
+    run.turn(0.0, boat(WEST, 0.0))
+    run.turn(10.0, boat(EAST, 10.0))
+    assert broken(run) == [
+        "boat0 drifts again after 10 s; the mission says: boat0 drifts at most every 20 min (line 21)"
+    ]
+
+
+def test_time_without_listening_does_not_count():
+    run = airborne()
+    run.turn(300.0, seen("uav0", BETWEEN, 300.0), missed=100.0)
+    assert broken(run) == []
+
+
+def test_a_mission_without_times_keeps_no_timers():
+    run = Run(plan_of(TOUR + "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) }"))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    assert run.state.timers is None
+
+
+# --- flown
+
+FLOWN = (
+    SHUTTLE[: SHUTTLE.index("BigActor")]
+    + """
+BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) }
+scheduler fcfs
+control timed
+environment { uav0 arrives }
+timing {
+  tick 10 s
+  uav0 flies at 8 m/s to 12 m/s
+}
+live { on broken assumption: return }
+check { time "there": actually uav0 in east0 }
+"""
+)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("slowed", [1.0, 0.3])
+def test_a_vehicle_that_is_slowed_breaks_the_assumption_about_its_flight(tmp_path, monkeypatch, slowed):
+    monkeypatch.chdir(tmp_path)
+    vehicle = copter()
+    vehicle.slowed = slowed
+    flown = flown_in(tmp_path, FLOWN, vehicle, seconds=1500)
+    assert flown.ended == (slowed == 1.0)
+    assert flown.broken == (slowed < 1.0)
+    line = 1 + FLOWN[: FLOWN.index("uav0 flies")].count("\n")
+    told = f"the mission says: uav0 flies at 8 m/s to 12 m/s (line {line})"
+    assert flown.witness.told() == (
+        "" if flown.ended else f"the flight of uav0 to east0 takes longer than 9:40; {told}"
+    )
+    assert flown.inside("east0" if flown.ended else "west0")

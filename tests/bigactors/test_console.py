@@ -1,0 +1,287 @@
+"""`bigactors console` and `run --console`: real processes, a simulated copter, and an operator at a websocket."""
+
+import asyncio
+import json
+import os
+import signal
+import socket
+import ssl
+import time
+import urllib.error
+import urllib.request
+from contextlib import ExitStack, contextmanager, suppress
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import aiohttp
+import pytest
+from consoles import begun, free_port, link_of
+from cryptography import x509
+from cryptography.hazmat.primitives import hashes, serialization
+from cryptography.hazmat.primitives.asymmetric import ec
+from cryptography.x509.oid import NameOID
+
+from adapters.console.requests import PROTOCOL
+from adapters.recording.reading import read_recording
+from bigactors.cli import main
+from bigactors.commands.console import PORT
+
+MISSION = """
+mission tour
+signature {
+  kind Location contains Location, UAV, Station
+  kind UAV driven
+  kind Station
+}
+world {
+  west0: Location = box (37.02, -8.64) (37.00, -8.66)
+  east0: Location = box (37.02, -8.62) (37.00, -8.64)
+  gcs0: Station = point (37.05, -8.63) linked control:gcs0
+  uav0: UAV = point (37.01, -8.65) linked control:gcs0
+}
+BigActor a hosted_at uav0 with_behavior {
+  control(MOVE_HOST_TO east0)
+}
+BigActor op hosted_at gcs0 with_behavior { loop { react { case "status" => display("well") } } }
+environment {
+  uav0 arrives
+  says "status" to op at most 2 times
+}
+live { on broken assumption: continue }
+"""
+SIMULATOR = """
+import sys
+from adapters.simulated import Kind, Simulator, Vehicle, run
+run(Simulator(sys.argv[1], [Vehicle(Kind.COPTER, (37.01, -8.65, 20.0))]).run(), float(sys.argv[2]))
+"""
+
+
+@pytest.fixture(scope="module")
+def flown(tmp_path_factory):
+    """Return the recording of a short run that nothing was heard in."""
+    folder = tmp_path_factory.mktemp("flown")
+    mission, recording = folder / "tour.mission", folder / "run.mcap"
+    mission.write_text(MISSION)
+    with begun("-c", SIMULATOR, f"udpout:127.0.0.1:{(port := free_port(socket.SOCK_DGRAM))}", "20"):
+        line = ["run", str(mission), "--unverified", f"--vehicle=uav0=udp:127.0.0.1:{port}", "--for=1"]
+        assert main([*line, f"--record={recording}", f"--socket={folder / 's'}"]) == 3
+    return recording
+
+
+# --- a recording
+
+
+@pytest.fixture
+def usual_port():
+    """Return the usual port, which somebody listens at."""
+    with ExitStack() as stack:
+        with suppress(OSError):  # somebody does
+            stack.enter_context(socket.create_server(("127.0.0.1", PORT)))
+        yield PORT
+
+
+def test_a_recording_is_served_until_it_is_interrupted_at_another_port_where_the_usual_is_taken(
+    flown, usual_port
+):
+    with begun("-m", "bigactors", "console", flown) as process:
+        said, address = process.stdout.readline(), link_of(process, "watch").partition("#")[0]
+        assert said == f"port {usual_port} is taken: the console listens at another one\n"
+        with urllib.request.urlopen(address) as answer:
+            assert "<title>" in answer.read().decode()
+        process.send_signal(signal.SIGINT)
+        assert process.wait(60) == 0
+        assert "to act" not in process.stdout.read()
+
+
+def test_a_port_that_was_asked_for_and_is_not_free_is_a_mistake(flown, capsys):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        assert main(["console", str(flown), "--listen", str(port)]) == 2
+    assert f"127.0.0.1:{port}" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        (["--listen=0.0.0.0:0"], "--tls"),
+        (["--listen=station.example:0"], "--tls"),
+        (["--listen=here"], "not [HOST:]PORT"),
+        (["--socket=s"], "--follow"),
+        (["--tiles=none.pmtiles"], "none.pmtiles"),
+        (["--tiles=words.pmtiles"], "no map in PMTiles"),
+        (["--tls", "words.pmtiles", "words.pmtiles"], "no certificate"),
+    ],
+)
+def test_what_cannot_be_served_is_a_mistake_that_says_why(flown, tmp_path, monkeypatch, capsys, more, says):
+    monkeypatch.chdir(tmp_path)
+    Path("words.pmtiles").write_text("words")
+    assert main(["console", str(flown), *more]) == 2
+    assert says in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("content", [None, b"", b"words", b"\x89MCAP0\r\n"])
+def test_what_is_no_recording_is_a_mistake(tmp_path, capsys, content):
+    path = tmp_path / "run.mcap"
+    if content is not None:
+        path.write_bytes(content)
+    assert main(["console", str(path)]) == 2
+    assert str(path) in capsys.readouterr().err
+
+
+def certificate(folder):
+    """Write a certificate of this machine's own, and its key."""
+    key, now = ec.generate_private_key(ec.SECP256R1()), datetime.now(UTC)
+    name = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, "localhost")])
+    about = x509.CertificateBuilder(name, name, key.public_key(), x509.random_serial_number())
+    about = about.not_valid_before(now).not_valid_after(now + timedelta(days=1))
+    about = about.add_extension(x509.SubjectAlternativeName([x509.DNSName("localhost")]), critical=False)
+    files = folder / "cert.pem", folder / "key.pem"
+    files[0].write_bytes(about.sign(key, hashes.SHA256()).public_bytes(serialization.Encoding.PEM))
+    form = serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
+    files[1].write_bytes(key.private_bytes(serialization.Encoding.PEM, *form))
+    return files
+
+
+def test_with_a_certificate_it_is_served_by_https_also_before_there_is_a_recording(tmp_path):
+    (cert, key), later = certificate(tmp_path), tmp_path / "later.mcap"
+    more = ("--follow", "--tls", cert, key, "--listen=localhost:0")
+    with begun("-m", "bigactors", "console", later, *more) as process:
+        waits = f"{later} is not there yet: the console waits for the run that writes it\n"
+        assert process.stdout.readline() == waits
+        link = link_of(process, "watch")
+        assert link.startswith("https://localhost:")
+        trusting = ssl.create_default_context(cafile=str(cert))
+        with urllib.request.urlopen(link, context=trusting) as answer:
+            assert answer.status == 200
+        with pytest.raises((urllib.error.URLError, ConnectionError)):
+            urllib.request.urlopen(link.replace("https", "http"))
+
+
+# --- a run
+
+
+@contextmanager
+def flying(folder, *more):
+    """Fly the mission with a console; yield the process."""
+    (folder / "tour.mission").write_text(MISSION)
+    port = free_port(socket.SOCK_DGRAM)
+    line = ["-m", "bigactors", "run", folder / "tour.mission", f"--vehicle=uav0=udp:127.0.0.1:{port}"]
+    line += ["--unverified", "--console", f"127.0.0.1:{free_port()}", "--socket", folder / "s", *more]
+    with begun("-c", SIMULATOR, f"udpout:127.0.0.1:{port}", "40"), begun(*line) as process:
+        yield process
+
+
+async def operate(link, does):
+    """Let somebody operate a console: `does` gets what is shown, and two functions: to wait, and to act."""
+    address, _, token = link.partition("/#token=")
+    state = {}
+    async with aiohttp.ClientSession() as session, session.ws_connect(f"{address}/ws") as found:
+        await found.send_json({"type": "hello", "protocol": PROTOCOL, "token": token, "name": "Ana"})
+        answers = {}
+
+        async def frame():
+            heard = json.loads((await found.receive(20)).data)
+            if heard["type"] == "answer":
+                answers[heard["id"]] = heard["refusal"]
+            for name, values in (heard.get("state") or heard.get("set") or {}).items():
+                state.setdefault(name, {}).update(values)
+            for name, keys in heard.get("gone", {}).items():
+                for key in keys:
+                    del state[name][key]
+
+        async def until(true):
+            async with asyncio.timeout(40):
+                while not (state and true()):
+                    await frame()
+
+        async def act(**action):
+            name = str(len(answers))
+            await found.send_json({"type": "act", "id": name, "action": action})
+            await until(lambda: name in answers)
+            return answers[name]
+
+        await does(state, until, act)
+
+
+def fate(state, what):
+    return [each["state"] for each in state.get("actions", {}).values() if what in each["what"]]
+
+
+def children(pid):
+    found = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+    return [int(each) for each in found]
+
+
+def words_of(pid):
+    return Path(f"/proc/{pid}/cmdline").read_text().split("\0")
+
+
+def console_of(run):
+    """Return the process of a run's console, and the recording that it reads."""
+    console, words = next(
+        (each, words) for each in children(run.pid) if "console" in (words := words_of(each))
+    )
+    return console, Path(next(word for word in words if word.endswith(".mcap")))
+
+
+def niceness_of(process):
+    """Return how much a process gives way within its session, and its session to the others where a system has that."""
+    session = Path(f"/proc/{process}/autogroup")
+    among = {int(session.read_text().split()[-1])} if session.exists() else set()
+    return among | {os.getpriority(os.PRIO_PROCESS, process)}
+
+
+def test_an_operator_acts_and_sees_what_becomes_of_it_and_the_run_outlives_its_console(tmp_path):
+    async def does(state, until, act):
+        await until(lambda: state["vehicles"]["uav0"]["order"] is not None)
+        assert (state["clock"]["live"], state["clock"]["rate"]) == (True, 1.0)
+        assert await act(say={"agent": "op", "message": "status"}) == ""
+        await until(lambda: [each["left"] for each in state["sayings"].values()] == [1])
+        assert "may be said" in await act(say={"agent": "op", "message": "land"})
+        assert await act(order={"order": "hold", "vehicle": "uav0"}) == ""
+        await until(lambda: "confirmed" in fate(state, "hold"))
+        assert "Ana" in state["vehicles"]["uav0"]["taken"]
+        assert {each["by"] for each in state["actions"].values()} == {"Ana"}
+        card = state["vehicles"]["uav0"]
+        assert card["altitude"] == pytest.approx(card["height"] + 20.0, abs=25.0)
+        assert await act(give_back={"vehicle": "uav0"}) == ""
+        await until(lambda: state["vehicles"]["uav0"]["taken"] is None)
+        await until(lambda: state["vehicles"]["uav0"]["believed"] == "east0")
+
+    with flying(tmp_path) as process:
+        link = link_of(process)
+        asyncio.run(operate(link, does))
+        console, recording = console_of(process)
+        assert niceness_of(console) == {os.getpriority(os.PRIO_PROCESS, process.pid) + 5}
+        told = read_recording(recording)
+        assert [message.data["by"] for message in told.of("orders")] == ["Ana"]
+        assert [message.data["by"] for message in told.of("given_back")] == ["Ana"]
+        os.kill(console, signal.SIGKILL)
+        said = ""
+        while "the run goes on without it" not in said:
+            said += process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        assert process.wait(20) == 3
+    assert not recording.parent.exists()
+
+
+def test_a_console_says_that_its_run_was_killed_and_ends_with_it(tmp_path):
+    async def does(state, until, _act):
+        await until(lambda: state["vehicles"]["uav0"]["order"] is not None)
+        process.kill()
+        await until(lambda: state["clock"]["ended"] is not None)
+        assert state["clock"]["ended"].startswith("the run ended without a word")
+
+    with flying(tmp_path, "--record", tmp_path / "run.mcap") as process:
+        assert "console: it starts beside the run; its links follow\n" in process.stdout
+        link = link_of(process)
+        asyncio.run(operate(link, does))
+        process.wait()
+        end = time.monotonic() + 60
+        while time.monotonic() < end:
+            with suppress(urllib.error.URLError, ConnectionError):
+                urllib.request.urlopen(link.partition("#")[0])
+                time.sleep(0.1)
+                continue
+            return
+    raise AssertionError(link)

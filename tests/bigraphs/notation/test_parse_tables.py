@@ -1,0 +1,110 @@
+"""The parser with kept tables is the parser that is made, and no start makes what is kept."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from bigraphs.errors import NotationError
+from bigraphs.examples import example_names, example_text
+from bigraphs.notation.big import parser as big
+from bigraphs.notation.parse_tables import parser_with_tables
+from specs.diagnostics import MissionError, Source
+from specs.grammar import callbacks, make_parser
+from specs.missions import shipped_missions
+from specs.parser import parse
+
+ROOT = Path(__file__).parents[3]
+MISTAKEN = sorted((ROOT / "tests" / "corpus").rglob("*.mission"))
+
+
+@pytest.fixture
+def tables(tmp_path):
+    file = tmp_path / "tables.json"
+    parser_with_tables(file, "1", make_parser, callbacks())
+    return file
+
+
+def never():
+    raise AssertionError("the tables are made again")
+
+
+def said(path):
+    """Return what a mission says, or what is wrong with it."""
+    try:
+        return parse(Source("m", path.read_bytes().decode("utf-8", "replace")))
+    except MissionError as error:
+        return str(error)
+
+
+def test_kept_tables_make_the_same_of_every_mission_and_every_mistake(tables, monkeypatch):
+    files = [*shipped_missions().values(), *MISTAKEN]
+    assert len(files) > 100
+    kept, made = parser_with_tables(tables, "1", never, callbacks()), make_parser()
+    monkeypatch.setattr("specs.grammar.grammar", lambda: made)
+    expected = [said(file) for file in files]
+    monkeypatch.setattr("specs.grammar.grammar", lambda: kept)
+    assert [said(file) for file in files] == expected
+
+
+def test_kept_tables_make_the_same_of_every_example_and_of_what_ends_early(tmp_path, monkeypatch):
+    from_files = [parser_with_tables(tmp_path / "big", "1", make, {}) for make in (big.make_parser, never)]
+    texts = [example_text(name) for name in example_names()]
+    texts += [text[: len(text) // part] for text in texts for part in (2, 3)]
+    made, kept = [], []
+    for parser, said_of in zip(from_files, (made, kept), strict=True):
+        monkeypatch.setattr(big, "parser", lambda parser=parser: parser)
+        said_of += [outcome(text) for text in texts]
+    assert kept == made
+    assert sum(isinstance(each, str) for each in kept) == 5
+
+
+def outcome(text):
+    """Return what a `.big` file says, or what is wrong with it."""
+    try:
+        return big.parse_model(text)
+    except NotationError as error:
+        return str(error)
+
+
+def test_what_could_come_next_is_the_same_with_kept_tables(tables):
+    kept, made = (
+        parser.parse_interactive("mission m\nworld { uav0: UAV = ")
+        for parser in (parser_with_tables(tables, "1", never, callbacks()), make_parser())
+    )
+    for run in (kept, made):
+        run.exhaust_lexer()
+    assert kept.accepts() == made.accepts() > {"POINT"}
+
+
+def test_tables_of_another_grammar_are_made_again(tables):
+    before = tables.read_bytes()
+    parser_with_tables(tables, "2", make_parser, callbacks())
+    assert tables.read_bytes() != before
+    parser_with_tables(tables, "2", never, callbacks())
+
+
+@pytest.mark.parametrize("broken", [b"", b"\xff", b"[]", b'{"identity": 1}', b'{"identity"'])
+def test_a_file_that_holds_no_tables_is_replaced(tables, broken):
+    tables.write_bytes(broken)
+    parser_with_tables(tables, "1", make_parser, callbacks())
+    parser_with_tables(tables, "1", never, callbacks())
+
+
+def test_tables_that_cannot_be_kept_are_made(tmp_path):
+    file = tmp_path / "no folder" / "tables.json"
+    assert parser_with_tables(file, "1", make_parser, callbacks()).rules
+    assert not file.parent.exists()
+
+
+def test_nothing_else_is_left_in_the_folder(tables):
+    assert [path.name for path in tables.parent.iterdir()] == [tables.name]
+    assert set(json.loads(tables.read_bytes())) == {"identity", "data", "memo"}
+
+
+def test_a_second_start_makes_no_tables(tmp_path):
+    start = f"import pathlib, specs.grammar as g; g.TABLES = pathlib.Path({str(tmp_path)!r}, 'tables.json');"
+    for program in ("g.grammar()", "g.make_parser = None; g.grammar()"):
+        subprocess.run([sys.executable, "-c", f"{start} {program}"], check=True, cwd=ROOT)

@@ -1,0 +1,68 @@
+"""Chromium for tests by playwright, and pages of which nothing may go wrong in silence."""
+
+import shutil
+from contextlib import contextmanager
+
+import pytest
+
+PHONE, DESK = {"width": 390, "height": 844}, {"width": 1440, "height": 900}
+
+
+@contextmanager
+def chromium(*arguments):
+    """Start Debian's chromium; skip the test where it or playwright is not installed."""
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if found is None:
+        pytest.skip("there is no chromium")
+    with playwright.sync_playwright() as started:
+        browser = started.chromium.launch(executable_path=found, args=["--no-sandbox", *arguments])
+        try:
+            yield browser
+        finally:
+            browser.close()
+
+
+class Watch:
+    """What went wrong in pages: errors, what their policy forbade, and hosts that are not theirs."""
+
+    def __init__(self):
+        self.errors, self.others = [], []
+
+    def over(self, page, own):
+        """Watch a page, which may ask only what is under one address; return the page."""
+
+        def ask(route):
+            if route.request.url.startswith((own, "data:", "blob:")):
+                return route.continue_()
+            self.others.append(route.request.url)
+            return route.abort()
+
+        page.route("**/*", ask)
+        page.on("websocket", lambda each: self._judge(each.url, own.replace("http", "ws", 1)))
+        page.on("pageerror", lambda error: self.errors.append(str(error)))
+        page.on("console", self._hear)
+        return page
+
+    def _judge(self, url, own):
+        if not url.startswith(own):
+            self.others.append(url)
+
+    def _hear(self, message):
+        if message.type == "error":  # what the policy forbids is an error there
+            self.errors.append(f"{message.text} {message.location.get('url', '')}")
+
+    def forgive(self, *words):
+        """Forget errors that say one of some words; return how many there were."""
+        before = len(self.errors)
+        self.errors = [each for each in self.errors if not any(word in each for word in words)]
+        return before - len(self.errors)
+
+    def saw_nothing(self):
+        assert not self.errors, self.errors
+        assert not self.others, self.others
+
+
+def overflow(page):
+    """Return how far a page could be moved sideways, in pixels."""
+    return page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")

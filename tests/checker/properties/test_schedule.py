@@ -1,0 +1,79 @@
+"""Schedules: how long flights take, when they may begin and end, and when what is asked is first true."""
+
+from dataclasses import replace
+
+import pytest
+from checked_missions import load
+from timed_missions import with_timing
+
+from checker import check
+from checker.properties.schedule import Moments
+from checker.reports.times import times_json, times_text
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property
+from semantics.properties.propositions import Inside
+from semantics.timing.intervals import Interval
+from semantics.timing.timing import Motion, Timing
+
+SOUTH = Inside("uav0", "south0", actually=True)
+TEXT = """BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO south0) control(MOVE_HOST_TO north0) }
+control timed
+scheduler fcfs"""
+MINUTES = Timing(
+    60_000,
+    motions=(("uav0", Motion((18.0, 25.0))),),
+    react=Interval(0, 1),
+    lines=(("uav0 flies at 18 m/s to 25 m/s", 7),),
+)
+
+
+def schedule(timing=MINUTES):
+    c = with_timing(load(TEXT).initial, timing)
+    asked = Property(PropertyKind.TIME, "there", SOUTH)
+    found = check(c, [asked], times=True).schedule
+    assert found is not None
+    return found
+
+
+@pytest.fixture(scope="module")
+def known():
+    return schedule()
+
+
+def test_each_flight_has_its_interval_its_beginnings_and_its_ends(known):
+    there, back = known.flights
+    assert (there.vehicle, there.agent, there.origin, there.destination) == ("uav0", "a", "north0", "south0")
+    assert (back.origin, back.destination, str(back.bound)) == (
+        "south0",
+        "north0",
+        "uav0 flies at 18 m/s to 25 m/s (line 7)",
+    )
+    assert there.takes == Interval(1, 6)
+    assert there.begins == Moments(0, 2)
+    assert there.ends == Moments(1, 8)
+    assert back.begins == Moments(1, 9)
+    assert back.ends == Moments(2, 15)
+
+
+def test_a_time_property_has_its_first_and_its_last_moment(known):
+    assert [(each.name, each.moments) for each in known.milestones] == [("there", Moments(1, 8))]
+
+
+def test_the_table_has_a_line_for_each(known):
+    assert list(times_text(known)) == [
+        "  times                                takes            begins         ends, is true",
+        "    uav0 from north0 to south0, by a   1 min to 6 min   0:00 to 2:00   1:00 to 8:00",
+        "    uav0 from south0 to north0, by a   1 min to 6 min   1:00 to 9:00   2:00 to 15:00",
+        "    there                                                              1:00 to 8:00",
+    ]
+
+
+def test_what_nothing_bounds_has_no_latest_moment():
+    found = schedule(replace(MINUTES, motions=()))
+    assert "    uav0 from north0 to south0, by a   any time   0:00 to 2:00    0:00 or later" in times_text(
+        found
+    )
+    data = times_json(found)
+    assert data["flights"][0]["takes"] == {"at_least": 0.0, "at_most": None}
+    assert data["flights"][0]["ends"] == {"earliest": 0.0, "latest": None}
+    assert data["properties"] == [{"name": "there", "may_never": True, "earliest": 0.0, "latest": None}]
