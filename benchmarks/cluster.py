@@ -58,7 +58,7 @@ def measured(size: Size, workers: int) -> dict[str, Any]:
             keeping=keeping,
             cluster=Cluster(workers),
         )
-        kept = sum(path.stat().st_size for path in Path(folder).rglob("*.npz"))
+        kept = sum(path.stat().st_size for path in Path(folder).rglob("shard-*.checkpoint"))
     count = len(found.configurations)
     assert (count, found.transitions) == COUNTS[size.agents, size.side, size.handover]
     half = next(mark for mark in marks if mark[1] >= count / 2)
@@ -78,7 +78,7 @@ def _bytes(found: Exploration, kept: int) -> dict[str, float]:
     count, survey = len(found.configurations), found.survey
     if hasattr(survey, "space"):
         return {"bytes_used": survey.space.bytes_used / count}
-    standings = survey.found.every("halt", found.depth)
+    standings = survey.found.every("standing")
     used, sent = (sum(getattr(each, name) for each in standings) / count for name in ("used", "sent"))
     return {"bytes_used": used, "bytes_sent": sent, "bytes_kept": kept / count}
 

@@ -15,7 +15,7 @@ import numpy as np
 from checker.engines.archive import Kinds, read_archive, write_archive
 from checker.engines.cluster import kernel
 from checker.engines.cluster.keys import DIGEST
-from checker.engines.cluster.shard import Shard
+from checker.engines.cluster.shard import Shard, spelling
 from checker.engines.contract import CheckpointError
 from checker.engines.fast import kernel as loops
 from checker.engines.fast.checkpoint import is_time
@@ -111,7 +111,7 @@ def save(shard: Shard, folder: Path, number: int, digest: str) -> None:
         shard.rows.origins[: shard.size],
         shard.packing.columns,
         np.frombuffer(b"".join(shard.keys.places), np.uint8),
-        np.diff(shard.keys.begins),
+        np.diff(shard.keys.begins).astype(np.int64),
         shard.keys.digests(),
         np.array(sorted({row for row, *_ in shard.learned}), np.int64),
         shard.state[list(KEPT)],
@@ -243,7 +243,9 @@ class Loading:
     def finish(self) -> None:
         """Take in the rows, now that all their values are known."""
         shard, size = self.shard, len(self.arrays["origins"])
-        codes = np.where(self.codes == UNKNOWN, 0, self.codes)
+        read = spelling(
+            self.packing, np.where(self.codes == UNKNOWN, 0, self.codes), self.begins, self.numbers
+        )
         shard.rows.reserve(size)
         width, hashes = shard.packing.words, np.zeros(BLOCK, np.uint64)
         for first in range(0, size, BLOCK):
@@ -253,10 +255,7 @@ class Loading:
                 first,
                 count,
                 self.packing.words,
-                self.packing.columns,
-                codes,
-                self.begins,
-                self.numbers,
+                read,
                 shard.packing.columns,
                 width,
                 shard.rows.words[first * width : (first + count) * width],

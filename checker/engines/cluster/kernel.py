@@ -1,13 +1,14 @@
-"""The compiled loops of a worker: the owner of each successor, the new rows, and translation of codes."""
+"""The compiled loops of a worker: which rows are new, whose they are, and translation of codes."""
 
-# mypy: disable-error-code="return-value, assignment, arg-type"
+# mypy: disable-error-code="return-value, no-any-return, assignment, arg-type"
 # (what numba compiles is typed by numba: mypy takes its integers for Python's)
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
 
+from checker.engines.fast.columns import WORD
 from checker.engines.fast.kernel import (
     BLOCK,
     CUT,
@@ -16,12 +17,13 @@ from checker.engines.fast.kernel import (
     SIZE,
     TOUCHED,
     WORDS,
+    Batch,
     State,
-    code_at,
 )
 from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed, touch
 
-_ONE, _HALF, _TOP = np.uint64(1), np.uint64(32), np.uint64(58)
+_ONE, _TWO, _HALF, _TOP = np.uint64(1), np.uint64(2), np.uint64(32), np.uint64(58)
+_PLACE, _WORD = np.uint64(PLACE), np.uint64(WORD)
 
 _DE_BRUIJN = np.uint64(0x03F79D71B4CB0A89)
 """A number whose 64 windows of six bits all differ: times a power of two, its top six bits tell which power."""
@@ -29,73 +31,150 @@ _DE_BRUIJN = np.uint64(0x03F79D71B4CB0A89)
 _BITS = np.argsort(_DE_BRUIJN << np.arange(64, dtype=np.uint64) >> _TOP).astype(np.uint64)
 
 
+class Owning(NamedTuple):
+    """What decides whose a row is.
+
+    Attributes:
+        columns: For each column its word, shift and mask.
+        varying: The columns that have more than one value.
+        column_at: The column of each bit of a row.
+        keys: The key of each value, column by column.
+        begins: For each column where its values begin, and after the last where they end.
+        workers: How many workers there are.
+    """
+
+    columns: Words
+    varying: Words
+    column_at: Words
+    keys: Words
+    begins: Words
+    workers: int
+
+
 @njit(cache=True, inline="always")
-def key_of(words: Words, at: int, columns: Words, keys: Words, begins: State) -> np.uint64:
-    """Return the key of the row that begins there."""
-    key = np.uint64(0)
-    for column in range(len(begins) - 1):
-        if columns[PLACE * column + 2] != 0:
-            key ^= keys[begins[column] + code_at(words, at, columns, column)]
-    return key
+def _key_in(words: Words, at: np.uint64, own: Owning, column: np.uint64) -> np.uint64:
+    """Return the key of the value that a column has in the row that begins there."""
+    where = _PLACE * column
+    code = (words[at + own.columns[where]] >> own.columns[where + _ONE]) & own.columns[where + _TWO]
+    return own.keys[own.begins[column] + code]
 
 
 @njit(cache=True)
-def owners_of(
-    words: Words,
-    origins: State,
-    rows: Words,
-    width: int,
-    columns: Words,
-    column_at: State,
-    keys: Words,
-    begins: State,
-    workers: int,
-    owners: Any,
-) -> None:
-    """Note the worker that each row belongs to.
+def key_of(words: Words, at: np.uint64, own: Owning) -> np.uint64:
+    """Return the key of the row that begins there."""
+    key = np.uint64(0)
+    for column in own.varying:
+        key ^= _key_in(words, at, own, column)
+    return key
 
-    A row differs in a few columns from the one that it was reached from, whose key is worked out once for all that
-    were: `column_at` has the column of each bit of a row.
-    """
-    last, base = np.int64(-1), np.uint64(0)
+
+@njit(cache=True, inline="always")
+def _owner(
+    words: Words, at: np.uint64, rows: Words, to: np.uint64, width: int, base: np.uint64, own: Owning
+) -> int:
+    """Return the worker that a row belongs to, which differs in a few columns from one whose key is known."""
+    key = base
+    for j in range(np.uint64(width)):
+        differing = words[at + j] ^ rows[to + j]
+        while differing != 0:
+            lowest = differing & (~differing + _ONE)
+            column = own.column_at[_WORD * j + _BITS[(lowest * _DE_BRUIJN) >> _TOP]]
+            key ^= _key_in(words, at, own, column) ^ _key_in(rows, to, own, column)
+            differing &= ~(own.columns[_PLACE * column + _TWO] << own.columns[_PLACE * column + _ONE])
+    return np.int64(((key >> _HALF) * np.uint64(own.workers)) >> _HALF)
+
+
+@njit(cache=True)
+def owners_of(words: Words, origins: State, rows: Words, width: int, own: Owning, owners: Any) -> None:
+    """Note the worker that each row belongs to; `origins` are the rows that they were reached from."""
+    wide, last, base = np.uint64(width), np.int64(-1), np.uint64(0)
     for k in range(len(owners)):
-        at, to = origins[k] * width, k * width
+        at = np.uint64(origins[k]) * wide
         if origins[k] != last:
-            last, base = origins[k], key_of(words, origins[k] * width, columns, keys, begins)
-        key = base
-        for j in range(width):
-            differing = words[at + j] ^ rows[to + j]
-            while differing != 0:
-                lowest = differing & (~differing + _ONE)
-                column = column_at[64 * j + np.int64(_BITS[(lowest * _DE_BRUIJN) >> _TOP])]
-                key ^= keys[begins[column] + code_at(words, at, columns, column)]
-                key ^= keys[begins[column] + code_at(rows, to, columns, column)]
-                differing &= ~(columns[PLACE * column + 2] << columns[PLACE * column + 1])
-        owners[k] = np.int64(((key >> _HALF) * np.uint64(workers)) >> _HALF)
+            last, base = origins[k], key_of(words, at, own)
+        owners[k] = _owner(words, at, rows, np.uint64(k) * wide, width, base, own)
+
+
+@njit(cache=True)
+def deal(
+    words: Words,
+    origins: Words,
+    table: Any,
+    batch: Batch,
+    gathered: int,
+    own: Owning,
+    me: int,
+    sent: Words,
+    chosen: State,
+    owners: Any,
+    counts: State,
+    state: State,
+) -> int:
+    """Deal out what was gathered: what is new and this worker's becomes one of its rows.
+
+    Note which rows of other workers were not sent to them lately, and whose they are; return how many. Whose a row is,
+    is asked last: most are found among one's own, or among those that were sent. `sent` holds one row, and before it a
+    1, for each hash modulo its size: comparing whole rows, it may forget, but never errs.
+    """
+    rows, hashes, reached_from = batch.words, batch.hashes, batch.origins
+    width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
+    wide, bits, last_place = (
+        np.uint64(width),
+        np.uint32(bits_for(len(table))),
+        np.uint64(len(sent) // (width + 1) - 1),
+    )
+    found, last, base = np.int64(0), np.int64(-1), np.uint64(0)
+    for begin in range(0, gathered, BLOCK):
+        end = min(begin + BLOCK, gathered)
+        touched = np.uint64(touch(words, table, hashes, begin, end, width))
+        for k in range(begin, end):
+            touched += sent[(hashes[k] & last_place) * (wide + _ONE)]
+        state[TOUCHED] = np.int64(touched)
+        for k in range(begin, end):
+            counts[batch.steps[k]] += 1
+            where = find(words, table, rows, k, hashes[k], width, bits)
+            if where >= 0:
+                continue
+            to, lately = np.uint64(k) * wide, (hashes[k] & last_place) * (wide + _ONE)
+            same = sent[lately] == _ONE
+            for j in range(wide):
+                same = same and sent[lately + _ONE + j] == rows[to + j]
+            if same:
+                continue
+            at = np.uint64(reached_from[k]) * wide
+            if reached_from[k] != last:
+                last, base = reached_from[k], key_of(words, at, own)
+            owner = _owner(words, at, rows, to, width, base, own)
+            if owner != me:
+                sent[lately] = _ONE
+                for j in range(wide):
+                    sent[lately + _ONE + j] = rows[to + j]
+                chosen[found], owners[found] = k, owner
+                found += 1
+            elif size < limit:
+                for j in range(wide):
+                    words[np.uint64(size) * wide + j] = rows[to + j]
+                origins[size] = np.uint64(reached_from[k] * own.workers + me)
+                table[-where - 1] = entry_of(hashes[k], size, bits)
+                size += 1
+            else:
+                state[CUT] += 1
+    state[SIZE] = size
+    return found
 
 
 @njit(cache=True)
 def settle(
-    words: Words,
-    origins: Words,
-    table: Any,
-    rows: Words,
-    hashes: Words,
-    reached_from: Any,
-    owners: Any,
-    count: int,
-    me: int,
-    state: State,
+    words: Words, origins: Words, table: Any, batch: Batch, count: int, reached_from: Words, state: State
 ) -> None:
-    """Look up the rows that belong to this worker: what is new becomes one of its rows."""
+    """Look up rows that belong to this worker, from the beginning of the batch: what is new becomes one of its rows."""
+    rows, hashes = batch.words, batch.hashes
     width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
     bits = np.uint32(bits_for(len(table)))
     for begin in range(0, count, BLOCK):
         end = min(begin + BLOCK, count)
         state[TOUCHED] = touch(words, table, hashes, begin, end, width)
         for k in range(begin, end):
-            if owners[k] != me:
-                continue
             found = find(words, table, rows, k, hashes[k], width, bits)
             if found >= 0:
                 continue
@@ -104,37 +183,28 @@ def settle(
                 continue
             for j in range(width):
                 words[size * width + j] = rows[k * width + j]
-            origins[size] = np.uint64(reached_from[k])
+            origins[size] = reached_from[k]
             table[-found - 1] = entry_of(hashes[k], size, bits)
             size += 1
     state[SIZE] = size
 
 
-@njit(cache=True)
-def unsent(
-    rows: Words, hashes: Words, owners: Any, count: int, me: int, width: int, sent: Words, chosen: Any
-) -> int:
-    """Note which rows of other workers were not sent to them lately; return how many.
+class Spelling(NamedTuple):
+    """How another worker's rows are to be read.
 
-    `sent` holds one row, and before it a 1, for each hash modulo its size: comparing whole rows, it may forget, but
-    never errs.
+    Attributes:
+        columns: For each of its columns its word, shift and mask there.
+        varying: Those of its columns that have more than one value.
+        codes: One's own code of each of its codes, column by column.
+        begins: For each of its columns where those begin, and after the last where they end.
+        numbers: For each of its columns the number of one's own.
     """
-    places = np.uint64(len(sent) // (width + 1))
-    found = np.int64(0)
-    for k in range(count):
-        if owners[k] == me:
-            continue
-        at = np.int64(hashes[k] % places) * (width + 1)
-        same = sent[at] == 1
-        for j in range(width):
-            same = same and sent[at + 1 + j] == rows[k * width + j]
-        if not same:
-            sent[at] = 1
-            for j in range(width):
-                sent[at + 1 + j] = rows[k * width + j]
-            chosen[found] = k
-            found += 1
-    return found
+
+    columns: Words
+    varying: Words
+    codes: Words
+    begins: Words
+    numbers: Words
 
 
 @njit(cache=True)
@@ -143,29 +213,23 @@ def translate(
     first: int,
     count: int,
     their_width: int,
-    their_columns: Words,
-    codes: State,
-    begins: State,
-    numbers: State,
+    read: Spelling,
     columns: Words,
     width: int,
     rows: Words,
     hashes: Words,
 ) -> None:
-    """Put rows of another worker's codes and packing into one's own, and hash them.
-
-    Their column c with code k has the code `codes[begins[c] + k]` in one's own column `numbers[c]`.
-    """
-    for k in range(count):
-        at, to = (first + k) * their_width, k * width
-        for j in range(width):
+    """Put rows of another worker's codes and packing into one's own, and hash them."""
+    wide, their_wide = np.uint64(width), np.uint64(their_width)
+    for k in range(np.uint64(count)):
+        at, to = (np.uint64(first) + k) * their_wide, k * wide
+        for j in range(wide):
             rows[to + j] = 0
-        for column in range(len(numbers)):
-            where = PLACE * column
-            mask = their_columns[where + 2]
-            if mask != 0:
-                word = theirs[at + np.int64(their_columns[where])]
-                code = codes[begins[column] + np.int64((word >> their_columns[where + 1]) & mask)]
-                mine = PLACE * numbers[column]
-                rows[to + np.int64(columns[mine])] |= np.uint64(code) << columns[mine + 1]
-        hashes[k] = hashed(rows, to, width)
+        for column in read.varying:
+            where = _PLACE * column
+            code = (theirs[at + read.columns[where]] >> read.columns[where + _ONE]) & read.columns[
+                where + _TWO
+            ]
+            mine = _PLACE * read.numbers[column]
+            rows[to + columns[mine]] |= read.codes[read.begins[column] + code] << columns[mine + _ONE]
+        hashes[k] = hashed(rows, np.int64(to), width)

@@ -43,7 +43,7 @@ class Keys:
         self._values: dict[int, list[bytes]] = {}
         self._digests: list[list[bytes]] = []
         self.keys = np.zeros(0, np.uint64)
-        self.begins = np.zeros(1, np.int64)
+        self.begins = np.zeros(1, np.uint64)
 
     def refresh(self) -> None:
         """Take in columns and values that are new."""
@@ -56,7 +56,7 @@ class Keys:
         for column, place, known in zip(columns, self.places, self._digests, strict=True):
             values = self._of_values(column.values)
             known += [digest_in(place, value) for value in values[len(known) :]]
-        self.begins = np.concatenate(([0], np.cumsum(sizes))).astype(np.int64)
+        self.begins = np.concatenate(([0], np.cumsum(sizes))).astype(np.uint64)
         self.keys = np.ascontiguousarray(self.digests()[:, : DIGEST // 2]).view(np.uint64).ravel()
         self.keys[self.begins[:-1]] = 0
 

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,13 +58,27 @@ class Standing:
     sent: int
 
 
-def column_at(where: Packing) -> NDArray[np.int64]:
+def column_at(where: Packing) -> NDArray[np.uint64]:
     """Return the column of each bit of a row."""
-    found = np.zeros(WORD * where.words, np.int64)
+    found = np.zeros(WORD * where.words, np.uint64)
     for column, (word, shift, mask) in enumerate(zip(where.word, where.shift, where.mask, strict=True)):
         first = WORD * int(word) + int(shift)
         found[first : first + int(mask).bit_length()] = column
     return found
+
+
+def writable(words: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """Return words that the loops take: what comes from others is read-only, for which they would be compiled anew."""
+    return words if words.flags.writeable else np.array(words)
+
+
+def spelling(
+    packing: Packing, codes: NDArray[Any], begins: NDArray[Any], numbers: NDArray[Any]
+) -> kernel.Spelling:
+    """Return how rows in another packing and other codes are read (see `kernel.Spelling`)."""
+    varying = np.flatnonzero(packing.mask)
+    known = (each.astype(np.uint64) for each in (varying, codes, begins, numbers))
+    return kernel.Spelling(writable(packing.columns), *known)
 
 
 class Outbox:
@@ -118,6 +133,7 @@ class Shard(Space):
         told: What each worker was told of this one's codes.
         dictionaries: What is known of each worker's codes.
         column_at: The column of each bit of a row, in the packing for which it was made.
+        varying: The columns that have more than one value there.
     """
 
     ORIGIN = np.uint64
@@ -181,6 +197,7 @@ class Shard(Space):
         self.keys.refresh()
         if self.located_in is not self.packing:
             self.column_at, self.located_in = column_at(self.packing), self.packing
+            self.varying = np.flatnonzero(self.packing.mask).astype(np.uint64)
 
     def _pack(self) -> None:
         """Pack the rows anew where a column has outgrown its bits, and those that wait to be sent."""
@@ -217,48 +234,38 @@ class Shard(Space):
 
     def _deal(self) -> None:
         """Take in those of the batch that are this worker's, and lay the others out to be sent."""
-        batch, count, width = self.batch, int(self.state[GATHERED]), self.packing.words
+        batch, count = self.batch, int(self.state[GATHERED])
+        chosen, owners = np.zeros(count, np.int64), np.zeros(count, np.int32)
+        found = kernel.deal(
+            self.rows.words,
+            self.rows.origins,
+            self.table.room,
+            batch,
+            count,
+            self.owning(),
+            self.me,
+            self.lately,
+            chosen,
+            owners,
+            self.counts.used,
+            self.state,
+        )
         self.state[GATHERED] = 0
-        self.counts.used[:] += np.bincount(batch.steps[:count], minlength=len(self.counts))
-        owners = self.owners_of(batch.words, batch.origins[:count])
-        self._settle(batch.origins[:count], self.me, owners)
         self.state[EXPANDED] = self.state[AT]
-        chosen = np.zeros(count, np.int64)
-        found = kernel.unsent(batch.words, batch.hashes, owners, count, self.me, width, self.lately, chosen)
         others = chosen[:found]
-        self.outbox.add(batch.words.reshape(-1, width)[others], batch.origins[others], owners[others])
+        rows = batch.words.reshape(-1, self.packing.words)[others]
+        self.outbox.add(rows, batch.origins[others], owners[:found])
+
+    def owning(self) -> kernel.Owning:
+        """Return what decides whose a row is."""
+        columns, keys = self.packing.columns, self.keys
+        return kernel.Owning(columns, self.varying, self.column_at, keys.keys, keys.begins, self.workers)
 
     def owners_of(self, rows: NDArray[np.uint64], origins: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the worker that each of some rows belongs to, which were reached from these of its own."""
         owners = np.zeros(len(origins), np.int32)
-        kernel.owners_of(
-            self.rows.words,
-            origins,
-            rows,
-            self.packing.words,
-            self.packing.columns,
-            self.column_at,
-            self.keys.keys,
-            self.keys.begins,
-            self.workers,
-            owners,
-        )
+        kernel.owners_of(self.rows.words, origins, rows, self.packing.words, self.owning(), owners)
         return owners
-
-    def _settle(self, rows: NDArray[np.int64], worker: int, owners: NDArray[np.int32]) -> None:
-        """Take in those of the batch that are this worker's; they were reached from these rows of a worker."""
-        kernel.settle(
-            self.rows.words,
-            self.rows.origins,
-            self.table.room,
-            self.batch.words,
-            self.batch.hashes,
-            rows * self.workers + worker,
-            owners,
-            len(owners),
-            self.me,
-            self.state,
-        )
 
     def parcels(self, *, always: bool = False) -> tuple[Parcel, ...]:
         """Return what waits to be sent, a parcel for each worker; with news in each only if it has rows, or always."""
@@ -277,7 +284,16 @@ class Shard(Space):
         self.hear(parcels)
         for peer, parcel in enumerate(parcels):
             for origins in self.translated(peer, parcel):
-                self._settle(origins, peer, np.full(len(origins), self.me, np.int32))
+                reached_from = (origins * self.workers + peer).astype(np.uint64)
+                kernel.settle(
+                    self.rows.words,
+                    self.rows.origins,
+                    self.table.room,
+                    self.batch,
+                    len(origins),
+                    reached_from,
+                    self.state,
+                )
         return self.standing()
 
     def hear(self, parcels: Sequence[Parcel]) -> None:
@@ -304,23 +320,17 @@ class Shard(Space):
         """Put the rows of a parcel into the batch, some at a time; yield the sender's rows they were reached from."""
         if not len(parcel):
             return
-        codes, begins, numbers = self.dictionaries[peer].arrays()
-        rows = np.array(
-            parcel.rows
-        )  # what comes is read-only, for which the loops would be compiled once more
-        columns = np.array(parcel.packing.columns)
-        for first in range(0, len(parcel), len(self.batch.hashes)):
-            self._make_room(len(self.batch.hashes))
-            origins = parcel.origins[first : first + len(self.batch.hashes)].astype(np.int64)
+        room, rows = len(self.batch.hashes), writable(parcel.rows)
+        read = spelling(parcel.packing, *self.dictionaries[peer].arrays())
+        for first in range(0, len(parcel), room):
+            self._make_room(room)
+            origins = parcel.origins[first : first + room].astype(np.int64)
             kernel.translate(
                 rows,
                 first,
                 len(origins),
                 parcel.packing.words,
-                columns,
-                codes,
-                begins,
-                numbers,
+                read,
                 self.packing.columns,
                 self.packing.words,
                 self.batch.words,

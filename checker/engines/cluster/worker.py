@@ -103,6 +103,10 @@ class Worker:
 
     # --- what was found -------------------------------------------------------------------------------------------
 
+    def standing(self) -> Standing:
+        """Return how far it has come."""
+        return self.shard.standing()
+
     def summary(self) -> tuple[tuple[int, ...], dict[str, int]]:
         """Return where its layers begin and end, and how many transitions each rule has."""
         return self.shard.boundaries, dict(self.shard.rules())
