@@ -3,7 +3,7 @@
 import gc
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Final
 
@@ -33,10 +33,19 @@ def main(line: Sequence[str] | None = None) -> int:
 
 def run(line: Sequence[str]) -> int:
     """Run one command line, and report what goes wrong."""
+    return reported(lambda: _run(line))
+
+
+def _run(line: Sequence[str]) -> int:
+    options = parse_arguments(line)
+    COLOUR.set(options.color)
+    return int(import_module(f"bigactors.commands.{options.command.replace('-', '_')}").run(options))
+
+
+def reported(command: Callable[[], int]) -> int:
+    """Run something, and report what goes wrong; return the exit code."""
     try:
-        options = parse_arguments(line)
-        COLOUR.set(options.color)
-        return int(import_module(f"bigactors.commands.{options.command.replace('-', '_')}").run(options))
+        return command()
     except SystemExit as end:  # after --help and --version
         return int(end.code or 0)
     except Mistake as mistake:

@@ -24,15 +24,18 @@ from adapters.camera.feed import CameraFeed
 from adapters.camera.libraries import opencv
 from adapters.camera.view import Lens, Pose
 from adapters.live.loop import Ending
+from adapters.live.operator_socket import is_taken
 from adapters.mavlink.autopilot import Autopilot
 from adapters.simulated import Kind, Simulator, Vehicle
 from adapters.simulated import run as run_simulated
 from adapters.simulated.camera import render
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main as command
+from bigactors.cli import reported
 from bigactors.commands.run import Flight, fly, prepare, record
 from bigactors.drawings import write_page
 from bigactors.exits import Exit
+from bigactors.mistakes import Mistake, unreadable
 from bigactors.pages import Story
 from bigactors.recordings import open_recording, trace_of
 from bigactors.terminal import say, tell
@@ -42,6 +45,7 @@ from physical.messages import counted
 from specs.missions import shipped_missions
 
 MISSION: Final = "spill_watch"
+SOCKET: Final = "run.sock"
 AIRFIELD: Final = (37.147, -8.582, 20.0)
 SPILL: Final = circle((36.9915, -8.6925), 200.0)
 """What the camera films, some 300 m from the middle of the search area, around which the plane circles."""
@@ -82,6 +86,10 @@ def arguments() -> ArgumentParser:
 def main() -> int:
     """Fly the demonstration into a folder; return the exit code."""
     asked = arguments().parse_args()
+    return reported(lambda: _demonstrated(asked))
+
+
+def _demonstrated(asked: Namespace) -> int:
     folder: Path = asked.folder
     speed = asked.speed or (FOLLOWED if asked.console else None)
     more = ("--console",) if asked.console else ()
@@ -98,9 +106,17 @@ def main() -> int:
 
 
 def _prepare(folder: Path) -> None:
-    (folder / "camera").mkdir(parents=True, exist_ok=True)
-    for old in (folder / "run.mcap", folder / "run.tlog", *(folder / "camera").glob("*.png")):
-        old.unlink(missing_ok=True)
+    """Make the folder, and take out the flight before, unless one flies there now."""
+    if asyncio.run(is_taken(folder / SOCKET)):
+        raise Mistake(
+            "a demonstration flies into this folder", "wait for its end, or name another", str(folder)
+        )
+    try:
+        (folder / "camera").mkdir(parents=True, exist_ok=True)
+        for old in (folder / "run.mcap", folder / "run.tlog", *(folder / "camera").glob("*.png")):
+            old.unlink(missing_ok=True)
+    except OSError as error:
+        raise unreadable(error.filename, error) from error
 
 
 def _options(folder: Path, verdict: str, *more: str) -> Namespace:
@@ -116,7 +132,7 @@ def _options(folder: Path, verdict: str, *more: str) -> Namespace:
             "--name=mmsi:263999002=drifter1",
             f"--verdict={verdict}",
             f"--record={folder / 'run.mcap'}",
-            f"--socket={folder / 'run.sock'}",
+            f"--socket={folder / SOCKET}",
             f"--for={LONGEST}",
             *more,
         ]

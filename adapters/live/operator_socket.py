@@ -44,7 +44,7 @@ async def listening(path: Path, listener: Listener, describe: Callable[[], str] 
     `describe` says how the run stands, to who asks.
     The socket of a killed run is replaced; that of a live run is not.
     """
-    if await _is_taken(path):
+    if await is_taken(path):
         raise FileExistsError(errno.EEXIST, "another run listens there", str(path))
     if path.exists() and stat.S_ISSOCK(path.lstat().st_mode):
         path.unlink()
@@ -69,7 +69,8 @@ async def listening(path: Path, listener: Listener, describe: Callable[[], str] 
         path.unlink(missing_ok=True)
 
 
-async def _is_taken(path: Path) -> bool:
+async def is_taken(path: Path) -> bool:
+    """Tell whether a run listens at a path."""
     try:
         await _exchange(path, b"{}\n")
     except NobodyListens:
