@@ -193,6 +193,7 @@ class _Check:
         self.temporal = tuple(each for each in self.properties if each.is_of_runs)
         self.decider: Decider | None = None
         self.deadlines: Deadlines | None = None
+        self.unscheduled: tuple[str, ...] = ()
 
     def run(self, notes: tuple[str, ...], whole: Limits) -> Report:
         """Explore, and decide within the limits of the whole check."""
@@ -210,6 +211,7 @@ class _Check:
         seconds = self.found.seconds + (self.remembered.seconds if self.remembered else 0.0)
         with bounded(replace(whole, spent=options.limits.spent + seconds)):
             verdicts = Verdicts(map(self.decide, self.properties))
+            schedule = self.schedule()
         return Report(
             verdicts=verdicts,
             configurations=self.found.size,
@@ -217,21 +219,25 @@ class _Check:
             depth=self.found.depth,
             bounds=tuple(dict.fromkeys([*self.found.bounds, *later])),
             rules=dict(sorted(self.found.rules.items())),
-            notes=(*notes, *(self.deadlines.notes() if self.deadlines else ())),
+            notes=(*notes, *(self.deadlines.notes() if self.deadlines else ()), *self.unscheduled),
             seconds=seconds,
             coverage=coverage(
                 self.initial, self.visited, complete=self.found.complete and not options.reduce
             ),
             reduced=tuple(map(str, options.reduce.names)) if options.reduce else (),
             allowed=self.found.allowed,
-            schedule=self.schedule(),
+            schedule=schedule,
         )
 
     def schedule(self) -> Schedule | None:
         """Return when flights may begin and end, if that is asked for, and time does not stop."""
-        if not self.times or self.deadlines is None or self.deadlines.stop is not None:
+        if not self.times or self.deadlines is None:
             return None
-        return self.deadlines.schedule(self.properties)
+        try:
+            return None if self.deadlines.stop is not None else self.deadlines.schedule(self.properties)
+        except BoundMet as met:
+            self.unscheduled = (f"when flights begin and end was not worked out: {met.bound}",)
+            return None
 
     def search(self) -> Exploration | None:
         """Explore once more, with memory and in the time that is left; None where the user has asked for the end."""

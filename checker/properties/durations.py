@@ -5,9 +5,13 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
 from checker.engines.runs import DELAY, Edge
+from checker.limits import look
 
 NEVER: Final = -math.inf
 """How long runs take to an end that none comes to."""
+
+LOOKING: Final = 1 << 14
+"""After so many states it is looked whether a bound is met."""
 
 Graph = Sequence[Sequence[Edge]]
 
@@ -53,6 +57,8 @@ def components(graph: Graph, inside: Sequence[bool]) -> Iterator[list[int]]:
                 if not inside[target]:
                     continue
                 if target not in order:
+                    if len(order) % LOOKING == 0:
+                        look()
                     order[target] = low[target] = len(order)
                     stack.append(target)
                     waiting.add(target)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Final
 
 from checker.engines.runs import DELAY
 from checker.engines.timeline import Timeline
-from checker.properties.durations import NEVER, longest
+from checker.limits import look
+from checker.properties.durations import LOOKING, NEVER, components
 from semantics.behaviours.reaction_rules import moved
 from semantics.state.configuration import Configuration
 from semantics.state.requests import FLY
@@ -38,6 +40,9 @@ class Moments:
     def is_never(self) -> bool:
         """Whether it happens in no run."""
         return math.isinf(self.earliest)
+
+
+NO_MOMENT: Final = Moments(math.inf, NEVER)
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,13 +128,13 @@ def flights_of(timeline: Timeline) -> tuple[Flight, ...]:
                 interval = timed_by(situation, step).interval
                 known = said.get(key, (interval, Bound()))[0]
                 said[key] = _both(known, interval), bound_of(situation, step)
-    first = _first_ticks(timeline)
+    begins, ends = _moments(timeline, begun), _moments(timeline, ended)
     found = [
         Flight(
             *key,
             said.get(key, (ANY_TIME,))[0],
-            _moments(timeline, first, begun.get(key, set())),
-            _moments(timeline, first, ended.get(key, set())),
+            begins.get(key, NO_MOMENT),
+            ends.get(key, NO_MOMENT),
             said.get(key, (ANY_TIME, Bound()))[1],
         )
         for key in dict.fromkeys((*begun, *ended))
@@ -164,6 +169,8 @@ def _first_ticks(timeline: Timeline) -> list[float]:
     waiting = deque([0])
     while waiting:
         state = waiting.popleft()
+        if state % LOOKING == 0:
+            look()
         for step, target in timeline.edges[state]:
             ticks = first[state] + (step == DELAY)
             if ticks < first[target]:
@@ -172,13 +179,37 @@ def _first_ticks(timeline: Timeline) -> list[float]:
     return first
 
 
-def _moments(timeline: Timeline, first: Sequence[float], steps: _Steps) -> Moments:
-    """Return when one of some steps is taken, from the first time to the last."""
-    ends = [
-        any((number, step) in steps for step, _ in edges)
-        for (number, _), edges in zip(timeline.states, timeline.edges, strict=True)
-    ]
-    earliest = min((ticks for ticks, end in zip(first, ends, strict=True) if end), default=math.inf)
-    if math.isinf(earliest):
-        return Moments(math.inf, NEVER)
-    return Moments(earliest, longest(timeline.edges, [True] * len(ends), ends.__getitem__)[0])
+def _last_ticks(timeline: Timeline) -> list[float]:
+    """Return for each state after how many ticks it is reached last, infinitely many by a loop in which time passes."""
+    last = [NEVER] * len(timeline.states)
+    last[0] = 0
+    for component in reversed(list(components(timeline.edges, [True] * len(last)))):
+        members = set(component)
+        ticks = max(last[state] for state in component)
+        if any(
+            step == DELAY and target in members
+            for state in component
+            for step, target in timeline.edges[state]
+        ):
+            ticks = math.inf
+        for state in component:
+            last[state] = ticks
+            for step, target in timeline.edges[state]:
+                if target not in members:
+                    last[target] = max(last[target], ticks + (step == DELAY))
+    return last
+
+
+def _moments(timeline: Timeline, steps: Mapping[_Key, _Steps]) -> dict[_Key, Moments]:
+    """Return for each flight when one of its steps is taken, from the first time to the last."""
+    flights: dict[tuple[int, int], list[_Key]] = {}
+    for key, each in steps.items():
+        for step in each:
+            flights.setdefault(step, []).append(key)
+    found: dict[_Key, Moments] = {}
+    ticks = zip(_first_ticks(timeline), _last_ticks(timeline), strict=True)
+    for (number, _), edges, (first, last) in zip(timeline.states, timeline.edges, ticks, strict=True):
+        for key in (key for step, _ in edges for key in flights.get((number, step), ())):
+            known = found.get(key, NO_MOMENT)
+            found[key] = Moments(min(known.earliest, first), max(known.latest, last))
+    return found
