@@ -29,6 +29,9 @@ def main(line: Sequence[str] | None = None) -> int:
             return run(sys.argv[1:] if line is None else line)
     except Mistake:  # the output itself cannot be written
         return Exit.MISTAKE
+    finally:
+        if line is None:
+            gc.freeze()  # the process ends: looking through all that was loaded takes a quarter of a small check
 
 
 def run(line: Sequence[str]) -> int:

@@ -160,6 +160,19 @@ def _reduced(
     return Reduced(initial, reductions, formulas)
 
 
+def reductions_of(start: Checkable) -> tuple[Reduction, ...]:
+    """Return the reductions that a mission allows: the most that are sound together."""
+    formulas = [each.formula for each in start.properties if each.kind.has_proposition]
+    initial, sound = watching(start.initial, start.properties), tuple[Reduction, ...]()
+    for reduction in Reduction:
+        try:
+            _reduced(initial, (*sound, reduction), formulas)
+        except RefusedError:
+            continue
+        sound = (*sound, reduction)
+    return sound
+
+
 class _Check:
     def __init__(
         self,

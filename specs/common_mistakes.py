@@ -18,7 +18,7 @@ from semantics.behaviours.observations import QueryOperator
 from specs.building import ANGLES
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
-from specs.foreign_words import ASKED, foreign_operator, foreign_word, operator_first
+from specs.foreign_words import ASKED, foreign_form, foreign_operator, foreign_word, operator_first
 from specs.grammar import (
     PROPERTY_WORDS,
     QUERY_WORDS,
@@ -40,6 +40,7 @@ from specs.parse_error import (
 )
 from specs.syntax.nodes import Span
 from specs.syntax.timing import METRES_PER_SECOND
+from specs.timing_mistakes import TIMING_MISTAKES
 
 _GEOMETRIES: Final = frozenset({"point", "box", "polygon", "circle"})
 _QUOTES: Final = "'`\u2018\u2019\u201c\u201d\u201e\u00ab\u00bb"
@@ -611,8 +612,10 @@ MISTAKES: Final[tuple[Callable[[Situation], Diagnostic | None], ...]] = (
     misplaced_header,
     equals_of_places,
     single_equals,
+    *TIMING_MISTAKES,
     bad_number,
     foreign_word,
+    foreign_form,
     missing_dot,
     misspelt_word,
     missing_at_most,

@@ -69,6 +69,9 @@ ASKED: Final[Mapping[str, str]] = {
     ),
     **dict.fromkeys(("no_races", "races", "race"), "write race_freedom"),
     **dict.fromkeys(("deadlock", "deadlocks", "no_deadlock"), "write deadlock_freedom"),
+    **dict.fromkeys(("before", "after", "deadline", "by", "until"), 'write within 5 min "name": formula'),
+    **dict.fromkeys(("earliest", "latest", "when", "duration"), 'write time "name": formula'),
+    **dict.fromkeys(("battery", "energy", "fuel", "range"), "write endurance"),
 }
 OF_A_KIND: Final = dict.fromkeys(
     ("moves", "moving", "mobile", "movable", "drives", "flies"),
@@ -197,7 +200,9 @@ def foreign_operator(at: Situation) -> Diagnostic | None:
     elif at.accepted == {"=", "("} and found in (".", "!"):
         hint = f"a message is sent: send message to {at.before.text}"
     elif found == "." and at.in_expression:
-        hint = "functions are called with all they are given: size(obs)"
+        asked = "of an entity an observation tells: parent(uav0, obs); functions are called like size(obs)"
+        ranges = "there are no ranges of numbers: for goes through a set, {a, b}, or a route, [a, b]"
+        hint = ranges if behind == "." else asked
     elif found == ":" and behind == "=" and "=" in at.accepted:
         hint = "write ="
     elif found == "=" and at.before.text == "=" and at.before.span.end == at.found.span.start:
@@ -206,6 +211,24 @@ def foreign_operator(at: Situation) -> Diagnostic | None:
     elif not hint or not (symbol or at.in_expression or in_formula or at.accepted & {"=>", "directly"}):
         return None
     return at.mistake(Code.UNKNOWN_CHARACTER if symbol else Code.MISSPELT_KEYWORD, _no_operator(at), hint)
+
+
+def foreign_form(at: Situation) -> Diagnostic | None:
+    """`let o = observe(HOST)`, `send "x" -> b`, `for (p in route)`, `uav0: UAV = base0`, `point (0, 0) at 90 m`."""
+    hint = ""
+    if at.at_expression and at.found.text in ("observe", "react"):
+        hint = "what is observed comes to a react: observe(HOST) react { case obs: Observation => ... }"
+    elif "to" in at.accepted and at.in_expression and at.found.text in ("->", "→", "=>"):
+        hint = _SEND
+    elif at.found.text == "(" and at.before.text in ("for", "choose") and at.sorts == {"NAME"}:
+        hint = f"write {at.before.text} {at.following.text} in ..., without brackets"
+    elif "polygon" in at.accepted and "someone" not in at.accepted and at.found.is_name:
+        hint = (
+            "write point (37.08, -8.55), box, circle or polygon: where it lies decides in which place it is"
+        )
+    elif "altitude" in at.accepted and at.found.text in ("at", "alt", "height") and at.following.is_number:
+        hint = f"write altitude {at.following.text} m"
+    return at.mistake(Code.UNEXPECTED, f"{at.found.shown} is not written here", hint) if hint else None
 
 
 def _no_operator(at: Situation) -> str:

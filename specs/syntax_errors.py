@@ -84,7 +84,10 @@ _FORMS: Final = (
         "write wifi drops at most every 30 min, returns within 5 min, or wifi drops and returns within 5 min",
     ),
     (frozenset({"polygon"}), "geometries are point, box, circle and polygon"),
-    (frozenset({"invariant"}), 'write invariant "name": formula, or reachable, ltl, ctl, deadlock_freedom'),
+    (
+        frozenset({"invariant"}),
+        'write invariant "name": formula, or reachable, ltl, ctl, deadlock_freedom; of times: within 5 min, endurance',
+    ),
 )
 """How what could stand somewhere is written, for mistakes that nothing else explains."""
 

@@ -18,6 +18,7 @@ from bigactors.mistakes import Mistake
 from bigactors.outputs import Output, cautions_of, outputs_of, write_outputs
 from bigactors.terminal import paint, say, tell
 from checker import Cluster, Engine, Interruption, Keeping, Limits, Reduction, report_text
+from checker.check import reductions_of
 from checker.engines.fast.loading import ALONE
 from checker.reports.report import MARKS, coverage_text
 from checker.reports.results import caution_text
@@ -27,6 +28,7 @@ from semantics.successors import rules_of
 
 if TYPE_CHECKING:
     from bigactors.signatures import SigningKey
+    from specs.elaboration import ElaboratedMission
 
 COLOURS = {Outcome.HOLDS: "green", Outcome.VIOLATED: "red", Outcome.INCOMPLETE: "yellow"}
 SIGNS = {MARKS[outcome]: colour for outcome, colour in COLOURS.items()}
@@ -173,19 +175,19 @@ def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
         when = "never used" if report.complete and not report.reduced else "not used so far"
         yield f"  rules {when}: {', '.join(silent)}"
     if not report.complete:
-        yield f"  to decide more: {remedies(report, is_timed=result.mission.setting.timing is not None)}"
+        yield f"  to decide more: {remedies(result.mission, report)}"
     if report.coverage is not None:
         yield from coverage_text(result.name, report.coverage, result.mission.source.text)
 
 
-def remedies(report: Report, *, is_timed: bool = False) -> str:
+def remedies(mission: ElaboratedMission, report: Report) -> str:
     """Return what may let an exploration that was cut off come to its end."""
     less: tuple[str, ...] = ()
-    if is_timed:
+    if mission.setting.timing is not None:
         larger = "give timing a larger tick, of which all durations are whole numbers"
         less = (f"{larger}, or leave out --times, which counts every tick" if report.schedule else larger,)
-    elif not report.reduced:
-        less = ("visit less with --reduce por,symmetry (docs/explanation/reduction.md)",)
+    elif not report.reduced and (sound := reductions_of(mission)):
+        less = (f"visit less with --reduce {','.join(map(str, sound))} (docs/explanation/reduction.md)",)
     smaller = "name fewer entities and places, or let fewer bigActors act at once"
     return "; ".join((*less, smaller, "or raise the limit that stopped it: --max-configurations, --max-time"))
 

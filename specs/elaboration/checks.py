@@ -87,7 +87,7 @@ def elaborate_checks(
     `ticks` are those of a mission with `timing`.
     """
     written = [item for section in mission.each(s.Check) for item in section.properties]
-    formulas, found = Formulas(names, bodies, types), list[Property]()
+    formulas, found = Formulas(names, bodies, types, is_timed=ticks is not None), list[Property]()
     always = tuple(Property(kind, kind.value) for kind in asked_by(Asked.ALWAYS))
     seen = {prop.name for prop in always}
     temporal = TemporalFormulas(formulas)

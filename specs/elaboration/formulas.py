@@ -91,10 +91,11 @@ class TooLarge(Exception):
 class Formulas:
     """Elaborates the formulas of a mission; `atoms` counts those of all of them."""
 
-    def __init__(self, names: Names, bodies: Bodies, types: Types) -> None:
+    def __init__(self, names: Names, bodies: Bodies, types: Types, *, is_timed: bool = False) -> None:
         self.names = names
         self.bodies = bodies
         self.types = types
+        self.is_timed = is_timed
         self.atoms = 0
         self.among = Among(names, bodies)
         self.ranges = set[tuple[str, ...]]()
@@ -219,7 +220,8 @@ class Formulas:
             case s.HasValue(agent, variable):
                 return IsBound(self._variable(agent, variable, bound))
         message = "this is about runs, and here single configurations are looked at"
-        self.names.findings.add(Code.WRONG_LOGIC, node, message, "write it in ltl or ctl")
+        hint = 'write within 5 min "name": F leads to G' if self.is_timed else "write it in ltl or ctl"
+        self.names.findings.add(Code.WRONG_LOGIC, node, message, hint)
         return Always(True)
 
     def _stands_for(self, name: s.Name, bound: Mapping[str, str]) -> str:

@@ -195,7 +195,7 @@ class Names:
             hosted = [agent for agent, host in self.agents.items() if host is not None and host.text == name]
             return f"name the bigActor that it hosts: {hosted[0]}" if hosted else ""
         host = self.agents.get(name) if other == "agent" and sort == "entity" else None
-        return f"its host is '{host.text}'" if host is not None else ""
+        return f"its host is '{host.text}'" if host is not None and host.text != name else ""
 
     def sort_of(self, name: str) -> str | None:
         """Return the first sort that a name is declared as."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from math import gcd
 from typing import Any, Final, TypeVar
 
 from bigraphs.notation.spelling import listed
@@ -31,6 +32,7 @@ from specs.elaboration.findings import Findings, a
 from specs.elaboration.names import Names
 from specs.elaboration.world import World
 from specs.layout import pieces
+from specs.timing_mistakes import BEGINNING
 from specs.writing import write
 
 LONGEST: Final = 7 * 24 * 3600
@@ -60,7 +62,8 @@ class Ticks:
             self.findings.add(Code.BAD_DURATION, written, f"{write(written)} is too long", hint)
         elif milliseconds % self.tick:
             message = f"{write(written)} is no whole number of ticks of {duration_text(self.tick / SECOND)}"
-            hint = "round it, or give timing a shorter tick, of which all durations are whole numbers: tick 100 ms"
+            common = gcd(self.tick, int(milliseconds)) if milliseconds.denominator == 1 else 1
+            hint = f"round it, or give timing a shorter tick: tick {_tick_text(common)}"
             self.findings.add(Code.BAD_DURATION, written, message, hint)
         return int(milliseconds // self.tick)
 
@@ -90,6 +93,10 @@ def milliseconds_of(written: s.Duration) -> Fraction:
     Fraction(1001, 1)
     """
     return Fraction(repr(written.value)) * round(UNITS[written.unit] * SECOND)
+
+
+def _tick_text(milliseconds: int) -> str:
+    return f"{milliseconds} ms" if milliseconds % SECOND else duration_text(milliseconds / SECOND)
 
 
 def _report_order(findings: Findings, where: s.Node, first: str, second: str) -> None:
@@ -154,7 +161,9 @@ def elaborate_timing(
         return None
     if control is not Control.TIMED:
         message = "a mission with 'timing' has control that takes time"
-        names.findings.add(Code.NOT_TIMED, _head(sections[0]), message, "write: control timed")
+        says_timed = any(each.name == Control.TIMED.value for each in mission.each(s.ControlMode))
+        hint = "it says so itself: leave --control atomic out" if says_timed else "write: control timed"
+        names.findings.add(Code.NOT_TIMED, _head(sections[0]), message, hint)
     bounds = [each for section in sections for each in section.bounds]
     said = _Said(names, world, Ticks(_tick(bounds, names.findings), names.findings), clauses, whole)
     for bound in sorted(
@@ -337,10 +346,21 @@ def _step_time(said: _Said, node: s.StepTime) -> None:
             *OTHER_STEPS,
             *(name for name, each in COMMANDS.items() if not each.travels),
         ]
-        otherwise = f"it is one of {', '.join(among)}"
+        otherwise = _meant(said.names, word) or f"it is one of {', '.join(among)}"
         said.findings.unknown(node.word, among, sort="command or rule", otherwise=otherwise)
     if said.is_new(node, "step", word):
         said.commands[word] = said.ticks.interval(node.lapse)
+
+
+def _meant(names: Names, word: str) -> str:
+    """Return how a bound is written that was meant by a word that takes no time by itself."""
+    if word in names.channels:
+        return f"write messages over {word} within 5 s"
+    if word in names.behaviours:
+        return "how long a behaviour takes follows from its steps: agents react within 1 s, sense within 5 s"
+    if word == "FLY":
+        return "say how fast it flies: UAV flies at 18 m/s to 25 m/s"
+    return BEGINNING.get(word, "")
 
 
 # --- what the environment does

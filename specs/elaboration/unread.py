@@ -16,7 +16,7 @@ _NAME: Final = re.compile(r"[^\W\d_](?:[\w:.\-]*\w)?")
 
 
 _DECLARING_NOTHING: Final = frozenset({"check", "live"})
-_OF_ABSENCE: Final = frozenset({Code.NO_TIMING})
+_OF_ABSENCE: Final = frozenset({Code.NO_TIMING, Code.NOT_TIMED})
 """What is said because something stands nowhere: it may stand in an unread part."""
 
 

@@ -73,16 +73,17 @@ def elaborate_world(mission: s.Mission, names: Names, library: Library) -> World
     """Declare all entities and channels, and return P."""
     world, loads = World(), list[_Load]()
     entries = [entry for section in mission.each(s.World) for entry in section.entries]
+    for entry in entries:  # before what is linked to them, which declares those that stand nowhere
+        if isinstance(entry, s.ChannelDeclaration):
+            names.channels.add(entry.name.text)
+            names.declare("channel", entry.name.text, entry.name)
     for entry in entries:
         if isinstance(entry, s.Entity):
             loads += _entity(entry, names, world)
         elif isinstance(entry, s.FromSource):
             loads += _from_file(entry, names, world, library)
     for entry in entries:
-        if isinstance(entry, s.ChannelDeclaration):
-            names.channels.add(entry.name.text)
-            names.declare("channel", entry.name.text, entry.name)
-        elif isinstance(entry, s.Entity):
+        if isinstance(entry, s.Entity):
             _join(entry.channels, names)
     _check_size(entries, names)
     _load(loads, names, world)

@@ -59,7 +59,7 @@ def test_what_was_cut_off_is_no_success(bigactors, bound):
     code, out, _ = bigactors("check", "endless.mission", *bound)
     assert code == 3
     assert "INCOMPLETE" in out
-    assert "  to decide more: visit less with --reduce por,symmetry (docs/explanation/reduction.md); " in out
+    assert "  to decide more: visit less with --reduce por (docs/explanation/reduction.md); " in out
     assert "\n  stopped at the " in out
     assert "\n  ? deadlock_freedom  incomplete" in out
     assert "✓ deadlock_freedom" not in out

@@ -14,6 +14,7 @@ from scale import examples
 from shipped import UNTIMED
 
 from checker import Engine, Keeping, Limits, Reduction, RefusedError, check, explore
+from checker.check import reductions_of
 from checker.reduction import Reduced
 from checker.reduction.footprint_check import Drift
 from checker.reduction.renaming import Renaming
@@ -65,6 +66,19 @@ BASE = (
     "BigActor base hosted_at gcs0 with_behavior "
     '{ react { case ("here", who) => react { case ("here", again) => send ("come", again) to base } } }'
 )
+
+
+NAMED = "choose other in {dock0, room0} { control(MOVE_HOST_TO other) }"
+
+
+@pytest.mark.parametrize(
+    ("body", "sound"), [(LOOKS, ("por", "symmetry")), (NAMED, ("por",))], ids=["alike", "by name"]
+)
+def test_reductions_that_are_suggested_are_sound(body, sound):
+    loaded = mission(body)
+    allowed = reductions_of(loaded)
+    assert tuple(map(str, allowed)) == sound
+    assert check(loaded, reduce=allowed).complete
 
 
 # --- what is interchangeable ----------------------------------------------------------------------------------

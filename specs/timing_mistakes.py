@@ -1,0 +1,160 @@
+"""Common mistakes in what a mission says of times: bounds, durations, and properties with deadlines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Final
+
+from semantics.behaviours.durations import UNITS, duration_text
+from specs.codes import Code
+from specs.diagnostics import Diagnostic
+from specs.parse_error import Situation, Word, word_at, word_before
+
+_REACTING: Final = "of all bigActors together: agents react within 1 s"
+_FLYING: Final = "how long a flight takes follows from speeds: write flies at 18 m/s to 25 m/s"
+_LASTING: Final = "write lasts 45 min, restored in airfield0 after 20 min"
+_CHANGING: Final = "how long a change takes is said in timing { ... }: wifi drops and returns within 5 min"
+
+BEGINNING: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("observe", "sensing", "observation", "observations"), "write sense within 5 s"),
+    "react": _REACTING,
+    **dict.fromkeys(("send", "message"), "write messages over wifi within 5 s, or messages on one host"),
+    "control": "write how long a command takes by its first word: HAND within 10 s; of flights how fast they are",
+}
+"""What a bound was meant to be about, by the statement that takes the time."""
+
+TAKING: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("moves", "drives", "goes", "travels", "sails", "speed", "arrives", "lands"), _FLYING),
+    **dict.fromkeys(("endurance", "endures", "battery", "hovers", "survives"), _LASTING),
+    **dict.fromkeys(("reacts", "react", "responds", "answers", "computes"), _REACTING),
+}
+"""What is said of a name that takes time in other words."""
+
+_BEFORE_DURATIONS: Final = frozenset(
+    {"take", "takes", "lasts", "within", "every", "after", "until", "tick", "least"}
+)
+
+
+def foreign_bound(at: Situation) -> Diagnostic | None:
+    """`observe takes 2 s`, `uav0 moves at 8 m/s`, `pilot reacts within 1 s`, `agents take at most 1 s`."""
+    hint = ""
+    if "tick" in at.accepted:
+        hint = BEGINNING.get(at.found.text, "")
+    elif "flies" in at.accepted:
+        hint = TAKING.get(at.found.text, "")
+    if hint:
+        return at.mistake(Code.MISSPELT_KEYWORD, f"{at.found.shown} is not a word of the language here", hint)
+    return _upper_bound_alone(at) or _restored(at)
+
+
+def _upper_bound_alone(at: Situation) -> Diagnostic | None:
+    """`sense takes at most 5 s`."""
+    if at.accepted != {"least"} or at.found.text not in ("most", "maximum", "max"):
+        return None
+    who = _back(at, 3)
+    alone = "react within" if who.text == "agents" else "within"
+    return at.mistake(
+        Code.UNEXPECTED, "what takes at most so long is within that", f"write {who.text} {alone} 5 s"
+    )
+
+
+def _restored(at: Situation) -> Diagnostic | None:
+    """`lasts 25 min restored in yard`, `restored in yard within 10 min`."""
+    if "flies" not in at.accepted:
+        return None
+    if at.found.text in ("in", "at") and at.before.text == "restored":
+        message = "expected ',' before 'restored'"
+        return Diagnostic(
+            Code.MISSING_COMMA, at.before.span, message, f"write , restored in {at.following.text}"
+        )
+    if (
+        at.found.is_number
+        and at.before.text in ("within", "for", "takes")
+        and _back(at, 3).text in ("in", ",")
+    ):
+        message = f"{at.before.shown} is not a word of the language here"
+        hint = f"write after {_duration_at(at, at.found)}: so long it has to be there"
+        return Diagnostic(Code.MISSPELT_KEYWORD, at.before.span, message, hint)
+    return None
+
+
+def bad_duration(at: Situation) -> Diagnostic | None:
+    """`lasts for 25 min`, `takes between 2 s and 5 s`, `after (10 min) =>`, `1 h 25 min`, `circles at 20 m`."""
+    if at.before.text in UNITS and _back(at, 2).is_number:
+        return _two_durations(at)
+    if "NUMBER" not in at.sorts or "STRING" in at.sorts or at.found.is_number:
+        return None
+    if at.found.text in ("at", "=", "of") and at.following.is_number:
+        return at.mistake(Code.UNEXPECTED, f"expected a number, found {at.found.shown}", "leave it out")
+    if at.before.text not in _BEFORE_DURATIONS:
+        return None
+    hint = f"write {at.before.text} 5 min"
+    if at.found.text in ("between", "from"):
+        hint = f"write {at.before.text} 2 s to 5 s"
+    elif at.found.text in ("up", "maximum", "max", "below", "under") and at.before.text in ("take", "takes"):
+        hint = f"write {_back(at, 2).text} within 5 s"
+    elif at.found.text.startswith('"') and at.following.is_number:
+        hint = f"the duration comes first: within {_duration_at(at, at.following)} {at.found.text}: formula"
+    return at.mistake(Code.BAD_NUMBER, f"expected a duration, found {at.found.shown}", hint)
+
+
+def _two_durations(at: Situation) -> Diagnostic | None:
+    first = _back(at, 2)
+    unit = word_at(at.prepared.text, at.found.span.end).text
+    if at.found.is_number and unit in UNITS:
+        seconds = float(first.text) * UNITS[at.before.text] + float(at.found.text) * UNITS[unit]
+        message = f"a duration has one number, and here is a second, {at.found.shown}"
+        return at.mistake(Code.UNEXPECTED, message, f"write {duration_text(seconds)}")
+    if at.found.text in (",", "-", "and") and at.following.is_number and {"to", "tick"} <= at.accepted:
+        hint = f"write {first.text} {at.before.text} to {_duration_at(at, at.following)}"
+        return at.mistake(Code.UNEXPECTED, f"expected 'to', found {at.found.shown}", hint)
+    return None
+
+
+def unnamed_property(at: Situation) -> Diagnostic | None:
+    """`within 25 min: ended a`, `invariant: uav0 in base0`."""
+    if at.sorts != {"STRING"} or at.found.text != ":" or at.following.text.startswith('"'):
+        return None
+    hint = 'write a name in double quotes before the colon: "name": formula'
+    return at.mistake(Code.UNEXPECTED, "expected the property's name before ':'", hint)
+
+
+def timeout_as_case(at: Situation) -> Diagnostic | None:
+    """`case after 10 min => ...`."""
+    if at.found.text == "after" and at.before.text == "case":
+        message = "'after' stands without 'case'"
+        return Diagnostic(Code.UNEXPECTED, at.before.span, message, "write after 10 min => statements")
+    return None
+
+
+def timed_change(at: Situation) -> Diagnostic | None:
+    """`environment { wifi drops and returns within 5 min }`."""
+    if "tick" in at.accepted or not at.accepted & {"arrives", "someone"}:
+        return None
+    for word, behind in ((at.before, at.found), (at.found, at.following)):
+        if word.text in ("within", "after", "every", "at") and (behind.is_number or behind.text == "most"):
+            message = f"{word.shown} is not a word of the language here"
+            return Diagnostic(Code.MISSPELT_KEYWORD, word.span, message, _CHANGING)
+    return None
+
+
+def _back(at: Situation, words: int) -> Word:
+    """Return the word so many before the one that was found."""
+    word = at.found
+    for _ in range(words):
+        word = word_before(at.prepared.text, word.span.start)
+    return word
+
+
+def _duration_at(at: Situation, number: Word) -> str:
+    unit = word_at(at.prepared.text, number.span.end).text
+    return f"{number.text} {unit if unit in UNITS else 's'}"
+
+
+TIMING_MISTAKES: Final[tuple[Callable[[Situation], Diagnostic | None], ...]] = (
+    foreign_bound,
+    bad_duration,
+    unnamed_property,
+    timeout_as_case,
+    timed_change,
+)
