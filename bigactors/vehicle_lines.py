@@ -62,18 +62,22 @@ def _request(request: Request, state: LiveState, now: float) -> str:
 
 
 def _does(name: Name, state: LiveState, now: float) -> Iterator[str]:
-    structure = state.configuration.structure
     if name in state.taken:
         yield state.taken[name]
     order, seen = state.orders.get(name), state.seen.get(name)
-    if order is not None and isinstance(order.command, GoTo | Follow) and name not in state.taken:
+    if order is None or not isinstance(order.command, GoTo | Follow):
+        yield f"is in {state.configuration.structure.logical.parent(name) or 'no place'}"
+        return
+    if name in state.taken:
+        yield f"has not arrived in {order.command.name}"
+    elif state.suspended or order.agent in state.grounded:
+        yield f"has given up its flight to {order.command.name}"
+    else:
         to = order.command.path[-1] if isinstance(order.command, Follow) else order.command.place
         far = "" if seen is None else f", {_metres(distance(seen.property.geometry, to))} away"
         refused = "has refused to go" if order.refused else "is on its way"
         yield f"{refused} to {order.command.name}{far}"
         yield from _lasts(name, state, now)
-    else:
-        yield f"is in {structure.logical.parent(name) or 'no place'}"
 
 
 def _lasts(name: Name, state: LiveState, now: float) -> Iterator[str]:

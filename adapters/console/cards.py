@@ -8,6 +8,7 @@ from operator import attrgetter
 from typing import Final, NamedTuple
 
 from adapters.console.agents import agents
+from adapters.console.alerts import ALL
 from adapters.console.facts import Authority, Facts, Link, Order, Position
 from adapters.console.flights import concerned
 from adapters.console.parsing import text
@@ -32,10 +33,11 @@ UNTOLD: Final = Authority(())
 
 
 class Asked(NamedTuple):
-    """A request that a vehicle is to serve, and how long it may take."""
+    """A request that a vehicle is to serve, how long it may take, and whether it is given up: served no more."""
 
     waiting: Waiting
     limit: TimeLimit | None
+    given_up: bool
 
 
 def vehicles(facts: Facts, now: float) -> dict[str, Json]:
@@ -94,6 +96,7 @@ def _request_json(asked: Asked) -> Json:
         "since": asked.waiting.since,
         "limit": None if limit is None else limit.seconds,
         "fallback": None if limit is None else limit.fallback.value,
+        "given_up": asked.given_up,
     }
 
 
@@ -135,8 +138,14 @@ def _asked(facts: Facts) -> Mapping[Name, Asked]:
         moving = isinstance(waiting.request, CTR | FLY)
         for name in concerned(facts.standing.configuration, waiting.request):
             if name in facts.run.vehicles and (moving or name not in found):
-                found[name] = Asked(waiting, limit_of(waiting.request, limits))
+                limit = limit_of(waiting.request, limits)
+                found[name] = Asked(waiting, limit, _is_given_up(facts, waiting.request))
     return found
+
+
+def _is_given_up(facts: Facts, request: Request) -> bool:
+    stopped = not facts.stopped.keys().isdisjoint((ALL, request.agent))
+    return stopped and isinstance(request, CTR | FLY)
 
 
 def limit_of(request: Request, limits: tuple[TimeLimit, ...]) -> TimeLimit | None:
@@ -166,6 +175,7 @@ def _reasons(
             yield WRONG, f"{station}, which it obeys, is not reached"
     away = name in facts.taken or name in facts.bidden
     yield from _of_request(asked, now, idle=away)
+    yield from _of_falling_back(facts, asked)
     if asked is None and not away and facts.status.get(name, {}).get("armed"):
         yield from _of_idleness(facts)
     for order in (facts.orders.get(name), facts.handing.get(name)):
@@ -194,9 +204,17 @@ def _of_request(asked: Asked | None, now: float, *, idle: bool) -> Iterator[tupl
         yield WRONG, f"its request stands for longer than {duration_text(limit)}"
     elif stood > limit / 2:
         yield WATCHED, f"its request stands for more than half of {duration_text(limit)}"
-    if idle and stood < limit:
+    if idle and stood < limit and not asked.given_up:
         then = "" if asked.limit.fallback is Fallback.CONTINUE else f"; then {_grounded(asked)}"
         yield WATCHED, f"the {duration_text(limit)} of its request run on meanwhile{then}"
+
+
+def _of_falling_back(facts: Facts, asked: Asked | None) -> Iterator[tuple[int, str]]:
+    """Yield that the mission does not command a vehicle again, even one that is given back."""
+    if ALL in facts.stopped:
+        yield WRONG, f"the mission commands nothing any more: all vehicles were told to {facts.stopped[ALL]}"
+    elif asked is not None and asked.given_up:
+        yield WRONG, _grounded(asked)
 
 
 def _grounded(asked: Asked) -> str:
@@ -205,6 +223,8 @@ def _grounded(asked: Asked) -> str:
 
 def _of_idleness(facts: Facts) -> Iterator[tuple[int, str]]:
     """Yield for whom a vehicle waits of which nothing is asked: who would ask waits itself, or has ended."""
+    if ALL in facts.stopped:
+        return
     states = agents(facts)
     if any(each["state"] == "goes on" or each["request"] is not None for each in states.values()):
         return

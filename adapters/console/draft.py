@@ -80,6 +80,7 @@ class Draft:
     words: Table[Json]
     taken: Table[str]
     bidden: Table[str]
+    stopped: Table[str]
     authority: Table[Authority]
     deadlines: Table[float]
     failed: frozenset[str]

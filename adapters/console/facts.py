@@ -199,6 +199,7 @@ class Facts:
         words: What they said last, as the cards have it.
         taken: Who was taken over, and how.
         bidden: Who does what an operator ordered, and what.
+        stopped: Whose controls are served no more (the empty name is all agents), and what their vehicles were told.
         authority: Whom vehicles obey.
         deadlines: Until when agents wait.
         failed: Agents whose computation failed.
@@ -230,6 +231,7 @@ class Facts:
     words: Mapping[Name, Json] = field(default_factory=dict)
     taken: Mapping[Name, str] = field(default_factory=dict)
     bidden: Mapping[Name, str] = field(default_factory=dict)
+    stopped: Mapping[Name, str] = field(default_factory=dict)
     authority: Mapping[Name, Authority] = field(default_factory=dict)
     deadlines: Mapping[Name, float] = field(default_factory=dict)
     failed: frozenset[Name] = frozenset()

@@ -92,10 +92,14 @@ def answer_json(answer: Answer) -> tuple[str, dict[str, Any]] | None:
         case Saying(agent, message, by):
             return "sayings", {"agent": agent, "message": message, "by": by, **refusal}
         case GivingBack(vehicle, at, by):
-            return "given_back", {"vehicle": vehicle, **({"at": at} if at else {}), "by": by, **refusal}
+            more = {name: each for name, each in {"at": at, "notes": answer.notes}.items() if each}
+            return "given_back", {"vehicle": vehicle, "by": by, **more, **refusal}
         case Ordering(order, vehicle, by):
-            more = {"left_out": dict(answer.left_out), "notes": answer.notes}
-            told = {"requests": dict(answer.requests), **{name: each for name, each in more.items() if each}}
+            others = {"left_out": dict(answer.left_out), "notes": answer.notes}
+            told = {
+                "requests": dict(answer.requests),
+                **{name: each for name, each in others.items() if each},
+            }
             return "orders", {"order": order.value, "vehicle": vehicle, "by": by, **told, **refusal}
         case Acknowledging(finding, by):
             return None if answer.refusal else ("acknowledged", {"finding": finding, "by": by})

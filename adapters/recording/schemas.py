@@ -216,6 +216,10 @@ GIVEN_BACK: Final = _object(
     vehicle=_TEXT,
     at={**_TEXT, "description": "Where it is heard from now on; it is not given back by that."},
     by=_BY,
+    notes={
+        **_TEXTS,
+        "description": "What else its operator should know, such as that its flight was given up.",
+    },
     refusal=_TEXT,
 )
 

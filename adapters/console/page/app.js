@@ -320,7 +320,7 @@ function Subject({ app }) {
   const card = vehicles.get(app.subject);
   if (!card) return null;
   return html`<div class=${`subject level-${card.level}`}>
-    <p><b class="mark">${app.subject}</b> <${Brief} app=${app} name=${app.subject} card=${card} /></p>
+    <p><b class="mark">${app.subject}</b> <${Brief} app=${app} name=${app.subject} card=${card} />${card.level > 0 && html` <span class="why">${card.why}</span>`}</p>
     <${Orders} app=${app} name=${app.subject} taken=${card.taken} /></div>`;
 }
 
@@ -352,5 +352,5 @@ const place = document.getElementById("app");
 place.replaceChildren();
 render(html`<${Page} app=${app} />`, place);
 listenForKeys(app);
-new Announcer(app, document.body.appendChild(document.createElement("div")));
+new Announcer(app, document.body.insertBefore(document.createElement("div"), place)); // below the screen it would make it scroll
 app.link.connect();

@@ -2,7 +2,7 @@
 import { html, memo, byName, useEffect, useRef, useSections, useWatched } from "./ui.js";
 import { Age, Ticking, say } from "./clock.js";
 import { distance, distanceToArea } from "./map/geodesy.js";
-import { fallbackWords, fateOf, isUnderWay, orderWords, requestWords, wayOf, whereabouts } from "./plainly.js";
+import { fallbackWords, fateOf, isSent, isUnderWay, orderWords, requestWords, wayOf, whereabouts } from "./plainly.js";
 import { Orders } from "./orders.js";
 import { useStillness } from "./stillness.js";
 import { angle, age, duration, metres, position, range, speed, system } from "./units.js";
@@ -78,17 +78,23 @@ const Card = memo(({ app, name, card, chosen, small }) => {
 });
 
 /** What a vehicle said of itself; "" of one that said nothing, as in a recording of before. */
-function status({ mode, armed, heading }) {
+function status({ mode, armed, heading, link }) {
   const parts = [mode, typeof armed === "boolean" && (armed ? "armed" : "disarmed"), isNumber(heading) && `heading ${angle(heading)}`];
-  return parts.filter(Boolean).join(" · ");
+  return asHeard(link, parts);
+}
+
+/** What a vehicle has told, of which nothing is known now where its link is lost. */
+function asHeard({ lost }, parts) {
+  const told = parts.filter(Boolean).join(" · ");
+  return told && lost ? `when last heard: ${told}` : told;
 }
 
 /** How fast and how high a vehicle is, and how far it has to go; "" where nothing is known. */
 function motion(store, name, card) {
-  const { height, altitude } = card;
+  const { height, altitude, link } = card;
   const { speed: fast } = store.section("entities").get(name) ?? {};
   const high = isNumber(height) ? `${metres(height)} above home` : isNumber(altitude) ? `${metres(altitude)} above the sea` : "";
-  return [isNumber(fast) ? speed(fast) : "", high, toGo(store, name, card)].filter(Boolean).join(" · ");
+  return asHeard(link, [isNumber(fast) ? speed(fast) : "", high, toGo(store, name, card)]);
 }
 
 /** How far a vehicle has to go, as the crow flies: into the place to which it was sent, not to its middle. */
@@ -104,15 +110,15 @@ function toGo(store, name, card, brief = false) {
 
 /** A vehicle in one line, for a phone's map. */
 export function Brief({ app, name, card }) {
-  const { height, mode } = card;
-  const facts = [mode, isNumber(height) && metres(height), toGo(app.store, name, card, true)].filter(Boolean).join(" · ");
+  const { height, mode, link } = card;
+  const facts = asHeard(link, [mode, isNumber(height) && metres(height), toGo(app.store, name, card, true)]);
   return html`<${Battery} battery=${card.battery} /> <${LinkAge} app=${app} link=${card.link} /> <span class="quiet">${facts}</span>`;
 }
 
 const isNumber = (value) => typeof value === "number";
 
 function Place({ card }) {
-  return html`<span class=${`place ${card.differs && !card.returning && !isUnderWay(card.order) ? "differs" : ""}`}>${whereabouts(card)}</span>`;
+  return html`<span class=${`place ${card.differs && !card.returning && !isUnderWay(card.order) && !isSent(card) ? "differs" : ""}`}>${whereabouts(card)}</span>`;
 }
 
 /** How long ago the vehicle was heard: the older, the more it is marked. */
@@ -134,11 +140,15 @@ function Battery({ battery }) {
     <span class="unseen">battery </span>${Math.round(battery.percent)} %</span>`;
 }
 
-/** A request, how long it has stood, of how long it may, and what comes then; the mission's own words are its title. */
+/**
+ * A request, how long it has stood, of how long it may, and what comes then; the mission's own words are its title.
+ * A vehicle that the mission does not command now is told nothing then.
+ */
 function Request({ app, card: { request, taken, returning } }) {
-  const { since, limit, fallback } = request;
+  const { since, limit, fallback, given_up: givenUp } = request;
+  if (givenUp) return html`<span class="request" title=${request.text}>given up: ${requestWords(request)}</span>`;
   const stood = (now) => Math.max(0, now - since);
-  const then = limit && fallbackWords(fallback) ? `, ${fallbackWords(fallback)}` : "";
+  const then = limit && !taken && fallbackWords(fallback) ? `, ${fallbackWords(fallback)}` : "";
   const words = (element, now) => say(element, limit ? `${duration(stood(now))} of ${duration(limit)}${then}` : `for ${duration(stood(now))}`);
   const bar = (element, now) => {
     const part = stood(now) / limit;
