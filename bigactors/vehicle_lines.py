@@ -82,15 +82,12 @@ def _does(name: Name, state: LiveState, now: float) -> Iterator[str]:
 
 def _lasts(name: Name, state: LiveState, now: float) -> Iterator[str]:
     """Yield how long a flight has gone on, and how long it still takes, where the mission has times."""
-    flights = () if state.timers is None else flying(state.timers, now)
+    flights = () if state.timers is None else flying(state.timers)
     for flight in (each for each in flights if each.vehicle == name):
-        least = _lapse(flight.least - flight.elapsed)
-        left = (
-            f"{least} or more"
-            if flight.most is None
-            else f"{least} to {_lapse(flight.most - flight.elapsed)}"
-        )
-        yield f"for {_lapse(flight.elapsed)}, {left} to go"
+        elapsed = now - flight.since
+        least = _lapse(flight.least - elapsed)
+        left = f"{least} or more" if flight.most is None else f"{least} to {_lapse(flight.most - elapsed)}"
+        yield f"for {_lapse(elapsed)}, {left} to go"
 
 
 def _lapse(seconds: float) -> str:

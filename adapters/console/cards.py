@@ -63,6 +63,7 @@ def _card(facts: Facts, name: Name, now: float, asked: Asked | None, where: Wher
         "actual": where.actual,
         "differs": where.differs,
         "request": None if asked is None else _request_json(asked),
+        "flight": facts.flights.get(name),
         "order": None if order is None else _order_json(order, _way(facts, name)),
         "link": {"heard": None if link.heard is None else floor(link.heard), "lost": link.lost},
         "mode": status.get("mode"),

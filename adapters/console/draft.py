@@ -83,6 +83,7 @@ class Draft:
     stopped: Table[str]
     authority: Table[Authority]
     deadlines: Table[float]
+    flights: Table[Json]
     failed: frozenset[str]
     steps: Table[Json]
     ticks: Table[Json]

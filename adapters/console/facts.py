@@ -202,6 +202,7 @@ class Facts:
         stopped: Whose controls are served no more (the empty name is all agents), and what their vehicles were told.
         authority: Whom vehicles obey.
         deadlines: Until when agents wait.
+        flights: How long flights take, as the cards have it; where the mission has times.
         failed: Agents whose computation failed.
         steps: The section `steps`.
         ticks: The section `ticks`.
@@ -234,6 +235,7 @@ class Facts:
     stopped: Mapping[Name, str] = field(default_factory=dict)
     authority: Mapping[Name, Authority] = field(default_factory=dict)
     deadlines: Mapping[Name, float] = field(default_factory=dict)
+    flights: Mapping[Name, Json] = field(default_factory=dict)
     failed: frozenset[Name] = frozenset()
     steps: Section = field(default_factory=dict)
     ticks: Section = field(default_factory=dict)

@@ -66,6 +66,7 @@ const Card = memo(({ app, name, card, chosen, small }) => {
     <dl>
       <dt>Place</dt><dd><${Place} card=${card} /></dd>
       <dt>Request</dt><dd>${card.request ? html`<${Request} app=${app} card=${card} />` : html`<span class="quiet">none</span>`}</dd>
+      ${card.flight && isCommanded(card) && html`<dt>Flight</dt><dd><${Flight} app=${app} flight=${card.flight} /></dd>`}
       ${card.order && html`<dt>Order</dt><dd><${Order} app=${app} order=${card.order} returning=${card.returning} /></dd>`}
       ${motion(app.store, name, card) && html`<dt>Motion</dt><dd><${Ticking} clock=${app.clock} apply=${(element) => say(element, motion(app.store, name, card))} /></dd>`}
       ${status(card) && html`<dt>Mode</dt><dd>${status(card)}</dd>`}
@@ -115,6 +116,9 @@ export function Brief({ app, name, card }) {
   return html`<${Battery} battery=${card.battery} /> <${LinkAge} app=${app} link=${card.link} /> <span class="quiet">${facts}</span>`;
 }
 
+/** Whether the mission commands a vehicle now: another's flight is not held to its times. */
+const isCommanded = ({ taken, returning, request }) => !taken && !returning && !request?.given_up;
+
 const isNumber = (value) => typeof value === "number";
 
 function Place({ card }) {
@@ -157,6 +161,23 @@ function Request({ app, card: { request, taken, returning } }) {
   };
   return html`<span class="request" title=${request.text}><span>${taken || returning ? "not now: " : ""}${requestWords(request)}</span> <${Ticking} clock=${app.clock} apply=${words} class="stood" />
     ${limit ? html`<${Ticking} clock=${app.clock} apply=${bar} class="bar" aria-hidden="true" />` : null}</span>`;
+}
+
+/** How long a flight has gone on, and how long it still takes by the mission's times. */
+function Flight({ app, flight: { since, least, most } }) {
+  const timed = most !== null;
+  const words = (element, now) => {
+    const gone = Math.max(0, now - since);
+    const [soonest, latest] = [least - gone, most - gone];
+    element.className = timed && latest < 0 ? "bad" : "";
+    const left =
+      timed && latest < 0 ? `${duration(latest)} longer than it may take`
+      : timed ? `${soonest > 0 ? `${duration(soonest)} to ` : "at most "}${duration(latest)} to go`
+      : soonest > 0 ? `${duration(soonest)} or more to go`
+      : "it may take any time";
+    say(element, `for ${duration(gone)}, ${left}`);
+  };
+  return html`<${Ticking} clock=${app.clock} apply=${words} />`;
 }
 
 function Order({ app, order, returning }) {

@@ -207,6 +207,7 @@ def card(level=0, **more):
         "actual": "searchArea0",
         "differs": False,
         "request": None,
+        "flight": None,
         "order": None,
         "link": {"heard": now, "lost": False},
         "mode": "GUIDED",

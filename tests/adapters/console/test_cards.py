@@ -6,6 +6,7 @@ from recorded import BETWEEN, EAST, FLIGHT, WEST, Tape, rules_of_once, uav, writ
 
 from adapters.console.history import History
 from adapters.live.state import Acknowledging, GivingBack, Ordering
+from adapters.live.timing import flying
 from adapters.plugin import Accepted, GoTo, LinkLost, LinkRestored, Rejected, Status, TakenOver
 from bigactors.missions import digest_of
 from semantics.contingencies import Fallback
@@ -313,6 +314,23 @@ def test_after_a_fallback_the_cards_say_that_nothing_is_commanded_any_more(tmp_p
         assert (level(tape), tape.card()["request"]["given_up"]) == ((2, STOPPED), True)
 
 
+TIMED = FLIGHT.replace(
+    "live {", "timing { uav0 flies at 18 m/s to 25 m/s }\nscheduler fcfs\ncontrol timed\nlive {"
+)
+
+
+def test_a_card_has_the_times_of_the_flight_that_the_run_watches(tmp_path):
+    with Tape(tmp_path / "r.mcap", TIMED) as tape:
+        tape.turn(0, uav(WEST, 0))
+        tape.turn(30, uav(BETWEEN, 30))
+        assert tape.card()["flight"] == {"to": "east0", "since": 1000.0, "least": 71.0, "most": 255.0}
+        (watched,) = flying(tape.run.state.timers)
+        assert tape.card()["flight"]["least"] == watched.least
+        tape.turn(100, uav(EAST, 100))
+        assert tape.card()["flight"] is None
+        assert tape.card(at=30)["flight"] is not None
+
+
 def test_a_run_that_goes_on_from_one_that_fell_back_is_not_stopped(tmp_path):
     before = {"kind": "broken assumption", "about": "boat0", "message": "it appears", "fallback": "hold"}
     assert told(tmp_path / "a", copied=[("findings", 999.0, before)])["vehicles"]["uav0"]["level"] == 0
@@ -345,8 +363,10 @@ def test_what_is_no_such_message_is_passed_over(tmp_path):
         "stations",
         "given_back",
         "deadlines",
+        "flights",
     )
     odd = [None, [], 3, {}, {"entity": 3}, {"entity": "uav0", "ring": [["x", 1]]}, {"requests": []}]
+    odd += [{"vehicle": "uav0", "takes": {"to": "x", "since": "noon", "least": 1, "most": []}}]
     odd += [{"agent": "op", "until": "noon"}, {"left_out": [], "notes": {}, "requests": {}, "order": "hold"}]
     odd += [{"command": "GoTo", "request": "x", "entity": "uav0", "ring": [[1, 2], [3]]}]
     view = told(tmp_path / "a", *((topic, 1002.0, data) for topic in topics for data in odd))

@@ -328,6 +328,29 @@ def test_who_is_held_or_whose_mission_has_fallen_back_is_not_said_to_do_what_was
         assert page.locator(".card[data-name=uav0] .bar").count() == 0
 
 
+def test_a_timed_flight_says_how_long_it_has_gone_on_and_how_long_it_still_takes(shown):
+    state = world()
+    begin = state["clock"]["head"] - 600
+    state["clock"] |= {"live": False, "now": begin + 30.5, "begin": begin}
+    flight = {"to": "east0", "since": begin, "least": 71.0, "most": 255.0}
+    state["vehicles"] = {"uav0": card(order=SENT, flight=flight)}
+
+    def at(seconds):
+        harness.set("clock", harness.state["clock"] | {"now": begin + seconds})
+
+    with Harness(state) as harness:
+        page = shown(harness)
+        has(page, ".card dd", "for 30 s, 40 s to 3 min 44 s to go")
+        at(100.5)
+        has(page, ".card dd", "for 1 min 40 s, at most 2 min 34 s to go")
+        at(265.5)
+        has(page, ".card dd .bad", "for 4 min 25 s, 10 s longer than it may take")
+        harness.set("vehicles", {"uav0": card(order=SENT, flight=flight | {"most": None})})
+        has(page, ".card dd", "for 4 min 25 s, it may take any time")
+        harness.set("vehicles", {"uav0": card(order=SENT, flight=flight, taken="held by Ana")})
+        page.locator(".card dt", has_text="Flight").wait_for(state="detached")
+
+
 def test_what_is_shown_of_a_vehicle_whose_link_is_lost_is_said_to_be_old(shown):
     state = world()
     state["vehicles"] = {"uav1": state["vehicles"]["uav1"]}
@@ -347,9 +370,8 @@ def test_a_recording_that_cannot_be_read_any_further_is_no_end_and_orders_go_on(
         harness.set("clock", {"unread": "it has become shorter than it was"})
         has(page, ".badge.past", "OLD")
         has(page, ".offline", "the recording cannot be read any further (it has become shorter than it was)")
-        page.get_by_role("button", name="Hold boat0").hover()
         press_mouse(page, 1.2)
-        assert await_acts(harness, page, 1) == [{"order": {"order": "hold", "vehicle": "boat0"}}]
+        assert await_acts(harness, page, 1) == [{"order": {"order": "hold", "vehicle": "uav0"}}]
         harness.set("clock", {"unread": None})
         page.locator(".offline").wait_for(state="detached")
 
