@@ -320,7 +320,7 @@ function Subject({ app }) {
   const card = vehicles.get(app.subject);
   if (!card) return null;
   return html`<div class=${`subject level-${card.level}`}>
-    <p><b class="mark">${app.subject}</b> <${Brief} app=${app} name=${app.subject} card=${card} />${card.level > 0 && html` <span class="why">${card.why}</span>`}</p>
+    <p><b class="mark">${app.subject}</b> <${Brief} app=${app} name=${app.subject} card=${card} /></p>
     <${Orders} app=${app} name=${app.subject} taken=${card.taken} /></div>`;
 }
 

@@ -109,11 +109,12 @@ function toGo(store, name, card, brief = false) {
   return left > 0 ? `${range(left)} ${where}${fast > 1 ? `, ${duration(left / fast)} or more` : ""}` : `in ${card.order.to}`;
 }
 
-/** A vehicle in one line, for a phone's map. */
+/** A vehicle in two lines, for a phone's map: why it needs somebody comes before what it does. */
 export function Brief({ app, name, card }) {
   const { height, mode, link } = card;
   const facts = asHeard(link, [mode, isNumber(height) && metres(height), toGo(app.store, name, card, true)]);
-  return html`<${Battery} battery=${card.battery} /> <${LinkAge} app=${app} link=${card.link} /> <span class="quiet">${facts}</span>`;
+  return html`<${Battery} battery=${card.battery} /> <${LinkAge} app=${app} link=${card.link} />
+    ${card.level > 0 && html`<span class="why" title=${card.why}>${card.why}</span>`} <span class="quiet">${facts}</span>`;
 }
 
 /** Whether the mission commands a vehicle now: another's flight is not held to its times. */

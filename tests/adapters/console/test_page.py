@@ -360,7 +360,9 @@ def test_what_is_shown_of_a_vehicle_whose_link_is_lost_is_said_to_be_old(shown):
         has(page, ".card dd", "when last heard: 10.1 kn · 119 m above home")
         phone = shown(harness, PHONE)
         has(phone, ".subject", "when last heard: RTL · 119 m")
-        has(phone, ".subject .why", "taken over by the fail-safe")
+        why = phone.locator(".subject .why")
+        assert "taken over by the fail-safe" in why.inner_text()
+        assert why.bounding_box()["y"] < phone.locator(".subject .orders").bounding_box()["y"]
 
 
 def test_a_recording_that_cannot_be_read_any_further_is_no_end_and_orders_go_on(shown):
