@@ -12,7 +12,6 @@ from dataclasses import replace
 from ipaddress import ip_address
 
 from adapters.live.flying import ask_anew
-from adapters.live.limits import due_fallback
 from adapters.live.orders import is_authority, stopping
 from adapters.live.state import (
     Acknowledging,
@@ -173,7 +172,7 @@ def _give_back(turning: Turning, said: GivingBack) -> Answer:
     turning.commands.append(GiveBack(turning.request_of("give-back"), entity))
     ask_anew(turning, entity)
     given = f"{entity} was given back{f' by {said.by}' if said.by else ''}"
-    fallback = due_fallback(turning, entity)
+    fallback = turning.due_fallback(entity)
     if fallback is Fallback.CONTINUE:
         turning.find("given back", entity, f"{given}, and is commanded again")
         return Answer(said)

@@ -324,3 +324,24 @@ def test_a_vehicle_that_is_given_back_while_the_mission_is_suspended_does_what_a
     assert "broken assumption" in run.kinds()
     turn = run.turn(3.0, seen("uav0", BETWEEN, 3.0), sayings=[GivingBack("uav0")])
     assert [type(command).__name__ for command in turn.commands] == ["GiveBack", "Return"]
+
+
+SENT_HOME = [
+    (Precautions(RETURN, (TimeLimit("FLY", "a", 60.0, HOLD),)), 2.0),
+    (Precautions(HOLD, (TimeLimit("FLY", "a", 60.0, RETURN),)), 90.0),
+]
+
+
+@pytest.mark.parametrize(("precautions", "drifts"), SENT_HOME)
+def test_who_was_told_to_return_does_not_stop_on_its_way_home(precautions, drifts):
+    run = flying(TWO + GO, precautions)
+    run.turn(1.0, seen("uav0", BETWEEN, 1.0))
+    for now in (drifts, 70.0, 100.0) if drifts < 70.0 else (70.0, drifts, 100.0):
+        run.turn(now, seen("uav0", BETWEEN, now), *([boat(WEST, now)] if now == drifts else []))
+    assert {"broken assumption", "late"} <= set(run.kinds())
+    assert told(run)[-1] == "Return"
+    assert "Hold" not in told(run)
+    kept = "uav0 is not told to hold: it was told to return before"
+    assert [finding.message for finding in run.findings if finding.kind == "trouble"] == [kept]
+    turn = run.turn(110.0, seen("uav0", BETWEEN, 110.0), sayings=[ordered(), GivingBack("uav0")])
+    assert [type(command).__name__ for command in turn.commands][-1] == "Return"
