@@ -13,7 +13,7 @@ from physical.messages import counted
 from semantics.behaviours.values import show
 from semantics.environment import Says
 from semantics.state.requests import READY, Request
-from semantics.state.signature import Name
+from semantics.state.signature import REGION, Name
 from semantics.timing.dates import lapse_text
 
 OLD = 5.0
@@ -66,7 +66,7 @@ def _does(name: Name, state: LiveState, now: float) -> Iterator[str]:
         yield state.taken[name]
     order, seen = state.orders.get(name), state.seen.get(name)
     if order is None or not isinstance(order.command, GoTo | Follow):
-        yield f"is in {state.configuration.structure.logical.parent(name) or 'no place'}"
+        yield f"is in {_place(name, state)}"
         return
     if name in state.taken:
         yield f"has not arrived in {order.command.name}"
@@ -78,6 +78,13 @@ def _does(name: Name, state: LiveState, now: float) -> Iterator[str]:
         refused = "has refused to go" if order.refused else "is on its way"
         yield f"{refused} to {order.command.name}{far}"
         yield from _lasts(name, state, now)
+
+
+def _place(name: Name, state: LiveState) -> str:
+    """Return where a vehicle is that is not under way: where it was seen, whatever is believed."""
+    physical = state.configuration.structure.physical
+    parent = physical.abstract_parent(name) if name in physical else REGION
+    return "none of the places" if parent == REGION else parent
 
 
 def _lasts(name: Name, state: LiveState, now: float) -> Iterator[str]:

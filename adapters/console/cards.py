@@ -168,9 +168,7 @@ def _reasons(
         yield LOST, f"taken over: {facts.taken[name]}"
     elif name in facts.bidden:
         yield WATCHED, facts.bidden[name]
-    for alert in facts.alerts.values():
-        if alert["kind"] == "broken assumption" and alert["about"] == name and alert["acknowledged"] is None:
-            yield LOST, f"broken assumption: {alert['message']}"
+    yield from _of_assumptions(facts, name)
     for station in facts.authority.get(name, UNTOLD).stations:
         if facts.stations.get(station, {}).get("reached") is False:
             yield WRONG, f"{station}, which it obeys, is not reached"
@@ -194,6 +192,18 @@ def _of_link(link: Link, now: float) -> Iterator[tuple[int, str]]:
         yield LOST, "the link is lost"
     elif link.heard is not None and now - link.heard > OLD:
         yield WATCHED, f"nothing was heard of it for more than {OLD:g} s"
+
+
+def _of_assumptions(facts: Facts, name: Name) -> Iterator[tuple[int, str]]:
+    """Yield the newest broken assumption about a vehicle that nobody has acknowledged, and how many more there are."""
+    broken = [
+        alert["message"]
+        for alert in facts.alerts.values()
+        if alert["kind"] == "broken assumption" and alert["about"] == name and alert["acknowledged"] is None
+    ]
+    if broken:
+        more = f" (and {len(broken) - 1} more)" if len(broken) > 1 else ""
+        yield LOST, f"broken assumption: {broken[-1]}{more}"
 
 
 def _of_request(asked: Asked | None, now: float, *, idle: bool) -> Iterator[tuple[int, str]]:

@@ -398,7 +398,7 @@ class Turning:
         if fallback is Fallback.CONTINUE:
             return
         for entity in filter(self.answers_for, entities):
-            if fallback is Fallback.HOLD and self.due_fallback(entity) is Fallback.RETURN:
+            if fallback is Fallback.HOLD and self.flies_home(entity):
                 what = f"{entity} is not told to hold: it was told to return before"
                 self.find("trouble", entity, what, once=True)
                 continue
@@ -419,6 +419,10 @@ class Turning:
             limits = self.plan.precautions.limits
             due |= {limit.fallback for limit in limits if limit.agent in (None, *agents)}
         return next((each for each in (Fallback.RETURN, Fallback.HOLD) if each in due), Fallback.CONTINUE)
+
+    def flies_home(self, entity: Name) -> bool:
+        """Tell whether the mission has fallen back so that a vehicle was told to return."""
+        return entity in self.plan.vehicles and self.due_fallback(entity) is Fallback.RETURN
 
     def vehicles_of(self, agent: Name) -> tuple[Name, ...]:
         """Return the vehicles of an agent's request: those that it has sent, else its host."""

@@ -331,6 +331,19 @@ def test_a_card_has_the_times_of_the_flight_that_the_run_watches(tmp_path):
         assert tape.card(at=30)["flight"] is not None
 
 
+def test_of_several_broken_assumptions_about_a_vehicle_its_card_says_the_newest(tmp_path):
+    broken = [
+        (
+            "findings",
+            1002.0 + n,
+            {"kind": "broken assumption", "about": "uav0", "message": each, "fallback": ""},
+        )
+        for n, each in enumerate(("it is in west0", "it is in east0", "it has vanished"))
+    ]
+    card = told(tmp_path / "a", *broken)["vehicles"]["uav0"]
+    assert card["why"] == "broken assumption: it has vanished (and 2 more)"
+
+
 def test_a_run_that_goes_on_from_one_that_fell_back_is_not_stopped(tmp_path):
     before = {"kind": "broken assumption", "about": "boat0", "message": "it appears", "fallback": "hold"}
     assert told(tmp_path / "a", copied=[("findings", 999.0, before)])["vehicles"]["uav0"]["level"] == 0

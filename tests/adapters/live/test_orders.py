@@ -27,6 +27,7 @@ from adapters.plugin import (
     TakenOver,
 )
 from physical import PhysicalProperty, box
+from bigactors.vehicle_lines import vehicle_line
 from semantics.contingencies import Fallback, Precautions, TimeLimit
 from semantics.state.partition import Parting, parted
 
@@ -345,3 +346,16 @@ def test_who_was_told_to_return_does_not_stop_on_its_way_home(precautions, drift
     assert [finding.message for finding in run.findings if finding.kind == "trouble"] == [kept]
     turn = run.turn(110.0, seen("uav0", BETWEEN, 110.0), sayings=[ordered(), GivingBack("uav0")])
     assert [type(command).__name__ for command in turn.commands][-1] == "Return"
+
+
+def test_a_vehicle_that_was_told_to_return_breaks_no_assumption_on_its_way_home():
+    run = flying(TWO + GO, Precautions(RETURN))
+    run.turn(60.0, seen("uav0", EAST, 60.0))
+    run.turn(61.0, seen("uav0", EAST, 61.0), boat(WEST, 61.0))
+    assert run.kinds().count("broken assumption") == 1
+    run.turn(70.0, seen("uav0", BETWEEN, 70.0))
+    assert run.state.configuration.structure.logical.parent("uav0") == "east0"
+    assert vehicle_line("uav0", run.state, None, 70.0) == "uav0 is in none of the places"
+    run.turn(80.0, seen("uav0", WEST, 80.0))
+    assert run.kinds().count("broken assumption") == 1
+    assert run.state.configuration.structure.physical.abstract_parent("uav0") == "west0"
