@@ -26,8 +26,8 @@ from adapters.plugin import (
     StatusText,
     TakenOver,
 )
-from physical import PhysicalProperty, box
 from bigactors.vehicle_lines import vehicle_line
+from physical import PhysicalProperty, box
 from semantics.contingencies import Fallback, Precautions, TimeLimit
 from semantics.state.partition import Parting, parted
 
