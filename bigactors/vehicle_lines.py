@@ -13,7 +13,7 @@ from physical.messages import counted
 from semantics.behaviours.values import show
 from semantics.environment import Says
 from semantics.state.requests import READY, Request
-from semantics.state.signature import Name
+from semantics.state.signature import REGION, Name
 from semantics.timing.dates import lapse_text
 
 OLD = 5.0
@@ -62,31 +62,39 @@ def _request(request: Request, state: LiveState, now: float) -> str:
 
 
 def _does(name: Name, state: LiveState, now: float) -> Iterator[str]:
-    structure = state.configuration.structure
     if name in state.taken:
         yield state.taken[name]
     order, seen = state.orders.get(name), state.seen.get(name)
-    if order is not None and isinstance(order.command, GoTo | Follow) and name not in state.taken:
+    if order is None or not isinstance(order.command, GoTo | Follow):
+        yield f"is in {_place(name, state)}"
+        return
+    if name in state.taken:
+        yield f"has not arrived in {order.command.name}"
+    elif state.suspended or order.agent in state.grounded:
+        yield f"has given up its flight to {order.command.name}"
+    else:
         to = order.command.path[-1] if isinstance(order.command, Follow) else order.command.place
         far = "" if seen is None else f", {_metres(distance(seen.property.geometry, to))} away"
         refused = "has refused to go" if order.refused else "is on its way"
         yield f"{refused} to {order.command.name}{far}"
         yield from _lasts(name, state, now)
-    else:
-        yield f"is in {structure.logical.parent(name) or 'no place'}"
+
+
+def _place(name: Name, state: LiveState) -> str:
+    """Return where a vehicle is that is not under way: where it was seen, whatever is believed."""
+    physical = state.configuration.structure.physical
+    parent = physical.abstract_parent(name) if name in physical else REGION
+    return "none of the places" if parent == REGION else parent
 
 
 def _lasts(name: Name, state: LiveState, now: float) -> Iterator[str]:
     """Yield how long a flight has gone on, and how long it still takes, where the mission has times."""
-    flights = () if state.timers is None else flying(state.timers, now)
+    flights = () if state.timers is None else flying(state.timers)
     for flight in (each for each in flights if each.vehicle == name):
-        least = _lapse(flight.least - flight.elapsed)
-        left = (
-            f"{least} or more"
-            if flight.most is None
-            else f"{least} to {_lapse(flight.most - flight.elapsed)}"
-        )
-        yield f"for {_lapse(flight.elapsed)}, {left} to go"
+        elapsed = now - flight.since
+        least = _lapse(flight.least - elapsed)
+        left = f"{least} or more" if flight.most is None else f"{least} to {_lapse(flight.most - elapsed)}"
+        yield f"for {_lapse(elapsed)}, {left} to go"
 
 
 def _lapse(seconds: float) -> str:

@@ -16,8 +16,14 @@ WRONG: Final = frozenset(
 )
 """The kinds of findings that stand until somebody has seen them."""
 
+STOPPING: Final = frozenset({"hold", "return"})
+"""The fallbacks after which controls are served no more: of the agent that is late, else of all."""
+
 OF_ACTIONS: Final = frozenset({"ordered", "confirmed"})
 """The kinds that tell what became of an action, which has a tick of its own."""
+
+ALL: Final = ""
+"""Stands for all agents among those whose controls are served no more."""
 
 CONSOLES_OWN: Final = "0"
 """The key of what the console itself has to say; findings are counted from 1."""
@@ -31,8 +37,16 @@ def take_finding(draft: Draft, time: float, data: Any) -> None:
     draft.alerts.bounded(MOST)
     if alert["kind"] == "failed" and len(draft.failed) < MOST:
         draft.failed |= {alert["about"]}
+    if alert["fallback"] in STOPPING and not _is_copied(draft, time):
+        draft.stopped[alert["about"] if alert["kind"] == "late" else ALL] = alert["fallback"]
+        draft.stopped.bounded(MOST)
     if alert["kind"] not in OF_ACTIONS:
         tick(draft, time, "finding")
+
+
+def _is_copied(draft: Draft, time: float) -> bool:
+    """Tell whether something was found in the run that this one resumes: it begins once the world is right again."""
+    return draft.run is not None and time < draft.run.mission["begun"]
 
 
 def tell(draft: Draft, message: str) -> None:

@@ -8,6 +8,7 @@ from operator import attrgetter
 from typing import Final, NamedTuple
 
 from adapters.console.agents import agents
+from adapters.console.alerts import ALL
 from adapters.console.facts import Authority, Facts, Link, Order, Position
 from adapters.console.flights import concerned
 from adapters.console.parsing import text
@@ -32,10 +33,11 @@ UNTOLD: Final = Authority(())
 
 
 class Asked(NamedTuple):
-    """A request that a vehicle is to serve, and how long it may take."""
+    """A request that a vehicle is to serve, how long it may take, and whether it is given up: served no more."""
 
     waiting: Waiting
     limit: TimeLimit | None
+    given_up: bool
 
 
 def vehicles(facts: Facts, now: float) -> dict[str, Json]:
@@ -61,6 +63,7 @@ def _card(facts: Facts, name: Name, now: float, asked: Asked | None, where: Wher
         "actual": where.actual,
         "differs": where.differs,
         "request": None if asked is None else _request_json(asked),
+        "flight": facts.flights.get(name),
         "order": None if order is None else _order_json(order, _way(facts, name)),
         "link": {"heard": None if link.heard is None else floor(link.heard), "lost": link.lost},
         "mode": status.get("mode"),
@@ -94,6 +97,7 @@ def _request_json(asked: Asked) -> Json:
         "since": asked.waiting.since,
         "limit": None if limit is None else limit.seconds,
         "fallback": None if limit is None else limit.fallback.value,
+        "given_up": asked.given_up,
     }
 
 
@@ -135,8 +139,14 @@ def _asked(facts: Facts) -> Mapping[Name, Asked]:
         moving = isinstance(waiting.request, CTR | FLY)
         for name in concerned(facts.standing.configuration, waiting.request):
             if name in facts.run.vehicles and (moving or name not in found):
-                found[name] = Asked(waiting, limit_of(waiting.request, limits))
+                limit = limit_of(waiting.request, limits)
+                found[name] = Asked(waiting, limit, _is_given_up(facts, waiting.request))
     return found
+
+
+def _is_given_up(facts: Facts, request: Request) -> bool:
+    stopped = not facts.stopped.keys().isdisjoint((ALL, request.agent))
+    return stopped and isinstance(request, CTR | FLY)
 
 
 def limit_of(request: Request, limits: tuple[TimeLimit, ...]) -> TimeLimit | None:
@@ -158,14 +168,13 @@ def _reasons(
         yield LOST, f"taken over: {facts.taken[name]}"
     elif name in facts.bidden:
         yield WATCHED, facts.bidden[name]
-    for alert in facts.alerts.values():
-        if alert["kind"] == "broken assumption" and alert["about"] == name and alert["acknowledged"] is None:
-            yield LOST, f"broken assumption: {alert['message']}"
+    yield from _of_assumptions(facts, name)
     for station in facts.authority.get(name, UNTOLD).stations:
         if facts.stations.get(station, {}).get("reached") is False:
             yield WRONG, f"{station}, which it obeys, is not reached"
     away = name in facts.taken or name in facts.bidden
     yield from _of_request(asked, now, idle=away)
+    yield from _of_falling_back(facts, asked)
     if asked is None and not away and facts.status.get(name, {}).get("armed"):
         yield from _of_idleness(facts)
     for order in (facts.orders.get(name), facts.handing.get(name)):
@@ -185,6 +194,18 @@ def _of_link(link: Link, now: float) -> Iterator[tuple[int, str]]:
         yield WATCHED, f"nothing was heard of it for more than {OLD:g} s"
 
 
+def _of_assumptions(facts: Facts, name: Name) -> Iterator[tuple[int, str]]:
+    """Yield the newest broken assumption about a vehicle that nobody has acknowledged, and how many more there are."""
+    broken = [
+        alert["message"]
+        for alert in facts.alerts.values()
+        if alert["kind"] == "broken assumption" and alert["about"] == name and alert["acknowledged"] is None
+    ]
+    if broken:
+        more = f" (and {len(broken) - 1} more)" if len(broken) > 1 else ""
+        yield LOST, f"broken assumption: {broken[-1]}{more}"
+
+
 def _of_request(asked: Asked | None, now: float, *, idle: bool) -> Iterator[tuple[int, str]]:
     """Yield what its request's limit calls for; `idle`: the mission does not command the vehicle."""
     if asked is None or asked.limit is None:
@@ -194,9 +215,17 @@ def _of_request(asked: Asked | None, now: float, *, idle: bool) -> Iterator[tupl
         yield WRONG, f"its request stands for longer than {duration_text(limit)}"
     elif stood > limit / 2:
         yield WATCHED, f"its request stands for more than half of {duration_text(limit)}"
-    if idle and stood < limit:
+    if idle and stood < limit and not asked.given_up:
         then = "" if asked.limit.fallback is Fallback.CONTINUE else f"; then {_grounded(asked)}"
         yield WATCHED, f"the {duration_text(limit)} of its request run on meanwhile{then}"
+
+
+def _of_falling_back(facts: Facts, asked: Asked | None) -> Iterator[tuple[int, str]]:
+    """Yield that the mission does not command a vehicle again, even one that is given back."""
+    if ALL in facts.stopped:
+        yield WRONG, f"the mission commands nothing any more: all vehicles were told to {facts.stopped[ALL]}"
+    elif asked is not None and asked.given_up:
+        yield WRONG, _grounded(asked)
 
 
 def _grounded(asked: Asked) -> str:
@@ -205,6 +234,8 @@ def _grounded(asked: Asked) -> str:
 
 def _of_idleness(facts: Facts) -> Iterator[tuple[int, str]]:
     """Yield for whom a vehicle waits of which nothing is asked: who would ask waits itself, or has ended."""
+    if ALL in facts.stopped:
+        return
     states = agents(facts)
     if any(each["state"] == "goes on" or each["request"] is not None for each in states.values()):
         return

@@ -199,8 +199,10 @@ class Facts:
         words: What they said last, as the cards have it.
         taken: Who was taken over, and how.
         bidden: Who does what an operator ordered, and what.
+        stopped: Whose controls are served no more (the empty name is all agents), and what their vehicles were told.
         authority: Whom vehicles obey.
         deadlines: Until when agents wait.
+        flights: How long flights take, as the cards have it; where the mission has times.
         failed: Agents whose computation failed.
         steps: The section `steps`.
         ticks: The section `ticks`.
@@ -230,8 +232,10 @@ class Facts:
     words: Mapping[Name, Json] = field(default_factory=dict)
     taken: Mapping[Name, str] = field(default_factory=dict)
     bidden: Mapping[Name, str] = field(default_factory=dict)
+    stopped: Mapping[Name, str] = field(default_factory=dict)
     authority: Mapping[Name, Authority] = field(default_factory=dict)
     deadlines: Mapping[Name, float] = field(default_factory=dict)
+    flights: Mapping[Name, Json] = field(default_factory=dict)
     failed: frozenset[Name] = frozenset()
     steps: Section = field(default_factory=dict)
     ticks: Section = field(default_factory=dict)

@@ -11,6 +11,7 @@ from adapters.console.draft import Draft, Table
 from adapters.console.facts import Link, Order, Position
 from adapters.console.parsing import count, number, text, texts
 from adapters.console.stations import obeys
+from adapters.console.view import Json
 from physical import PhysicalError, waypoint
 from physical.frame import E7
 from semantics.behaviours.reaction_rules import moved
@@ -86,6 +87,25 @@ def take_report(draft: Draft, time: float, data: Any) -> None:
         case {"report": "LinkRestored", "entity": str(name)}:
             draft.links[name] = Link(draft.links.get(name, Link()).heard)
             confirm(draft, time, f"link {name}", None)
+
+
+def take_flight(draft: Draft, _time: float, data: Any) -> None:
+    """Take in how long a flight takes, or that it is over."""
+    match data:
+        case {"vehicle": str(name), "takes": takes}:
+            draft.flights.pop(name, None)
+            if (flight := _flight(takes)) is not None:
+                draft.flights[name] = flight
+                draft.flights.bounded(MOST_VEHICLES)
+
+
+def _flight(takes: Any) -> Json:
+    match takes:
+        case {"to": str(to), "since": began, "least": shortest, "most": longest}:
+            since, least = number(began), number(shortest)
+            if since is not None and least is not None:
+                return {"to": text(to), "since": since, "least": least, "most": number(longest)}
+    return None
 
 
 def _becomes(orders: Table[Order], name: str, request: str, state: str, why: str) -> None:

@@ -11,7 +11,7 @@ from adapters.console.alerts import take_finding, tell
 from adapters.console.arrivals import take_arrival
 from adapters.console.draft import Draft
 from adapters.console.facts import Change, Facts, Opening, Standing, Unreplayable
-from adapters.console.flights import take_command, take_report, take_status, take_words
+from adapters.console.flights import take_command, take_flight, take_report, take_status, take_words
 from adapters.console.parsing import text
 from adapters.console.runs import run_of
 from adapters.console.stations import take_presence
@@ -25,6 +25,7 @@ TOPICS: Final[dict[str, Callable[[Draft, float, Any], None]]] = {
     "arrivals": take_arrival,
     "steps": take_step,
     "deadlines": take_deadline,
+    "flights": take_flight,
     "commands": take_command,
     "reports": take_report,
     "sayings": take_saying,

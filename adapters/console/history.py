@@ -73,7 +73,7 @@ class History:
         facts: What it has told up to the newest message that was read.
         opening: Returns the rules of what was flown.
         behind: Whether more of the recording was there to be read when it was read last.
-        trouble: Why its beginning cannot be read; empty where it can, or is not written yet.
+        trouble: Why it cannot be read, or not any further; empty where it can, or is not written yet.
     """
 
     def __init__(
@@ -124,6 +124,8 @@ class History:
     def read_on(self, budget: float) -> bool:
         """Take in what was appended, for at most `budget` seconds; tell whether there may be more.
 
+        What cannot be read ends a recording, but no run that is still to write it: it is tried again.
+
         Raises:
             RecordingError: It is no recording of a run. What is damaged later ends it.
             OSError: It cannot be opened; where it is still to be written, it need not be there yet.
@@ -143,10 +145,13 @@ class History:
         except (RecordingError, OSError) as error:
             if draft.run is None and self._live and isinstance(error, FileNotFoundError):
                 return False
+            self.trouble = str(error)
             if draft.run is None:
-                self.trouble = str(error)
                 raise
-            draft.end(f"the recording cannot be read any further: {error}")
+            if not self._live:
+                draft.end(f"the recording cannot be read any further: {error}")
+        else:
+            self.trouble = ""
         if self._reader.ended and not more:
             draft.end("the recording has ended")
         if draft.changed:

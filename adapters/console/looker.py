@@ -157,6 +157,7 @@ class Looker:
             "live": head.live,
             "playing": head.playing,
             "speed": head.speed,
+            "unread": history.trouble or None,
         }
         return View({**view.sections, "clock": {**view.sections.get("clock", {}), **shown}})
 

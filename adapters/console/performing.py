@@ -31,6 +31,6 @@ async def _perform(socket: Path, action: Action, by: str) -> Outcome:
         case Order(what, vehicle):
             return await order(socket, what, vehicle, by)
         case GiveBack(vehicle):
-            return Outcome(await give_back(socket, vehicle, by=by))
+            return await give_back(socket, vehicle, by=by)
         case Acknowledge(finding):
             return Outcome(await acknowledge(socket, finding, by))

@@ -117,9 +117,8 @@ def _same_place(turning: Turning, entity: Name, here: Placement | None, seen: Pl
 
 
 def _move(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> None:
-    broken = broken_by_place(turning.plan, turning.c, entity, seen)
-    if here is None and _is_back(turning, entity, seen):
-        broken = ""
+    expected = turning.flies_home(entity) or (here is None and _is_back(turning, entity, seen))
+    broken = "" if expected else broken_by_place(turning.plan, turning.c, entity, seen)
     writes: dict[Cell, object] = {placement_cell(entity): seen}
     if here is None:
         writes[channels_cell(entity)] = _channels_of_newcomer(turning, entity)

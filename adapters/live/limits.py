@@ -12,7 +12,6 @@ from semantics.behaviours.durations import duration_text
 from semantics.contingencies import Fallback, TimeLimit
 from semantics.state.configuration import Configuration
 from semantics.state.requests import SND
-from semantics.state.signature import Name
 
 
 def check_limits(turning: Turning) -> None:
@@ -54,27 +53,5 @@ def _check(turning: Turning, key: str, waiting: Waiting, limit: TimeLimit) -> No
     turning.find("late", agent, message, limit.fallback.value)
     turning.heads[key] = replace(turning.heads[key], late=(*turning.heads[key].late, limit.seconds))
     if limit.fallback is not Fallback.CONTINUE:
+        turning.fall_back(limit.fallback, turning.vehicles_of(agent))
         turning.grounded.add(agent)
-        turning.fall_back(limit.fallback, vehicles_of(turning, agent))
-
-
-def due_fallback(turning: Turning, entity: Name) -> Fallback:
-    """Return what the mission has a vehicle do whose flight it does not command any more; else to continue."""
-    if turning.suspended:
-        return turning.plan.precautions.on_broken
-    agents = [agent for agent in turning.grounded if entity in vehicles_of(turning, agent)]
-    limits = (
-        [limit for limit in turning.plan.precautions.limits if limit.agent in (None, *agents)]
-        if agents
-        else []
-    )
-    asked = {limit.fallback for limit in limits}
-    return next((each for each in (Fallback.RETURN, Fallback.HOLD) if each in asked), Fallback.CONTINUE)
-
-
-def vehicles_of(turning: Turning, agent: Name) -> tuple[Name, ...]:
-    """Return the vehicles of an agent's request: those that it has sent, else its host."""
-    sent = {entity for entity, order in turning.orders.items() if order.agent == agent}
-    sent |= {entity for entity, order in turning.handing.items() if order.agent == agent}
-    host = {turning.c.alpha.host(agent)} if agent in turning.c.alpha else set()
-    return tuple(sorted(sent or host & turning.plan.vehicles.keys()))

@@ -122,11 +122,6 @@ async def say(path: Path, agent: str, message: str, by: str = "") -> str:
     return _refusal(await _say(path, {"agent": agent, "message": message, "by": by}))
 
 
-async def give_back(path: Path, vehicle: str, at: str = "", by: str = "") -> str:
-    """Give a vehicle back to the run that listens at a path, or say at which HOST:PORT it is now; as `say`."""
-    return _refusal(await _say(path, {"give_back": vehicle, "at": at, "by": by}))
-
-
 class Outcome(NamedTuple):
     """What came of what an operator asked for.
 
@@ -143,10 +138,12 @@ class Outcome(NamedTuple):
 
 async def order(path: Path, what: str, vehicle: str | None, by: str = "") -> Outcome:
     """Order a vehicle, or all, to `hold` or `return`; as `say`, and return who was left out, too."""
-    answer = await _say(path, {"order": what, "vehicle": vehicle, "by": by})
-    left_out, notes = answer.get("left_out"), answer.get("notes")
-    why = {name: str(each) for name, each in left_out.items()} if isinstance(left_out, dict) else {}
-    return Outcome(_refusal(answer), why, tuple(map(str, notes)) if isinstance(notes, list) else ())
+    return _outcome(await _say(path, {"order": what, "vehicle": vehicle, "by": by}))
+
+
+async def give_back(path: Path, vehicle: str, at: str = "", by: str = "") -> Outcome:
+    """Give a vehicle back to the run that listens at a path, or say at which HOST:PORT it is now; as `order`."""
+    return _outcome(await _say(path, {"give_back": vehicle, "at": at, "by": by}))
 
 
 async def acknowledge(path: Path, finding: int, by: str = "") -> str:
@@ -160,6 +157,12 @@ async def status(path: Path) -> str:
         case {"status": str(text)}:
             return text
     raise NobodyListens(f"the run at {path} is of a version that does not tell how it stands")
+
+
+def _outcome(answer: dict[str, Any]) -> Outcome:
+    left_out, notes = answer.get("left_out"), answer.get("notes")
+    why = {name: str(each) for name, each in left_out.items()} if isinstance(left_out, dict) else {}
+    return Outcome(_refusal(answer), why, tuple(map(str, notes)) if isinstance(notes, list) else ())
 
 
 def _refusal(answer: dict[str, Any]) -> str:

@@ -12,7 +12,6 @@ from dataclasses import replace
 from ipaddress import ip_address
 
 from adapters.live.flying import ask_anew
-from adapters.live.limits import due_fallback
 from adapters.live.orders import is_authority, stopping
 from adapters.live.state import (
     Acknowledging,
@@ -47,7 +46,7 @@ def answer(turning: Turning, said: Said) -> None:
         case Ordering():
             turning.answers.append(order(turning, said))
         case GivingBack():
-            turning.answers.append(Answer(said, _hear_operator(turning, said)))
+            turning.answers.append(_take_back(turning, said))
         case Acknowledging(number):
             known = 0 < number <= turning.before.findings
             refusal = "" if known else f"there is no finding {number}; there are {turning.before.findings}"
@@ -148,11 +147,11 @@ def is_bidden(turning: Turning, entity: Name, request: str) -> bool:
 # --- vehicles given back
 
 
-def _hear_operator(turning: Turning, said: GivingBack) -> str:
-    """Do what an operator says of a vehicle; return why not, nothing if it is done."""
+def _take_back(turning: Turning, said: GivingBack) -> Answer:
+    """Take back a vehicle, or believe it from another address."""
     if said.vehicle not in turning.plan.vehicles:
-        return _no_vehicle(turning, said.vehicle)
-    return _rebind(turning, said.vehicle, said.at) if said.at else _give_back(turning, said.vehicle, said.by)
+        return Answer(said, _no_vehicle(turning, said.vehicle))
+    return Answer(said, _rebind(turning, said.vehicle, said.at)) if said.at else _give_back(turning, said)
 
 
 def _no_vehicle(turning: Turning, name: str) -> str:
@@ -160,27 +159,27 @@ def _no_vehicle(turning: Turning, name: str) -> str:
     return f"there is no vehicle '{name:.60}'; there are {vehicles or 'none'}"
 
 
-def _give_back(turning: Turning, entity: Name, by: str) -> str:
-    """Command a vehicle again that was taken over or has refused; return why not, or an empty text."""
+def _give_back(turning: Turning, said: GivingBack) -> Answer:
+    """Command a vehicle again that was taken over or has refused."""
+    entity = said.vehicle
     told = (turning.orders.get(entity), turning.handing.get(entity))
     refused = any(order.refused for order in told if order is not None)
     if entity not in turning.taken and not refused:
-        return f"{entity} was not taken over here, and has refused nothing"
+        return Answer(said, f"{entity} was not taken over here, and has refused nothing")
     turning.taken.pop(entity, None)
     turning.bidden.pop(entity, None)
     turning.quiet = None
     turning.commands.append(GiveBack(turning.request_of("give-back"), entity))
     ask_anew(turning, entity)
-    given = f"{entity} was given back{f' by {by}' if by else ''}"
-    fallback = due_fallback(turning, entity)
+    given = f"{entity} was given back{f' by {said.by}' if said.by else ''}"
+    fallback = turning.due_fallback(entity)
     if fallback is Fallback.CONTINUE:
         turning.find("given back", entity, f"{given}, and is commanded again")
-    else:  # its flight was given up meanwhile, and nobody else flies it
-        turning.find(
-            "given back", entity, f"{given}; what it was to do was given up: it is told to {fallback.value}"
-        )
-        turning.fall_back(fallback, (entity,))
-    return ""
+        return Answer(said)
+    note = f"what it was to do was given up: it is told to {fallback.value}"  # as nobody else flies it
+    turning.find("given back", entity, f"{given}; {note}")
+    turning.fall_back(fallback, (entity,))
+    return Answer(said, notes=(note,))
 
 
 def say_to(turning: Turning, saying: Saying) -> None:

@@ -348,7 +348,7 @@ class Answer:
         refusal: Empty if it was accepted, else the reason for refusing it.
         requests: Of an order, the request of each vehicle that was told.
         left_out: Of an order to all, why the others were not told.
-        notes: Of an order, what else its operator should know.
+        notes: What else the operator should know, of an order or of a vehicle that is given back.
     """
 
     saying: Said

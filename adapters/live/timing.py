@@ -36,11 +36,11 @@ class Broken(NamedTuple):
 
 
 class Flying(NamedTuple):
-    """A flight under way: who, where to, for how many seconds, and how long it takes at least and at most."""
+    """A flight under way: who, where to, since when, and how many seconds it takes at least and at most."""
 
     vehicle: Name
     destination: Name
-    elapsed: float
+    since: float
     least: float
     most: float | None
 
@@ -201,8 +201,8 @@ def _text(seconds: float) -> str:
 # --- what is under way
 
 
-def flying(timers: Timers, now: float) -> Iterator[Flying]:
-    """Yield the flights under way, with how long they have gone on and how long they take."""
+def flying(timers: Timers) -> Iterator[Flying]:
+    """Yield the flights under way, with since when they go on and how long they take."""
     situation = timers.situation
     for clock, began in timers.since.items():
         if clock.sort is Sort.FLIGHT and isinstance(clock.of, FLY):
@@ -210,4 +210,4 @@ def flying(timers: Timers, now: float) -> Iterator[Flying]:
             hi = None if most is None or most.hi is None else most.hi * timers.seconds
             least = situation.bounds[clock].lo * timers.seconds if clock in situation.bounds else 0.0
             for vehicle, place in travelling(situation.c, clock.of):
-                yield Flying(vehicle, place, now - began[0], least, hi)
+                yield Flying(vehicle, place, began[0], least, hi)

@@ -394,10 +394,14 @@ class Turning:
     # --- falling back
 
     def fall_back(self, fallback: Fallback, entities: tuple[Name, ...]) -> None:
-        """Command the mission's fallback to vehicles."""
+        """Command the mission's fallback to vehicles; who was told to return before does not stop on its way home."""
         if fallback is Fallback.CONTINUE:
             return
         for entity in filter(self.answers_for, entities):
+            if fallback is Fallback.HOLD and self.flies_home(entity):
+                what = f"{entity} is not told to hold: it was told to return before"
+                self.find("trouble", entity, what, once=True)
+                continue
             if entity in self.taken:
                 why = "it was taken over" if entity not in self.bidden else f"it is {self.taken[entity]}"
                 what = f"{entity} is not told to {fallback.value}: {why}"
@@ -406,6 +410,26 @@ class Turning:
             self.commands.append(stopping(fallback, self.request_of("fallback"), entity))
             if self.handing.pop(entity, None) is not None:  # that ends it; who is served still tells it again
                 self.quiet = None
+
+    def due_fallback(self, entity: Name) -> Fallback:
+        """Return what the mission has a vehicle do whose flight it does not command any more; else to continue."""
+        due = {self.plan.precautions.on_broken} if self.suspended else set()
+        agents = [agent for agent in self.grounded if entity in self.vehicles_of(agent)]
+        if agents:
+            limits = self.plan.precautions.limits
+            due |= {limit.fallback for limit in limits if limit.agent in (None, *agents)}
+        return next((each for each in (Fallback.RETURN, Fallback.HOLD) if each in due), Fallback.CONTINUE)
+
+    def flies_home(self, entity: Name) -> bool:
+        """Tell whether the mission has fallen back so that a vehicle was told to return."""
+        return entity in self.plan.vehicles and self.due_fallback(entity) is Fallback.RETURN
+
+    def vehicles_of(self, agent: Name) -> tuple[Name, ...]:
+        """Return the vehicles of an agent's request: those that it has sent, else its host."""
+        sent = {entity for entity, order in self.orders.items() if order.agent == agent}
+        sent |= {entity for entity, order in self.handing.items() if order.agent == agent}
+        host = {self.c.alpha.host(agent)} if agent in self.c.alpha else set()
+        return tuple(sorted(sent or host & self.plan.vehicles.keys()))
 
     def answers_for(self, entity: Name) -> bool:
         """Tell whether this station commands a vehicle and reports on it, and no other does."""
@@ -424,5 +448,5 @@ class Turning:
         fallback = self.plan.precautions.on_broken
         found = self.find(kind, about, assumption, fallback.value, once=True)
         if found and not self.suspended:
-            self.suspended = fallback is not Fallback.CONTINUE
             self.fall_back(fallback, tuple(sorted(self.plan.vehicles)))
+            self.suspended = fallback is not Fallback.CONTINUE

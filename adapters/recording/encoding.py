@@ -15,10 +15,12 @@ from adapters.live.state import (
     Ordering,
     Saying,
 )
+from adapters.live.timing import Timers, flying
 from adapters.plugin import Aged, Battery, Command, Gone, Presence, Report, Seen, Status, StatusText
 from physical import Band, Geometry, PhysicalProperty
 from semantics.state.canonical import digest_of_step
 from semantics.state.observation_serialization import sight_json
+from semantics.state.signature import Name
 
 
 def arrival_json(heard: Heard) -> dict[str, Any]:
@@ -92,13 +94,26 @@ def answer_json(answer: Answer) -> tuple[str, dict[str, Any]] | None:
         case Saying(agent, message, by):
             return "sayings", {"agent": agent, "message": message, "by": by, **refusal}
         case GivingBack(vehicle, at, by):
-            return "given_back", {"vehicle": vehicle, **({"at": at} if at else {}), "by": by, **refusal}
+            more = {name: each for name, each in {"at": at, "notes": answer.notes}.items() if each}
+            return "given_back", {"vehicle": vehicle, "by": by, **more, **refusal}
         case Ordering(order, vehicle, by):
-            more = {"left_out": dict(answer.left_out), "notes": answer.notes}
-            told = {"requests": dict(answer.requests), **{name: each for name, each in more.items() if each}}
+            others = {"left_out": dict(answer.left_out), "notes": answer.notes}
+            told = {
+                "requests": dict(answer.requests),
+                **{name: each for name, each in others.items() if each},
+            }
             return "orders", {"order": order.value, "vehicle": vehicle, "by": by, **told, **refusal}
         case Acknowledging(finding, by):
             return None if answer.refusal else ("acknowledged", {"finding": finding, "by": by})
+
+
+def flights_json(timers: Timers | None) -> dict[Name, dict[str, Any]]:
+    """Return how long the flight of each vehicle takes that is under way, as plain data."""
+    under_way = () if timers is None else flying(timers)
+    return {
+        each.vehicle: {"to": each.destination, "since": each.since, "least": each.least, "most": each.most}
+        for each in under_way
+    }
 
 
 def finding_json(finding: Finding, verdicts: tuple[str, ...] = ()) -> dict[str, Any]:

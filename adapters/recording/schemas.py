@@ -145,6 +145,23 @@ DEADLINE: Final = _object(
     },
 )
 
+FLIGHT: Final = _object(
+    "How long a flight takes by what the mission says of times: written when that changes.",
+    ("vehicle", "takes"),
+    vehicle=_TEXT,
+    takes={
+        "type": ["object", "null"],
+        "description": "Null once it is over.",
+        "required": ["to", "since", "least", "most"],
+        "properties": {
+            "to": {**_TEXT, "description": "Where it ends."},
+            "since": _TIME,
+            "least": {**_NUMBER, "description": "Seconds from `since`,"},
+            "most": {"type": ["number", "null"], "description": "and those at the most; null for any."},
+        },
+    },
+)
+
 COMMAND: Final = _object(
     "A command to a vehicle: written before it is sent.",
     ("command", "request", "entity"),
@@ -216,6 +233,10 @@ GIVEN_BACK: Final = _object(
     vehicle=_TEXT,
     at={**_TEXT, "description": "Where it is heard from now on; it is not given back by that."},
     by=_BY,
+    notes={
+        **_TEXTS,
+        "description": "What else its operator should know, such as that its flight was given up.",
+    },
     refusal=_TEXT,
 )
 
@@ -310,6 +331,7 @@ SCHEMAS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
     "left_out": (f"bigactors.left_out/{VERSION}", LEFT_OUT),
     "steps": (f"bigactors.step/{VERSION}", STEP),
     "deadlines": (f"bigactors.deadline/{VERSION}", DEADLINE),
+    "flights": (f"bigactors.flight/{VERSION}", FLIGHT),
     "commands": (f"bigactors.command/{VERSION}", COMMAND),
     "reports": (f"bigactors.plugin_report/{VERSION}", REPORT),
     "sayings": (f"bigactors.saying/{VERSION}", SAYING),

@@ -15,6 +15,7 @@ from adapters.recording.encoding import (
     arrival_json,
     command_json,
     finding_json,
+    flights_json,
     report_json,
     seen_json,
     step_json,
@@ -53,7 +54,7 @@ class Recorder:
         self._newest = now
         self._ration: Ration[tuple[str, str]] = Ration(MOST_ARRIVALS)
         self._turns: defaultdict[str, Turns[str]] = defaultdict(lambda: Turns(MOST_ARRIVALS))
-        self._due: dict[Name, float | None] = {}
+        self._standing: dict[str, Mapping[Name, Any]] = {"deadlines": {}, "flights": {}}
         self._file = McapWriter(path, {topic: simplified(schema) for topic, schema in SCHEMAS.items()})
         self._put("run", now, {"schema": RUN["properties"]["schema"]["const"], **run})
         self._show(now, self._showing.places(fixed, run.get("fences", {})))
@@ -83,7 +84,8 @@ class Recorder:
         self._account(now, self._ration.left_out(now))
         for step in turn.steps:
             self._put("steps", step.time, step_json(step))
-        self._deadlines(turn.state.due, now)
+        self._stands("deadlines", "agent", "until", turn.state.due, now)
+        self._stands("flights", "vehicle", "takes", flights_json(turn.state.timers), now)
         for command in turn.commands:
             self._put("commands", now, command_json(command))
         for finding in turn.findings:
@@ -94,12 +96,12 @@ class Recorder:
         if turn.steps or turn.commands or turn.findings or turn.answers or now - self._flushed >= AT_MOST:
             self._flush(now)
 
-    def _deadlines(self, due: Mapping[Name, float], now: float) -> None:
-        """Write until when agents wait, where that has changed."""
-        for agent in sorted(due.keys() | self._due.keys()):
-            if (until := due.get(agent)) != self._due.get(agent):
-                self._put("deadlines", now, {"agent": agent, "until": until})
-        self._due = dict(due)
+    def _stands(self, topic: str, of: str, what: str, standing: Mapping[Name, Any], now: float) -> None:
+        """Write what stands of each name, where that has changed; null where nothing does any more."""
+        before, self._standing[topic] = self._standing[topic], standing
+        for name in sorted(standing.keys() | before.keys()):
+            if (value := standing.get(name)) != before.get(name):
+                self._put(topic, now, {of: name, what: value})
 
     def copy(self, messages: Iterable[Message]) -> None:
         """Write the messages of another recording: this one stands by itself."""
@@ -107,7 +109,7 @@ class Recorder:
             self._put(message.topic, message.time, message.data)
             match message:
                 case Message("deadlines", _, {"agent": str(agent), "until": until}):
-                    self._due[agent] = until
+                    self._standing["deadlines"] = {**self._standing["deadlines"], agent: until}
         self._file.flush()
 
     def _write(self, topic: str, now: float, data: Any) -> None:

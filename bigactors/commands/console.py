@@ -44,6 +44,8 @@ KILLED: Final = (
     "the run ended without a word: it was killed, or has crashed; vehicles go on as they were told last"
 )
 
+UNKNOWN: Final = "the run has ended, and how is not known: the recording cannot be read any further"
+
 PMTILES: Final = b"PMTiles"
 
 
@@ -164,5 +166,5 @@ async def _until_left(history: History) -> None:
         async with asyncio.timeout(READING):
             while history.ended is None and history.read_on(0.0):
                 await asyncio.sleep(0)
-    history.end(KILLED)
+    history.end(f"{UNKNOWN}: {history.trouble}" if history.trouble else KILLED)
     await asyncio.sleep(PARTING)  # in which all see how it ended

@@ -51,9 +51,17 @@ def test_a_line_says_who_holds_a_vehicle_and_since_when_it_is_silent(first):
     parent = first.structure.logical.parent(UAV)
     said = Status(UAV, 2.0, "autopilot", 2.0, "LOITER", False, Battery(None, 11.9))
     assert vehicle_line(UAV, state, said, 14.2) == (
-        f"uav0 held by the operator (Ana), is in {parent}, LOITER, disarmed, battery 11.9 V, not heard for 12 s"
+        "uav0 held by the operator (Ana), has not arrived in east0, "
+        "LOITER, disarmed, battery 11.9 V, not heard for 12 s"
     )
-    assert vehicle_line(UAV, state, None, 14.2).endswith(f"is in {parent}, not heard")
+    landed = state.with_(orders={})
+    assert vehicle_line(UAV, landed, None, 14.2).endswith(f"(Ana), is in {parent}, not heard")
+
+
+@pytest.mark.parametrize("fallen", [{"suspended": True}, {"grounded": frozenset({"a"})}])
+def test_a_line_says_of_a_flight_that_was_given_up_nothing_of_its_way(first, fallen):
+    state = LiveState(first, seen={UAV: seen((37.01, -8.65))}, orders=going(), **fallen)
+    assert vehicle_line(UAV, state, None, 10.0) == "uav0 has given up its flight to east0"
 
 
 def test_one_line_tells_of_few_vehicles_and_first_of_those_that_need_it(first):

@@ -1,13 +1,19 @@
 /** The red line: what is wrong, until someone acknowledges it. It has its place when nothing is, so that nothing moves. */
 import { html, useEffect, useSections, useState, useWatched } from "./ui.js";
 import { Age } from "./clock.js";
+import { findingWords } from "./plainly.js";
 import { utc } from "./units.js";
 
-/** The newest first; of those of one second what is about a vehicle. */
-const standing = (alerts, vehicles) =>
-  [...alerts]
+/** What has other findings follow: an assumption breaks because a link is lost, or because somebody has taken over. */
+const CAUSES = ["lost link", "taken over", "failed"];
+
+/** The newest first; of those of one second what is about a vehicle, and of these what has caused the others. */
+const standing = (alerts, vehicles) => {
+  const rank = ({ kind, about }) => 2 * vehicles.has(about) + CAUSES.includes(kind);
+  return [...alerts]
     .filter(([, alert]) => alert.wrong && !alert.acknowledged)
-    .sort(([, a], [, b]) => Math.floor(b.time) - Math.floor(a.time) || vehicles.has(b.about) - vehicles.has(a.about) || b.time - a.time);
+    .sort(([, a], [, b]) => Math.floor(b.time) - Math.floor(a.time) || rank(b) - rank(a) || b.time - a.time);
+};
 
 /** What somebody here is waited for to say. */
 function asked(sayings, agents) {
@@ -53,7 +59,7 @@ export function Alert({ app }) {
   const question = act ? asked(sayings, agents) : null;
   return html`<div class="alerts">
     <div role="alert" class=${`alert ${newest ? "standing" : ""}`} key="line">
-      ${newest && html`<span class="message" key=${number} title=${newest.message} onClick=${() => app.listing.set(!open)}><b>${newest.about ? `${newest.about}: ` : ""}</b>${newest.message}${newest.fallback ? ` · ${newest.fallback}` : ""}</span>`}
+      ${newest && html`<span class="message" key=${number} title=${newest.message} onClick=${() => app.listing.set(!open)}><b>${newest.about ? `${newest.about}: ` : ""}</b>${findingWords(newest)}</span>`}
     </div>
     ${!newest && html`<span class=${`calm ${broken ? "wrong" : question ? "asked" : ""}`} key="calm">${broken ? `Unknown: ${app.clock.get("ended")}.` : app.clock.atEnd ? endOf(app.clock.get("ended"), welcome?.recording) : connected ? `${question ?? ""}${calm(vehicles)}` : "Unknown: not connected."}</span>`}
     ${all.length > 0 && html`<div class=${`alert-tools ${newest ? "standing" : ""}`} key="tools">
@@ -62,7 +68,7 @@ export function Alert({ app }) {
       <button type="button" class="others" aria-expanded=${String(shown)} onClick=${() => app.listing.set(!open)}>${wrong.length > 1 ? `${wrong.length - 1} more` : `all ${all.length}`} ▾</button>
     </div>`}
     ${shown && html`<ol class="alert-list" key="list">${all.map(([key, alert]) => html`<li key=${key} class=${alert.wrong && !alert.acknowledged ? "unread" : ""}>
-      <time>${utc(alert.time)}</time> <span class="kind">${alert.kind}</span> <b>${alert.about}</b> ${alert.message}${alert.fallback ? ` · ${alert.fallback}` : ""}
+      <time>${utc(alert.time)}</time> <span class="kind">${alert.kind}</span> <b>${alert.about}</b> ${findingWords(alert)}
       ${alert.verdicts?.length > 0 && html` <span class="quiet">rests on it: ${alert.verdicts.map((each) => (typeof each === "string" ? each : each.property)).join(", ")}</span>`}
       ${alert.acknowledged && html` <span class="quiet">acknowledged by ${alert.acknowledged.by || "someone"} at ${utc(alert.acknowledged.time)}</span>`}
       ${act && alert.wrong && !alert.acknowledged && html` <button type="button" onClick=${() => app.act({ acknowledge: { alert: key } }, { what: "acknowledge", about: alert.about })}>Acknowledge</button>`}

@@ -352,5 +352,5 @@ const place = document.getElementById("app");
 place.replaceChildren();
 render(html`<${Page} app=${app} />`, place);
 listenForKeys(app);
-new Announcer(app, document.body.appendChild(document.createElement("div")));
+new Announcer(app, document.body.insertBefore(document.createElement("div"), place)); // below the screen it would make it scroll
 app.link.connect();

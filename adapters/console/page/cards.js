@@ -2,7 +2,7 @@
 import { html, memo, byName, useEffect, useRef, useSections, useWatched } from "./ui.js";
 import { Age, Ticking, say } from "./clock.js";
 import { distance, distanceToArea } from "./map/geodesy.js";
-import { fallbackWords, fateOf, isUnderWay, orderWords, requestWords, wayOf, whereabouts } from "./plainly.js";
+import { fallbackWords, fateOf, isSent, isUnderWay, orderWords, requestWords, wayOf, whereabouts } from "./plainly.js";
 import { Orders } from "./orders.js";
 import { useStillness } from "./stillness.js";
 import { angle, age, duration, metres, position, range, speed, system } from "./units.js";
@@ -66,6 +66,7 @@ const Card = memo(({ app, name, card, chosen, small }) => {
     <dl>
       <dt>Place</dt><dd><${Place} card=${card} /></dd>
       <dt>Request</dt><dd>${card.request ? html`<${Request} app=${app} card=${card} />` : html`<span class="quiet">none</span>`}</dd>
+      ${card.flight && isCommanded(card) && html`<dt>Flight</dt><dd><${Flight} app=${app} flight=${card.flight} /></dd>`}
       ${card.order && html`<dt>Order</dt><dd><${Order} app=${app} order=${card.order} returning=${card.returning} /></dd>`}
       ${motion(app.store, name, card) && html`<dt>Motion</dt><dd><${Ticking} clock=${app.clock} apply=${(element) => say(element, motion(app.store, name, card))} /></dd>`}
       ${status(card) && html`<dt>Mode</dt><dd>${status(card)}</dd>`}
@@ -78,17 +79,23 @@ const Card = memo(({ app, name, card, chosen, small }) => {
 });
 
 /** What a vehicle said of itself; "" of one that said nothing, as in a recording of before. */
-function status({ mode, armed, heading }) {
+function status({ mode, armed, heading, link }) {
   const parts = [mode, typeof armed === "boolean" && (armed ? "armed" : "disarmed"), isNumber(heading) && `heading ${angle(heading)}`];
-  return parts.filter(Boolean).join(" · ");
+  return asHeard(link, parts);
+}
+
+/** What a vehicle has told, of which nothing is known now where its link is lost. */
+function asHeard({ lost }, parts) {
+  const told = parts.filter(Boolean).join(" · ");
+  return told && lost ? `when last heard: ${told}` : told;
 }
 
 /** How fast and how high a vehicle is, and how far it has to go; "" where nothing is known. */
 function motion(store, name, card) {
-  const { height, altitude } = card;
+  const { height, altitude, link } = card;
   const { speed: fast } = store.section("entities").get(name) ?? {};
   const high = isNumber(height) ? `${metres(height)} above home` : isNumber(altitude) ? `${metres(altitude)} above the sea` : "";
-  return [isNumber(fast) ? speed(fast) : "", high, toGo(store, name, card)].filter(Boolean).join(" · ");
+  return asHeard(link, [isNumber(fast) ? speed(fast) : "", high, toGo(store, name, card)]);
 }
 
 /** How far a vehicle has to go, as the crow flies: into the place to which it was sent, not to its middle. */
@@ -102,17 +109,21 @@ function toGo(store, name, card, brief = false) {
   return left > 0 ? `${range(left)} ${where}${fast > 1 ? `, ${duration(left / fast)} or more` : ""}` : `in ${card.order.to}`;
 }
 
-/** A vehicle in one line, for a phone's map. */
+/** A vehicle in two lines, for a phone's map: why it needs somebody comes before what it does. */
 export function Brief({ app, name, card }) {
-  const { height, mode } = card;
-  const facts = [mode, isNumber(height) && metres(height), toGo(app.store, name, card, true)].filter(Boolean).join(" · ");
-  return html`<${Battery} battery=${card.battery} /> <${LinkAge} app=${app} link=${card.link} /> <span class="quiet">${facts}</span>`;
+  const { height, mode, link } = card;
+  const facts = asHeard(link, [mode, isNumber(height) && metres(height), toGo(app.store, name, card, true)]);
+  return html`<${Battery} battery=${card.battery} /> <${LinkAge} app=${app} link=${card.link} />
+    ${card.level > 0 && html`<span class="why" title=${card.why}>${card.why}</span>`} <span class="quiet">${facts}</span>`;
 }
+
+/** Whether the mission commands a vehicle now: another's flight is not held to its times. */
+const isCommanded = ({ taken, returning, request }) => !taken && !returning && !request?.given_up;
 
 const isNumber = (value) => typeof value === "number";
 
 function Place({ card }) {
-  return html`<span class=${`place ${card.differs && !card.returning && !isUnderWay(card.order) ? "differs" : ""}`}>${whereabouts(card)}</span>`;
+  return html`<span class=${`place ${card.differs && !card.returning && !isUnderWay(card.order) && !isSent(card) ? "differs" : ""}`}>${whereabouts(card)}</span>`;
 }
 
 /** How long ago the vehicle was heard: the older, the more it is marked. */
@@ -134,11 +145,15 @@ function Battery({ battery }) {
     <span class="unseen">battery </span>${Math.round(battery.percent)} %</span>`;
 }
 
-/** A request, how long it has stood, of how long it may, and what comes then; the mission's own words are its title. */
+/**
+ * A request, how long it has stood, of how long it may, and what comes then; the mission's own words are its title.
+ * A vehicle that the mission does not command now is told nothing then.
+ */
 function Request({ app, card: { request, taken, returning } }) {
-  const { since, limit, fallback } = request;
+  const { since, limit, fallback, given_up: givenUp } = request;
+  if (givenUp) return html`<span class="request" title=${request.text}>given up: ${requestWords(request)}</span>`;
   const stood = (now) => Math.max(0, now - since);
-  const then = limit && fallbackWords(fallback) ? `, ${fallbackWords(fallback)}` : "";
+  const then = limit && !taken && fallbackWords(fallback) ? `, ${fallbackWords(fallback)}` : "";
   const words = (element, now) => say(element, limit ? `${duration(stood(now))} of ${duration(limit)}${then}` : `for ${duration(stood(now))}`);
   const bar = (element, now) => {
     const part = stood(now) / limit;
@@ -147,6 +162,23 @@ function Request({ app, card: { request, taken, returning } }) {
   };
   return html`<span class="request" title=${request.text}><span>${taken || returning ? "not now: " : ""}${requestWords(request)}</span> <${Ticking} clock=${app.clock} apply=${words} class="stood" />
     ${limit ? html`<${Ticking} clock=${app.clock} apply=${bar} class="bar" aria-hidden="true" />` : null}</span>`;
+}
+
+/** How long a flight has gone on, and how long it still takes by the mission's times. */
+function Flight({ app, flight: { since, least, most } }) {
+  const timed = most !== null;
+  const words = (element, now) => {
+    const gone = Math.max(0, now - since);
+    const [soonest, latest] = [least - gone, most - gone];
+    element.className = timed && latest < 0 ? "bad" : "";
+    const left =
+      timed && latest < 0 ? `${duration(latest)} longer than it may take`
+      : timed ? `${soonest > 0 ? `${duration(soonest)} to ` : "at most "}${duration(latest)} to go`
+      : soonest > 0 ? `${duration(soonest)} or more to go`
+      : "it may take any time";
+    say(element, `for ${duration(gone)}, ${left}`);
+  };
+  return html`<${Ticking} clock=${app.clock} apply=${words} />`;
 }
 
 function Order({ app, order, returning }) {

@@ -33,7 +33,7 @@ function Rate({ rate }) {
 function State({ app, live, ended, clock }) {
   const connected = useWatched(app.link.state).state === "open";
   if (clock.get("broken_off") && (ended || !connected)) return html`<b class="badge broken" title=${clock.get("ended")}>BROKEN OFF</b>`;
-  if (!connected && !ended) return html`<b class="badge past">OLD</b>`;
+  if ((!connected || clock.get("unread")) && !ended) return html`<b class="badge past">OLD</b>`;
   if (ended) return html`<b class="badge ended" title=${ended}>ENDED</b>`;
   if (live) return html`<b class="badge live">LIVE</b>`;
   return html`<b class="badge past">${clock.get("playing") ? `PAST ${clock.get("speed") ?? 1}×` : "PAST, PAUSED"}</b>`;
@@ -79,6 +79,9 @@ const forHowLong = (since) => (element) => say(element, duration(Date.now() / 10
 export function NotConnected({ app }) {
   const state = useWatched(app.link.state);
   const seen = useWatched(app.link.welcome);
+  const [clock] = useSections(app.store, ["clock"], 200);
+  const unread = clock.get("unread");
+  if (state.state === "open" && unread) return html`<div role="status" class="offline"><b>What is shown is old</b>, of ${utc(clock.get("head"))} UTC: the recording cannot be read any further (${unread}). The run may go on, and hears what you order.</div>`;
   if (state.state === "open" || (state.state === "connecting" && !seen && Date.now() / 1000 - state.since < 1)) return html`<div role="status"></div>`;
   if (state.state === "early") return html`<div role="status" class="offline"><b>Connected, and waiting:</b> ${state.why}.</div>`;
   const ended = app.clock.get("ended");

@@ -8,9 +8,11 @@ export const placeName = (name) => placed[name] ?? name ?? "nowhere";
 const within = (name) => (name === null || name === undefined ? "nowhere" : name === "region" ? placeName(name) : `in ${name}`);
 
 /** Where something is believed to be and where it really is: one that was sent somewhere is nowhere until it is there. */
-export function whereabouts({ believed, actual, differs, order, returning }) {
+export function whereabouts(card) {
+  const { believed, actual, differs, order, returning } = card;
   if (returning) return `${placeName(believed)} → flies home`;
   if (!differs) return placeName(believed);
+  if (isSent(card) && !isUnderWay(order)) return `left ${placeName(believed)}, has not arrived anywhere yet`;
   return isUnderWay(order) ? `${placeName(believed)} → under way to ${order.to}` : `believed ${within(believed)}, really ${within(actual)}`;
 }
 
@@ -70,8 +72,16 @@ export const isUnderWay = (order) => Boolean(order?.to) && ["sent", "accepted"].
 
 const FALLBACKS = { hold: "then it holds", return: "then it returns home", continue: "then it goes on waiting" };
 
+/** Whether a flight is pending: until it has arrived a vehicle is in no place, by the rules, wherever it is. */
+export const isSent = ({ request }) => Boolean(request?.text.startsWith("FLY("));
+
 /** What follows when a request has stood for too long. */
 export const fallbackWords = (fallback) => FALLBACKS[fallback] ?? "";
+
+const FALLEN_BACK = { hold: "vehicles were told to hold", return: "vehicles were told to return home", continue: "the mission goes on" };
+
+/** What was found, and what the run did of itself then. */
+export const findingWords = ({ message, fallback }) => [message, FALLEN_BACK[fallback]].filter(Boolean).join(" · ");
 
 const FATES = { asked: "asked", sent: "sent, not confirmed yet", confirmed: "confirmed by the vehicle", refused: "refused" };
 const OURS = /^(say|give back|acknowledge)/;

@@ -207,6 +207,7 @@ def card(level=0, **more):
         "actual": "searchArea0",
         "differs": False,
         "request": None,
+        "flight": None,
         "order": None,
         "link": {"heard": now, "lost": False},
         "mode": "GUIDED",
@@ -330,6 +331,7 @@ def clock(begin, now):
         "ended": None,
         "broken_off": False,
         "rate": 1,
+        "unread": None,
     }
 
 
@@ -339,7 +341,14 @@ def place():
 
 
 def vehicles(now):
-    asked = {"text": MOVE, "agent": "pilot0", "since": now - 40, "limit": 60, "fallback": "return"}
+    asked = {
+        "text": MOVE,
+        "agent": "pilot0",
+        "since": now - 40,
+        "limit": 60,
+        "fallback": "return",
+        "given_up": False,
+    }
     way = [[37.0, -8.8], [37.05, -8.7]]
     told = {"command": "GoTo", "to": "spillArea", "way": way, "since": now - 39}
     return {

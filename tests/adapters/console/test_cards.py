@@ -1,11 +1,12 @@
 """The vehicles' cards: how much each needs an operator, and why."""
 
 import pytest
-from live_missions import mission, seen
+from live_missions import boat, mission, seen
 from recorded import BETWEEN, EAST, FLIGHT, WEST, Tape, rules_of_once, uav, written
 
 from adapters.console.history import History
 from adapters.live.state import Acknowledging, GivingBack, Ordering
+from adapters.live.timing import flying
 from adapters.plugin import Accepted, GoTo, LinkLost, LinkRestored, Rejected, Status, TakenOver
 from bigactors.missions import digest_of
 from semantics.contingencies import Fallback
@@ -44,6 +45,7 @@ def test_a_vehicle_that_does_what_it_was_told_is_well(tape):
         "since": 1000.0,
         "limit": 100.0,
         "fallback": "continue",
+        "given_up": False,
     }
     assert card["order"] == {
         "command": "GoTo",
@@ -138,10 +140,10 @@ def test_where_l_and_p_differ_without_a_flight_is_watched(tape):
 # --- what other parts of the project record -------------------------------------------------------------
 
 
-def told(path, *messages):
-    """Return the view of a run in which a vehicle says of itself what it says."""
+def told(path, *messages, copied=()):
+    """Return the view of a run in which a vehicle says of itself what it says; `copied` is of the run before it."""
     arrival = {"plugin": "autopilot", "entity": "uav0", "kind": "UAV", "ring": [[370100000, -86500000]]}
-    writer = written(path, RUN, [("arrivals", 1001.0, arrival), *messages])
+    writer = written(path, RUN, [*copied, ("arrivals", 1001.0, arrival), *messages])
     history = History(path, rules_of_once)
     while history.read_on(1.0):
         pass
@@ -281,10 +283,71 @@ def test_while_a_vehicle_is_held_its_request_runs_out_and_its_agent_is_grounded(
         )
         assert tape.card()["why"].endswith(meanwhile)
         tape.turn(101, uav(WEST, 101))
-        assert tape.card()["why"] == "its request stands for longer than 100 s; held by the operator (Ana)"
+        stopped = "nothing that a orders is carried out any more"
+        assert tape.card()["why"] == (
+            f"its request stands for longer than 100 s; {stopped}; held by the operator (Ana)"
+        )
         tape.turn(102, sayings=[GivingBack("uav0")])
         assert tape.run.state.grounded == {"a"}
         assert not any(isinstance(each, GoTo) for each in tape.turn(103, uav(WEST, 103)).commands)
+        assert tape.card()["request"]["given_up"]
+        assert [each["notes"] for each in actions(tape) if each["what"] == "give back"] == [
+            ["what it was to do was given up: it is told to hold"]
+        ]
+
+
+FALLING_BACK = FLIGHT.replace("on broken assumption: continue", "on broken assumption: return")
+STOPPED = "the mission commands nothing any more: all vehicles were told to return"
+
+
+def test_after_a_fallback_the_cards_say_that_nothing_is_commanded_any_more(tmp_path):
+    with Tape(tmp_path / "r.mcap", FALLING_BACK) as tape:
+        tape.turn(0, uav(WEST, 0))
+        assert not tape.card()["request"]["given_up"]
+        tape.turn(1, uav(BETWEEN, 1), boat(EAST, 1001.0))
+        assert tape.run.state.suspended
+        card = tape.card()
+        assert (card["level"], card["why"], card["request"]["given_up"]) == (2, STOPPED, True)
+        tape.turn(2, sayings=[Ordering(Fallback.HOLD, "uav0", "Ana")])
+        assert tape.card()["why"] == f"{STOPPED}; held by the operator (Ana)"
+        tape.turn(3, sayings=[GivingBack("uav0", by="Ana")])
+        assert (level(tape), tape.card()["request"]["given_up"]) == ((2, STOPPED), True)
+
+
+TIMED = FLIGHT.replace(
+    "live {", "timing { uav0 flies at 18 m/s to 25 m/s }\nscheduler fcfs\ncontrol timed\nlive {"
+)
+
+
+def test_a_card_has_the_times_of_the_flight_that_the_run_watches(tmp_path):
+    with Tape(tmp_path / "r.mcap", TIMED) as tape:
+        tape.turn(0, uav(WEST, 0))
+        tape.turn(30, uav(BETWEEN, 30))
+        assert tape.card()["flight"] == {"to": "east0", "since": 1000.0, "least": 71.0, "most": 255.0}
+        (watched,) = flying(tape.run.state.timers)
+        assert tape.card()["flight"]["least"] == watched.least
+        tape.turn(100, uav(EAST, 100))
+        assert tape.card()["flight"] is None
+        assert tape.card(at=30)["flight"] is not None
+
+
+def test_of_several_broken_assumptions_about_a_vehicle_its_card_says_the_newest(tmp_path):
+    broken = [
+        (
+            "findings",
+            1002.0 + n,
+            {"kind": "broken assumption", "about": "uav0", "message": each, "fallback": ""},
+        )
+        for n, each in enumerate(("it is in west0", "it is in east0", "it has vanished"))
+    ]
+    card = told(tmp_path / "a", *broken)["vehicles"]["uav0"]
+    assert card["why"] == "broken assumption: it has vanished (and 2 more)"
+
+
+def test_a_run_that_goes_on_from_one_that_fell_back_is_not_stopped(tmp_path):
+    before = {"kind": "broken assumption", "about": "boat0", "message": "it appears", "fallback": "hold"}
+    assert told(tmp_path / "a", copied=[("findings", 999.0, before)])["vehicles"]["uav0"]["level"] == 0
+    assert told(tmp_path / "b", ("findings", 1002.0, before))["vehicles"]["uav0"]["level"] == 2
 
 
 def test_a_finding_that_is_wrong_stands_until_it_is_acknowledged(tape):
@@ -313,8 +376,10 @@ def test_what_is_no_such_message_is_passed_over(tmp_path):
         "stations",
         "given_back",
         "deadlines",
+        "flights",
     )
     odd = [None, [], 3, {}, {"entity": 3}, {"entity": "uav0", "ring": [["x", 1]]}, {"requests": []}]
+    odd += [{"vehicle": "uav0", "takes": {"to": "x", "since": "noon", "least": 1, "most": []}}]
     odd += [{"agent": "op", "until": "noon"}, {"left_out": [], "notes": {}, "requests": {}, "order": "hold"}]
     odd += [{"command": "GoTo", "request": "x", "entity": "uav0", "ring": [[1, 2], [3]]}]
     view = told(tmp_path / "a", *((topic, 1002.0, data) for topic in topics for data in odd))

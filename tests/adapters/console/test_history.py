@@ -191,6 +191,19 @@ def test_a_recording_that_is_gone_or_shorter_ends_it(tmp_path):
             assert history.ended.startswith("the recording cannot be read any further")
 
 
+def test_a_run_whose_recording_cannot_be_read_goes_on_and_is_read_again_when_it_can(tmp_path):
+    with Tape(tmp_path / "a") as tape:
+        tape.turn(0, uav(WEST, 0))
+        history = read(tape.path, live=True)
+        away = tape.path.rename(tmp_path / "b")
+        assert not history.read_on(1.0)
+        assert (history.ended, "No such file" in history.trouble) == (None, True)
+        tape.turn(1, uav(EAST, 1))
+        away.rename(tape.path)
+        history.read_on(1.0)
+        assert (history.ended, history.trouble, history.head) == (None, "", 1001.0)
+
+
 def test_a_run_that_is_silent_grows_old_only_while_it_is_live(tape, monkeypatch):
     tape.turn(0, uav(WEST, 0))
     live, replayed = read(tape.path, live=True), read(tape.path)

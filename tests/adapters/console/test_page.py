@@ -5,7 +5,7 @@ import time
 
 import pytest
 from browsers import DESK, PHONE, Watch, chromium, overflow
-from page_harness import PAGE, Harness, card, crowd, world
+from page_harness import PAGE, Harness, alert, card, crowd, world
 
 HOSTILE = '<img src=x onerror="document.title=1">"\'&amp;'
 
@@ -310,6 +310,84 @@ def test_a_vehicle_that_flies_home_is_shown_on_its_way_there(shown):
         has(page, ".card .place", "→ flies home")
         has(page, ".card dd", "6.91 nm home, 10 min 40 s or more")
         has(page, ".card dd", "not now, it flies home")
+
+
+def test_who_is_held_or_whose_mission_has_fallen_back_is_not_said_to_do_what_was_asked(shown):
+    state = world()
+    flies = state["vehicles"]["uav0"]
+    with Harness(state) as harness:
+        page = shown(harness)
+        has(page, ".card[data-name=uav0] .request", "flies to spillArea")
+        held = {"command": "Hold", "to": "", "way": [], "since": time.time(), "state": "arrived", "why": ""}
+        harness.set("vehicles", {"uav0": flies | {"taken": "held by Ana", "order": held, "differs": True}})
+        has(page, ".card[data-name=uav0] .request", "not now: flies to spillArea")
+        assert "then it returns" not in page.locator(".card[data-name=uav0]").inner_text()
+        has(page, ".card[data-name=uav0] .place:not(.differs)", "left searchArea0, has not arrived anywhere")
+        harness.set("vehicles", {"uav0": flies | {"request": flies["request"] | {"given_up": True}}})
+        has(page, ".card[data-name=uav0] .request", "given up: flies to spillArea")
+        assert page.locator(".card[data-name=uav0] .bar").count() == 0
+
+
+def test_a_timed_flight_says_how_long_it_has_gone_on_and_how_long_it_still_takes(shown):
+    state = world()
+    begin = state["clock"]["head"] - 600
+    state["clock"] |= {"live": False, "now": begin + 30.5, "begin": begin}
+    flight = {"to": "east0", "since": begin, "least": 71.0, "most": 255.0}
+    state["vehicles"] = {"uav0": card(order=SENT, flight=flight)}
+
+    def at(seconds):
+        harness.set("clock", harness.state["clock"] | {"now": begin + seconds})
+
+    with Harness(state) as harness:
+        page = shown(harness)
+        has(page, ".card dd", "for 30 s, 40 s to 3 min 44 s to go")
+        at(100.5)
+        has(page, ".card dd", "for 1 min 40 s, at most 2 min 34 s to go")
+        at(265.5)
+        has(page, ".card dd .bad", "for 4 min 25 s, 10 s longer than it may take")
+        harness.set("vehicles", {"uav0": card(order=SENT, flight=flight | {"most": None})})
+        has(page, ".card dd", "for 4 min 25 s, it may take any time")
+        harness.set("vehicles", {"uav0": card(order=SENT, flight=flight, taken="held by Ana")})
+        page.locator(".card dt", has_text="Flight").wait_for(state="detached")
+
+
+def test_what_is_shown_of_a_vehicle_whose_link_is_lost_is_said_to_be_old(shown):
+    state = world()
+    state["vehicles"] = {"uav1": state["vehicles"]["uav1"]}
+    with Harness(state) as harness:
+        page = shown(harness)
+        has(page, ".card dd", "when last heard: RTL · armed · heading 092°")
+        has(page, ".card dd", "when last heard: 10.1 kn · 119 m above home")
+        phone = shown(harness, PHONE)
+        has(phone, ".subject", "when last heard: RTL · 119 m")
+        why = phone.locator(".subject .why")
+        assert "taken over by the fail-safe" in why.inner_text()
+        assert why.bounding_box()["y"] < phone.locator(".subject .orders").bounding_box()["y"]
+
+
+def test_a_recording_that_cannot_be_read_any_further_is_no_end_and_orders_go_on(shown):
+    with Harness(world()) as harness:
+        page = shown(harness)
+        has(page, ".badge.live", "LIVE")
+        harness.set("clock", {"unread": "it has become shorter than it was"})
+        has(page, ".badge.past", "OLD")
+        has(page, ".offline", "the recording cannot be read any further (it has become shorter than it was)")
+        press_mouse(page, 1.2)
+        assert await_acts(harness, page, 1) == [{"order": {"order": "hold", "vehicle": "uav0"}}]
+        harness.set("clock", {"unread": None})
+        page.locator(".offline").wait_for(state="detached")
+
+
+def test_of_what_is_found_at_once_the_cause_is_said_first_and_what_the_run_did_of_itself(shown):
+    state = world()
+    now = time.time()
+    broken = alert(now, "broken assumption", "uav1", "uav1 is not on control:gcs0 any more", "return")
+    state["alerts"] = {"1": broken, "2": alert(now, "lost link", "uav1", "nothing was heard of uav1", "")}
+    with Harness(state) as harness:
+        page = shown(harness)
+        has(page, ".alert .message", "nothing was heard of uav1")
+        harness.set("alerts", {"2": state["alerts"]["2"] | {"acknowledged": {"by": "Ana", "time": now}}})
+        has(page, ".alert .message", "control:gcs0 any more · vehicles were told to return home")
 
 
 def test_how_far_it_is_counts_to_the_edge_of_the_place_where_a_flight_ends(shown):
@@ -793,6 +871,13 @@ def test_units_are_the_same_on_cards_and_chart(shown):
         page.keyboard.press("Escape")
         has(page, ".card[data-name=uav0]", "5.2 m/s · 119 m above home")
         has(page, ".map-position", "middle of the map: 37.0000")
+
+
+@pytest.mark.parametrize("size", [DESK, PHONE])
+def test_the_screen_is_as_high_as_the_window(shown, size):
+    with Harness(world()) as harness:
+        page = shown(harness, size)
+        assert page.evaluate("document.documentElement.scrollHeight - innerHeight") == 0
 
 
 def test_a_phone_shows_the_map_first(shown):

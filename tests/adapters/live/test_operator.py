@@ -87,7 +87,7 @@ def test_a_vehicle_holds_and_returns_as_ordered_and_flies_on_once_given_back(fly
         assert await say(SOCKET, "nobody", "x", "Ben") != ""
         await asyncio.sleep(60.0)
         assert witness.rules.count("commit") == 0
-        assert await give_back(SOCKET, "uav0", by="Ana") == ""
+        assert (await give_back(SOCKET, "uav0", by="Ana")).refusal == ""
 
     flown = flying(Vehicle(kind, (37.0, -8.6, 20.0)), foe=operator, seconds=3000)
     assert flown.ended
@@ -177,9 +177,8 @@ def test_a_killed_run_holds_its_vehicle_still_when_it_is_resumed(tmp_path, capsy
             _out, _ = run.communicate(timeout=30)
     out = capsys.readouterr().out
     assert "told to hold: uav0" in out
-    held = re.search(
-        r"^vehicles\n  uav0 held by the operator \(Ana\), is in west0, BRAKE(, disarmed)?, battery", out, re.M
-    )
+    does = r"held by the operator \(Ana\), has not arrived in east0, BRAKE(, disarmed)?, battery"
+    held = re.search(rf"^vehicles\n  uav0 {does}", out, re.M)
     assert held is not None, out
     assert "requests\n  FLY(a, MOVE_HOST_TO east0)\nmay be said\n  op status (2 times more)\n" in out
     assert told(second, "orders", "by") == ["Ana"]

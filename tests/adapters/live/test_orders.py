@@ -26,6 +26,7 @@ from adapters.plugin import (
     StatusText,
     TakenOver,
 )
+from bigactors.vehicle_lines import vehicle_line
 from physical import PhysicalProperty, box
 from semantics.contingencies import Fallback, Precautions, TimeLimit
 from semantics.state.partition import Parting, parted
@@ -324,3 +325,37 @@ def test_a_vehicle_that_is_given_back_while_the_mission_is_suspended_does_what_a
     assert "broken assumption" in run.kinds()
     turn = run.turn(3.0, seen("uav0", BETWEEN, 3.0), sayings=[GivingBack("uav0")])
     assert [type(command).__name__ for command in turn.commands] == ["GiveBack", "Return"]
+
+
+SENT_HOME = [
+    (Precautions(RETURN, (TimeLimit("FLY", "a", 60.0, HOLD),)), 2.0),
+    (Precautions(HOLD, (TimeLimit("FLY", "a", 60.0, RETURN),)), 90.0),
+]
+
+
+@pytest.mark.parametrize(("precautions", "drifts"), SENT_HOME)
+def test_who_was_told_to_return_does_not_stop_on_its_way_home(precautions, drifts):
+    run = flying(TWO + GO, precautions)
+    run.turn(1.0, seen("uav0", BETWEEN, 1.0))
+    for now in (drifts, 70.0, 100.0) if drifts < 70.0 else (70.0, drifts, 100.0):
+        run.turn(now, seen("uav0", BETWEEN, now), *([boat(WEST, now)] if now == drifts else []))
+    assert {"broken assumption", "late"} <= set(run.kinds())
+    assert told(run)[-1] == "Return"
+    assert "Hold" not in told(run)
+    kept = "uav0 is not told to hold: it was told to return before"
+    assert [finding.message for finding in run.findings if finding.kind == "trouble"] == [kept]
+    turn = run.turn(110.0, seen("uav0", BETWEEN, 110.0), sayings=[ordered(), GivingBack("uav0")])
+    assert [type(command).__name__ for command in turn.commands][-1] == "Return"
+
+
+def test_a_vehicle_that_was_told_to_return_breaks_no_assumption_on_its_way_home():
+    run = flying(TWO + GO, Precautions(RETURN))
+    run.turn(60.0, seen("uav0", EAST, 60.0))
+    run.turn(61.0, seen("uav0", EAST, 61.0), boat(WEST, 61.0))
+    assert run.kinds().count("broken assumption") == 1
+    run.turn(70.0, seen("uav0", BETWEEN, 70.0))
+    assert run.state.configuration.structure.logical.parent("uav0") == "east0"
+    assert vehicle_line("uav0", run.state, None, 70.0) == "uav0 is in none of the places"
+    run.turn(80.0, seen("uav0", WEST, 80.0))
+    assert run.kinds().count("broken assumption") == 1
+    assert run.state.configuration.structure.physical.abstract_parent("uav0") == "west0"

@@ -105,8 +105,8 @@ def test_a_vehicle_that_an_operator_gives_back_flies_its_mission_to_the_end(flyi
         while "taken over" not in witness.kinds():
             await asyncio.sleep(0.5)
         await asyncio.sleep(60.0)
-        answers.append(await give_back(Path("s"), "uav1"))
-        answers.append(await give_back(Path("s"), "uav0"))
+        answers.append((await give_back(Path("s"), "uav1")).refusal)
+        answers.append((await give_back(Path("s"), "uav0")).refusal)
 
     flown = flying(plane(), foe=operator, seconds=1500)
     assert flown.ended
