@@ -225,6 +225,7 @@ class _Check:
             reduced=tuple(map(str, options.reduce.names)) if options.reduce else (),
             allowed=self.found.allowed,
             schedule=self.schedule(),
+            flights=self.deadlines.longest_flights() if self.deadlines else (),
         )
 
     def schedule(self) -> Schedule | None:
