@@ -19,6 +19,7 @@ from timed_family import text
 
 from checker.engines.choose import explore
 from checker.engines.contract import Engine, Exploration
+from checker.engines.zones.interchange import model_of
 from checker.engines.zones.search import Search
 from checker.engines.zones.tchecker import tchecker_text
 from checker.engines.zones.zone_times import ZoneTimes
@@ -72,7 +73,7 @@ def beside(found: Exploration, folder: Path) -> str:
         return ""
     assert isinstance(found.times, ZoneTimes)
     model = folder / "model.tck"
-    model.write_text(tchecker_text(found.times, None, "family"), encoding="utf-8")
+    model.write_text(tchecker_text(model_of(found.times, None, "family")), encoding="utf-8")
     said = subprocess.run([program, "-a", "covreach", str(model)], capture_output=True, text=True, check=True)
     told = dict(re.findall(r"^([A-Z_]+) (\S+)$", said.stdout, re.MULTILINE))
     states, seconds = int(told["STORED_STATES"]), float(told["RUNNING_TIME_SECONDS"])

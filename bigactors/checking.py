@@ -9,6 +9,7 @@ from bigactors import __version__
 from bigactors.diagnostics import diagnostic_json
 from bigactors.exits import Exit
 from bigactors.files import file_stem
+from bigactors.flight_limits import short_limits
 from bigactors.missions import checkable, digest_of, open_mission
 from bigactors.mistakes import Mistake, describe_bug
 from bigactors.progress import watching
@@ -139,6 +140,8 @@ def check_mission(
             )
         if how.times:
             _check_times(name, mission, report)
+        for short in short_limits(mission, dict(report.flights)):
+            tell(f"{name}: {short}: `run` refuses that")
         return Checked(name, mission, digest_of(mission), report, watch.interrupted)
     except tuple(REFUSALS) as refused:
         code, hint = next(said for kind, said in REFUSALS.items() if isinstance(refused, kind))

@@ -30,7 +30,9 @@ def draw_run(trace: Trace, folder: Path, title: str, *, each_step: bool) -> None
     labels = [step.label for step in trace.steps]
     with _mistakes(str(folder)):
         if each_step and len(trace) <= MOST_PICTURES:
-            draw_trace(trace.configurations, labels, folder, title=title, loop=trace.loop)
+            draw_trace(
+                trace.configurations, labels, folder, title=title, loop=trace.loop, moments=trace.moments
+            )
         else:
             draw_overview(lanes_of_trace(trace), folder / "trace.svg", title=title)
 

@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING, Any
 from bigactors import __version__
 from bigactors.checking import Checked
 from bigactors.files import read_json
+from bigactors.flight_limits import short_limits
 from bigactors.missions import digest_of
 from bigactors.mistakes import Mistake
 from bigactors.signatures import check_signature, signature_json
 from semantics.state.canonical import digest
 from semantics.state.physical_model import placement_cell
 from semantics.state.setting import Control, Scheduler
+from semantics.state.signature import Name
 from specs.elaboration import ElaboratedMission
 
 if TYPE_CHECKING:
@@ -52,6 +54,7 @@ def verdict_json(checked: Checked, engine: str, key: SigningKey | None = None) -
         "complete": report.complete,
         "configurations": report.configurations,
         "transitions": report.transitions,
+        "flights": dict(report.flights),
         "properties": [
             {
                 "name": verdict.property.name,
@@ -141,6 +144,8 @@ def licence_for(
         )
     if data.get("seal") != _seal(data):
         raise Mistake("the verdict was changed after it was reached", _hint(name, path), path)
+    for short in short_limits(mission, _flights_of(data)):
+        raise Mistake(f"{short}: it would be given up though all goes well", "lengthen the limit", name)
     properties = data.get("properties")
     listed = [each for each in properties if isinstance(each, dict)] if isinstance(properties, list) else []
     resting = tuple(str(each.get("name")) for each in listed if each.get("rests_on") == "environment")
@@ -157,6 +162,12 @@ def _scheduler_of(data: Any, path: str) -> Scheduler:
         return Scheduler(data.get("scheduler"))
     except ValueError:
         raise Mistake("the verdict names no scheduler", place=path) from None
+
+
+def _flights_of(data: dict[str, Any]) -> dict[Name, float]:
+    flights = data.get("flights")
+    known = flights if isinstance(flights, dict) else {}
+    return {agent: seconds for agent, seconds in known.items() if isinstance(seconds, int | float)}
 
 
 def _differing(data: dict[str, Any], mission: ElaboratedMission) -> str:

@@ -240,6 +240,7 @@ class _Check:
             reduced=tuple(map(str, options.reduce.names)) if options.reduce else (),
             allowed=self.found.allowed,
             schedule=schedule,
+            flights=self.deadlines.longest_flights() if self.deadlines else (),
         )
 
     def schedule(self) -> Schedule | None:

@@ -103,10 +103,15 @@ class Trace:
         dates = self.dates if at is None else (*self.dates, at)
         return Trace(self.initial, steps, shortest=self.shortest, dates=dates)
 
+    @property
+    def moments(self) -> tuple[int, ...]:
+        """When each step is taken, in milliseconds from the start; empty without dates."""
+        timing = self.initial.setting.timing
+        return () if timing is None else tuple(date * timing.tick for date in self.dates)
+
     def date(self, number: int) -> str:
         """Return when a step is taken, as a report says it; nothing without dates."""
-        timing = self.initial.setting.timing
-        return clock_text(self.dates[number] * timing.tick) if self.dates and timing is not None else ""
+        return clock_text(self.moments[number]) if self.moments else ""
 
 
 def step_of(source: Configuration, label: Label, target: Configuration) -> Step:

@@ -14,6 +14,7 @@ from checker.properties.coverage import Coverage
 from checker.traces import Trace
 from semantics.properties.property import Property
 from semantics.state.brief import cut
+from semantics.state.signature import Name
 
 if TYPE_CHECKING:
     from checker.properties.critical_path import Leg
@@ -147,6 +148,7 @@ class Report:
         reduced: What let it visit less, by name; then counts are those of what was visited.
         allowed: How many transitions the visited configurations allow, followed or not.
         schedule: When its flights begin and end, where that was asked for.
+        flights: How many seconds a flight of each bigActor takes at most, where times bound it, sorted by name.
     """
 
     verdicts: Verdicts
@@ -161,6 +163,7 @@ class Report:
     reduced: tuple[str, ...] = ()
     allowed: int = 0
     schedule: Schedule | None = None
+    flights: tuple[tuple[Name, float], ...] = ()
 
     def __repr__(self) -> str:
         counts = Counter(verdict.outcome.value for verdict in self.verdicts)

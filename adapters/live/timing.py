@@ -6,19 +6,19 @@ The clocks are those of a check, as the moments at which they began.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Final, NamedTuple
 
-from semantics.environment import Drifts
+from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.physical_model import Placed
 from semantics.state.requests import FLY
 from semantics.state.signature import Name
-from semantics.timing.bounds import Bound, bound_of, going_on, running_in, timed_by
-from semantics.timing.clocks import Clock, Situation, Sort, TimedStep
+from semantics.timing.bounds import Bound, bound_of, clause_beginnings, going_on, running_in, timed_by
+from semantics.timing.clocks import BOUND, FREE, Clock, Situation, Sort, TimedStep
 from semantics.timing.dates import lapse_text
-from semantics.timing.timing import Every
+from semantics.timing.timing import Every, Sayable, Window
 from semantics.timing.voyages import travelling
 
 GRACE: Final = 0.25
@@ -52,15 +52,21 @@ class Timers:
     Attributes:
         situation: What time means in the configuration.
         since: When the clocks began, the oldest of equal ones first.
+        windows: Of clauses that have a window and could take their step: whether it binds them still.
     """
 
     situation: Situation
     since: Mapping[Clock, tuple[float, ...]]
+    windows: Mapping[int, int] = field(default_factory=dict)
 
     @property
     def seconds(self) -> float:
         """How many seconds a tick has."""
         return self.situation.timing.tick / 1000
+
+    def elapsed(self, now: float) -> float:
+        """Return how many seconds the mission has lasted, where something is timed from its start."""
+        return now - self.since[Clock(Sort.MISSION)][0]
 
     def later(self, seconds: float) -> Timers:
         """Return them shifted by a time without listening."""
@@ -76,7 +82,7 @@ def begun(c: Configuration, now: float) -> Timers:
         clock: (-math.inf if clock.sort in FULL else now,) * count
         for clock, count in running_in(situation).items()
     }
-    return Timers(situation, since)
+    return _entered(Timers(situation, since), (), now)
 
 
 def stepped(timers: Timers, transition: Transition, now: float) -> Timers:
@@ -84,25 +90,58 @@ def stepped(timers: Timers, transition: Transition, now: float) -> Timers:
     source = timers.situation
     after = Situation(transition.target)
     step = _step_of(source, transition)
-    done = (*(step.done if step is not None else ()), *_drifted(source, after))
+    taken = _taken(source, step, after)
+    done = (*(step.done if step is not None else ()), *(Clock(Sort.EVERY, number) for number in taken))
     since = going_on(timers.since, source, done, after, now)
     for vehicle, endurance in after.timing.endurances:
         restored, aloft = Clock(Sort.RESTORED, vehicle), Clock(Sort.ALOFT, vehicle)
         left = restored in source.first and restored not in after.first
         if left and now - timers.since[restored][0] >= endurance.after * timers.seconds:
             since[aloft] = (now,)
-    return Timers(after, since)
+    return _entered(Timers(after, since, timers.windows), taken, now)
+
+
+def _entered(timers: Timers, taken: Iterable[int], now: float) -> Timers:
+    """Return the timers with their windows: one binds what could be done in it, until that is done."""
+    windows = {**timers.windows, **dict.fromkeys(taken, FREE)}
+    for number, transitions in enumerate(timers.situation.by_clauses):
+        said = timers.situation.timing.clause(number).step
+        if transitions and number not in windows and isinstance(said, Window):
+            late = said.within is not None and timers.elapsed(now) > said.within * timers.seconds
+            windows[number] = FREE if late else BOUND
+    return replace(timers, windows=windows)
 
 
 def _step_of(situation: Situation, transition: Transition) -> TimedStep | None:
     return next((each for each in situation.steps if each.transition.label == transition.label), None)
 
 
-def _drifted(source: Situation, after: Situation) -> Iterator[Clock]:
-    """Yield the clocks of the clauses whose entities have moved into other places."""
-    for number, clause in enumerate(source.c.setting.environment):
-        if isinstance(clause, Drifts) and _has_moved(source.c, after.c, clause.entity):
-            yield Clock(Sort.EVERY, number)
+def _taken(source: Situation, step: TimedStep | None, after: Situation) -> tuple[int, ...]:
+    """Return the clauses whose own step was taken, by whatever it was observed."""
+    said = step.done[0] if step is not None and step.transition.label.agent is None else Clock(Sort.MISSION)
+    return tuple(
+        number
+        for number, clause in enumerate(source.c.setting.environment)
+        if said == (Sort.EVERY, number, "") or _has_happened(source.c, after.c, clause)
+    )
+
+
+def _has_happened(before: Configuration, now: Configuration, clause: Clause) -> bool:
+    """Tell whether the world shows after a step what a clause is about: channels return by another clock."""
+    one, other = (each.structure.physical for each in (before, now))
+    match clause:
+        case Drifts(entity=entity):
+            return _has_moved(before, now, entity)
+        case Drops(channel=channel):
+            return other.is_down(channel) and not one.is_down(channel)
+        case Leaves():
+            return bool(now.read(clause.left)) and not before.read(clause.left)
+        case Appears(entity=entity):
+            return entity in other and entity not in one
+        case Vanishes(entity=entity):
+            return entity in one and entity not in other
+        case Says():
+            return False
 
 
 def _has_moved(before: Configuration, now: Configuration, entity: Name) -> bool:
@@ -126,16 +165,33 @@ def too_soon(timers: Timers, transition: Transition, after: Timers, now: float) 
         if flight in timers.since and now - timers.since[flight][0] < least:
             lasted = _text(now - timers.since[flight][0])
             yield from _said(source, step, f"is over after {lasted}, sooner than {_text(least)}")
-    for clock in _drifted(source, after.situation):
-        assert isinstance(clock.of, int)
-        said, clause = source.timing.clause(clock.of).step, source.c.setting.environment[clock.of]
-        if isinstance(said, Every) and isinstance(clause, Drifts) and clock in timers.since:
-            elapsed = now - timers.since[clock][0]
-            if elapsed < said.least * timers.seconds:
-                words = _line_of(source, f"{clause.entity} drifts ")
-                yield Broken(
-                    clause.entity, f"{clause.entity} drifts again after {_text(elapsed)}{_because(words)}"
-                )
+    for number in _taken(source, step, after.situation):
+        yield from _untimely(timers, number, now)
+
+
+def _untimely(timers: Timers, number: int, now: float) -> Iterator[Broken]:
+    """Yield that a clause has taken its step too soon; what may be said until some time, also that it was too late."""
+    match timers.situation.timing.clause(number).step:
+        case Every(least):
+            elapsed = now - timers.since[Clock(Sort.EVERY, number)][0]
+            if elapsed < least * timers.seconds:
+                yield _of_clause(timers, number, f"again after {_text(elapsed)}")
+        case Window(after):
+            elapsed = timers.elapsed(now)
+            if timers.windows.get(number) != FREE and elapsed < after * timers.seconds:
+                yield _of_clause(timers, number, f"{_text(elapsed)} after the start")
+        case Sayable(after, until):
+            elapsed = timers.elapsed(now)
+            late = until is not None and elapsed > until * timers.seconds + GRACE
+            if late or elapsed < after * timers.seconds:
+                yield _of_clause(timers, number, f"{_text(elapsed)} after the start")
+
+
+def _of_clause(timers: Timers, number: int, when: str) -> Broken:
+    setting = timers.situation.c.setting
+    begins = tuple(clause_beginnings(setting, number))
+    about = getattr(setting.environment[number], "entity", "")
+    return Broken(about, f"{begins[0]}{when}{_because(_line_of(timers.situation, *begins))}")
 
 
 def too_late(timers: Timers, now: float) -> Iterator[Broken]:
@@ -148,11 +204,14 @@ def too_late(timers: Timers, now: float) -> Iterator[Broken]:
         if now > end + GRACE:
             words = _line_of(situation, f"{vehicle} lasts ", f"{situation.c.setting.kind(vehicle)} lasts ")
             yield Broken(vehicle, f"{vehicle} is aloft for longer than {_text(lasts)}{_because(words)}")
+    for number, end, within in _windows(timers):
+        if now > end + GRACE:
+            yield _of_clause(timers, number, f"later than {_text(within)} after the start")
 
 
 def next_end(timers: Timers, now: float) -> float:
     """Return when to look again, infinitely late where nothing ends."""
-    ends = (end for found in (_ends(timers), _batteries(timers)) for _, end, _ in found)
+    ends = (end for found in (_ends(timers), _batteries(timers), _windows(timers)) for _, end, _ in found)
     return min((end + GRACE + 0.001 for end in ends if end + GRACE >= now), default=math.inf)
 
 
@@ -173,6 +232,15 @@ def _batteries(timers: Timers) -> Iterator[tuple[Name, float, float]]:
         if vehicle in situation.c.structure.physical and not situation.is_restored(vehicle):
             lasts = endurance.lasts * timers.seconds
             yield vehicle, timers.since[Clock(Sort.ALOFT, vehicle)][0] + lasts, lasts
+
+
+def _windows(timers: Timers) -> Iterator[tuple[int, float, float]]:
+    """Yield what has to happen first by some time: its clause, that time, and how many seconds after the start."""
+    for number, state in timers.windows.items():
+        said, may = timers.situation.timing.clause(number).step, timers.situation.by_clauses[number]
+        if state == BOUND and may and isinstance(said, Window) and said.within is not None:
+            within = said.within * timers.seconds
+            yield number, timers.since[Clock(Sort.MISSION)][0] + within, within
 
 
 def _said(situation: Situation, step: TimedStep, what: str) -> Iterator[Broken]:

@@ -8,17 +8,19 @@ from bigactors.arguments.values import named
 
 DESCRIPTION: Final = """\
 Write what can be reached of a mission with times as a timed automaton, for a second opinion: --format tchecker
-for TChecker (github.com/ticktac-project/tchecker). With --property, the name of a deadline or `endurance`, the
-label `wrong` is reachable there exactly if the property is violated:
+for TChecker (github.com/ticktac-project/tchecker), --format uppaal for UPPAAL (uppaal.org), as XML. With
+--property, the name of a deadline or `endurance`, an observer is part of it: the location `wrong` is reachable
+exactly if the property is violated.
 
-  tck-reach -a covreach -l wrong patrol.tck"""
+  tck-reach -a covreach -l wrong patrol.tck     REACHABLE true: it is violated
+  verifyta patrol.xml                           Formula is satisfied: it holds"""
 
 
 def fill(parser: Parser) -> None:
     """Add the arguments of `bigactors export`."""
     parser.add_argument("file", metavar="FILE", help=MISSION)
     parser.add_argument(
-        "--format", choices=("tchecker",), required=True, help="the language that it is written in"
+        "--format", choices=("tchecker", "uppaal"), required=True, help="the language that it is written in"
     )
     parser.add_argument(
         "--property", metavar="NAME", type=named, help="label where this deadline, or endurance, is violated"
@@ -35,7 +37,7 @@ COMMAND = Command(
     DESCRIPTION,
     (
         "bigactors export endurance --format tchecker --out endurance.tck",
-        "bigactors export broken_endurance --format tchecker --property endurance",
+        "bigactors export broken_endurance --format uppaal --property endurance --out broken_endurance.xml",
     ),
     fill,
 )

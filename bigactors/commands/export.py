@@ -20,16 +20,19 @@ def run(options: Namespace) -> Exit:
             f"{options.file} says nothing of times",
             "only missions with a section `timing` have timed automata",
         )
-    from checker.engines.zones.tchecker import tchecker_text  # noqa: PLC0415 - numba takes its time to load
+    from checker.engines.zones.interchange import model_of  # noqa: PLC0415 - numba takes its time to load
+    from checker.engines.zones.tchecker import tchecker_text  # noqa: PLC0415 - the same
+    from checker.engines.zones.uppaal import uppaal_text  # noqa: PLC0415 - the same
     from checker.engines.zones.zone_times import ZoneTimes  # noqa: PLC0415 - the same
 
     asked = None if options.property is None else _asked(mission, options.property)
     found = explore(watching(mission.initial, [asked] if asked else []), engine=Engine.FAST)
     assert isinstance(found.times, ZoneTimes)
     try:
-        text = tchecker_text(found.times, asked, mission.name)
+        model = model_of(found.times, asked, mission.name)
     except ValueError as error:
         raise Mistake(f"{options.property} is not exported", str(error)) from error
+    text = uppaal_text(model) if options.format == "uppaal" else tchecker_text(model)
     if options.out == "-":
         say_text(text)
     else:

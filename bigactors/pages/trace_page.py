@@ -12,16 +12,20 @@ from bigactors.pages.story import Frame, Story, Telling, telling
 from bigactors.pictures import Look, Picture, channels_of, look_of, shown_names
 from bigraphs import Bigraph, draw_text
 from bigraphs.drawing import HIGHLIGHT
-from checker.reports.lanes import Lanes, LaneStep, Repetition, Row
+from checker.reports.lanes import Lanes, LaneStep, Repetition, Row, lapses, steps_of
 from physical.map_style import MARK
 from physical.messages import counted
 from semantics.state.printing import print_agent
+from semantics.timing.dates import lapse_text
 
 LARGEST: Final = 1.35
 """Pixels for a point of a picture, at the most."""
 
 SMALLEST: Final = {"L": 0.65, "P": 0.9}
 """Pixels for a point of a picture on a phone, where it can be moved sideways."""
+
+LEAST_LAPSE, MOST_LAPSE = 18, 150
+"""How high a gap in which time passes is at least, and the longest of a trace, in pixels."""
 
 NARROWEST: Final = 7
 """How wide a lane is at the least, in ems; its boxes may reach over the next."""
@@ -107,13 +111,17 @@ def _run(told: Telling) -> str:
 def _rows(told: Telling) -> Iterator[str]:
     """Yield the rows: of the first configuration, of steps, and of several steps that are folded."""
     seconds = told.seconds
+    passing = lapses(told.rows)
+    longest = max(passing, default=0)
     yield _row(0, told.lanes, None, seconds, data_row=0, data_frame_row=told.order[0])
-    for row in told.rows:
+    for row, lapse in zip(told.rows, passing, strict=True):
+        more: dict[str, object] = {"data_row": row.number, "data_frame_row": told.order[row.number]}
         if isinstance(row, Repetition):
-            yield _row(row.number, told.lanes, row, seconds, data_from=row.number, data_to=row.last)
-        else:
-            place = told.order[row.number]
-            yield _row(row.number, told.lanes, row, seconds, data_row=row.number, data_frame_row=place)
+            more = {"data_from": row.number, "data_to": row.last}
+        if lapse:
+            height = max(LEAST_LAPSE, MOST_LAPSE * lapse / longest)
+            more |= {"class_": "later", "style": f"--gap: {height:.0f}px; --lapse: '+ {lapse_text(lapse)}'"}
+        yield _row(row.number, told.lanes, row, seconds, **more)
 
 
 def _others(told: Telling) -> Iterator[str]:
@@ -131,7 +139,9 @@ def _end(lanes: Lanes) -> str:
 
 def _row(number: int, lanes: Lanes, row: Row | None, seconds: Sequence[float], **data: object) -> str:
     link = element("a", text(f"c{number}"), href=f"#c{number}")
-    time = element("small", text(f"{seconds[number]:.1f} s")) if seconds else ""
+    date = "" if row is None else steps_of(row)[0].date
+    said = f"{seconds[number]:.1f} s" if seconds else date
+    time = element("small", text(said)) if said else ""
     cells = [element("td")] * len(lanes.names) if row is None else _cells(row, lanes)
     return element("tr", element("th", link, time, scope="row"), *cells, **data)
 

@@ -1,23 +1,32 @@
-"""Draw a trace: a picture of each configuration, and an overview with a lane for each agent, time going down."""
+"""Draw a trace: a picture of each configuration, and an overview with a lane for each agent, time going down.
+
+The overview of a run with dates has a time axis. Steps at one moment stand below each other; where time passes between
+two steps there is a gap as high as it is long.
+"""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate
 from pathlib import Path
 from typing import Final
 
 from bigactors.pictures.configuration import draw_configuration
 from bigactors.pictures.page import Page, plain_style, wrapped
-from checker.reports.lanes import Lanes, LaneStep, Repetition, bounded, folded, lanes_of
+from checker.reports.lanes import Lanes, LaneStep, Repetition, bounded, folded, lanes_of, lapses, steps_of
 from physical.map_style import INK, QUIET
 from semantics.state.configuration import Configuration, Label
+from semantics.timing.dates import lapse_text
 
 MARGIN: Final = 26.0
 NUMBERS: Final = 30.0
+DATES: Final = 58.0
 LANE: Final = 168.0
 CHANGES: Final = 300.0
 GUTTER: Final = 14.0
 HEAD: Final = 30.0
+LEAST_LAPSE, MOST_LAPSE = 13.0, 110.0
+"""How high a gap in which time passes is at least, and the longest of a trace."""
+
 MOST_ROWS: Final = 2_000
 """The most rows of an overview."""
 
@@ -27,6 +36,7 @@ MOST_LINES: Final = 6
 SERVED: Final = ("#e9f7ee", "#4fa672")
 AROUND: Final = ("#fdf1e3", "#d08a3c")
 AGENT: Final = ("#e8f1fd", "#4f86c6")
+TIME: Final = "#4f86c6"
 AGAIN: Final = ("#f4f6f8", "#9fadbb")
 
 
@@ -42,6 +52,9 @@ class Row:
         rule: The rule, as the box's heading.
         words: What else its label says, in lines.
         changes: What changed, in lines.
+        date: When it is taken; empty where that is not known.
+        lapse: How much time passes before it, in milliseconds.
+        gap: How high the gap is that stands for that.
     """
 
     number: int
@@ -50,6 +63,9 @@ class Row:
     rule: str
     words: tuple[str, ...]
     changes: tuple[str, ...]
+    date: str = ""
+    lapse: int = 0
+    gap: float = 0.0
 
     @property
     def box_height(self) -> float:
@@ -58,8 +74,8 @@ class Row:
 
     @property
     def height(self) -> float:
-        """How much of the page it takes."""
-        return max(self.box_height, 10.5 * len(self.changes) + 6.0) + 9.0
+        """How much of the page it takes, with the time before it."""
+        return self.gap + max(self.box_height, 10.5 * len(self.changes) + 6.0) + 9.0
 
 
 def draw_trace(
@@ -69,11 +85,12 @@ def draw_trace(
     *,
     title: str | None = None,
     loop: int | None = None,
+    moments: Sequence[int] = (),
 ) -> tuple[Path, ...]:
     """Write `c00.svg`, `c01.svg`, ... and the overview `trace.svg` into a directory, and return their paths.
 
     There is one label fewer than configurations: the label of the step to each from the one before. `loop` is from
-    where the run repeats for ever.
+    where the run repeats for ever; `moments` are when its steps are taken, in milliseconds.
 
     Raises:
         OSError: A file cannot be written.
@@ -87,7 +104,7 @@ def draw_trace(
         heading = " ".join(part for part in (title, Path(name).stem, caption) if part)
         draw_configuration(c, folder / name, title=heading, changed=before)
     overview = folder / "trace.svg"
-    draw_overview(lanes_of(configurations, labels, loop), overview, title=title, links=names[1:])
+    draw_overview(lanes_of(configurations, labels, loop, moments), overview, title=title, links=names[1:])
     return (*(folder / name for name in names), overview)
 
 
@@ -115,8 +132,14 @@ def draw_overview(
 
 def rows_of(lanes: Lanes, *, unfolded: bool = False) -> tuple[Row, ...]:
     """Return the steps of a trace as rows of its overview; of a trace that is too long for one its ends."""
-    rows = lanes.steps if unfolded else tuple(folded(lanes.steps))
-    return tuple(map(_row, bounded(rows, MOST_ROWS)))
+    steps = tuple(bounded(lanes.steps if unfolded else tuple(folded(lanes.steps)), MOST_ROWS))
+    passing = lapses(steps)
+    longest = max(passing, default=0)
+    gaps = (max(LEAST_LAPSE, MOST_LAPSE * each / longest) if each else 0.0 for each in passing)
+    return tuple(
+        replace(_row(step), date=steps_of(step)[0].date, lapse=lapse, gap=gap)
+        for step, lapse, gap in zip(steps, passing, gaps, strict=True)
+    )
 
 
 def _row(step: LaneStep | Repetition) -> Row:
@@ -138,8 +161,9 @@ def _changes(step: LaneStep) -> tuple[str, ...]:
 
 
 def _page(lanes: Lanes, rows: Sequence[Row], title: str | None, links: Sequence[str]) -> Page:
-    starts = [MARGIN + NUMBERS + rank * (LANE + GUTTER) for rank in range(len(lanes.names))]
-    end = MARGIN + NUMBERS + len(starts) * (LANE + GUTTER)
+    left = MARGIN + NUMBERS + (DATES if any(row.date for row in rows) else 0.0)
+    starts = [left + rank * (LANE + GUTTER) for rank in range(len(lanes.names))]
+    end = left + len(starts) * (LANE + GUTTER)
     top = MARGIN + (24.0 if title else 0.0) + HEAD
     tops = list(accumulate((row.height for row in rows), initial=top))
     page = Page(end + CHANGES + MARGIN, tops[-1] + MARGIN + (HEAD if lanes.end else 0.0))
@@ -150,7 +174,10 @@ def _page(lanes: Lanes, rows: Sequence[Row], title: str | None, links: Sequence[
     for name, start in zip(lanes.names, starts, strict=True):
         _draw_lane(page, name, start, (top - HEAD, tops[-1]))
     page.heading(end, top - HEAD + 15, "changed", "by each step")
-    for row, y in zip(rows, tops, strict=False):
+    if left > MARGIN + NUMBERS:
+        _draw_axis(page, rows, tops, left - GUTTER)
+    for row, begin in zip(rows, tops, strict=False):
+        y = begin + row.gap
         page.rule(MARGIN, page.width - MARGIN, y - 2.0)
         page.write(MARGIN, y + 14.0, f"c{row.number}", 8.0, ink=QUIET)
         _draw_row(page, row, starts[row.lane], y + 3.0, links[row.number - 1] if links else None)
@@ -163,6 +190,21 @@ def _draw_lane(page: Page, name: str, start: float, span: tuple[float, float]) -
     middle = start + LANE / 2
     page.write(middle, span[0] + 15, name, 9.0, bold=True, width=LANE, ha="center")
     page.axes.plot([middle, middle], [span[0] + HEAD - 6, span[1]], color="#d8dee4", linewidth=1.0, zorder=1)
+
+
+def _draw_axis(page: Page, rows: Sequence[Row], tops: Sequence[float], x: float) -> None:
+    """Draw when rows are, each moment once, and how much time passes between them."""
+    page.write(x, tops[0] - HEAD + 15, "time", 9.0, bold=True, ha="right")
+    page.axes.plot([x, x], [tops[0], tops[-1]], color="#d8dee4", linewidth=1.0, zorder=1)
+    for number, (row, y) in enumerate(zip(rows, tops, strict=False)):
+        if row.gap:
+            page.axes.plot([x, x], [y - 2.0, y + row.gap - 2.0], color=TIME, linewidth=3.0, zorder=2)
+            words = f"+ {lapse_text(row.lapse)}"
+            page.write(x - 6.0, y + row.gap / 2 + 0.5, words, 7.0, ink=TIME, ha="right")
+        if row.gap or not number:
+            here = y + row.gap
+            page.axes.plot([x - 4.0, x + 4.0], [here - 2.0, here - 2.0], color=TIME, linewidth=1.2, zorder=3)
+            page.write(x - 6.0, here + 14.0, row.date, 8.0, ha="right")
 
 
 def _draw_row(page: Page, row: Row, start: float, y: float, link: str | None) -> None:

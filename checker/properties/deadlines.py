@@ -21,7 +21,9 @@ from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
 from semantics.properties.propositions import holds
 from semantics.state.configuration import Configuration
-from semantics.timing.clocks import Situation
+from semantics.state.requests import FLY
+from semantics.state.signature import Name
+from semantics.timing.clocks import Situation, Sort
 from semantics.timing.dates import clock_text, lapse_text
 from semantics.timing.timing import Timing
 
@@ -88,6 +90,15 @@ class Deadlines:
             *(f"times rest on: {bound}" for bound in bounds),
             *([f"nothing says how long some of these take: {', '.join(unsaid)}"] if unsaid else []),
         )
+
+    def longest_flights(self) -> tuple[tuple[Name, float], ...]:
+        """Return how many seconds a flight of each bigActor takes at most, where that is bounded."""
+        most: dict[Name, int] = {}
+        for situation in self.times.situations:
+            for clock, interval in situation.bounds.items():
+                if clock.sort is Sort.AIM and isinstance(clock.of, FLY):
+                    most[clock.of.agent] = max(most.get(clock.of.agent, 0), interval.hi or 0)
+        return tuple((agent, ticks * self.timing.tick / 1000) for agent, ticks in sorted(most.items()))
 
     @property
     def outcome(self) -> Outcome:

@@ -13,6 +13,7 @@ from checker.traces import Trace
 from semantics.state.configuration import Configuration, Label
 from semantics.state.differences import Difference, differences
 from semantics.state.signature import Name
+from semantics.timing.dates import clock_text
 
 ENVIRONMENT: Final = "environment"
 
@@ -41,14 +42,19 @@ class LaneStep:
         lane: Its index in `Lanes.names`: an agent's lane or the environment's.
         label: Its label.
         changes: Its changes.
-        date: When it is taken, where the run has dates.
+        at: When it is taken, in milliseconds from the start; None where the run has no dates.
     """
 
     number: int
     lane: int
     label: Label
     changes: tuple[Difference, ...]
-    date: str = ""
+    at: int | None = None
+
+    @property
+    def date(self) -> str:
+        """When it is taken, as a clock says it; nothing where the run has no dates."""
+        return "" if self.at is None else clock_text(self.at)
 
     @property
     def serves(self) -> bool:
@@ -155,24 +161,23 @@ def lanes_of(
     configurations: Sequence[Configuration],
     labels: Sequence[Label],
     loop: int | None = None,
-    dates: Sequence[str] = (),
+    moments: Sequence[int] = (),
 ) -> Lanes:
-    """Return a run in lanes; there is one label fewer than configurations."""
+    """Return a run in lanes; there is one label fewer than configurations, and a moment, in milliseconds, for each."""
     agents = tuple(sorted({a for c in dict.fromkeys(configurations) for a in c.alpha.names()}))
     around = any(label.agent is None for label in labels)
     told = {pair: differences(*pair) for pair in dict.fromkeys(pairwise(configurations))}
     steps = []
     for number, (label, pair) in enumerate(zip(labels, pairwise(configurations), strict=True), 1):
         lane = len(agents) if label.agent is None else agents.index(label.agent)
-        date = dates[number - 1] if dates else ""
-        steps.append(LaneStep(number, lane, label, told[pair], date))
+        at = moments[number - 1] if moments else None
+        steps.append(LaneStep(number, lane, label, told[pair], at))
     return Lanes((*agents, *([ENVIRONMENT] if around else [])), tuple(steps), loop)
 
 
 def lanes_of_trace(trace: Trace) -> Lanes:
     """Return a trace in lanes."""
-    dates = [trace.date(number) for number in range(len(trace.dates))]
-    return lanes_of(trace.configurations, [step.label for step in trace.steps], trace.loop, dates)
+    return lanes_of(trace.configurations, [step.label for step in trace.steps], trace.loop, trace.moments)
 
 
 def folded(steps: Sequence[LaneStep]) -> Iterator[Row]:
@@ -217,6 +222,13 @@ def bounded(rows: Sequence[Row], most: int, around: int = 0) -> Iterator[Row]:
 def steps_of(row: Row) -> tuple[LaneStep, ...]:
     """Return the steps of a row."""
     return row.steps if isinstance(row, Repetition) else (row,)
+
+
+def lapses(rows: Sequence[Row]) -> tuple[int, ...]:
+    """Return how much time passes before each row, in milliseconds; nothing where the run has no dates."""
+    moments = [(steps_of(row)[0].at, steps_of(row)[-1].at) for row in rows]
+    ends = [0, *(end or 0 for _, end in moments)]
+    return tuple((begin or 0) - end for (begin, _), end in zip(moments, ends, strict=False))
 
 
 def lanes_text(lanes: Lanes, width: int = 100, *, unfolded: bool = False) -> Iterator[str]:

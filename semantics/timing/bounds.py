@@ -103,7 +103,8 @@ def _beginnings(situation: Situation, step: TimedStep) -> Iterator[str]:
         case _ if label.agent is not None:
             yield "spawn " if label.rule == "spawn" else "agents "
         case _:
-            yield from _clause_beginnings(setting, step.done[0].of)
+            assert isinstance(step.done[0].of, int)
+            yield from clause_beginnings(setting, step.done[0].of)
 
 
 def flight_beginnings(setting: Setting, vehicle: str) -> tuple[str, str]:
@@ -111,8 +112,8 @@ def flight_beginnings(setting: Setting, vehicle: str) -> tuple[str, str]:
     return f"{vehicle} flies ", f"{setting.kind(vehicle)} flies "
 
 
-def _clause_beginnings(setting: Setting, number: object) -> Iterator[str]:
-    assert isinstance(number, int)
+def clause_beginnings(setting: Setting, number: int) -> Iterator[str]:
+    """Yield how a bound of a clause may begin, which says what happens, too: `wifi drops `."""
     match setting.environment[number]:
         case Drifts(entity=entity):
             yield f"{entity} drifts "

@@ -1,21 +1,16 @@
-"""`bigactors export`: timed automata for TChecker."""
+"""`bigactors export`: timed automata for TChecker and UPPAAL."""
 
-import os
 import re
-import subprocess
+from xml.etree import ElementTree as ET
 
 import pytest
 from shipped import TIMED
 
 from bigactors.cli import main
-from checker import check
-from checker.verdicts import Outcome
-from semantics.properties.kinds import PropertyKind
-from specs.elaboration import load_mission
 
 
-def exported(capsys, *arguments):
-    assert main(["export", "--format", "tchecker", *arguments]) == 0
+def exported(capsys, *arguments, form="tchecker"):
+    assert main(["export", "--format", form, *arguments]) == 0
     return capsys.readouterr().out
 
 
@@ -44,6 +39,15 @@ def test_where_a_property_is_violated_is_labelled(capsys):
     assert re.search(r"edge:mission:l\d+:wrong:wrong\{provided: x\d+ >= 163\}", text)
 
 
+def test_uppaal_is_asked_whether_the_property_holds(capsys):
+    text = exported(capsys, "broken_endurance", "--property", "endurance", form="uppaal")
+    query = ET.fromstring(text).find("queries/query")
+    assert query.findtext("formula") == "A[] not mission.wrong"
+    assert query.findtext("comment") == "endurance"
+    said = [each.text for each in ET.fromstring(text).iter("label") if each.get("kind") == "comments"]
+    assert "⟨commit : FLY(patrol, MOVE_HOST_TO north0)⟩" in said
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -55,16 +59,3 @@ def test_where_a_property_is_violated_is_labelled(capsys):
 def test_what_has_no_automaton_is_said(capsys, arguments, said):
     assert main(["export", "--format", "tchecker", *arguments]) == 2
     assert said in capsys.readouterr().err
-
-
-@pytest.mark.skipif("TCHECKER" not in os.environ, reason="TCHECKER names no program `tck-reach`")
-@pytest.mark.parametrize("name", TIMED)
-def test_tchecker_comes_to_the_same_verdicts(tmp_path, capsys, name):
-    for verdict in check(load_mission(name)).verdicts:
-        if verdict.property.kind not in (PropertyKind.WITHIN, PropertyKind.ENDURANCE):
-            continue
-        model = tmp_path / "model.tck"
-        model.write_text(exported(capsys, name, "--property", verdict.property.name))
-        program = [os.environ["TCHECKER"], "-a", "covreach", "-l", "wrong", str(model)]
-        said = subprocess.run(program, capture_output=True, text=True, check=True).stdout
-        assert ("REACHABLE true" in said) == (verdict.outcome is Outcome.VIOLATED)

@@ -14,12 +14,13 @@ from bigactors.pages import Story, page_of, telling, trace_page
 from bigactors.pictures import Panels
 from bigactors.pictures.page import Page
 from bigactors.pictures.vector import svg_of
-from checker import Step, Trace
+from checker import Step, Trace, check
 from checker.reports.lanes import Repetition
 from semantics.behaviours.program import Program
 from semantics.state.agents import mailbox_cell
 from semantics.state.initial import initial
 from semantics.state.setting import Setting
+from specs.elaboration import load_mission
 
 HOSTILE = "</script><img src=//evil.example/x onerror=alert(1)>&amp;\"' $x^2$"
 EMPTY = {"meta", "input", "br", "img", "link"}
@@ -299,3 +300,11 @@ def test_only_known_shapes_pass_into_a_picture():
     assert "&lt;b&gt;&amp;\N{REPLACEMENT CHARACTER}" in shapes
     assert not re.search(r"<(metadata|style|script|image|!--)", shapes)
     assert re.findall(r'<text [^>]*textLength="[\d.]+"', shapes)
+
+
+def test_the_page_of_a_run_with_dates_has_gaps_where_time_passes():
+    found = check(load_mission("broken_endurance")).verdicts["endurance"].violations[0].trace
+    page = trace_page(Story("broken_endurance", "", True, found))
+    gaps = dict(re.findall(r"--gap: (\d+)px; --lapse: &#x27;\+ ([^&]+)&#x27;", page.replace("'", "&#x27;")))
+    assert gaps == {"146": "6:40", "18": "10 s", "150": "6:50"}
+    assert "<small>14:20</small>" in page

@@ -269,6 +269,18 @@ def test_every_step_appears_in_the_overview(tmp_path, monkeypatch):
     assert {label.rule for label in labels} <= set(texts)
 
 
+def test_where_time_passes_an_overview_has_gaps_as_high_as_it_is_long(tmp_path, monkeypatch):
+    configurations, labels = run(oil_spill())
+    moments = [0, 0, 60_000, *[180_000] * (len(labels) - 3)]
+    lanes = lanes_of(configurations, labels, None, moments)
+    first, still, later, latest, *rest = rows_of(lanes)
+    assert (first.gap, still.gap, [row.gap for row in rest]) == (0, 0, [0] * len(rest))
+    assert latest.gap == 2 * later.gap > 0
+    texts = written(monkeypatch, draw_overview, lanes, tmp_path / "t.png")
+    assert [each for each in texts if ":" in each and each[0].isdigit()] == ["0:00", "1:00", "3:00"]
+    assert {"+ 1 min", "+ 2 min"} <= set(texts)
+
+
 def test_a_trace_of_no_step_has_an_overview(tmp_path):
     draw_overview(lanes_of([oil_spill()], []), tmp_path / "t.svg")
     assert (tmp_path / "t.svg").stat().st_size > 1000

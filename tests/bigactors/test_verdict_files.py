@@ -11,6 +11,7 @@ from bigactors.missions import open_mission
 from bigactors.mistakes import Mistake
 from bigactors.verdict_files import find_verdict, licence_for
 from specs.elaboration.variation import AS_WRITTEN
+from specs.missions import shipped_missions
 
 SCHEMA = Path(__file__).parents[2] / "docs" / "reference" / "verdict.schema.json"
 
@@ -52,6 +53,31 @@ def test_a_verdict_under_timed_control_that_everything_holds_is_a_licence(verdic
     found = licence("oil_spill", verdict("oil_spill", "--control", "timed"))
     assert "local_consistency" in found.resting
     assert "race_freedom" not in found.resting
+
+
+@pytest.mark.parametrize(
+    ("limit", "short"),
+    [
+        ("FLY patrol within 5 min", True),
+        ("anyone within 5 min", True),
+        ("OBS patrol within 5 min", False),
+        ("FLY patrol within 1 h", False),
+    ],
+)
+def test_no_flight_may_be_given_up_before_it_takes_too_long(verdict, capsys, limit, short):
+    text = shipped_missions()["endurance"].read_text(encoding="utf-8")
+    Path("limited.mission").write_text(f"{text}\nlive {{ {limit}: return }}\n", encoding="utf-8")
+    path = verdict("limited.mission")
+    said = "live lets patrol fly for 5 min, and the times let a flight of it take "
+    assert (f"limited.mission: {said}" in capsys.readouterr().err) == short
+    Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(
+        json.loads(Path(path).read_text())
+    )
+    if short:
+        with pytest.raises(Mistake, match=said):
+            licence("limited.mission", path)
+    else:
+        licence("limited.mission", path)
 
 
 def test_a_verdict_under_atomic_control_is_none(verdict):

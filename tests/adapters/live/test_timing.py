@@ -4,7 +4,9 @@ import pytest
 from audited import SHUTTLE, copter, flown_in
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
+from adapters.live.state import Heard, Saying
 from adapters.live.timing import flying
+from adapters.plugin import Gone, LinkLost, LinkRestored
 from bigactors.vehicle_lines import vehicle_line
 from semantics.contingencies import Fallback, Precautions
 
@@ -102,6 +104,79 @@ timing { boat0 drifts at most every 20 min }
     assert broken(run) == [
         "boat0 drifts again after 10 s; the mission says: boat0 drifts at most every 20 min (line 21)"
     ]
+
+
+def watched(environment, timing):
+    """A run in which nobody flies, and the environment is held to its times."""
+    return Run(
+        plan_of(
+            TOUR
+            + f"""
+BigActor a hosted_at gcs0 with_behavior {{ react {{ case "go" => }} }}
+scheduler fcfs
+control timed
+environment {{ {environment}  someone says "go" to a }}
+timing {{ {timing} }}
+"""
+        )
+    )
+
+
+VANISHES = ("boat0 vanishes", "boat0 vanishes after 10 s, within 60 s")
+
+
+@pytest.mark.parametrize(
+    ("gone", "said"),
+    [
+        (5.0, ["boat0 vanishes 5 s after the start"]),
+        (30.0, []),
+        (90.0, ["boat0 vanishes later than 1 min after the start"]),
+    ],
+)
+def test_what_vanishes_is_held_to_its_window(gone, said):
+    run = watched(*VANISHES)
+    run.turn(0.0, boat(BETWEEN, 0.0))
+    for now in sorted({gone, 61.0, 95.0, 96.0}):
+        run.turn(now, *([Heard("ais", Gone("boat0", now, "ais"))] if now == gone else []))
+    because = "the mission says: boat0 vanishes after 10 s, within 60 s (line 21)"
+    assert broken(run) == [f"{each}; {because}" for each in said]
+
+
+def test_what_appeared_in_its_window_may_appear_again_at_any_time():
+    run = watched(
+        "boat0 vanishes  boat0 appears at point (37.03, -8.63)", "boat0 appears after 0 s, within 60 s"
+    )
+    for now in (0.0, 40.0, 80.0):
+        run.turn(now, boat(BETWEEN, now))
+        run.turn(now + 20.0, Heard("ais", Gone("boat0", now + 20.0, "ais")))
+    assert run.rules == ["env"] * 5
+    assert broken(run) == []
+
+
+def test_a_channel_drops_at_most_every_so_often_and_returns_in_time():
+    run = watched(
+        "control:gcs0 drops and returns", "control:gcs0 drops at most every 10 min, returns within 60 s"
+    )
+    lost, back = [LinkLost("uav0", 0.0, 0.0)], [LinkRestored("uav0", 0.0)]
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(5.0, reports=lost)
+    run.turn(30.0, seen("uav0", WEST, 30.0), reports=back)
+    assert run.labels == ["⟨env : control:gcs0 drops⟩", "⟨env : control:gcs0 returns⟩"]
+    assert broken(run) == []
+    run.turn(100.0, reports=lost)
+    because = "the mission says: control:gcs0 drops at most every 10 min, returns within 60 s (line 21)"
+    assert broken(run) == [f"control:gcs0 drops again after 95 s; {because}"]
+    run.turn(161.0)
+    assert broken(run)[1:] == [f"⟨env : control:gcs0 returns⟩ takes longer than 1 min; {because}"]
+
+
+def test_what_is_said_is_held_to_its_times():
+    run = watched("", 'someone says "go" to a after 10 s, until 20 s')
+    run.turn(0.0, boat(BETWEEN, 0.0))
+    run.turn(5.0, sayings=[Saying("a", "go")])
+    said = 'someone says "go" to a'
+    because = f"the mission says: {said} after 10 s, until 20 s (line 21)"
+    assert broken(run) == [f"{said} 5 s after the start; {because}"]
 
 
 def test_time_without_listening_does_not_count():

@@ -414,13 +414,13 @@ def timed_programs(draw):
 ZEROS = {"react": Interval(0, 0), "sense": Interval(0, 0), "messages": (("", Interval(0, 0)),)}
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=UNBOTHERED)
+@examples(240, deadline=None, suppress_health_check=UNBOTHERED)
 @given(timed_programs(), st.data())
 def test_zones_report_what_whole_ticks_report(c, data):
     agree_with_zones(c, data, 300)
 
 
-@settings(max_examples=20, deadline=None, suppress_health_check=UNBOTHERED)
+@examples(300, deadline=None, suppress_health_check=UNBOTHERED)
 @given(timed_missions(), st.data())
 def test_zones_report_of_generated_missions_what_whole_ticks_report(c, data):
     agree_with_zones(c, data, 60)

@@ -1,0 +1,19 @@
+"""Time limits of the section `live` that are below what the section `timing` lets a flight take."""
+
+from collections.abc import Iterator, Mapping
+
+from semantics.state.signature import Name
+from semantics.timing.dates import lapse_text
+from specs.elaboration import ElaboratedMission
+
+
+def short_limits(mission: ElaboratedMission, flights: Mapping[Name, float]) -> Iterator[str]:
+    """Yield each limit, in words, that a flight may reach although it takes no longer than it can.
+
+    `flights` are the seconds that a flight of each bigActor takes at most.
+    """
+    for limit in mission.precautions.limits:
+        for agent, seconds in sorted(flights.items()):
+            if limit.covers("FLY", agent) and limit.seconds < seconds:
+                given, most = (lapse_text(round(1000 * each)) for each in (limit.seconds, seconds))
+                yield f"live lets {agent} fly for {given}, and the times let a flight of it take {most}"

@@ -1,0 +1,235 @@
+"""A mission's timed automaton as other model checkers read it: one process, whose edges are the steps.
+
+There clocks have one name everywhere and start at 0, and nothing enters a location too late for its invariant. So a
+first location that takes no time sets what does not start at 0, and what is entered too late for its deadlines is a
+location of its own, in which no time passes. A clock that goes on keeps its name, since UPPAAL copies no clocks: a
+location is there once for each way in which its clocks are named, several only where equal requests are pending.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import count, islice
+from typing import Final, NamedTuple
+
+from checker.engines.zones.automaton import Automaton, Constraint, Edge
+from checker.engines.zones.network import Network
+from checker.engines.zones.observers import Meter, Observer, Watch
+from checker.engines.zones.zone_times import ZoneTimes
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property
+from semantics.timing.clocks import Clock
+
+FIRST: Final = "first"
+"""The location in which it begins; no time passes in it."""
+
+WRONG: Final = "wrong"
+"""The location that is reached exactly if the property is violated."""
+
+
+class Place(NamedTuple):
+    """A location: how long one may stay, or that no time passes."""
+
+    name: str
+    invariant: tuple[str, ...] = ()
+    is_urgent: bool = False
+
+
+class Step(NamedTuple):
+    """An edge.
+
+    Attributes:
+        source, target: The names of its locations.
+        event: The name of what is done; the number of the step in its configuration, in short.
+        words: What is done, as traces have it.
+        guard: Comparisons of clocks with constants, of which all have to be true.
+        sets: What clocks are set to.
+    """
+
+    source: str
+    target: str
+    event: str
+    words: str = ""
+    guard: tuple[str, ...] = ()
+    sets: tuple[tuple[str, int], ...] = ()
+
+
+class Model(NamedTuple):
+    """A timed automaton.
+
+    Attributes:
+        name: The mission's name.
+        asked: The property that `WRONG` is about.
+        clocks: The names of its clocks.
+        places: Its locations, `FIRST` and `WRONG` apart.
+        steps: Its edges.
+    """
+
+    name: str
+    asked: Property | None
+    clocks: tuple[str, ...]
+    places: tuple[Place, ...]
+    steps: tuple[Step, ...]
+
+
+def model_of(times: ZoneTimes, asked: Property | None, name: str) -> Model:
+    """Return a mission's automaton; with a deadline or an endurance, `WRONG` is reached where it is violated.
+
+    Raises:
+        ValueError: It is another kind of property.
+    """
+    network = times.network
+    if asked is None or asked.kind is PropertyKind.ENDURANCE:
+        locations = range(len(network.places))
+        wrong = {at: tuple(times.exhaustion(at).values()) for at in locations} if asked else {}
+        walk = _Walk(network, network.automaton, locations, wrong)
+        return _model(name, asked, walk, network.first, network.first_ages)
+    if asked.kind is not PropertyKind.WITHIN:
+        raise ValueError("only deadlines and endurance are exported")
+    awaited = asked.formula if asked.then is None else asked.then
+    rule = times.waiting(None if asked.then is None else asked.formula, awaited)
+    observer = Observer(network, rule, Meter(asked.bound + 1, goal=(Watch.ON, asked.bound + 1)))
+    late = {at: [each.goal] for at, each in enumerate(observer.automaton.all) if each.goal is not None}
+    walk = _Walk(network, observer.automaton, [each.location for each in observer.spots], late)
+    return _model(name, asked, walk, 0, observer.first_ages())
+
+
+def _model(name: str, asked: Property | None, walk: _Walk, location: int, ages: Sequence[int]) -> Model:
+    first = walk.place(location, [""] * len(ages))
+    sets = tuple((clock, age) for clock, age in zip(first.names, ages, strict=True) if age)
+    steps = (Step(FIRST, walk.spots[first], "begin", sets=sets), *walk.steps())
+    clocks = sorted({clock for spot in walk.spots for clock in spot.names}, key=lambda each: int(each[1:]))
+    return Model(name, asked, tuple(clocks), tuple(walk.places()), steps)
+
+
+class _Spot(NamedTuple):
+    """A location with the names of its clocks, and whether it was entered too late for its deadlines."""
+
+    at: int
+    names: tuple[str, ...]
+    is_late: bool = False
+
+
+@dataclass(slots=True)
+class _Walk:
+    """An automaton on its way to a model.
+
+    Attributes:
+        network: The mission's.
+        automaton: Its own, or that with an observer's clock.
+        locations: The mission's location behind each of the automaton's.
+        wrong: What clocks show where the property is violated.
+        spots: The locations that were met, with their names.
+        met: How many of them are one of the automaton's, in time or too late.
+        names: How clocks may be called; None stands for an observer's.
+    """
+
+    network: Network
+    automaton: Automaton
+    locations: Sequence[int]
+    wrong: Mapping[int, Sequence[Constraint]]
+    spots: dict[_Spot, str] = field(default_factory=dict)
+    met: Counter[tuple[int, bool]] = field(default_factory=Counter)
+    names: Mapping[Clock | None, tuple[str, ...]] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.names = _named([Counter(self.clocks(at)) for at in range(len(self.automaton.all))])
+
+    def clocks(self, at: int) -> tuple[Clock | None, ...]:
+        """Return what the clocks of a location measure."""
+        measured = self.network.clocks(self.locations[at])
+        return (*measured, *([None] if len(self.automaton.all[at].lower) > len(measured) else []))
+
+    def place(self, at: int, kept: Sequence[str], *, is_late: bool = False) -> _Spot:
+        """Return a location whose clocks have names as far as they go on; others (`""`) get what is free."""
+        names = list(kept)
+        for rank, (name, clock) in enumerate(zip(kept, self.clocks(at), strict=True)):
+            names[rank] = name or next(each for each in self.names[clock] if each not in names)
+        spot = _Spot(at, tuple(names), is_late)
+        if spot not in self.spots:
+            known = self.met[at, is_late]
+            self.met[at, is_late] += 1
+            self.spots[spot] = f"{'u' if is_late else 'l'}{at}{f'_{known}' if known else ''}"
+        return spot
+
+    def steps(self) -> Iterator[Step]:
+        """Yield the edges, from wherever they lead on."""
+        done = 0
+        while done < len(self.spots):
+            for spot in list(self.spots)[done:]:
+                yield from self._steps(spot)
+                done += 1
+
+    def _steps(self, spot: _Spot) -> Iterator[Step]:
+        for edge in self.automaton.out[spot.at]:
+            if edge.target >= 0:
+                yield from self._step(spot, edge)
+        for clock, least, _ in self.wrong.get(spot.at, ()):
+            yield Step(self.spots[spot], WRONG, WRONG, guard=(f"{spot.names[clock - 1]} >= {least}",))
+
+    def _step(self, spot: _Spot, edge: Edge) -> Iterator[Step]:
+        tests = [
+            f"{spot.names[clock - 1]} {relation} {bound}"
+            for clock, least, most in edge.tests
+            for relation, bound, says in ((">=", least, least > 0), ("<=", most, most >= 0))
+            if says
+        ]
+        kept = [spot.names[one - 1] if one else "" for one in edge.sources]
+        ways = [(False, tests)]
+        if not self.stands(edge.target):
+            late = [f"{spot.names[one - 1]} > {most}" for one, most in self._too_late(spot, edge)]
+            ways += [(True, [*tests, each]) for each in late]
+        for is_late, guard in ways:
+            target = self.place(edge.target, kept, is_late=is_late)
+            sets = tuple((name, 0) for name, old in zip(target.names, kept, strict=True) if not old)
+            yield Step(
+                self.spots[spot],
+                self.spots[target],
+                f"s{edge.step}",
+                self._words(spot.at, edge.step),
+                tuple(guard),
+                sets,
+            )
+
+    def _too_late(self, spot: _Spot, edge: Edge) -> list[tuple[int, int]]:
+        """Return the clocks, with their bounds, that may be past a deadline after an edge."""
+        before = {} if spot.is_late else dict(self.automaton.all[spot.at].deadlines)
+        after = [(edge.sources[clock - 1], most) for clock, most in self.automaton.all[edge.target].deadlines]
+        return [(one, most) for one, most in after if one and before.get(one, most + 1) > most]
+
+    def stands(self, at: int) -> bool:
+        """Tell whether no time passes in a location at all."""
+        return any(most < 0 for _, most in self.automaton.all[at].deadlines)
+
+    def _words(self, at: int, step: int) -> str:
+        situation = self.network.situations[self.network.places[self.locations[at]].number]
+        return str(situation.steps[step].transition.label)
+
+    def places(self) -> Iterator[Place]:
+        """Yield the locations that were met."""
+        for spot, name in self.spots.items():
+            if spot.is_late or self.stands(spot.at):
+                yield Place(name, is_urgent=True)
+            else:
+                deadlines = self.automaton.all[spot.at].deadlines
+                yield Place(name, tuple(f"{spot.names[clock - 1]} <= {most}" for clock, most in deadlines))
+
+
+def _named(locations: Sequence[Counter[Clock | None]]) -> dict[Clock | None, tuple[str, ...]]:
+    """Return how clocks may be called, given how many run in each location: each as many names as run at most.
+
+    What never runs together may have one name, so that there are few.
+    """
+    most: Counter[Clock | None] = Counter()
+    beside: defaultdict[Clock | None, set[Clock | None]] = defaultdict(set)
+    for each in locations:
+        most |= each
+        for clock in each:
+            beside[clock].update(each)
+    numbers: dict[Clock | None, list[int]] = {}
+    for clock, others in beside.items():
+        taken = {number for other in others for number in numbers.get(other, ())}
+        numbers[clock] = list(islice((each for each in count() if each not in taken), most[clock]))
+    return {clock: tuple(f"x{each}" for each in found) for clock, found in numbers.items()}

@@ -1,0 +1,63 @@
+"""Write the timed automaton of a mission for UPPAAL, as a second opinion: XML by its document type flat-1_2."""
+
+from collections.abc import Iterator, Sequence
+from xml.sax.saxutils import escape, quoteattr
+
+from checker.engines.zones.interchange import FIRST, WRONG, Model, Place, Step
+
+DOCUMENT_TYPE = (
+    "<!DOCTYPE nta PUBLIC '-//Uppaal Team//DTD Flat System 1.2//EN' "
+    "'http://www.it.uu.se/research/group/darts/uppaal/flat-1_2.dtd'>"
+)
+
+
+def uppaal_text(model: Model) -> str:
+    """Write a model; with a property, its query is satisfied exactly if the property holds."""
+    return "\n".join([*_lines(model), ""])
+
+
+def _lines(model: Model) -> Iterator[str]:
+    yield '<?xml version="1.0" encoding="utf-8"?>'
+    yield DOCUMENT_TYPE
+    yield "<nta>"
+    yield _element("declaration", f"// {model.name}")
+    yield "<template>"
+    yield _element("name", "Mission")
+    if model.clocks:
+        yield _element("declaration", f"clock {', '.join(model.clocks)};")
+    yield f'<location id="{FIRST}">{_element("name", FIRST)}<committed/></location>'
+    yield from map(_location, model.places)
+    if model.asked is not None:
+        yield f'<location id="{WRONG}">{_element("name", WRONG)}</location>'
+    yield f'<init ref="{FIRST}"/>'
+    yield from map(_transition, model.steps)
+    yield "</template>"
+    yield _element("system", "mission = Mission();\nsystem mission;")
+    if model.asked is not None:
+        query = _element("formula", f"A[] not mission.{WRONG}") + _element("comment", model.asked.name)
+        yield f"<queries><query>{query}</query></queries>"
+    yield "</nta>"
+
+
+def _location(place: Place) -> str:
+    parts = _element("name", place.name) + _label("invariant", " && ", place.invariant)
+    return f'<location id="{place.name}">{parts}{"<urgent/>" if place.is_urgent else ""}</location>'
+
+
+def _transition(step: Step) -> str:
+    ends = f'<source ref="{step.source}"/><target ref="{step.target}"/>'
+    sets = [f"{clock} = {to}" for clock, to in step.sets]
+    words = [step.words] if step.words else []
+    labels = (
+        _label("guard", " && ", step.guard) + _label("assignment", ", ", sets) + _label("comments", "", words)
+    )
+    return f"<transition>{ends}{labels}</transition>"
+
+
+def _label(kind: str, between: str, parts: Sequence[str]) -> str:
+    return _element("label", between.join(parts), kind=kind) if parts else ""
+
+
+def _element(tag: str, text: str, **attributes: str) -> str:
+    said = "".join(f" {name}={quoteattr(value)}" for name, value in attributes.items())
+    return f"<{tag}{said}>{escape(text)}</{tag}>"
