@@ -63,16 +63,18 @@ def starts(agents: int, side: int) -> tuple[int, ...]:
     return (0, side * side - 1, side - 1, side * (side - 1))[:agents]
 
 
-def mission_text(agents: int, side: int, handover: bool = False) -> str:
+def mission_text(agents: int, side: int, handover: bool = False, *, together: bool = False) -> str:
     """Write the patrol as a mission: all start where later moves lead to, so that no placement occurs only once.
 
     Args:
         agents: How many UAVs.
         side: Of the square grid, in cells.
         handover: Whether a UAV that has found the spill hands itself over to one of three stations.
+        together: Whether all start in the first corner, any number of them: they are alike then.
     """
     places = [f"  cell{cell}: Cell = {box(cell, side)}" for cell in range(side * side)]
-    uavs = [f"  uav{i}: UAV = point {centre(cell, side)}" for i, cell in enumerate(starts(agents, side))]
+    first = (0,) * agents if together else starts(agents, side)
+    uavs = [f"  uav{i}: UAV = point {centre(cell, side)}" for i, cell in enumerate(first)]
     found = "      case obs if spill0 in obs => skip"
     if handover:
         uavs = [f"{uav} linked control:gcs{i % STATIONS}" for i, uav in enumerate(uavs)]

@@ -181,18 +181,18 @@ class _Noting(Renaming):
 
     def __init__(self) -> None:
         super().__init__()
-        object.__setattr__(self, "met", set())
+        object.__setattr__(self, "met", {})
 
-    met: set[str]
+    met: dict[str, None]
 
     def name(self, name: str) -> str:
         """Note a name."""
-        self.met.add(name)
+        self.met[name] = None
         return name
 
 
-def mentioned(value: Any, among: frozenset[str]) -> frozenset[str]:
-    """Return which of some names occur in a value."""
+def mentioned(value: Any, among: frozenset[str]) -> tuple[str, ...]:
+    """Return which of some names occur in a value, in the order in which they do."""
     noting = _Noting()
     noting.value(value)
-    return among.intersection(noting.met)
+    return tuple(name for name in noting.met if name in among)

@@ -1,59 +1,28 @@
 """Symmetry: interchangeable agents and entities, and one representative of symmetric configurations.
 
-Any permutation may exchange the members of a class. In the representative of a configuration they are sorted by what it
-says of each, without names. If this leaves a few orders, all are tried, so symmetric configurations have one
-representative. If it leaves many, they may have several, which costs configurations but is sound.
+Any permutation may exchange the members of a class.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from itertools import combinations, groupby, permutations, product
-from math import factorial, prod
+from itertools import combinations
 from typing import Any
 
+from checker.engines.fast.skeletons import mobile_names
 from checker.reduction.automorphisms import UNLIKE_TEXTS, Pairing, Unlike, is_invariant, transposition
+from checker.reduction.items import Class, Items
 from checker.reduction.order import ordered
 from checker.reduction.refusals import Reduction, RefusedError
-from checker.reduction.renaming import Renaming, mentioned, spelled
+from checker.reduction.renaming import Renaming
+from checker.reduction.representatives import to_representative
 from semantics.properties.propositions import Proposition
-from semantics.state.cells import AGENTS, NAMES, Cell, Row
+from semantics.state.cells import Row
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
 
-MOST_ORDERS = 120
-"""How many orders of equal members are tried for one configuration."""
-
 MOST_PAIRS = 2_000
 """How many pairs of entities without agents are tried."""
-
-SAME, OTHER = "⟨same⟩", "⟨other⟩"
-"""Placeholders of a member's own names, and of those of other members."""
-
-
-@dataclass(frozen=True)
-class Class:
-    """Interchangeable members: for each its own names, statements, variables and counters.
-
-    Attributes:
-        members: For each member the parts of a renaming, position by position.
-    """
-
-    members: tuple[tuple[tuple[Any, ...], ...], ...]
-
-    @property
-    def names(self) -> tuple[tuple[Name, ...], ...]:
-        """The names of each member."""
-        return tuple(member[0] for member in self.members)
-
-    def moving(self, order: Sequence[int]) -> tuple[dict[Any, Any], ...]:
-        """Return the parts of the renaming that replaces member i by the member `order[i]`."""
-        parts: tuple[dict[Any, Any], ...] = ({}, {}, {}, {})
-        for place, member in enumerate(order):
-            for part, old, new in zip(parts, self.members[member], self.members[place], strict=True):
-                part.update((one, other) for one, other in zip(old, new, strict=True) if one != other)
-        return parts
 
 
 class Symmetry:
@@ -76,13 +45,11 @@ class Symmetry:
             near = [why for why in self.unlike if not why.endswith(UNLIKE_TEXTS)]
             why = f": {(near or self.unlike)[0]}" if self.unlike else ""
             raise RefusedError(Reduction.SYMMETRY, f"nothing in the mission is interchangeable{why}")
-        self.owner = {name: (number, place) for number, each in enumerate(self.classes)
-                      for place, names in enumerate(each.names) for name in names}  # fmt: skip
-        self.movable = frozenset(self.owner)
-        self.unordered = initial.setting.scheduler is Scheduler.UNORDERED
+        assert isinstance(initial.state, Row)
+        mobile = mobile_names(initial.setting, initial.state)
+        unordered = initial.setting.scheduler is Scheduler.UNORDERED
+        self.items = Items(initial.state, self.classes, mobile, unordered)
         self.sorting = lru_cache(maxsize=4096)(self._sorting)
-        self.mentions = lru_cache(maxsize=1 << 16)(lambda value: mentioned(value, self.movable))
-        self._said = lru_cache(maxsize=1 << 16)(self._of_one)
 
     # --- what is interchangeable ------------------------------------------------------------------------------
 
@@ -156,62 +123,8 @@ class Symmetry:
 
     def _sorting(self, c: Configuration) -> tuple[Renaming, Configuration]:
         """Return the renaming to the representative, and the representative."""
-        found = [(renaming, renaming.configuration(c)) for renaming in self._renamings(c)]
-        return found[0] if len(found) == 1 else min(found, key=lambda each: _spelling(each[1]))
-
-    def _renamings(self, c: Configuration) -> Iterator[Renaming]:
-        for orders in product(*self._choices(c)):
-            parts: tuple[dict[Any, Any], ...] = ({}, {}, {}, {})
-            for each, order in zip(self.classes, orders, strict=True):
-                for part, moved in zip(parts, each.moving(order), strict=True):
-                    part.update(moved)
-            yield Renaming(*parts)
-
-    def _choices(self, c: Configuration) -> list[list[tuple[int, ...]]]:
-        """Return for each class the orders of its members that remain after sorting."""
-        ranked = [self._ranked(c, number) for number in range(len(self.classes))]
-        several = prod(factorial(len(group)) for groups in ranked for group in groups)
-        if several > MOST_ORDERS:
-            return [[tuple(member for group in groups for member in group)] for groups in ranked]
-        return [_orders(groups) for groups in ranked]
-
-    def _ranked(self, c: Configuration, number: int) -> list[list[int]]:
-        """Return the members of a class in order, equal ones together."""
-        names = self.classes[number].names
-        said = {member: self._say(c, number, member) for member in range(len(names))}
-        groups = groupby(sorted(said, key=lambda member: (said[member], member)), key=said.__getitem__)
-        return [group for _, found in groups for group in self._apart(c, names, list(found))]
-
-    def _apart(self, c: Configuration, names: Sequence[Sequence[Name]], group: list[int]) -> list[list[int]]:
-        """Keep equal members together only if one names another: otherwise their order does not matter."""
-        own = {self.owner[name] for member in group for name in names[member]}
-        for cell, value in _rows(c):
-            if cell not in (AGENTS, NAMES):
-                whose = self.owner.get(str(cell[-1])) if len(cell) > 1 else None
-                others = {self.owner[name] for name in self.mentions(value)} - {whose}
-                if others and (whose in own or others & own):
-                    return [group]
-        return [[member] for member in group]
-
-    def _say(self, c: Configuration, number: int, member: int) -> str:
-        """Return all that a configuration says of a member, without names."""
-        mine = (number, member)
-        found = []
-        for cell, value in _rows(c):
-            if cell in (AGENTS, NAMES):
-                continue
-            whose = self.owner.get(str(cell[-1])) if len(cell) > 1 else None
-            if whose == mine or any(self.owner[name] == mine for name in self.mentions(value)):
-                found.append(self._said(cell, value, mine))
-        return "\n".join(sorted(found))
-
-    def _of_one(self, cell: Cell, value: Any, mine: tuple[int, int]) -> str:
-        base = self.classes[mine[0]].members
-        names = dict.fromkeys(self.movable, OTHER)
-        names |= {name: f"{SAME}{place}" for place, name in enumerate(base[mine[1]][0])}
-        parts = [dict(zip(base[mine[1]][part], base[0][part], strict=True)) for part in (1, 2, 3)]
-        blank = Renaming(names, *parts)
-        return f"{spelled(blank.cell(cell))}={spelled(blank.content(cell, value, unordered=self.unordered))}"
+        renaming = to_representative(self.items, c)
+        return renaming, renaming.configuration(c)
 
 
 def _halves(part: Any) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
@@ -221,19 +134,3 @@ def _halves(part: Any) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
         if other not in first:
             first.append(one)
     return tuple(first), tuple(part[one] for one in first)
-
-
-def _rows(c: Configuration) -> Iterator[tuple[Cell, Any]]:
-    assert isinstance(c.state, Row)
-    return c.state.items()
-
-
-def _orders(groups: list[list[int]]) -> list[tuple[int, ...]]:
-    return [
-        tuple(member for group in chosen for member in group)
-        for chosen in product(*(permutations(group) for group in groups))
-    ]
-
-
-def _spelling(c: Configuration) -> str:
-    return "\n".join(spelled(value) for _, value in _rows(c))

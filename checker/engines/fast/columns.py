@@ -5,7 +5,7 @@ that a column was found to take are interned in the order in which they were met
 they need. Growing beyond them asks for a new packing.
 """
 
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Any
 
@@ -169,14 +169,16 @@ class Columns:
         """Return the row that codes stand for."""
         given = list(codes)
         cells = ((cell, self.all[number].values[given[number]]) for cell, number in self.cells())
-        return Row.of({c: self._whole(c, value, given) for c, value in cells if value is not ABSENT})
+        found = dict(enumerate(given))
+        return Row.of({c: self.whole(c, value, found) for c, value in cells if value is not ABSENT})
 
-    def _whole(self, cell: Cell, skeleton: Any, codes: list[int]) -> Any:
+    def whole(self, cell: Cell, skeleton: Any, codes: Mapping[int, int]) -> Any:
+        """Return the value of a cell by the codes of its holes' columns; those that are not given are the first."""
         if not self.holes.get(cell):
             return skeleton
 
         def family_at(hole: Hole) -> Family:
-            told = {name: self.all[n].values[codes[n]] for name, n in self.of_hole(cell, hole.number)}
+            told = {name: self.all[n].values[codes.get(n, 0)] for name, n in self.of_hole(cell, hole.number)}
             said = {name: fact for name, fact in told.items() if fact != NOTHING_SEEN}
             return dict(sorted({**dict(hole.still), **said}.items()))
 

@@ -24,14 +24,14 @@ def crosscheck(space: Space, count: int, reduce: Reduced | None = None) -> None:
     """
     for number in sample(space.expanded, count):
         look()
-        compare(space, number)
+        compare(space, number, reduce)
         heed(space.configuration(number))
         if reduce is not None:
             reduce.hold(space.configuration(number))
 
 
-def compare(space: Space, number: int) -> None:
-    """Compare the successors of one configuration, with how often and by which rule each is reached."""
+def compare(space: Space, number: int, reduce: Reduced | None = None) -> None:
+    """Compare the successors of one configuration, or what represents them, with how often and by which rule."""
     c = space.configuration(number)
     learned: Counter[tuple[str, Configuration]] = Counter()
     left_out = 0
@@ -41,7 +41,8 @@ def compare(space: Space, number: int) -> None:
                 left_out += 1  # beyond the limit of configurations, or put off
             else:
                 learned[space.learner.steps[int(step)].rule, space.configuration(int(target))] += 1
-    ruled = Counter((t.label.rule, t.target) for t in expand(c).transitions)
+    represent = (lambda target: target) if reduce is None else reduce.representative
+    ruled = Counter((t.label.rule, represent(t.target)) for t in expand(c).transitions)
     unexpected = left_out > 0 and not space.was_cut and space.choosing is None
     if learned - ruled or (ruled - learned).total() != left_out or unexpected:
         wrong = ", ".join(sorted({rule for rule, _ in (learned - ruled) + (ruled - learned)}))

@@ -20,6 +20,7 @@ from checker.limits import Bound, BoundMet, Limits, Part, Stop, bounded, is_full
 from semantics.state.configuration import Configuration
 
 if TYPE_CHECKING:
+    from checker.engines.fast.exchanging import Exchanging
     from checker.engines.fast.partial_order import Choosing
 
 CHUNK = 1 << 15
@@ -84,11 +85,14 @@ def explore_fast(initial: Configuration, inspect: tuple[Inspect, ...], options: 
 class _Explorer:
     def __init__(self, initial: Configuration, options: Options) -> None:
         self.options = options
+        self.initial = initial
         self.limits = limits = options.limits
         self.keeping = options.keeping
         self.learner = Learner(initial.setting, initial.state, limits.pending)  # type: ignore[arg-type]  # a stored one
         self.reduce = options.reduce
-        self.space = Space(self.learner, limits.configurations, self.choosing(), options.keeping.compact)
+        self.space = Space(
+            self.learner, limits.configurations, self.choosing(), self.exchanging(), options.keeping.compact
+        )
         self.space.left = self.left
         self.journey = Journey(0, 1, 0.0)
         self.layers = [1]
@@ -104,6 +108,15 @@ class _Explorer:
         from checker.engines.fast.partial_order import Choosing  # noqa: PLC0415  # compiled where something is reduced
 
         return Choosing(self.learner, ample)
+
+    def exchanging(self) -> "Exchanging | None":
+        """Return what puts representatives in the place of configurations, None where all are visited."""
+        symmetry = None if self.reduce is None else self.reduce.symmetry
+        if symmetry is None:
+            return None
+        from checker.engines.fast.exchanging import Exchanging  # noqa: PLC0415  # compiled where something is exchanged
+
+        return Exchanging(self.learner, symmetry.items)
 
     @property
     def checkpoint(self) -> Path | None:
@@ -140,6 +153,7 @@ class _Explorer:
             survey=survey,
             allowed=int(space.met.used.sum()),
             reducer=self.reduce,
+            start=self.initial if self.reduce is not None else None,
         )
 
     def visit(self, began: float) -> None:

@@ -85,8 +85,9 @@ STATE = 15
 BLOCK = 1 << 12
 """Successors that are looked up at once: what is touched for them fits a core's own cache."""
 
-WIDE = -2
-"""What stands in the place of a node where one row has more successors than a batch holds."""
+WIDE, UNSORTED = -2, -3
+"""What stands in the place of a node where one row has more successors than a batch holds, and where it is not known
+what represents one of them."""
 
 PLACE, MOVE = 3, 5
 

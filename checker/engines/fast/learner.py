@@ -13,18 +13,16 @@ from typing import Any, NamedTuple
 from checker.engines.fast.columns import Columns, Packing, Writes
 from checker.engines.fast.leaves import ALIKE, CROWDED, NO_TURN, STEP, UNLIKE, Effect, Leaves, Step
 from checker.engines.fast.recording import Ask, Recorder, Scope, Source
-from checker.engines.fast.skeletons import settled
+from checker.engines.fast.skeletons import agents_of, mobile_names, settled
 from checker.engines.fast.trees import Trees
 from checker.engines.fast.writing import Concluded, Relearn, Varies, Writing
 from semantics.behaviours.expressions import Fault
-from semantics.behaviours.observations import Fact, agent_key
-from semantics.behaviours.statements import Migrate, Spawn
+from semantics.behaviours.observations import Fact
 from semantics.environment import Clause
 from semantics.races.monitor import marked
 from semantics.state.agents import mailbox_cell
 from semantics.state.cells import Cell, Row
 from semantics.state.configuration import Configuration, Label, Transition
-from semantics.state.physical_model import Carried
 from semantics.state.requests import Received
 from semantics.state.setting import Setting
 from semantics.state.signature import Name
@@ -275,23 +273,6 @@ def _key(step: Transition) -> Hashable:
     """Return what tells two labels of a configuration apart; receiving equal observations ends alike."""
     label = step.label
     return (label.rule, label.agent, None if isinstance(label.about, Received) else label.about, step.shown)
-
-
-def mobile_names(setting: Setting, first: Row) -> frozenset[Name]:
-    """Return who may move, come or go: of whom an observation says something else from time to time."""
-    driven = {name for name, kind in setting.kinds.items() if setting.signature[kind].driven}
-    around = {clause.entity for clause in setting.environment if hasattr(clause, "entity")}
-    aboard = {cell[-1] for cell, value in first.items() if isinstance(value, Carried)}
-    agents: set[Name] = set()
-    if any(isinstance(statement, Migrate | Spawn) for statement in setting.program.statements):
-        agents = set(map(agent_key, agents_of(setting, first)))
-    return frozenset(driven | around | aboard | agents)
-
-
-def agents_of(setting: Setting, first: Row) -> frozenset[Name]:
-    """Return every agent that there may ever be."""
-    spawned = (each.name for each in setting.program.statements if isinstance(each, Spawn))
-    return frozenset((*(cell[-1] for cell, _ in first.items() if cell[0] == "host"), *spawned))
 
 
 def is_crowded(c: Configuration, a: Name, most: int) -> bool:

@@ -24,9 +24,10 @@ from checker.engines.fast.ample import (
 )
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.columns import Packing
-from checker.engines.fast.learner import Learner, agents_of
+from checker.engines.fast.learner import Learner
 from checker.engines.fast.leaves import LEAF
 from checker.engines.fast.pages import Pages
+from checker.engines.fast.skeletons import agents_of
 from checker.properties.inspections import never_ends
 from checker.reduction.actors import Acting, Actor
 from checker.reduction.ample import Ample

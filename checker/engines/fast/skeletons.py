@@ -9,9 +9,13 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from semantics.behaviours.observations import NOTHING_SEEN, Fact, Observation, Swept
+from semantics.behaviours.observations import NOTHING_SEEN, Fact, Observation, Swept, agent_key
+from semantics.behaviours.statements import Migrate, Spawn
 from semantics.behaviours.values import Route
+from semantics.state.cells import Row
+from semantics.state.physical_model import Carried
 from semantics.state.requests import READY, SND
+from semantics.state.setting import Setting
 from semantics.state.signature import Name
 
 
@@ -31,6 +35,23 @@ class Hole:
 
 
 Family = Mapping[Name, Fact]
+
+
+def mobile_names(setting: Setting, first: Row) -> frozenset[Name]:
+    """Return who may move, come or go: of whom an observation says something else from time to time."""
+    driven = {name for name, kind in setting.kinds.items() if setting.signature[kind].driven}
+    around = {clause.entity for clause in setting.environment if hasattr(clause, "entity")}
+    aboard = {cell[-1] for cell, value in first.items() if isinstance(value, Carried)}
+    agents: set[Name] = set()
+    if any(isinstance(statement, Migrate | Spawn) for statement in setting.program.statements):
+        agents = set(map(agent_key, agents_of(setting, first)))
+    return frozenset(driven | around | aboard | agents)
+
+
+def agents_of(setting: Setting, first: Row) -> frozenset[Name]:
+    """Return every agent that there may ever be."""
+    spawned = (each.name for each in setting.program.statements if isinstance(each, Spawn))
+    return frozenset((*(cell[-1] for cell, _ in first.items() if cell[0] == "host"), *spawned))
 
 
 def taken_apart(value: Any, mobile: frozenset[Name]) -> tuple[Any, tuple[Family, ...]]:

@@ -59,6 +59,7 @@ UNPLANTED = -1
 
 
 if TYPE_CHECKING:
+    from checker.engines.fast.exchanging import Exchanging
     from checker.engines.fast.partial_order import Choosing
 
 
@@ -83,11 +84,13 @@ class Space:
         learner: Learner,
         limit: int | None,
         choosing: "Choosing | None" = None,
+        exchanging: "Exchanging | None" = None,
         compact: int | None = None,
     ) -> None:
         self.learner = learner
         self.left: Callable[[], float] = lambda: math.inf
         self.choosing = choosing
+        self.exchanging = exchanging
         self.compact = compact
         self.state = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
@@ -184,7 +187,7 @@ class Space:
             return
         try:
             while self.state[AT] < until:
-                known = kernel.gather(self.model, self.rows.words, self.batch, self.state, until)
+                known = self._gather(until)
                 self._stored()
                 self._hand_over()
                 if not known:
@@ -210,6 +213,13 @@ class Space:
         known = (self.model, choosing.members, choosing.trails)
         arrays = (self.rows.words, self.rows.origins, self.table.room, self.batch)
         return loop(*known, *arrays, until, room, self.met.room, self.counts.room, self.state)
+
+    def _gather(self, until: int) -> bool:
+        """Gather the successors of rows up to a number, or what represents them; False at what is not known."""
+        known: bool = kernel.gather(self.model, self.rows.words, self.batch, self.state, until)
+        return (
+            known if self.exchanging is None else self.exchanging.represent(self.batch, self.state) and known
+        )
 
     def _hand_over(self) -> None:
         """Let what was gathered be stored, and another batch take what comes next."""
@@ -253,7 +263,7 @@ class Space:
         self.state[AT] = rows.start
         while self.state[AT] < rows.stop:
             look()
-            known = kernel.gather(self.model, self.rows.words, self.batch, self.state, rows.stop)
+            known = self._gather(rows.stop)
             count, self.state[GATHERED] = int(self.state[GATHERED]), 0
             targets = np.zeros(count, np.int64)
             kernel.look_up(self.rows.words, self.table.room, self.batch, targets, self.state)
@@ -265,6 +275,9 @@ class Space:
         look()  # everything that was gathered is stored
         if self.state[NODE] == kernel.WIDE:
             self._make_batches(2 * len(self.batch.hashes))
+            self._see()
+        elif self.exchanging is not None and self.state[NODE] == kernel.UNSORTED:
+            self.exchanging.learn()
             self._see()
         else:
             self._learn(int(self.state[AT]))
@@ -362,6 +375,8 @@ class Space:
         )
         if self.choosing is not None:
             self.choosing.see(groups, self.packing, len(self.batch.hashes))
+        if self.exchanging is not None:
+            self.exchanging.see(self.packing)
 
     def _locate(self) -> None:
         """Let inner nodes that are new know where their columns stand; all of them where the packing is."""

@@ -1,0 +1,453 @@
+"""The compiled loop of symmetry: puts gathered rows' representatives in their place.
+
+It does what `checker.reduction.representatives` does, on numbers that `exchanging` has learned.
+"""
+
+# mypy: disable-error-code="return-value, assignment, arg-type"
+# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from checker.engines.fast.kernel import PLACE, Batch, Ints, State, code_at
+from checker.engines.fast.table import Words, hashed
+
+UNKNOWN, FIXED = 0, 1
+"""What stands in the place of an entry: nothing is known; it mentions no member."""
+
+ENTRY, WHOLE, TARGET = range(3)
+"""What is not known: the entry of a column's code, that of the codes of all columns of a cell, or a move."""
+
+UNSETTLED = -1
+
+KIND, WHAT, COUNT, LISTED = range(4)
+"""Where that stands: which of these, what it is about, how many numbers follow, and where."""
+
+MULTIPLIER, FINISHER = np.uint64(0x9E3779B97F4A7C15), np.uint64(0xBF58476D1CE4E5B9)
+
+
+class Exchanges(NamedTuple):
+    """What is known of members, entries and moves.
+
+    Attributes:
+        active: The columns that have bits: those of skeletons first.
+        skeleton: For each column that of its cell's skeleton.
+        holes_from, holes: For each column of a skeleton those of its holes.
+        begins, widths, entries: For each column where the entries of its codes begin, and how many there are; an entry
+            less than nothing is a node from which the codes of the cell's holes lead on.
+        shapes, mentions_from, who, roles: For each entry the node of its shape, and the members that it mentions.
+        own: For each entry the number of its item.
+        keys, values: What leads from a node by a number to another: a hash table.
+        payload: For each node the entry, or the move, at its end.
+        writes_from, writes, numbers: For each move the columns with the codes that they get, and the item's number.
+        classes: The class of each member.
+        most: How many orders are tried.
+    """
+
+    active: Ints
+    skeleton: Ints
+    holes_from: Ints
+    holes: Ints
+    begins: Ints
+    widths: Ints
+    entries: Ints
+    shapes: Ints
+    mentions_from: Ints
+    who: Ints
+    roles: Words
+    own: Words
+    keys: Words
+    values: Ints
+    payload: Ints
+    writes_from: Ints
+    writes: Ints
+    numbers: Words
+    classes: Ints
+    most: int
+
+
+class Desk(NamedTuple):
+    """The room for one row.
+
+    Attributes:
+        here: Its columns that are not as at first, with their codes and entries.
+        whole: For each column of a skeleton the row, counted from 1, of which its cell was last one item.
+        colours, met: Two numbers for each member.
+        order, place: The members in order, and the place of each.
+        beside: Whether a member is mentioned with others.
+        best: The places of the order that was the best so far.
+        unknown: What is not known.
+    """
+
+    here: Ints
+    whole: State
+    colours: Words
+    met: Words
+    order: Ints
+    place: Ints
+    beside: Ints
+    best: Ints
+    unknown: Ints
+
+
+@njit(cache=True, inline="always")
+def mix(one: np.uint64, other: np.uint64) -> np.uint64:
+    """Return what `items.mix` does."""
+    mixed = (one ^ (one >> np.uint64(32))) * MULTIPLIER + other
+    mixed = (mixed ^ (mixed >> np.uint64(29))) * FINISHER
+    return mixed ^ (mixed >> np.uint64(32))
+
+
+@njit(cache=True, inline="always")
+def slot_for(keys: Words, key: np.uint64) -> np.uint64:
+    """Return where a key is in a table whose size is a power of two, or where it belongs."""
+    last = np.uint64(len(keys) - 1)
+    slot = (key * MULTIPLIER) >> np.uint64(20) & last
+    while keys[slot] != 0 and keys[slot] != key:
+        slot = (slot + np.uint64(1)) & last
+    return slot
+
+
+@njit(cache=True, inline="always")
+def led(keys: Words, values: Ints, node: int, number: int) -> int:
+    """Return where a number leads from a node, 0 where that is not known."""
+    slot = slot_for(keys, (np.uint64(node) << np.uint64(32)) | np.uint64(number))
+    return np.int64(values[slot]) if keys[slot] != 0 else np.int64(0)
+
+
+@njit(cache=True)
+def enter_all(keys: Words, values: Ints, new: Words, to: Ints) -> None:
+    """Enter keys with their values."""
+    for k in range(len(new)):
+        slot = slot_for(keys, new[k])
+        keys[slot], values[slot] = new[k], to[k]
+
+
+@njit(cache=True)
+def read_whole(x: Exchanges, d: Desk, words: Words, at: int, columns: Words, column: int, node: int) -> int:
+    """Return the entry of a whole cell, UNKNOWN where it is not known."""
+    d.unknown[KIND], d.unknown[WHAT], count = WHOLE, column, 0
+    for k in range(x.holes_from[column], x.holes_from[column + 1]):
+        code = code_at(words, at, columns, x.holes[k])
+        if code != 0:
+            d.unknown[LISTED + count], d.unknown[LISTED + count + 1] = x.holes[k], code
+            count += 2
+            if node != 0:
+                node = led(x.keys, x.values, node, x.holes[k])
+            if node != 0:
+                node = led(x.keys, x.values, node, code)
+    d.unknown[COUNT] = count
+    return np.int64(x.payload[node])
+
+
+@njit(cache=True)
+def read_row(x: Exchanges, d: Desk, words: Words, at: int, columns: Words, stamp: int) -> int:
+    """Note the entries of a row, and colour its members; return how many they are, -1 where one is not known."""
+    count = np.int64(0)
+    d.colours[:] = np.uint64(0)
+    d.beside[:] = 0
+    for a in range(len(x.active)):
+        column = np.int64(x.active[a])
+        code = code_at(words, at, columns, column)
+        if code == 0 or (x.skeleton[column] != column and d.whole[x.skeleton[column]] == stamp):
+            continue
+        entry = np.int64(UNKNOWN)
+        if code < x.widths[column]:
+            entry = np.int64(x.entries[x.begins[column] + code])
+        d.unknown[KIND], d.unknown[WHAT], d.unknown[COUNT], d.unknown[LISTED] = ENTRY, column, 1, code
+        if entry < 0:
+            d.whole[column] = stamp
+            node = -entry
+            entry = read_whole(x, d, words, at, columns, column, node)
+            if entry == UNKNOWN:
+                d.unknown[LISTED + d.unknown[COUNT]] = code
+                d.unknown[COUNT] += 1
+        if entry == UNKNOWN:
+            return -1
+        d.here[3 * count], d.here[3 * count + 1], d.here[3 * count + 2] = column, code, entry
+        count += 1
+        if entry != FIXED:
+            begin, end = x.mentions_from[entry], x.mentions_from[entry + 1]
+            for k in range(begin, end):
+                d.colours[x.who[k]] += x.roles[k]
+                if end - begin > 1:
+                    d.beside[x.who[k]] = 1
+    return count
+
+
+@njit(cache=True)
+def sort_members(x: Exchanges, d: Desk) -> int:
+    """Sort the members of each class by colour, equal ones by number; return how many colours there are."""
+    groups = np.int64(0)
+    for k in range(len(d.order)):
+        j = k
+        while (
+            j > 0 and x.classes[d.order[j - 1]] == x.classes[k] and d.colours[d.order[j - 1]] > d.colours[k]
+        ):
+            d.order[j] = d.order[j - 1]
+            j -= 1
+        d.order[j] = k
+    k = np.int64(0)
+    while k < len(d.order):
+        k = end_of_group(x, d, k)
+        groups += 1
+    return groups
+
+
+@njit(cache=True)
+def end_of_group(x: Exchanges, d: Desk, begin: int) -> int:
+    """Return where the group of equal members ends that begins there."""
+    first = d.order[begin]
+    end = begin + 1
+    while (
+        end < len(d.order)
+        and x.classes[d.order[end]] == x.classes[first]
+        and d.colours[d.order[end]] == d.colours[first]
+    ):
+        end += 1
+    return end
+
+
+@njit(cache=True)
+def is_tied(d: Desk, begin: int, end: int) -> bool:
+    """Tell whether the order of a group matters."""
+    if end - begin > 1:
+        for k in range(begin, end):
+            if d.beside[d.order[k]]:
+                return True
+    return False
+
+
+@njit(cache=True)
+def first_tied(x: Exchanges, d: Desk, begin: int) -> int:
+    """Return where the first group begins, from some member on, whose order matters; -1 where there is none."""
+    while begin < len(d.order):
+        end = end_of_group(x, d, begin)
+        if is_tied(d, begin, end):
+            return begin
+        begin = end
+    return -1
+
+
+@njit(cache=True)
+def refine(x: Exchanges, d: Desk, count: int) -> None:
+    """Tell apart members that are mentioned with members of different colours."""
+    d.met[:] = np.uint64(0)
+    for h in range(count):
+        entry = np.int64(d.here[3 * h + 2])
+        begin, end = x.mentions_from[entry], x.mentions_from[entry + 1]
+        if entry == FIXED or end - begin < 2:
+            continue
+        total = np.uint64(0)
+        for k in range(begin, end):
+            total += mix(x.roles[k], d.colours[x.who[k]])
+        for k in range(begin, end):
+            rest = total - mix(x.roles[k], d.colours[x.who[k]])
+            d.met[x.who[k]] += mix(x.roles[k], rest)
+    for k in range(len(d.colours)):
+        d.colours[k] = mix(d.colours[k], d.met[k])
+
+
+@njit(cache=True)
+def orders_left(x: Exchanges, d: Desk) -> int:
+    """Return how many orders of tied members there are, more than `most` where they are more."""
+    found = np.int64(1)
+    begin = first_tied(x, d, 0)
+    while begin >= 0 and found <= x.most:
+        end = end_of_group(x, d, begin)
+        for k in range(2, end - begin + 1):
+            found = min(found * k, x.most + 1)
+        begin = first_tied(x, d, end)
+    return found
+
+
+@njit(cache=True, inline="always")
+def move(x: Exchanges, d: Desk, entry: int) -> int:
+    """Return the move of an entry by the present order, UNKNOWN where it is not known."""
+    node = np.int64(x.shapes[entry])
+    begin, end = x.mentions_from[entry], x.mentions_from[entry + 1]
+    for k in range(begin, end):
+        node = led(x.keys, x.values, node, d.place[x.who[k]])
+        if node == 0:
+            break
+    found = np.int64(x.payload[node])
+    if found == UNKNOWN:
+        d.unknown[KIND], d.unknown[WHAT], d.unknown[COUNT] = TARGET, entry, end - begin
+        for k in range(begin, end):
+            d.unknown[LISTED + k - begin] = d.place[x.who[k]]
+    return found
+
+
+@njit(cache=True)
+def is_about(x: Exchanges, entry: int, one: int, other: int) -> bool:
+    """Tell whether an entry mentions one of two members."""
+    found = False
+    for k in range(x.mentions_from[entry], x.mentions_from[entry + 1]):
+        found = found or x.who[k] == one or x.who[k] == other
+    return found
+
+
+@njit(cache=True)
+def may_change(x: Exchanges, d: Desk, count: int, one: int, other: int) -> int:
+    """Tell whether a row is the same with two members exchanged: 0 or 1, UNSETTLED where something is not known."""
+    difference = np.uint64(0)
+    for k in range(len(d.place)):
+        d.place[k] = k
+    d.place[one], d.place[other] = other, one
+    for h in range(count):
+        entry = np.int64(d.here[3 * h + 2])
+        if entry != FIXED and is_about(x, entry, one, other):
+            to = move(x, d, entry)
+            if to == UNKNOWN:
+                return UNSETTLED
+            difference += x.numbers[to] - x.own[entry]
+    return 1 if difference == 0 else 0
+
+
+@njit(cache=True)
+def free_groups(x: Exchanges, d: Desk, count: int) -> bool:
+    """Note the tied groups whose order does not matter; False where something is not known."""
+    begin = first_tied(x, d, 0)
+    while begin >= 0:
+        end, free = end_of_group(x, d, begin), np.int64(1)
+        for k in range(begin + 1, end):
+            free = may_change(x, d, count, d.order[k - 1], d.order[k])
+            if free != 1:
+                break
+        if free == UNSETTLED:
+            return False
+        for k in range(begin, end if free == 1 else begin):
+            d.beside[d.order[k]] = 0
+        begin = first_tied(x, d, end)
+    return True
+
+
+@njit(cache=True)
+def settle(x: Exchanges, d: Desk, count: int) -> int:
+    """Bring the members into an order; return how many orders remain, UNSETTLED where something is not known."""
+    while True:
+        groups, before = sort_members(x, d), np.int64(0)
+        while groups > before and first_tied(x, d, 0) >= 0:
+            before = groups
+            refine(x, d, count)
+            groups = sort_members(x, d)
+        if not free_groups(x, d, count):
+            return UNSETTLED
+        left = orders_left(x, d)
+        if left <= x.most:
+            return left
+        one = d.order[first_tied(x, d, 0)]
+        d.colours[one] = mix(d.colours[one], np.uint64(1))
+
+
+@njit(cache=True)
+def next_order(x: Exchanges, d: Desk) -> bool:
+    """Go on to the next order of tied members; False after the last."""
+    begin = first_tied(x, d, 0)
+    while begin >= 0:
+        end = end_of_group(x, d, begin)
+        k = end - 2
+        while k >= begin and d.order[k] > d.order[k + 1]:
+            k -= 1
+        if k >= begin:
+            j = end - 1
+            while d.order[j] < d.order[k]:
+                j -= 1
+            d.order[k], d.order[j] = d.order[j], d.order[k]
+        low, high = k + 1, end - 1
+        while low < high:
+            d.order[low], d.order[high] = d.order[high], d.order[low]
+            low += 1
+            high -= 1
+        if k >= begin:
+            return True
+        begin = first_tied(x, d, end)
+    return False
+
+
+@njit(cache=True)
+def note_places(d: Desk) -> bool:
+    """Note the place of each member; tell whether some member has another's."""
+    moved = False
+    for k in range(len(d.order)):
+        d.place[d.order[k]] = k
+        moved = moved or d.order[k] != k
+    return moved
+
+
+@njit(cache=True)
+def choose_order(x: Exchanges, d: Desk, count: int) -> bool:
+    """Find the best of all orders that remain; False where something is not known."""
+    best, found = np.uint64(0), False
+    while True:
+        note_places(d)
+        spelling = np.uint64(0)
+        for h in range(count):
+            entry = np.int64(d.here[3 * h + 2])
+            if entry != FIXED and x.mentions_from[entry] != x.mentions_from[entry + 1]:
+                to = move(x, d, entry)
+                if to == UNKNOWN:
+                    return False
+                spelling += x.numbers[to]
+        if not found or spelling < best:
+            best, found = spelling, True
+            d.best[:] = d.place
+        if not next_order(x, d):
+            break
+    d.place[:] = d.best
+    return True
+
+
+@njit(cache=True, inline="always")
+def put(words: Words, at: int, columns: Words, column: int, code: int) -> None:
+    """Write the code of a column where nothing is written yet."""
+    where = PLACE * column
+    words[at + np.int64(columns[where])] |= np.uint64(code) << columns[where + 1]
+
+
+@njit(cache=True)
+def order_members(x: Exchanges, d: Desk, count: int) -> int:
+    """Note the place of each member: 1 where some member has another's, 0 where none has, UNSETTLED as elsewhere."""
+    left = settle(x, d, count)
+    if left == UNSETTLED or (left > 1 and not choose_order(x, d, count)):
+        return UNSETTLED
+    return 1 if left > 1 or note_places(d) else 0
+
+
+@njit(cache=True)
+def represent(x: Exchanges, d: Desk, words: Words, at: int, width: int, columns: Words, stamp: int) -> bool:
+    """Put a row's representative in its place; False where something is not known."""
+    count = read_row(x, d, words, at, columns, stamp)
+    moved = order_members(x, d, count) if count >= 0 else np.int64(UNSETTLED)
+    if moved != 1:
+        return moved == 0
+    for h in range(count):  # before anything is written
+        entry = np.int64(d.here[3 * h + 2])
+        if entry != FIXED:
+            to = move(x, d, entry)
+            if to == UNKNOWN:
+                return False
+            d.here[3 * h], d.here[3 * h + 2] = -1, to
+    for j in range(width):
+        words[at + j] = np.uint64(0)
+    for h in range(count):
+        column, to = d.here[3 * h], d.here[3 * h + 2]
+        if column >= 0:
+            put(words, at, columns, column, d.here[3 * h + 1])
+        else:
+            for k in range(x.writes_from[to], x.writes_from[to + 1], 2):
+                put(words, at, columns, x.writes[k], x.writes[k + 1])
+    return True
+
+
+@njit(cache=True, nogil=True)
+def represent_all(x: Exchanges, d: Desk, batch: Batch, gathered: int, columns: Words, width: int) -> int:
+    """Put representatives in the place of what was gathered; return how many were, all where everything is known."""
+    d.whole[:] = 0
+    for k in range(gathered):
+        if not represent(x, d, batch.words, k * width, width, columns, k + 1):
+            return k
+        batch.hashes[k] = hashed(batch.words, k * width, width)
+    return gathered
