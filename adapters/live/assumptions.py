@@ -6,7 +6,7 @@ containers and contents, in the current world, are those of one of the mission's
 
 from __future__ import annotations
 
-from typing import assert_never
+from typing import Final, assert_never
 
 from adapters.live.sightings import Fences, contents
 from adapters.live.state import Plan
@@ -19,8 +19,14 @@ Relations = tuple[frozenset[Name], frozenset[Name]]
 """What contains an entity, and what it contains."""
 
 
-def broken_by_place(plan: Plan, c: Configuration, entity: Name, seen: Placement | None) -> str:
-    """Return the assumption that breaks when an entity is seen somewhere, or an empty text."""
+STRAYED: Final = "wind, or another operator"
+"""Why a vehicle may be where it was not sent, if nobody is known to have taken it."""
+
+
+def broken_by_place(
+    plan: Plan, c: Configuration, entity: Name, seen: Placement | None, cause: str = STRAYED
+) -> str:
+    """Return the assumption that breaks when an entity is seen somewhere, or an empty text; `cause` moved a vehicle."""
     before = c.structure.physical.placement(entity)
     if seen is None:
         allowed = _clause(plan, Vanishes, entity) is not None
@@ -39,7 +45,7 @@ def broken_by_place(plan: Plan, c: Configuration, entity: Name, seen: Placement 
     if isinstance(drift, Drifts):
         return f"{where}; the mission lets it drift among {', '.join(drift.names)}"
     if entity in plan.vehicles:
-        return f"{where}; it was not sent there, and has not stayed where it was: wind, or another operator"
+        return f"{where}; it was not sent there, and has not stayed where it was: {cause}"
     return f"{where}; the mission does not say that it drifts, and it was not sent"
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import assert_never
 
-from adapters.live.assumptions import broken_by_place, clause_of_leaving, relations
+from adapters.live.assumptions import STRAYED, broken_by_place, clause_of_leaving, relations
 from adapters.live.flying import arrive, doubt, obey, refuse, renew
 from adapters.live.orders import is_authority
 from adapters.live.other_stations import hear_of
@@ -118,7 +118,8 @@ def _same_place(turning: Turning, entity: Name, here: Placement | None, seen: Pl
 
 def _move(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> None:
     expected = turning.flies_home(entity) or (here is None and _is_back(turning, entity, seen))
-    broken = "" if expected else broken_by_place(turning.plan, turning.c, entity, seen)
+    cause = turning.taken.get(entity, STRAYED)
+    broken = "" if expected else broken_by_place(turning.plan, turning.c, entity, seen, cause)
     writes: dict[Cell, object] = {placement_cell(entity): seen}
     if here is None:
         writes[channels_cell(entity)] = _channels_of_newcomer(turning, entity)

@@ -63,7 +63,7 @@ def order(turning: Turning, said: Ordering) -> Answer:
     told = [entity for entity in named if entity not in left_out]
     if not told:
         return Answer(said, "; ".join(left_out.values()) or "there is no vehicle")
-    notes = tuple(note for entity in told for note in _notes(turning, entity))
+    notes = tuple(note for entity in told for note in _notes(turning, entity, said.fallback))
     requests = {entity: _bid(turning, entity, said) for entity in told}
     who, are = ", ".join(told), "is" if len(told) == 1 else "are"
     message = f"{who} {are} told to {said.fallback.value} by {operator(said.by)}"
@@ -108,12 +108,25 @@ def _authority(turning: Turning, entity: Name) -> str:
     return " and ".join(sorted(stations)) or "another station"
 
 
-def _notes(turning: Turning, entity: Name) -> Iterator[str]:
+def _notes(turning: Turning, entity: Name, what: Fallback) -> Iterator[str]:
     """Yield what an operator should know of a vehicle that is told something."""
     if _is_foreign(turning, entity):
         yield f"that overrules who took {entity} over: {turning.taken[entity]}"
     if entity in turning.lost or entity not in turning.seen:
         yield f"{entity} is not heard: it is told as soon as it is, unless it was taken over by then"
+    if what is Fallback.RETURN:
+        yield from _of_leaving(turning, entity)
+
+
+def _of_leaving(turning: Turning, entity: Name) -> Iterator[str]:
+    """Yield what follows if a vehicle flies home from where the mission assumes that it stays."""
+    physical, then = turning.c.structure.physical, turning.plan.precautions.on_broken
+    if turning.suspended or then is Fallback.CONTINUE or entity not in physical or physical.transit(entity):
+        return
+    place = physical.abstract_parent(entity)
+    if place != turning.plan.first.structure.physical.abstract_parent(entity):
+        stays = f"the mission assumes that {entity} stays in {place}"
+        yield f"{stays}: when it leaves, all vehicles are told to {then.value}"
 
 
 def _bid(turning: Turning, entity: Name, said: Ordering) -> str:

@@ -359,3 +359,19 @@ def test_a_vehicle_that_was_told_to_return_breaks_no_assumption_on_its_way_home(
     run.turn(80.0, seen("uav0", WEST, 80.0))
     assert run.kinds().count("broken assumption") == 1
     assert run.state.configuration.structure.physical.abstract_parent("uav0") == "west0"
+
+
+def test_who_sends_a_vehicle_home_that_is_to_stay_is_told_what_follows_and_is_named_as_the_cause():
+    run = flying(TWO + GO, Precautions(HOLD))
+    run.turn(60.0, seen("uav0", EAST, 60.0))
+    turn = run.turn(61.0, seen("uav0", EAST, 61.0), sayings=[ordered(what=RETURN)])
+    (answer,) = turn.answers
+    assert answer.notes == (
+        "the mission assumes that uav0 stays in east0: when it leaves, all vehicles are told to hold",
+    )
+    run.turn(70.0, seen("uav0", BETWEEN, 70.0))
+    (broken,) = (each.message for each in run.findings if each.kind == "broken assumption")
+    assert broken.endswith("has not stayed where it was: sent home by the operator (Ana)")
+    again = flying(TWO + GO, Precautions(HOLD))
+    (answer,) = again.turn(10.0, seen("uav0", BETWEEN, 10.0), sayings=[ordered(what=RETURN)]).answers
+    assert answer.notes == ()
