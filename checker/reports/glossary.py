@@ -73,6 +73,24 @@ WORDS: Final[Mapping[str, str]] = {
     "unserved request": """
         A request is never served in some fair run. Its enabling condition may come and go: then
         only strong fairness serves it.""",
+    "late": """
+        What `within` asks for is not true in time on some run. The *critical path* says what the time
+        went into; where nothing bounds a step of it, a line of `timing` is missing.""",
+    "exhausted": """
+        A vehicle is away from where it is restored for longer than it lasts. Shorten its way, let it
+        wait less, or restore it in between.""",
+    "time stops": """
+        Steps that take no time follow one another for ever: no later moment is reached. Give one
+        of them a time: `agents take 1 s to 2 s`.""",
+    "critical path": """
+        The steps one after the other that a date is made of: how long each was waited for, how long
+        that may take, and which line of `timing` says so.""",
+    "zone": """
+        A set of ages of the clocks that run, in one configuration: how missions with `timing` are
+        explored where counting ticks takes long.""",
+    "tick": """
+        The unit of time, of which all durations of a mission are whole numbers: `tick 100 ms`, a second
+        without it.""",
     "diverges": """
         A computation reaches no command: a loop runs for ever without observing, controlling or
         receiving.""",

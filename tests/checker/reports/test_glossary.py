@@ -6,6 +6,7 @@ from typing import get_args
 
 import pytest
 
+from checker.properties import deadlines
 from checker.reports.glossary import ALL, PROPERTIES, RULES, WORDS, find_word
 from checker.verdicts import Outcome
 from semantics import extension, rules
@@ -15,7 +16,8 @@ from semantics.state.requests import Request
 
 CORPUS = Path(__file__).parents[2] / "corpus"
 KIND = re.compile(r"^      ([a-z][\w -]*): ", re.MULTILINE)
-KINDS = {
+OF_TIME = Path(deadlines.__file__).read_text(encoding="utf-8")
+KINDS = set(re.findall(r'Violation\("([\w ]+)"', OF_TIME)) | {
     kind
     for path in sorted(CORPUS.glob("*/*.expected"))
     for kind in KIND.findall(path.read_text(encoding="utf-8"))
@@ -49,7 +51,14 @@ def test_what_a_report_says_is_explained(word):
 
 
 def test_the_corpus_has_the_kinds_of_findings():
-    assert {"control race", "stale-observation race", "deadlock", "inconsistent", "not arrived"} <= KINDS
+    assert {
+        "control race",
+        "stale-observation race",
+        "deadlock",
+        "inconsistent",
+        "not arrived",
+        "late",
+    } <= KINDS
 
 
 @pytest.mark.parametrize("word", ALL)
