@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Final
 
 from physical import Geometry, PhysicalError, area, band_contains, nearest_placement
@@ -43,12 +43,19 @@ class Someone:
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """What is known of the world before anything happens."""
+    """What is known of the world before anything happens.
+
+    Attributes:
+        names, world, mobility: Those of the mission.
+        fixed: The entities whose place never changes.
+        holes: For a kind and a place the smaller places in its reach that may swallow such a node, once asked for.
+    """
 
     names: Names
     world: World
     mobility: Mobility
     fixed: frozenset[str]
+    holes: dict[tuple[str, str], tuple[tuple[str, Placed], ...]] = field(default_factory=dict)
 
     def node(self, name: str) -> Someone:
         """Return what is known of a node of that name."""
@@ -139,18 +146,27 @@ class Ground:
 
     def _holes(self, node: Someone, place: Someone, target: Placed, shape: Placed) -> tuple[Geometry, ...]:
         """Return the places that never move and would swallow the node, as `drive` has them."""
-        size, (south, north) = (area(target.geometry), place.name), _latitudes(target.geometry)
-        found = set()
-        for name in self.fixed - {node.name, place.name}:
+        kind, within = node.kind or "", place.name or ""
+        if (kind, within) not in self.holes:  # many nodes of a kind go to the same place
+            self.holes[kind, within] = tuple(self._smaller(kind, within, target))
+        found = {
+            hole.geometry
+            for name, hole in self.holes[kind, within]
+            if name != node.name and band_contains(hole.altitude, shape.altitude)
+        }
+        return tuple(sorted(found)) if len(found) <= MOST_HOLES else ()
+
+    def _smaller(self, kind: str, place: str, target: Placed) -> Iterator[tuple[str, Placed]]:
+        """Yield the smaller places on a place's latitudes that never move and may contain nodes of a kind."""
+        size, (south, north) = (area(target.geometry), place), _latitudes(target.geometry)
+        for name in self.fixed - {place}:
             hole = self.world.placements.get(name)
-            holding = node.kind in self.names.signature[self.names.kinds[name]].contains
+            holding = kind in self.names.signature[self.names.kinds[name]].contains
             if not holding or not isinstance(hole, Placed) or hole.geometry.is_point:
                 continue
             low, high = _latitudes(hole.geometry)
-            within = south <= high and low <= north and (area(hole.geometry), name) < size
-            if within and band_contains(hole.altitude, shape.altitude):
-                found.add(hole.geometry)
-        return tuple(sorted(found)) if len(found) <= MOST_HOLES else ()
+            if south <= high and low <= north and (area(hole.geometry), name) < size:
+                yield name, hole
 
 
 def _latitudes(geometry: Geometry) -> tuple[float, float]:
