@@ -29,7 +29,7 @@ from checker import (
     check,
     report_json,
 )
-from checker.engines.contract import EngineError
+from checker.engines.contract import EngineError, TickError
 from checker.properties.findings import MOST_VIOLATIONS
 from semantics.state.canonical import digest
 from specs.elaboration import ElaboratedMission, Variation
@@ -44,6 +44,7 @@ REFUSALS: dict[type[Exception], tuple[Exit, str]] = {
         Exit.INCOMPLETE,
         "set NUMBA_CACHE_DIR to a folder that you may write, or add --engine reference",
     ),
+    TickError: (Exit.MISTAKE, "give timing a larger tick, or shorter times"),
     EngineError: (Exit.MISTAKE, "leave out --engine, and what only that engine keeps or doubts"),
     RefusedError: (Exit.MISTAKE, "check it without, or with the other reduction alone"),
     MachineError: (Exit.INCOMPLETE, "try again when less else runs here, or leave --engine out"),

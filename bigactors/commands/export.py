@@ -8,6 +8,7 @@ from bigactors.missions import open_mission, variation_of
 from bigactors.mistakes import Mistake, suggestion
 from bigactors.terminal import say_text, tell
 from checker import Engine, explore
+from checker.engines.contract import TickError
 from semantics.properties.property import Property, watching
 from specs.elaboration import ElaboratedMission
 
@@ -26,7 +27,10 @@ def run(options: Namespace) -> Exit:
     from checker.engines.zones.zone_times import ZoneTimes  # noqa: PLC0415 - the same
 
     asked = None if options.property is None else _asked(mission, options.property)
-    found = explore(watching(mission.initial, [asked] if asked else []), engine=Engine.FAST)
+    try:
+        found = explore(watching(mission.initial, [asked] if asked else []), engine=Engine.FAST)
+    except TickError as error:
+        raise Mistake(str(error), "give timing a larger tick, or shorter times", options.file) from error
     assert isinstance(found.times, ZoneTimes)
     try:
         model = model_of(found.times, asked, mission.name)

@@ -38,6 +38,10 @@ class EngineError(Exception):
     """An engine that cannot explore a mission."""
 
 
+class TickError(EngineError):
+    """Times of more ticks than an engine counts."""
+
+
 class CheckpointError(Exception):
     """A checkpoint that can't be read, or that is of something else."""
 

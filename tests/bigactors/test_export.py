@@ -7,6 +7,7 @@ import pytest
 from shipped import TIMED
 
 from bigactors.cli import main
+from specs.missions import shipped_missions
 
 
 def exported(capsys, *arguments, form="tchecker"):
@@ -46,6 +47,17 @@ def test_uppaal_is_asked_whether_the_property_holds(capsys):
     assert query.findtext("comment") == "endurance"
     said = [each.text for each in ET.fromstring(text).iter("label") if each.get("kind") == "comments"]
     assert "⟨commit : FLY(patrol, MOVE_HOST_TO north0)⟩" in said
+
+
+def test_more_ticks_than_zones_count_are_a_mistake_with_its_remedy(capsys, tmp_path):
+    text = shipped_missions()["endurance"].read_text(encoding="utf-8")
+    fine = tmp_path / "fine.mission"
+    fine.write_text(text.replace("tick 10 s", "tick 1 ms").replace("1630 s", "168 h"), encoding="utf-8")
+    for command in (["check", str(fine)], ["export", str(fine), "--format", "tchecker"]):
+        assert main(command) == 2
+        said = capsys.readouterr().err
+        assert "604,800,001 ticks are more than the engine 'fast' counts (134,217,728)" in said
+        assert "give timing a larger tick" in said
 
 
 @pytest.mark.parametrize(

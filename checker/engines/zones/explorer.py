@@ -6,7 +6,7 @@ import time
 from collections import Counter
 from collections.abc import Iterable
 
-from checker.engines.contract import EngineError, Exploration, Inspect, Options, Progress
+from checker.engines.contract import Exploration, Inspect, Options, Progress, TickError
 from checker.engines.fast.compiling import compilation_reported
 from checker.engines.times import inspect_in_time
 from checker.engines.zones.automaton import TooLargeError
@@ -33,7 +33,7 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
     """Visit everything that is reachable in time, then show each configuration to the inspections.
 
     Raises:
-        EngineError: A constant is too large.
+        TickError: A constant is too large.
     """
     started = time.monotonic()
     found = Exploration([], [])
@@ -43,7 +43,7 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
             search = _Learning(network)
             _visit_all(network, search, found, options, started)
     except TooLargeError as error:
-        raise EngineError(str(error)) from error
+        raise TickError(str(error)) from error
     if network.is_crowded:
         found.bounds.append(options.limits.bound(Stop.PENDING))
     times = ZoneTimes(network, search)
