@@ -20,7 +20,7 @@ from checker.engines.zones.observers import Meter, Observer, Watch
 from checker.engines.zones.zone_times import ZoneTimes
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
-from semantics.timing.clocks import Clock
+from semantics.timing.actor_clocks import Clock
 
 FIRST: Final = "first"
 """The location in which it begins; no time passes in it."""
