@@ -15,8 +15,9 @@ from semantics.state.configuration import Configuration, Transition
 from semantics.state.physical_model import Placed
 from semantics.state.requests import FLY
 from semantics.state.signature import Name
+from semantics.timing.actor_clocks import BOUND, FREE, Clock, Sort, is_restored
 from semantics.timing.bounds import Bound, bound_of, clause_beginnings, going_on, running_in, timed_by
-from semantics.timing.clocks import BOUND, FREE, Clock, Situation, Sort, TimedStep
+from semantics.timing.clocks import Situation, TimedStep
 from semantics.timing.dates import lapse_text
 from semantics.timing.timing import Every, Sayable, Window
 from semantics.timing.voyages import travelling
@@ -229,7 +230,7 @@ def _ends(timers: Timers) -> Iterator[tuple[TimedStep, float, float]]:
 def _batteries(timers: Timers) -> Iterator[tuple[Name, float, float]]:
     situation = timers.situation
     for vehicle, endurance in situation.timing.endurances:
-        if vehicle in situation.c.structure.physical and not situation.is_restored(vehicle):
+        if vehicle in situation.c.structure.physical and not is_restored(situation.c, vehicle):
             lasts = endurance.lasts * timers.seconds
             yield vehicle, timers.since[Clock(Sort.ALOFT, vehicle)][0] + lasts, lasts
 

@@ -9,7 +9,8 @@ from collections import deque
 
 from checker.engines.runs import DELAY, Edge
 from semantics.state.configuration import Configuration
-from semantics.timing.clocks import Clock, Passage, Situation, Sort, TimedStep
+from semantics.timing.actor_clocks import Clock, Sort
+from semantics.timing.clocks import Passage, Situation, TimedStep
 
 Edges = tuple[Edge, ...]
 

@@ -110,7 +110,7 @@ class Times(Protocol):
 
 def inspect_in_time(times: Times, inspect: Sequence[object]) -> None:
     """Show each configuration to inspections as each of them wants to see it."""
-    for place, situation in enumerate(times.situations):
+    for place, situation in enumerate(times.situations if inspect else ()):
         for inspection in inspect:
             match getattr(inspection, "in_time", InTime.ENABLED):
                 case InTime.TAKEN:

@@ -9,8 +9,9 @@ from typing import Final
 
 from checker.engines.runs import Run
 from semantics.state.configuration import Configuration, Label, Transition
+from semantics.timing.actor_clocks import Clock
 from semantics.timing.bounds import Bound, bound_of, going_on, running_in, timed_by
-from semantics.timing.clocks import Clock, Situation, TimedStep
+from semantics.timing.clocks import Situation, TimedStep
 from semantics.timing.dates import clock_text, lapse_text
 from semantics.timing.intervals import Interval
 

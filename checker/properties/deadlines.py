@@ -23,7 +23,8 @@ from semantics.properties.propositions import holds
 from semantics.state.configuration import Configuration
 from semantics.state.requests import FLY
 from semantics.state.signature import Name
-from semantics.timing.clocks import Situation, Sort
+from semantics.timing.actor_clocks import Sort, is_restored
+from semantics.timing.clocks import Situation
 from semantics.timing.dates import clock_text, lapse_text
 from semantics.timing.timing import Timing
 
@@ -179,7 +180,7 @@ class Deadlines:
         message = f"{vehicle} lasts {self.text(lasts)}, and is aloft for longer at {self.clock(run.end)}"
         details = tuple(self._unsaid(trace.configurations[-1]))
         since = run.end - lasts - 1
-        path = self._path(run, trace, lambda c: Situation(c).is_restored(vehicle), since)
+        path = self._path(run, trace, lambda c: is_restored(c, vehicle), since)
         return Violation("exhausted", message, trace, details, subject=vehicle, path=path)
 
     def schedule(self, asked: Iterable[Property]) -> Schedule | None:

@@ -101,7 +101,9 @@ class Eta:
         return sends_cell(request.agent) if is_message else line_cell(request.agent)
 
     def _at(self, cell: Cell, agent: Name | None = None) -> Iterator[Pending]:
-        """Yield what stands in a cell, everybody's or one agent's."""
+        """Yield what stands in a cell, everybody's or one agent's: what others asked for, an agent does not read."""
+        if cell == QUEUE and agent is not None and not self.cells.test(cell, is_asked_by, agent):
+            return
         requests: tuple[Request, ...] = self.cells.read(cell)
         if not requests:
             return
@@ -121,3 +123,8 @@ class Eta:
         if self.setting.monitored:
             changes[MONITOR, *cell] = tuple(each.rests_on for each in line)
         return changes
+
+
+def is_asked_by(queue: tuple[Request, ...] | None, agent: Name) -> bool:
+    """Ask of a queue whether an agent has a request there."""
+    return any(each.agent == agent for each in queue or ())

@@ -10,7 +10,8 @@ from semantics.behaviours.values import show
 from semantics.environment import Appears, Drifts, Drops, Leaves, Says, Vanishes
 from semantics.state.requests import CTR, FLY, MGR, OBS, SND
 from semantics.state.setting import Setting
-from semantics.timing.clocks import Clock, Situation, Sort, TimedStep, word_of
+from semantics.timing.actor_clocks import Clock, Sort, word_of
+from semantics.timing.clocks import Situation, TimedStep
 from semantics.timing.intervals import ANY_TIME, Interval
 from semantics.timing.timing import ONE_HOST, Every, Sayable, Window
 from semantics.timing.voyages import travelling

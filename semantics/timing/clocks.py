@@ -4,63 +4,30 @@ A clock belongs to what is done: a request, an agent, a clause of the environmen
 starts when that is newly enabled or was itself just done, and goes on while other steps are taken.
 """
 
-import math
-import re
-from collections import Counter, defaultdict
-from collections.abc import Hashable, Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from enum import IntEnum, auto
 from functools import cached_property
 from typing import NamedTuple
 
-from semantics.behaviours.statements import React
-from semantics.behaviours.stepping import next_statement
-from semantics.environment import Drops, Leaves
-from semantics.extension import channels_between
 from semantics.state.configuration import Configuration, Label, Transition
-from semantics.state.requests import CTR, FLY, MGR, OBS, SND, Request
 from semantics.state.signature import Name
 from semantics.successors import Expansion, by_clause, expand
-from semantics.timing.flight_times import aim, interval_of_flight
-from semantics.timing.intervals import ANY_TIME, Interval
-from semantics.timing.timing import ONE_HOST, Every, Sayable, Timing, Window
-
-
-class Sort(IntEnum):
-    """What a clock measures."""
-
-    MISSION = auto()
-    """The time since the start."""
-    EVERY = auto()
-    """Since the last step of a clause that steps at most every so often."""
-    WINDOW = auto()
-    """No time: whether a clause that has a window was enabled in it (1), or is bound by it no more (2)."""
-    ALOFT = auto()
-    """Since a vehicle left where it is restored."""
-    RESTORED = auto()
-    """Since a vehicle came to where it is restored."""
-    REQUEST = auto()
-    AGENT = auto()
-    AFTER = auto()
-    """Since an agent waits at a `react` with an `after`, and nothing that is there fits."""
-    FLIGHT = auto()
-    """Since the `command` of a flight."""
-    AIM = auto()
-    """Since a flight can end, and what it is directed by has not changed."""
-    RETURNS = auto()
-    """Since what dropped or left may return."""
-
-
-class Clock(NamedTuple):
-    """What a clock belongs to."""
-
-    sort: Sort
-    of: Hashable = ""
-    channel: Name = ""
-
-
-BOUND, FREE = 1, 2
-"""What the clock of a window says of a clause."""
+from semantics.timing.actor_clocks import (
+    BOUND,
+    FREE,
+    ActorClocks,
+    Clock,
+    Sort,
+    is_restored,
+    lasting,
+    of_clause,
+    of_moves,
+    of_requests,
+    of_vehicle,
+)
+from semantics.timing.intervals import Interval
+from semantics.timing.timing import Sayable, Timing, Window
 
 STRICT = frozenset({Sort.MISSION, Sort.ALOFT, Sort.RESTORED})
 """Clocks of which it is asked whether they are past a constant; of the others only whether they have come to it."""
@@ -126,182 +93,38 @@ class Situation:
         self.timing: Timing = timing
         self.expansion: Expansion = expand(c)
         self.by_clauses = tuple(tuple(by_clause(c, clause)) for clause in c.setting.environment)
-        self.bounds: dict[Clock, Interval] = {}
-        self.aims: dict[Clock, object] = {}
-        counts = self._counts()
-        self.clocks: tuple[Clock, ...] = tuple(each for each, count in counts.items() for _ in range(count))
+        actors = tuple(self._actors())
+        running = (*lasting(timing), *(each for clocks, _ in actors for each in clocks.running))
+        self.bounds: dict[Clock, Interval] = {each.clock: each.interval for each in running}
+        self.aims: dict[Clock, object] = {each.clock: each.aim for each in running if each.aim is not None}
+        self.clocks: tuple[Clock, ...] = tuple(each.clock for each in running)
         self.first = {each: index for index, each in reversed(list(enumerate(self.clocks)))}
-        self.steps: tuple[TimedStep, ...] = tuple(self._steps())
+        self.steps: tuple[TimedStep, ...] = tuple(self._steps(actors))
         self.deadlines: tuple[Deadline, ...] = tuple(dict.fromkeys(self._deadlines()))
 
-    # --- which clocks run
+    def _actors(self) -> Iterator[tuple[ActorClocks, Sequence[Transition]]]:
+        """Yield what is timed of each actor, with its steps."""
+        c, agents, enabled = self.c, self.c.alpha.names(), self.expansion.enabled
+        for vehicle, _ in self.timing.endurances:
+            yield of_vehicle(c, vehicle), ()
+        for a in agents:
+            served = [each for each in enabled if each.served is not None and each.label.agent == a]
+            yield of_requests(c, a, served), served
+        for a in agents:
+            moves = [each for each in enabled if each.served is None and each.label.agent == a]
+            yield of_moves(c, a, moves), moves
+        for number, steps in enumerate(self.by_clauses):
+            yield of_clause(c, number, steps), steps
 
-    def _counts(self) -> Mapping[Clock, int]:
-        """Return how many clocks run of each sort: first those that run from the start, then those of E(c)."""
-        counts: dict[Clock, int] = dict.fromkeys(self._lasting(), 1)
-        counts |= Counter(self._enabled())
-        return counts
-
-    def _lasting(self) -> Iterator[Clock]:
-        """Yield the clocks that run whatever is enabled; RESTORED only where it is."""
-        steps = [each.step for each in self.timing.clauses]
-        if any(isinstance(step, Window | Sayable) for step in steps):
-            latest = [
-                bound for step in steps if isinstance(step, Window | Sayable) for bound in _bounds_of(step)
-            ]
-            yield self._timed(Clock(Sort.MISSION), Interval(max(latest)))
-        for number, step in enumerate(steps):
-            if isinstance(step, Every):
-                yield self._timed(Clock(Sort.EVERY, number), Interval(step.least))
-            elif isinstance(step, Window):
-                yield self._timed(Clock(Sort.WINDOW, number), Interval(FREE))
-        for vehicle, endurance in self.timing.endurances:
-            yield self._timed(Clock(Sort.ALOFT, vehicle), Interval(endurance.lasts))
-            if self.is_restored(vehicle):
-                yield self._timed(Clock(Sort.RESTORED, vehicle), Interval(endurance.after))
-
-    def _timed(self, clock: Clock, interval: Interval) -> Clock:
-        self.bounds[clock] = interval
-        return clock
-
-    def is_restored(self, vehicle: Name) -> bool:
-        """Tell whether a vehicle is where it is restored: in transit it is nowhere."""
-        physical, places = self.c.structure.physical, dict(self.timing.endurances)[vehicle].places
-        if vehicle not in physical or physical.transit(vehicle) is not None:
-            return False
-        return any(place in places for place in _around(self.c, vehicle))
-
-    def _enabled(self) -> Iterator[Clock]:
-        """Yield E(c), as far as it is bounded: agents, requests with their channels, clauses; and the flights."""
-        found = (*self._agents(), *self._requests(), *self._flights(), *self._returning())
-        for clock, interval in found:
-            if clock in self.bounds or interval != ANY_TIME or clock.sort is Sort.FLIGHT:
-                yield self._timed(clock, interval)
-
-    def _agents(self) -> Iterator[tuple[Clock, Interval]]:
-        moving = {t.label.agent: t.label.rule for t in self.expansion.by_agents if t.served is None}
-        for agent, rule in moving.items():
-            if rule == "timeout":
-                yield Clock(Sort.AFTER, agent), self._after(agent or "")
-            else:
-                spawns = rule == "spawn"
-                yield (
-                    Clock(Sort.AGENT, agent),
-                    (self.timing.command(rule) or ANY_TIME) if spawns else self.timing.react,
-                )
-
-    def _after(self, agent: Name) -> Interval:
-        statement = next_statement(self.c, agent)
-        assert isinstance(statement, React)
-        assert statement.after is not None
-        ticks = statement.after.seconds * 1000 / self.timing.tick
-        react = self.timing.react
-        return Interval(
-            math.floor(ticks) + react.lo, None if react.hi is None else math.ceil(ticks) + react.hi
-        )
-
-    def _requests(self) -> Iterator[tuple[Clock, Interval]]:
-        """Yield the clocks of requests that a rule would serve apart from the scheduler's turn, each as often."""
-        enabled = {t.served.request for t in self.expansion.enabled if t.served is not None}
-        for pending in (each for a in self.c.alpha.names() for each in self.c.eta.in_line(a)):
-            if pending.request in enabled and not isinstance(pending.request, FLY):
-                for channel in self._channels(pending.request):
-                    yield (
-                        Clock(Sort.REQUEST, pending.request, channel),
-                        self._service(pending.request, channel),
-                    )
-
-    def _channels(self, request: Request) -> tuple[Name, ...]:
-        if not isinstance(request, SND):
-            return ("",)
-        here, there = self.c.alpha.host(request.agent), self.c.alpha.host(request.to)
-        return (ONE_HOST,) if here == there else tuple(channels_between(self.c, here, there))
-
-    def _service(self, request: Request, channel: Name) -> Interval:
-        timing = self.timing
-        match request:
-            case OBS():
-                return timing.sense
-            case SND():
-                return timing.message(channel)
-            case MGR():
-                return timing.command("migrate") or ANY_TIME
-            case CTR():
-                return timing.command(word_of(request)) or timing.react
-            case _:
-                return ANY_TIME
-
-    def _flights(self) -> Iterator[tuple[Clock, Interval]]:
-        ending = {t.served.request for t in self.expansion.enabled if t.served is not None}
-        for fly in dict.fromkeys(each.request for each in self.c.eta.all()):
-            if isinstance(fly, FLY):
-                interval = interval_of_flight(self.c, fly)
-                if interval != ANY_TIME or self.timing.motions:
-                    yield Clock(Sort.FLIGHT, fly), Interval(interval.lo)
-                if fly in ending and interval.hi is not None:
-                    clock = Clock(Sort.AIM, fly)
-                    self.aims[clock] = aim(self.c, fly)
-                    yield clock, Interval(0, interval.hi)
-
-    def _returning(self) -> Iterator[tuple[Clock, Interval]]:
-        for number, times in enumerate(self.timing.clauses):
-            if times.returns is not None and any(self._returns(number, t) for t in self.by_clauses[number]):
-                yield Clock(Sort.RETURNS, number), Interval(0, times.returns)
-
-    def _returns(self, number: int, transition: Transition) -> bool:
-        clause = self.c.setting.environment[number]
-        return (
-            isinstance(clause, Drops | Leaves)
-            and transition.label.about == clause.words[-1]
-            and clause.returns
-        )
-
-    # --- what they bound
-
-    def _steps(self) -> Iterator[TimedStep]:
-        for transition in self.expansion.by_agents:
-            yield self._of_agent(transition, in_turn=True)
-        for transition in self.expansion.out_of_turn:
-            yield self._of_agent(transition, in_turn=False)
-        for number, transitions in enumerate(self.by_clauses):
-            for transition in transitions:
-                yield self.of_clause(number, transition)
-
-    def _of_agent(self, transition: Transition, *, in_turn: bool) -> TimedStep:
-        agent = transition.label.agent
-        if transition.served is None:
-            sort = Sort.AFTER if transition.label.rule == "timeout" else Sort.AGENT
-            done = (Clock(Sort.AGENT, agent), Clock(Sort.AFTER, agent))
-            return TimedStep(transition, done, self._guards([Clock(sort, agent)]))
-        request = transition.served.request
-        if isinstance(request, FLY):
-            clocks = [Clock(Sort.FLIGHT, request)]
-            return TimedStep(transition, (*clocks, Clock(Sort.AIM, request)), self._guards(clocks))
-        clocks = [Clock(Sort.REQUEST, request, channel) for channel in self._channels(request)]
-        return TimedStep(transition, tuple(clocks), self._guards(clocks), in_turn)
-
-    def _guards(self, clocks: list[Clock]) -> tuple[Guard, ...]:
-        """Return the bounds of which one has to be met; none where some clock has none."""
-        if any(clock not in self.first or not self.bounds[clock].lo for clock in clocks):
-            return ()
-        return tuple(Guard(self.first[clock], self.bounds[clock].lo) for clock in clocks)
-
-    def of_clause(self, number: int, transition: Transition) -> TimedStep:
-        """Return a step of a clause with its bounds."""
-        if self._returns(number, transition):
-            return TimedStep(transition, (Clock(Sort.RETURNS, number),), ())
-        mission = self.first.get(Clock(Sort.MISSION), 0)
-        every, window = Clock(Sort.EVERY, number), Clock(Sort.WINDOW, number)
-        match self.timing.clause(number).step:
-            case Every(least):
-                guards: tuple[Guard, ...] = (Guard(self.first[every], least),)
-            case Window(after):
-                guards = (Guard(mission, after), Guard(self.first[window], FREE))
-            case Sayable(after, until):
-                guards = (Guard(mission, after, until),)
-            case None:
-                guards = ()
-        return TimedStep(transition, (every, window), guards)
+    def _steps(self, actors: Iterable[tuple[ActorClocks, Sequence[Transition]]]) -> Iterator[TimedStep]:
+        """Yield all steps, those last that wait for their turn."""
+        waiting = {id(each) for each in self.expansion.out_of_turn}
+        timed = [each for clocks, steps in actors for each in zip(steps, clocks.steps, strict=True)]
+        for in_turn in (True, False):
+            for transition, (done, tests) in timed:
+                if in_turn is (id(transition) not in waiting):
+                    guards = tuple(Guard(self.first[clock], least, most) for clock, least, most in tests)
+                    yield TimedStep(transition, done, guards, in_turn)
 
     def _deadlines(self) -> Iterator[Deadline]:
         bound = {clock for step in self.steps if step.in_turn for clock in step.done}
@@ -372,7 +195,7 @@ class Situation:
             vehicle
             for vehicle, endurance in self.timing.endurances
             if ages[self.first[Clock(Sort.ALOFT, vehicle)]] > endurance.lasts
-            and not self.is_restored(vehicle)
+            and not is_restored(self.c, vehicle)
             and vehicle in self.c.structure.physical
         )
 
@@ -434,29 +257,3 @@ class Passage:
                 fresh if ages[restored] >= least else []
             )
         yield from dict.fromkeys(map(self.target.entered, several))
-
-
-def word_of(request: CTR) -> str:
-    """Return the word of a command, or the name of a rule.
-
-    >>> import re
-    >>> re.match(r"[A-Za-z_]+", "HAND uav0 TO gcs1").group()
-    'HAND'
-    """
-    found = re.match(r"\w+", request.reaction.text)
-    return found.group() if found else ""
-
-
-def _bounds_of(step: Window | Sayable) -> Iterator[int]:
-    yield step.after
-    yield from filter(None, [step.within if isinstance(step, Window) else step.until])
-
-
-def _around(c: Configuration, entity: Name) -> Iterator[Name]:
-    """Yield the places around an entity, the innermost first, as P has them."""
-    seen: set[Name] = set()
-    place = c.structure.physical.abstract_parent(entity)
-    while place in c.structure.physical and place not in seen:
-        yield place
-        seen.add(place)
-        place = c.structure.physical.abstract_parent(place)

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from semantics.state.configuration import Configuration, Label, Transition
-from semantics.timing.clocks import Guard, Passage, Situation, Sort, TimedStep
+from semantics.timing.actor_clocks import Sort
+from semantics.timing.clocks import Guard, Passage, Situation, TimedStep
 from semantics.timing.dates import clock_text
 
 

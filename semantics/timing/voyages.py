@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Final
 
 from physical import Geometry, Waypoint
 from physical.extents import Extent, extent, span
@@ -18,10 +20,14 @@ from semantics.control import commits
 from semantics.environment import Drifts
 from semantics.state.cells import Cell, Changes
 from semantics.state.configuration import Configuration, Transition
-from semantics.state.physical_model import Carried, InTransit, PhysicalModel
-from semantics.state.requests import FLY
+from semantics.state.eta import line_cell
+from semantics.state.physical_model import Carried, InTransit, PhysicalModel, placement_cell
+from semantics.state.requests import FLY, Request
 from semantics.state.setting import Setting
 from semantics.state.signature import REGION, Name
+
+MOVING: Final = frozenset({"actuate", "command", "commit", "env"})
+"""The rules that change P."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,15 +132,18 @@ def _is_adrift(c: Configuration, entity: Name) -> bool:
 
 def remembering(c: Configuration, transition: Transition) -> Transition:
     """Return the transition with what it changed remembered of flights, where a mission speaks of time."""
-    if c.setting.timing is None:
+    if c.setting.timing is None or transition.label.rule not in MOVING:
         return transition
-    after = transition.target
-    changed = {cell[1] for cell in after.state.changed(c.state) if cell[0] == "placement"}
+    after, driven = transition.target, vehicles(c.setting)
+    written = {cell[1] for cell in after.state.changed(c.state) if cell[0] == "placement"}
+    changed = {
+        name for name in sorted(written) if after.read(placement_cell(name)) != c.read(placement_cell(name))
+    }
     if not changed:
         return transition
-    begun = {name: _memory(c, after, name) for name in vehicles(c.setting) if name in changed}
+    begun = {name: _memory(c, after, name) for name in driven if name in changed}
     after = after.with_({memory_cell(name): kept for name, kept in begun.items()})
-    return replace(transition, target=_widened(after))
+    return replace(transition, target=after.with_each(after.each(driven, partial(_widened, after))))
 
 
 def _memory(c: Configuration, after: Configuration, vehicle: Name) -> Memory:
@@ -149,36 +158,59 @@ def _memory(c: Configuration, after: Configuration, vehicle: Name) -> Memory:
     return None
 
 
-def _widened(c: Configuration) -> Configuration:
-    """Return the configuration in which every flight knows all that it was sent to or by, through chains of flights."""
-    points = {
-        (fly, vehicle): waypoints(c, fly, vehicle)
-        for fly in dict.fromkeys(each.request for each in c.eta.all())
-        if isinstance(fly, FLY)
-        for vehicle, _ in travelling(c, fly)
-    }
+def _widened(c: Configuration, vehicle: Name) -> Changes:
+    """Write of a flight all that it was sent to or by, through chains of flights."""
+    flights = dict(_chain(c, vehicle))
+    points = {name: waypoints(c, fly, name) for name, (fly, _) in flights.items()}
     while True:
-        under_way = dict(_sent(c, points))
-        wider = c.with_({memory_cell(vehicle): kept for vehicle, kept in under_way.items()})
+        wider = c.with_(dict(_sent(c, flights, points)))
         if wider == c:
-            return c
+            return {memory_cell(vehicle): c.read(memory_cell(vehicle))} if flights else {}
         c = wider
 
 
-def _sent(
-    c: Configuration, points: Mapping[tuple[FLY, Name], tuple[Geometry, ...]]
-) -> Iterator[tuple[Name, Voyage]]:
-    """Yield each flight with what it is sent to or by now."""
-    for fly in (each.request for each in c.eta.all()):
-        if not isinstance(fly, FLY):
+def _chain(c: Configuration, vehicle: Name) -> Iterator[tuple[Name, tuple[FLY, tuple[Name, ...]]]]:
+    """Yield a vehicle in transit with its request and what it is sent by and to, and all in transit among those."""
+    physical, waiting, seen = c.structure.physical, [vehicle], set[Name]()
+    while waiting:
+        name = waiting.pop()
+        if name in seen or not isinstance(physical.placement(name), InTransit):
             continue
-        for vehicle, place in travelling(c, fly):
-            kept: Memory = c.read(memory_cell(vehicle))
-            if isinstance(kept, Voyage):
-                toward = (*fly.reaction.via, place)
-                where = [whereabouts(c, each) for each in toward]
-                sent_to = tuple(sorted({*kept.waypoints, *points[fly, vehicle]}))
-                yield vehicle, Voyage(kept.origin, toward, sent_to, _hull([kept.hull, *where]))
+        seen.add(name)
+        for fly in _flights_of(c, name):
+            for node, place in travelling(c, fly):
+                if node == name:
+                    toward = (*fly.reaction.via, place)
+                    yield name, (fly, toward)
+                    waiting += [_outermost(physical, each) for each in toward]
+
+
+def _flights_of(c: Configuration, vehicle: Name) -> Iterator[FLY]:
+    """Yield the requests by which a vehicle is in transit."""
+    for a in c.alpha.names():
+        if c.test(line_cell(a), flies, vehicle):
+            yield from (each for each in c.read(line_cell(a)) if flies((each,), vehicle))
+
+
+def flies(line: tuple[Request, ...] | None, vehicle: Name) -> bool:
+    """Ask of an agent's requests whether a vehicle flies by one of them."""
+    return any(
+        isinstance(each, FLY) and vehicle in dict(moved(each.reaction, each.match)) for each in line or ()
+    )
+
+
+def _sent(
+    c: Configuration,
+    flights: Mapping[Name, tuple[FLY, tuple[Name, ...]]],
+    points: Mapping[Name, tuple[Geometry, ...]],
+) -> Iterator[tuple[Cell, Voyage]]:
+    """Yield each flight with what it is sent to or by now."""
+    for name, (_, toward) in flights.items():
+        kept: Memory = c.read(memory_cell(name))
+        if isinstance(kept, Voyage):
+            where = [whereabouts(c, each) for each in toward]
+            sent_to = tuple(sorted({*kept.waypoints, *points[name]}))
+            yield memory_cell(name), Voyage(kept.origin, toward, sent_to, _hull([kept.hull, *where]))
 
 
 def _hull(extents: Iterable[Extent | None]) -> Extent | None:

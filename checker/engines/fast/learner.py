@@ -26,7 +26,7 @@ from semantics.state.configuration import Configuration, Label, Transition
 from semantics.state.requests import Received
 from semantics.state.setting import Setting
 from semantics.state.signature import Name
-from semantics.successors import served, turn_of
+from semantics.successors import remembered, served, turn_of
 
 Found = list[Transition | Fault]
 
@@ -192,7 +192,10 @@ class Learner:
 
     def _learn_root(self, tree: int, actor: Actor, recorder: Recorder, source: CodedSource) -> None:
         c = Configuration(self.setting, recorder)
-        found = [step if isinstance(step, Fault) else marked(c, step) for step in actor.rules(c, actor.about)]
+        found = [
+            step if isinstance(step, Fault) else remembered(c, marked(c, step))
+            for step in actor.rules(c, actor.about)
+        ]
         concluded = [self.writing.conclude(step) for step in found if isinstance(step, Transition)]
         is_full = actor.rules is served and is_crowded(c, str(actor.about), self.pending)
         parts = [[self._plant(PartOf(recorder, each, name)) for name in each.apart] for each in concluded]

@@ -1,24 +1,26 @@
 """Timed automata as arrays, as the compiled loops see them: locations with their clocks, edges with their guards.
 
-Clocks are numbered from 1 in each location; an edge says of each clock of its target which of its source goes on in it,
-0 for none. A clock that no location has is not remembered.
+A clock has a number in the automaton, by which it is known what it is compared with, and stands at an index in each
+location, from 1. An edge says of each clock of its target which of its source goes on in it, 0 for none. A clock that
+no location has is not remembered.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
 from checker.engines.zones.bounds import MOST, NONE
 
 UNKNOWN = -1
-"""Stands for the target of an edge as long as nobody has taken it."""
+"""Stands for where the edges of a location begin as long as nobody knows them."""
 
 
 class Constraint(NamedTuple):
-    """A clock shows at least so much, and at most so much if that is not `NONE`."""
+    """A clock, by its index, shows at least so much, and at most so much if that is not `NONE`."""
 
     clock: int
     least: int
@@ -36,23 +38,21 @@ class Edge(NamedTuple):
     """
 
     step: int
-    tests: tuple[Constraint, ...] = ()
-    target: int = UNKNOWN
-    sources: tuple[int, ...] = ()
+    tests: tuple[Constraint, ...]
+    target: int
+    sources: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Location:
+class Location(NamedTuple):
     """Where a timed automaton may be.
 
     Attributes:
-        lower, upper: For each clock the largest constant that it is compared with from below and from above.
+        clocks: The numbers of the clocks that run; of equal ones the oldest is the first.
         deadlines: No time passes once a clock has come to a bound; a bound below 0 lets no time pass at all.
         goal: What is looked for here; None where nothing is.
     """
 
-    lower: tuple[int, ...] = ()
-    upper: tuple[int, ...] = ()
+    clocks: tuple[int, ...] = ()
     deadlines: tuple[tuple[int, int], ...] = ()
     goal: Constraint | None = None
 
@@ -61,11 +61,11 @@ class TooLargeError(Exception):
     """A constant is larger than clocks are compared with."""
 
 
-LOCATION, EDGE, TEST, DEADLINE = 8, 6, 3, 2
+LOCATION, EDGE, TEST, DEADLINE = 8, 7, 3, 2
 """How many numbers each of them has."""
 
-SIZE, DEADLINES, DEADLINES_END, EDGES, EDGES_END, CONSTANTS, GOAL, LEAST = range(LOCATION)
-STEP, TARGET, TESTS, TESTS_END, SOURCES, FIRST = range(EDGE)
+SIZE, CLOCKS, DEADLINES, DEADLINES_END, EDGES, EDGES_END, GOAL, LEAST = range(LOCATION)
+STEP, TARGET, TESTS, TESTS_END, SOURCES, RULE, FIRST = range(EDGE)
 
 
 def _numbers() -> Growing:
@@ -78,7 +78,8 @@ class Automaton:
 
     Attributes:
         locations: Of each `LOCATION` numbers: one more than it has clocks, where its parts are, its goal.
-        edges: Of each `EDGE` numbers; the last is the group that it was first taken in.
+        edges: Of each `EDGE` numbers; the last are its rule and the group that it was first taken in.
+        lower, upper: For each clock the largest constant that it is compared with from below and from above.
         largest: One more than the most clocks that a location has.
     """
 
@@ -87,60 +88,86 @@ class Automaton:
     tests: Growing = field(default_factory=_numbers)
     sources: Growing = field(default_factory=_numbers)
     deadlines: Growing = field(default_factory=_numbers)
+    clocks: Growing = field(default_factory=_numbers)
     lower: Growing = field(default_factory=_numbers)
     upper: Growing = field(default_factory=_numbers)
-    all: list[Location] = field(default_factory=list)
-    out: list[tuple[Edge, ...]] = field(default_factory=list)
     largest: int = 1
 
+    def __len__(self) -> int:
+        return len(self.locations) // LOCATION
+
+    def clock(self, lower: int, upper: int) -> int:
+        """Return the number of a new clock, which is compared with these constants."""
+        _look(lower, upper)
+        self.lower.append(lower)
+        return self.upper.append(upper)
+
+    def compare(self, clock: int, lower: int, upper: int) -> bool:
+        """Let a clock be compared with these constants, too; tell whether that is with more than before."""
+        _look(lower, upper)
+        before = int(self.lower.room[clock]), int(self.upper.room[clock])
+        after = max(before[0], lower), max(before[1], upper)
+        self.lower.room[clock], self.upper.room[clock] = after
+        return after != before
+
     def add(self, location: Location) -> int:
-        """Return the number of a new location."""
-        _look(location)
+        """Return the number of a new location, whose edges nobody knows."""
         begin = len(self.deadlines) // DEADLINE
         for each in location.deadlines:
+            _look(each[1])
             self.deadlines.append(*each)
         end = len(self.deadlines) // DEADLINE
-        constants = self.lower.append(NONE, *location.lower)
-        self.upper.append(NONE, *location.upper)
+        clocks = self.clocks.append(*location.clocks)
         goal, least = (NONE, 0) if location.goal is None else location.goal[:2]
-        size = 1 + len(location.lower)
+        size = 1 + len(location.clocks)
         self.largest = max(self.largest, size)
-        self.all.append(location)
-        self.out.append(())
-        return self.locations.append(size, begin, end, 0, 0, constants, goal, least) // LOCATION
+        return self.locations.append(size, clocks, begin, end, UNKNOWN, UNKNOWN, goal, least) // LOCATION
 
     def leave(self, location: int, edges: Iterable[Edge]) -> None:
-        """Say what leads from a location, whatever was said before, in the order of the steps."""
-        several = tuple(sorted(edges, key=lambda edge: edge.step))
+        """Say what leads from a location, in the order of the steps."""
         begin = len(self.edges) // EDGE
-        for step, tests, target, sources in several:
+        for step, tests, target, sources in edges:
             first = len(self.tests) // TEST
             for test in tests:
                 self.tests.append(*test)
             at = self.sources.append(*sources)
-            self.edges.append(step, target, first, len(self.tests) // TEST, at, NONE)
-        self.out[location] = several
-        self.locations.room[LOCATION * location + EDGES] = begin
-        self.locations.room[LOCATION * location + EDGES_END] = begin + len(several)
+            self.edges.append(step, target, first, len(self.tests) // TEST, at, NONE, NONE)
+        self._record(location)[EDGES : EDGES_END + 1] = begin, len(self.edges) // EDGE
 
-    def compare(self, location: int, lower: Sequence[int], upper: Sequence[int]) -> None:
-        """Say anew what the clocks of a location are compared with."""
-        begin = int(self.locations.room[LOCATION * location + CONSTANTS]) + 1
-        self.lower.room[begin : begin + len(lower)] = lower
-        self.upper.room[begin : begin + len(upper)] = upper
+    def location(self, number: int) -> Location:
+        """Return a location."""
+        size, clocks, begin, end, _, _, goal, least = self._record(number).tolist()
+        deadlines = self.deadlines.room[DEADLINE * begin : DEADLINE * end].reshape(-1, DEADLINE).tolist()
+        numbers = self.clocks.room[clocks : clocks + size - 1].tolist()
+        sought = None if goal < 0 else Constraint(goal, least)
+        return Location(tuple(numbers), tuple((clock, most) for clock, most in deadlines), sought)
+
+    def out(self, location: int) -> list[Edge]:
+        """Return what leads from a location; nothing where nobody knows."""
+        return [self._edge(each) for each in self._edges(location).tolist()]
+
+    def _edge(self, record: list[int]) -> Edge:
+        step, target, begin, end, at = record[: SOURCES + 1]
+        tests = self.tests.room[TEST * begin : TEST * end].reshape(-1, TEST).tolist()
+        sources = self.sources.room[at : at + self._record(target)[SIZE] - 1].tolist()
+        return Edge(step, tuple(Constraint(*each) for each in tests), target, tuple(sources))
+
+    def _record(self, location: int) -> NDArray[np.int32]:
+        return self.locations.room[LOCATION * location : LOCATION * (location + 1)]
+
+    def _edges(self, location: int) -> NDArray[np.int32]:
+        begin, end = self._record(location)[EDGES : EDGES_END + 1]
+        return self.edges.room[EDGE * max(begin, 0) : EDGE * max(end, 0)].reshape(-1, EDGE)
 
     def firsts(self, location: int) -> list[tuple[int, int]]:
         """Return each step of a location that was taken, with the group that it was first taken in."""
-        begin, end = self.locations.room[LOCATION * location + EDGES : LOCATION * location + EDGES_END + 1]
-        edges = self.edges.room[EDGE * begin : EDGE * end].reshape(-1, EDGE)
-        return [(int(each[STEP]), int(each[FIRST])) for each in edges if each[FIRST] >= 0]
+        return [(int(each[STEP]), int(each[FIRST])) for each in self._edges(location) if each[FIRST] >= 0]
 
     def forget(self) -> None:
         """Forget which edges were taken."""
         self.edges.used[FIRST::EDGE] = NONE
 
 
-def _look(location: Location) -> None:
-    constants = (*location.lower, *location.upper, *(most for _, most in location.deadlines))
-    if max(constants, default=0) > MOST:
+def _look(*constants: int) -> None:
+    if max(constants) > MOST:
         raise TooLargeError(f"{max(constants):,} ticks are more than the engine 'fast' counts ({MOST:,})")

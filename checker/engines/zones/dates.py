@@ -65,7 +65,7 @@ def before_edge(edge: Edge, clocks: int, zone: Zone) -> Zone | None:
 def before_delay(automaton: Automaton, location: int, zone: Zone) -> Iterator[Zone]:
     """Yield the ages from which a zone is come to as time passes, or at once."""
     yield zone
-    deadlines = automaton.all[location].deadlines
+    deadlines = automaton.location(location).deadlines
     if any(most < 0 for _, most in deadlines):
         return
     found = tested(zone, (Constraint(clock, 0, most) for clock, most in deadlines))
@@ -114,7 +114,7 @@ class Dates:
             yield layer
 
     def _edges(self, location: int, step: int) -> Iterator[Edge]:
-        return (each for each in self.automaton.out[location] if each.step == step and each.target >= 0)
+        return (each for each in self.automaton.out(location) if each.step == step)
 
     def _solve(self) -> None:
         wanted = self.goals
@@ -133,7 +133,7 @@ class Dates:
         self.entered.reverse()
 
     def _before(self, location: int, step: int) -> Iterator[Zone]:
-        clocks, found = len(self.automaton.all[location].lower), list[Zone]()
+        clocks, found = len(self.automaton.location(location).clocks), list[Zone]()
         for edge in self._edges(location, step):
             for zone in self.entered[-1][edge.target]:
                 earlier = before_edge(edge, clocks, zone)
@@ -181,7 +181,7 @@ class Dates:
             self._dates.append(now)
 
     def _may_wait(self, state: Moment, delay: int) -> bool:
-        bounds = self.automaton.all[state.location].deadlines
+        bounds = self.automaton.location(state.location).deadlines
         return not delay or all(clock and state.ages[clock - 1] + delay <= most for clock, most in bounds)
 
     def _after(self, done: int, states: Iterable[Moment]) -> dict[Moment, Moment]:

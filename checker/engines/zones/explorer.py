@@ -6,27 +6,29 @@ import time
 from collections import Counter
 from collections.abc import Iterable
 
+import numpy as np
+
 from checker.engines.contract import Exploration, Inspect, Options, Progress, TickError
 from checker.engines.fast.compiling import compilation_reported
 from checker.engines.times import inspect_in_time
 from checker.engines.zones.automaton import TooLargeError
 from checker.engines.zones.network import Network
 from checker.engines.zones.search import CHUNK, Search
-from checker.engines.zones.zone_times import ZoneTimes
+from checker.engines.zones.zone_times import Configurations, ZoneTimes
 from checker.limits import Bound, Limits, Stop, is_full
 from semantics.state.configuration import Configuration
 
 
 class _Learning(Search):
-    """A search that runs the rules where a step leads somewhere new."""
+    """A search that unfolds what it reaches."""
 
     def __init__(self, network: Network) -> None:
         self.network = network
         super().__init__(network.automaton, network.first, network.first_ages)
 
-    def learn(self, location: int, step: int) -> None:
-        """Run the rules where a step leads that is taken for the first time."""
-        self.network.learn(location, step)
+    def learn(self) -> None:
+        """Work out what leads from all locations that were reached."""
+        self.network.leave(self.waiting())
 
 
 def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options: Options) -> Exploration:
@@ -44,9 +46,9 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
             _visit_all(network, search, found, options, started)
     except TooLargeError as error:
         raise TickError(str(error)) from error
-    if network.is_crowded:
-        found.bounds.append(options.limits.bound(Stop.PENDING))
     times = ZoneTimes(network, search)
+    if network.crowded(times.reached):
+        found.bounds.append(options.limits.bound(Stop.PENDING))
     _summarise(times, found)
     inspect_in_time(times, tuple(inspect))
     found.seconds = time.monotonic() - started
@@ -60,8 +62,8 @@ def _visit_all(
     most = options.limits.configurations
     while goes_on:
         goes_on = search.advance(CHUNK if most is None else min(CHUNK, max(most - search.count, 0) + 1))
-        if network.grown:  # a constant is larger than it was taken for: what was kept may be too much
-            network.compare()
+        if network.outgrown:  # a constant is larger than it was taken for: what was kept may be too much
+            network.outgrown = False
             search.again()
             goes_on = True
         now = time.monotonic()
@@ -90,17 +92,16 @@ def _progress(search: Search, seconds: float) -> Progress:
 
 def _summarise(times: ZoneTimes, found: Exploration) -> None:
     """Write down the configurations in the order of discovery, and each transition that is taken, once."""
-    places = {number: place for place, number in enumerate(times.order)}
-    records = times.search.group_records()
-    for group in times.firsts:
-        before = max(int(records[group, 0]), 0)
-        found.origins.append(places[int(times.numbers[before])])  # type: ignore[attr-defined]  # a list
-    found.times, found.expanded = times, len(places)
-    found.configurations = [each.c for each in times.situations]
-    found.depth = len(times.search.steps_to(times.firsts[-1]))
+    network, records = times.network, times.search.group_records()
+    places = np.zeros(network.size, np.int64)
+    places[times.order] = np.arange(len(times.order))
+    found.origins = places[times.numbers[np.maximum(records[times.firsts, 0], 0)]].tolist()
+    found.times, found.expanded = times, len(times.order)
+    found.configurations = Configurations(network, times.order)
+    found.depth = len(times.search.steps_to(int(times.firsts[-1])))
+    names = {number: name for name, number in network.learner.rules.items()}
+    rules, counts = np.unique(times.taken_rules(), return_counts=True)
     found.rules = Counter(
-        situation.steps[step].transition.label.rule
-        for place, situation in enumerate(times.situations)
-        for step in times.taken(place)
+        {names[rule]: count for rule, count in zip(rules.tolist(), counts.tolist(), strict=True)}
     )
     found.transitions = found.allowed = found.rules.total()

@@ -20,7 +20,7 @@ from checker.engines.zones.observers import Meter, Observer, Watch
 from checker.engines.zones.zone_times import ZoneTimes
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
-from semantics.timing.clocks import Clock
+from semantics.timing.actor_clocks import Clock
 
 FIRST: Final = "first"
 """The location in which it begins; no time passes in it."""
@@ -82,7 +82,7 @@ def model_of(times: ZoneTimes, asked: Property | None, name: str) -> Model:
     """
     network = times.network
     if asked is None or asked.kind is PropertyKind.ENDURANCE:
-        locations = range(len(network.places))
+        locations = range(len(network.automaton))
         wrong = {at: tuple(times.exhaustion(at).values()) for at in locations} if asked else {}
         walk = _Walk(network, network.automaton, locations, wrong)
         return _model(name, asked, walk, network.first, network.first_ages)
@@ -91,7 +91,8 @@ def model_of(times: ZoneTimes, asked: Property | None, name: str) -> Model:
     awaited = asked.formula if asked.then is None else asked.then
     rule = times.waiting(None if asked.then is None else asked.formula, awaited)
     observer = Observer(network, rule, Meter(asked.bound + 1, goal=(Watch.ON, asked.bound + 1)))
-    late = {at: [each.goal] for at, each in enumerate(observer.automaton.all) if each.goal is not None}
+    goals = ((at, observer.automaton.location(at).goal) for at in range(len(observer.automaton)))
+    late = {at: [goal] for at, goal in goals if goal is not None}
     walk = _Walk(network, observer.automaton, [each.location for each in observer.spots], late)
     return _model(name, asked, walk, 0, observer.first_ages())
 
@@ -135,12 +136,12 @@ class _Walk:
     names: Mapping[Clock | None, tuple[str, ...]] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.names = _named([Counter(self.clocks(at)) for at in range(len(self.automaton.all))])
+        self.names = _named([Counter(self.clocks(at)) for at in range(len(self.automaton))])
 
     def clocks(self, at: int) -> tuple[Clock | None, ...]:
         """Return what the clocks of a location measure."""
         measured = self.network.clocks(self.locations[at])
-        return (*measured, *([None] if len(self.automaton.all[at].lower) > len(measured) else []))
+        return (*measured, *([None] if len(self.automaton.location(at).clocks) > len(measured) else []))
 
     def place(self, at: int, kept: Sequence[str], *, is_late: bool = False) -> _Spot:
         """Return a location whose clocks have names as far as they go on; others (`""`) get what is free."""
@@ -163,7 +164,7 @@ class _Walk:
                 done += 1
 
     def _steps(self, spot: _Spot) -> Iterator[Step]:
-        for edge in self.automaton.out[spot.at]:
+        for edge in self.automaton.out(spot.at):
             if edge.target >= 0:
                 yield from self._step(spot, edge)
         for clock, least, _ in self.wrong.get(spot.at, ()):
@@ -195,16 +196,18 @@ class _Walk:
 
     def _too_late(self, spot: _Spot, edge: Edge) -> list[tuple[int, int]]:
         """Return the clocks, with their bounds, that may be past a deadline after an edge."""
-        before = {} if spot.is_late else dict(self.automaton.all[spot.at].deadlines)
-        after = [(edge.sources[clock - 1], most) for clock, most in self.automaton.all[edge.target].deadlines]
+        before = {} if spot.is_late else dict(self.automaton.location(spot.at).deadlines)
+        after = [
+            (edge.sources[clock - 1], most) for clock, most in self.automaton.location(edge.target).deadlines
+        ]
         return [(one, most) for one, most in after if one and before.get(one, most + 1) > most]
 
     def stands(self, at: int) -> bool:
         """Tell whether no time passes in a location at all."""
-        return any(most < 0 for _, most in self.automaton.all[at].deadlines)
+        return any(most < 0 for _, most in self.automaton.location(at).deadlines)
 
     def _words(self, at: int, step: int) -> str:
-        situation = self.network.situations[self.network.places[self.locations[at]].number]
+        situation = self.network.situation(self.network.place(self.locations[at]).number)
         return str(situation.steps[step].transition.label)
 
     def places(self) -> Iterator[Place]:
@@ -213,7 +216,7 @@ class _Walk:
             if spot.is_late or self.stands(spot.at):
                 yield Place(name, is_urgent=True)
             else:
-                deadlines = self.automaton.all[spot.at].deadlines
+                deadlines = self.automaton.location(spot.at).deadlines
                 yield Place(name, tuple(f"{spot.names[clock - 1]} <= {most}" for clock, most in deadlines))
 
 

@@ -16,7 +16,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from checker.engines.zones.automaton import (
-    CONSTANTS,
+    CLOCKS,
     DEADLINE,
     DEADLINES,
     DEADLINES_END,
@@ -49,6 +49,7 @@ class Model(NamedTuple):
     tests: Ints
     sources: Ints
     deadlines: Ints
+    clocks: Ints
     lower: Ints
     upper: Ints
 
@@ -81,13 +82,10 @@ BEFORE, BY, BEGIN = range(GROUP)
 
 AT, GROUPS, COUNT, USED, FOUND, MISSED, STATE = range(7)
 """The numbers of a state: the next group to be followed, how many groups, zones and bounds there are, the group that
-was found first, and what is missed: the location and step of an edge, or how many zones there is no room for."""
-
-EDGE_OF = 1 << 24
-"""More steps than a location has."""
+was found first, and how many zones there is no room for."""
 
 DONE, MISS, FULL = range(3)
-"""Why the loops return."""
+"""Why the loops return; at a MISS nobody knows what leads from some location of the next group."""
 
 
 @njit(cache=True, inline="always")
@@ -155,13 +153,15 @@ def keep(m: Model, z: Zones, state: State, location: int, d: Matrix, size: int) 
 
 
 @njit(cache=True)
-def enter(m: Model, z: Zones, state: State, location: int, d: Matrix, e: Matrix, deadlines: Matrix) -> None:
+def enter(m: Model, z: Zones, state: State, location: int, d: Matrix, e: Matrix, bounds: Matrix) -> None:
     """Keep what is entered in a location, and what it becomes as time passes there."""
     at = LOCATION * location
     size = m.locations[at + SIZE]
     begin, count = m.locations[at + DEADLINES], m.locations[at + DEADLINES_END] - m.locations[at + DEADLINES]
-    constants = m.locations[at + CONSTANTS]
-    lower, upper = m.lower[constants : constants + size], m.upper[constants : constants + size]
+    deadlines, lower, upper = bounds[:2], bounds[2], bounds[3]
+    for i in range(1, size):
+        clock = m.clocks[m.locations[at + CLOCKS] + i - 1]
+        lower[i], upper[i] = m.lower[clock], m.upper[clock]
     within = True
     for k in range(count):
         deadlines[0, k] = m.deadlines[DEADLINE * (begin + k)]
@@ -184,7 +184,7 @@ def enter(m: Model, z: Zones, state: State, location: int, d: Matrix, e: Matrix,
 
 @njit(cache=True)
 def follow(
-    m: Model, z: Zones, state: State, zone: int, edge: int, d: Matrix, e: Matrix, f: Matrix, ends: Matrix
+    m: Model, z: Zones, state: State, zone: int, edge: int, d: Matrix, e: Matrix, f: Matrix, bounds: Matrix
 ) -> None:
     """Keep what an edge leads to from a zone."""
     size = m.locations[LOCATION * z.places[zone] + SIZE]
@@ -201,18 +201,18 @@ def follow(
         e[i, 0], e[0, i] = d[one, 0], d[0, one]
         for j in range(1, after):
             e[i, j] = 0 if i == j else d[one, m.sources[sources + j]]
-    enter(m, z, state, target, e, f, ends)
+    enter(m, z, state, target, e, f, bounds)
 
 
 @njit(cache=True)
 def advance(m: Model, z: Zones, state: State, largest: int, until: int) -> int:
-    """Follow groups up to a number of zones; say why that ended: it is done, an edge is not known, there is no room."""
+    """Follow groups up to a number of zones; say why that ended."""
     d, e, f = (
         np.zeros((largest, largest), np.int32),
         np.zeros((largest, largest), np.int32),
         np.zeros((largest, largest), np.int32),
     )
-    ends = np.zeros((2, 1 + len(m.deadlines) // DEADLINE), np.int32)
+    bounds = np.zeros((4, largest + 1), np.int32)
     while state[AT] < state[GROUPS] and state[COUNT] < until and state[FOUND] < 0:
         group = state[AT]
         begin = z.groups[GROUP * group + BEGIN]
@@ -220,15 +220,9 @@ def advance(m: Model, z: Zones, state: State, largest: int, until: int) -> int:
         ways = np.int64(0)
         for zone in range(begin, last):
             at = LOCATION * z.places[zone]
-            size = m.locations[at + SIZE]
-            for edge in range(EDGE * m.locations[at + EDGES], EDGE * m.locations[at + EDGES_END], EDGE):
-                ways += 1
-                if m.edges[edge + TARGET] >= 0:
-                    continue
-                load(z, zone, size, d)
-                if meets(m, edge, d, size):
-                    state[MISSED] = EDGE_OF * np.int64(z.places[zone]) + m.edges[edge + STEP]
-                    return MISS
+            if m.locations[at + EDGES] < 0:
+                return MISS
+            ways += m.locations[at + EDGES_END] - m.locations[at + EDGES]
         room = 2 * ways
         if (
             state[COUNT] + room > len(z.begins)
@@ -253,7 +247,7 @@ def advance(m: Model, z: Zones, state: State, largest: int, until: int) -> int:
                 at = LOCATION * z.places[zone]
                 for edge in range(EDGE * m.locations[at + EDGES], EDGE * m.locations[at + EDGES_END], EDGE):
                     if m.edges[edge + STEP] == step:
-                        follow(m, z, state, zone, edge, d, e, f, ends)
+                        follow(m, z, state, zone, edge, d, e, f, bounds)
             if state[COUNT] > first:
                 at = GROUP * state[GROUPS]
                 z.groups[at + BEFORE], z.groups[at + BY], z.groups[at + BEGIN] = group, step, first

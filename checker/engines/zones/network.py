@@ -1,101 +1,338 @@
-"""The timed automaton of a mission, learned step by step: what configurations allow, and when.
+"""The timed automaton of a mission, unfolded as it is reached: what configurations allow, and when.
 
-A location is a configuration with what the clocks of windows say, which measure nothing. The rules are run once in each
-configuration; what its clocks are compared with is taken for what it was anywhere, as long as it grows nowhere.
+A location is a row of the fast engine with what the clocks of windows say, which measure nothing. The rules, and what
+times them, are learned from the few cells that they read; what leads from a location is then worked out by compiled
+loops. What a clock is compared with is taken for what it was anywhere, as long as it grows nowhere.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from itertools import product
+from collections.abc import Callable, Hashable, Iterable, Iterator
+from functools import lru_cache, partial
+from itertools import islice
 from typing import NamedTuple
 
-from checker.engines.reference import crowded
-from checker.engines.zones.automaton import Automaton, Constraint, Edge, Location
+import numpy as np
+from numpy.typing import NDArray
+
+from checker.engines.fast.arrays import Growing
+from checker.engines.fast.kernel import AT, LIMIT
+from checker.engines.fast.learner import Learner
+from checker.engines.fast.leaves import LEAF
+from checker.engines.fast.skeletons import settled
+from checker.engines.fast.space import Space
+from checker.engines.fast.table import most_in
+from checker.engines.zones import unfolding
+from checker.engines.zones.automaton import (
+    DEADLINE,
+    DEADLINES,
+    EDGE,
+    LOCATION,
+    TEST,
+    Automaton,
+    Constraint,
+)
 from checker.engines.zones.bounds import NONE
+from checker.engines.zones.unfolding import ANSWER, CHOICE, Growth, Timed, View
+from semantics.environment import Clause
 from semantics.state.configuration import Configuration
-from semantics.timing.clocks import BOUND, FREE, Clock, Passage, Situation, Sort, TimedStep
+from semantics.state.signature import Name
+from semantics.successors import by_clause, moves, served
+from semantics.timing.actor_clocks import (
+    ActorClocks,
+    Clock,
+    Running,
+    Sort,
+    StepClocks,
+    lasting,
+    of_clause,
+    of_moves,
+    of_requests,
+    of_vehicle,
+    timing_of,
+)
+from semantics.timing.clocks import STRICT, Situation, TimedStep
+from semantics.timing.intervals import Interval
 from semantics.timing.timing import Window
 
 NOWHERE = (0, NONE)
 """The deadline of where no time passes at all."""
 
+MARGIN = 1 << 12
+"""For how many more locations, and edges, there is room."""
+
 
 class Place(NamedTuple):
-    """A location of a mission: the number of its configuration, and what the clocks of windows say."""
+    """A location of a mission: the number of its row, and what the clocks of windows say."""
 
     number: int
     windows: tuple[int, ...] = ()
 
 
-class Network:
+class Network(Space):
     """What is known of a mission's configurations, and the automaton that they make.
 
     Attributes:
-        situations: One for each configuration, in the order of discovery.
-        places: What each location of the automaton is.
-        passages: Where steps lead that were taken, and what they do to the clocks.
-        grown: Whether a clock is compared with a larger constant than the automaton knows.
+        automaton: The automaton; of some of its locations nobody knows yet what leads from them.
+        clocks_of: For each clock of the automaton what it measures.
+        caps: How far each clock is ever told apart.
+        outgrown: Whether a clock is compared with a larger constant than before.
+        first_ages: What the clocks of the first location show.
     """
 
     def __init__(self, initial: Configuration, pending: int) -> None:
         self.initial = initial
-        self.pending = pending
+        self.timing = timing_of(initial)
         self.automaton = Automaton()
-        self.numbers: dict[Configuration, int] = {}
-        self.situations: list[Situation] = []
-        self.columns: list[tuple[int, ...]] = []
-        self.places: list[Place] = []
-        self.locations: dict[Place, int] = {}
-        self.passages: dict[tuple[int, int], tuple[int, Passage]] = {}
-        self.lower: dict[Clock, int] = {}
-        self.upper: dict[Clock, int] = {}
+        self.numbers: dict[tuple[Clock, Hashable], int] = {}
+        self.clocks_of: list[Clock] = []
         self.caps: dict[Clock, int] = {}
-        self.grown = False
-        self.is_crowded = False
-        number = self.number(initial)
-        ages = self.situations[number].first_ages()
-        self.first = self.location(Place(number, self._windows(number, ages)))
-        self.first_ages = self.measured(number, ages)
+        self.outgrown = False
+        self.windows = [
+            number for number, each in enumerate(self.timing.clauses) if isinstance(each.step, Window)
+        ]
+        self.records: dict[ActorClocks, list[int]] = {}
+        self.answers, self.running, self.times = (Growing(np.int32) for _ in range(3))
+        self.done, self.tested, self.served = (Growing(np.int32) for _ in range(3))
+        self.of_locations, self.of_rows, self.before = (Growing(np.int32) for _ in range(3))
+        self.said = Growing(np.int64)
+        self.noted = 0
+        self.counts_of = np.zeros(unfolding.DONE + 1, np.int64)
+        self.lasting = {each.clock: self._number(each) for each in lasting(self.timing)}
+        self.restored = [self._restoring(vehicle) for vehicle, _ in self.timing.endurances]
+        self.questions: dict[tuple[object, Name | int], int] = {}
+        self.timed: Timed
+        super().__init__(Learner(initial.setting, initial.state, pending), None)  # type: ignore[arg-type]  # a stored one
+        self.situation = lru_cache(1 << 12)(lambda number: Situation(self.configuration(number)))
+        situation = self.situation(0)
+        ages = situation.first_ages()
+        windows = [age for age, each in zip(ages, situation.clocks, strict=True) if each.sort is Sort.WINDOW]
+        code = sum(said * 3**at for at, said in enumerate(windows))
+        loop: Callable[..., int] = unfolding.begin
+        self._run(lambda *known: loop(*known, self.rows.words, code, self.state, self.counts_of))
+        self.first_ages = self.measured(situation, ages)
 
-    # --- configurations
+    # --- what is learned ------------------------------------------------------------------------------------------
 
-    def number(self, c: Configuration) -> int:
-        """Return the number of a configuration, a new one for one that was not met."""
-        number = self.numbers.get(c)
-        if number is None:
-            number = self.numbers[c] = len(self.situations)
-            situation = Situation(c)
-            self.situations.append(situation)
-            for clock, cap in zip(situation.clocks, situation.constants, strict=True):
-                self.caps[clock] = max(self.caps.get(clock, 0), cap)
-                lower, upper = compared(situation, clock)
-                self._compare(self.lower, clock, lower)
-                self._compare(self.upper, clock, upper)
-            self.columns.append(
-                tuple(at for at, clock in enumerate(situation.clocks) if clock.sort is not Sort.WINDOW)
+    def _see(self) -> None:
+        """Let the loops see what is known now."""
+        super()._see()
+        known = len(self.questions)
+        vehicles = [self._question(of_vehicle, vehicle) for vehicle, _ in self.timing.endurances]
+        agents = [
+            self._question(of, a) for group in self.groups for of in (of_requests, of_moves) for a in group
+        ]
+        clauses = [self._question(of_clause, number) for number in range(len(self.clauses))]
+        if len(self.questions) > known:
+            super()._see()  # their trees are new
+        self._note_answers()
+        windows = [
+            each
+            for number in self.windows
+            for step in [self.timing.clause(number).step]
+            if isinstance(step, Window)
+            for each in (number, NONE if step.within is None else step.within)
+        ]
+        numbers = (agents, clauses, vehicles)
+        arrays = (self.answers, self.running, self.times, self.done, self.tested, self.served)
+        lasting = [number for number in self.lasting.values() if number >= 0]
+        always = (lasting, [each for several in self.restored for each in several], windows)
+        self.timed = Timed._make(
+            (
+                *(np.array(each, np.int32) for each in numbers),
+                *(each.room for each in arrays),
+                *(np.array(each, np.int32) for each in always),
+                self.learner.leaves.rule.room,
             )
+        )
+
+    def _question(self, of: Callable[..., ActorClocks], about: Name | int) -> int:
+        """Return the tree of what times an actor."""
+        if (of, about) not in self.questions:
+            self.questions[of, about] = self.learner.question(partial(_asked, of, about))
+        return self.questions[of, about]
+
+    def _note_answers(self) -> None:
+        """Write down what was learned of clocks."""
+        missing = len(self.learner.leaves.leaves) // LEAF - len(self.answers) // ANSWER
+        self.answers.extend(missing * ANSWER, NONE)
+        for leaf, answer in islice(self.learner.answers.items(), self.noted, None):
+            assert isinstance(answer, ActorClocks)
+            if answer not in self.records:
+                self.records[answer] = self._record(answer)
+            self.answers.room[ANSWER * leaf : ANSWER * (leaf + 1)] = self.records[answer]
+        self.noted = len(self.learner.answers)
+
+    def _record(self, answer: ActorClocks) -> list[int]:
+        """Write down the clocks of an actor; return where they begin and end, and its steps."""
+        numbers = dict(self.lasting)
+        run = len(self.running) // unfolding.RUNNING
+        for each in answer.running:
+            number = numbers[each.clock] = self._number(each)
+            self.running.append(
+                number, each.interval.lo, NONE if each.interval.hi is None else each.interval.hi
+            )
+        step = len(self.times) // unfolding.TIMES
+        for done, tests in answer.steps:
+            ends = len(self.done), len(self.tested) // TEST
+            self.done.append(*(numbers[each] for each in done if each in numbers))
+            for clock, least, most in tests:
+                self.tested.append(numbers[clock], least, NONE if most is None else most)
+            self.times.append(ends[0], len(self.done), ends[1], len(self.tested) // TEST)
+        return [run, len(self.running) // unfolding.RUNNING, step, len(self.times) // unfolding.TIMES]
+
+    def _number(self, running: Running) -> int:
+        """Return the number of a clock, below 0 for a window's; a new one for one that was not met."""
+        clock, interval, aim = running
+        if clock.sort is Sort.WINDOW:
+            assert isinstance(clock.of, int)
+            return -1 - self.windows.index(clock.of)
+        self.caps[clock] = max(self.caps.get(clock, 0), cap(clock, interval))
+        number = self.numbers.get((clock, aim))
+        if number is None:
+            number = self.numbers[clock, aim] = self.automaton.clock(*compared(clock, interval))
+            self.clocks_of.append(clock)
+            self.served.append(clock.sort is Sort.REQUEST)
+        elif self.automaton.compare(number, *compared(clock, interval)):
+            self.outgrown = True
         return number
 
-    def _compare(self, constants: dict[Clock, int], clock: Clock, constant: int) -> None:
-        before = constants.get(clock)
-        if before is None or constant > before:
-            constants[clock] = constant
-            self.grown = self.grown or before is not None
+    def _restoring(self, vehicle: Name) -> tuple[int, int, int]:
+        """Return the clocks that are asked when a vehicle leaves where it is restored, and how long that takes."""
+        endurance = dict(self.timing.endurances)[vehicle]
+        restored = self._number(Running(Clock(Sort.RESTORED, vehicle), Interval(endurance.after)))
+        return (
+            restored,
+            self._number(Running(Clock(Sort.ALOFT, vehicle), Interval(endurance.lasts))),
+            endurance.after,
+        )
 
-    def measured(self, number: int, ages: Iterable[int]) -> tuple[int, ...]:
-        """Return the ages of what measures time, clock by clock of a location."""
-        several = tuple(ages)
-        return tuple(several[at] for at in self.columns[number])
+    # --- unfolding ------------------------------------------------------------------------------------------------
 
-    def _windows(self, number: int, ages: Iterable[int]) -> tuple[int, ...]:
-        clocks = self.situations[number].clocks
-        return tuple(age for age, clock in zip(ages, clocks, strict=True) if clock.sort is Sort.WINDOW)
+    def leave(self, locations: NDArray[np.int64]) -> None:
+        """Work out what leads from locations, and learn what that takes."""
+        self.counts_of[unfolding.DONE] = 0
+        choices = np.zeros(CHOICE * (len(self.restored) + len(self.windows) + 1), np.int32)
+
+        def work(model: object, timed: Timed, growth: Growth, view: View) -> int:
+            other, arrays = self._view(), (self.rows.words, self.rows.origins, self.table.room)
+            most = min(self.rows.room, most_in(len(self.table.room)), int(self.state[LIMIT]))
+            scratch = np.zeros(self.packing.words, np.uint64), np.zeros(2 * self.margin, np.int32), choices
+            loop: Callable[..., int] = unfolding.leave
+            known = (model, timed, growth, view, other)
+            return loop(*known, *arrays, most, *scratch, locations, self.state, self.counts_of)
+
+        self._run(work)
+
+    margin = MARGIN
+
+    def _run(self, loop: Callable[..., int]) -> None:
+        """Run a loop to its end, with room and with what it does not know."""
+        while True:
+            self._reserve()
+            done = self.counts_of.copy()
+            why = loop(self.model, self.timed, self._growth(), self._view())
+            self._measure()
+            if why == unfolding.KNOWN:
+                return
+            if why == unfolding.MISS:
+                self._learn(int(self.state[AT]))
+            elif np.array_equal(done, self.counts_of):
+                self.margin *= 2
+
+    def _reserve(self) -> None:
+        self._make_room(self.margin)
+        missing = self.size + self.margin - len(self.of_rows)
+        if missing > 0:
+            self.of_rows.extend(missing, NONE)
+        widest = max(int(self.counts_of[unfolding.WIDEST]), 2 + len(self.numbers))
+        automaton = self.automaton
+        for each, size in (
+            (automaton.locations, LOCATION),
+            (automaton.edges, EDGE),
+            (automaton.tests, 4 * TEST),
+            (automaton.sources, min(widest, 64)),
+            (automaton.deadlines, 8 * DEADLINE),
+            (automaton.clocks, min(widest, 64)),
+            (self.of_locations, 1),
+            (self.before, 1),
+            (self.said, 1),
+        ):
+            each.reserve(size * self.margin)
+
+    def _growth(self) -> Growth:
+        automaton = self.automaton
+        arrays = (
+            automaton.locations,
+            automaton.edges,
+            automaton.tests,
+            automaton.sources,
+            automaton.deadlines,
+        )
+        known = (automaton.clocks, self.of_locations, self.said, self.of_rows, self.before)
+        return Growth(*(each.room for each in (*arrays, *known)))
+
+    def _view(self) -> View:
+        clocks = len(self.clocks_of)
+        actors = np.zeros(self.actors, np.int32), np.zeros(self.actors + len(self.restored), np.int32)
+        numbers = np.zeros(unfolding.CLOCKS + 1, np.int64)
+        return View(
+            *actors,
+            numbers,
+            np.zeros(clocks, np.int32),
+            np.zeros(clocks, np.int32),
+            np.zeros(clocks, np.int64),
+            np.zeros(clocks, np.int64),
+        )
+
+    def _measure(self) -> None:
+        """Note how far the automaton has grown."""
+        located, leaving, tested, sourced, ended, clocked, widest, _ = self.counts_of.tolist()
+        automaton = self.automaton
+        automaton.locations.size, automaton.edges.size = LOCATION * located, EDGE * leaving
+        automaton.tests.size, automaton.sources.size = TEST * tested, sourced
+        automaton.deadlines.size, automaton.clocks.size = DEADLINE * ended, clocked
+        automaton.largest = max(automaton.largest, widest)
+        self.of_locations.size = self.before.size = self.said.size = located
+
+    # --- locations ------------------------------------------------------------------------------------------------
+
+    first = 0
+    """The first location."""
+
+    def place(self, location: int) -> Place:
+        """Return what a location is."""
+        said = int(self.said.room[location])
+        return Place(
+            int(self.of_locations.room[location]), tuple(said // 3**at % 3 for at in range(len(self.windows)))
+        )
+
+    def locations(self, number: int) -> Iterator[int]:
+        """Yield the locations of a row."""
+        at = int(self.of_rows.room[number])
+        while at >= 0:
+            yield at
+            at = int(self.before.room[at])
+
+    def crowded(self, locations: NDArray[np.int64]) -> bool:
+        """Tell whether in some location an agent has more pending than is followed."""
+        records = self.automaton.locations.used.reshape(-1, LOCATION)[locations]
+        ends = records[records[:, DEADLINES] < records[:, DEADLINES + 1]][:, DEADLINES]
+        return bool(np.any(self.automaton.deadlines.room[DEADLINE * ends + 1] < 0))
 
     def clocks(self, location: int) -> tuple[Clock, ...]:
         """Return the clocks of a location, from its first."""
-        number = self.places[location].number
-        return tuple(self.situations[number].clocks[at] for at in self.columns[number])
+        return tuple(self.clocks_of[each] for each in self.automaton.location(location).clocks)
+
+    def index(self, location: int, clock: Clock) -> int:
+        """Return the index of a clock that runs in a location."""
+        return self.clocks(location).index(clock) + 1
+
+    def measured(self, situation: Situation, ages: Iterable[int]) -> tuple[int, ...]:
+        """Return the ages of what measures time, as locations have them."""
+        return tuple(
+            age for age, clock in zip(ages, situation.clocks, strict=True) if clock.sort is not Sort.WINDOW
+        )
 
     def capped(self, location: int, ages: Iterable[int]) -> tuple[int, ...]:
         """Return ages as far as they are ever told apart."""
@@ -103,149 +340,56 @@ class Network:
             min(age, self.caps[clock]) for age, clock in zip(ages, self.clocks(location), strict=True)
         )
 
-    # --- locations
-
-    def location(self, place: Place) -> int:
-        """Return the number of a location, a new one for one that was not met."""
-        found = self.locations.get(place)
-        if found is not None:
-            return found
-        situation = self.situations[place.number]
-        full = crowded(situation.c, self.pending)
-        self.is_crowded = self.is_crowded or full
-        deadlines = (NOWHERE,) if full else self._deadlines(place)
-        number = self.automaton.add(Location(*self._constants(place.number), deadlines))
-        self.locations[place] = number
-        self.places.append(place)
-        if not full:
-            self.automaton.leave(number, self._unknown(place))
-        return number
-
-    def constants(self, location: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """Return what the clocks of a location are compared with, from below and from above."""
-        return self._constants(self.places[location].number)
-
-    def _constants(self, number: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        situation = self.situations[number]
-        clocks = [situation.clocks[at] for at in self.columns[number]]
-        return tuple(self.lower[each] for each in clocks), tuple(self.upper[each] for each in clocks)
-
-    def _deadlines(self, place: Place) -> tuple[tuple[int, int], ...]:
-        bounds: dict[int, int] = {}
-        for clock, most, unless in self.situations[place.number].deadlines:
-            if unless is None or self._shown(place, unless) < FREE:
-                at = self._index(place.number, clock)
-                bounds[at] = min(most, bounds.get(at, most))
-        return tuple(bounds.items())
-
-    def _index(self, number: int, clock: int) -> int:
-        return self.columns[number].index(clock) + 1
-
-    def _shown(self, place: Place, window: int) -> int:
-        clocks = self.situations[place.number].clocks
-        return place.windows[sum(each.sort is Sort.WINDOW for each in clocks[:window])]
-
-    def compare(self) -> None:
-        """Let all locations know the constants that have grown."""
-        self.grown = False
-        for location, place in enumerate(self.places):
-            self.automaton.compare(location, *self._constants(place.number))
-
-    # --- edges
-
-    def tests(self, place: Place, step: TimedStep) -> list[tuple[Constraint, ...]]:
+    def tests(self, location: int, step: TimedStep) -> list[tuple[Constraint, ...]]:
         """Return what clocks have to show that a step may be taken: one of several is enough."""
-        situation = self.situations[place.number]
+        number, said = self.place(location)
         if not step.guards:
             return [()]
         found: list[tuple[Constraint, ...]] = []
-        for clock, least, most in step.guards:
-            if situation.clocks[clock].sort is Sort.WINDOW:
-                found += [()] if self._shown(place, clock) >= least else []
+        for at, least, most in step.guards:
+            clock = self.situation(number).clocks[at]
+            if clock.sort is Sort.WINDOW:
+                assert isinstance(clock.of, int)
+                found += [()] if said[self.windows.index(clock.of)] >= least else []
             else:
-                at = self._index(place.number, clock)
-                found.append((Constraint(at, least, NONE if most is None else most),))
+                index = self.index(location, clock)
+                found.append((Constraint(index, least, NONE if most is None else most),))
         return found
 
-    def _unknown(self, place: Place) -> Iterator[Edge]:
-        for at, step in enumerate(self.situations[place.number].steps):
-            if step.in_turn:
-                yield from (Edge(at, tests) for tests in self.tests(place, step))
 
-    def learn(self, location: int, at: int) -> None:
-        """Run the rules where a step leads that is taken for the first time."""
-        place = self.places[location]
-        step = self.situations[place.number].steps[at]
-        found = tuple(self._known(place, at, step))
-        others = (edge for edge in self.automaton.out[location] if edge.step != at)
-        self.automaton.leave(location, (*others, *found))
-
-    def passage(self, number: int, at: int, step: TimedStep) -> tuple[int, Passage]:
-        """Return where a step leads, and what it does to the clocks."""
-        known = self.passages.get((number, at))
-        if known is None:
-            target = self.number(step.transition.target)
-            known = target, Passage(self.situations[number], step, self.situations[target])
-            self.passages[number, at] = known
-        return known
-
-    def _known(self, place: Place, at: int, step: TimedStep) -> Iterator[Edge]:
-        number, passage = self.passage(place.number, at, step)
-        leavings = list(product(*(self._leaving(place.number, each) for each in passage.leaving)))
-        entries = list(self._entries(place, number, passage))
-        for tests, leaving, (windows, entering) in product(self.tests(place, step), leavings, entries):
-            fresh = {clock for clock, _ in leaving if clock is not None}
-            sources = tuple(
-                0 if source is None or after in fresh else self._index(place.number, source)
-                for after, source in enumerate(passage.sources)
-                if after in self.columns[number]
+def _asked(of: Callable[..., ActorClocks], about: Name | int, c: Configuration) -> ActorClocks:
+    """Return what times an actor; observations in its requests say what they say."""
+    if of is of_vehicle:
+        return of(c, about)
+    clause: Clause | None = c.setting.environment[about] if isinstance(about, int) else None
+    steps = (
+        by_clause(c, clause)
+        if clause is not None
+        else (served if of is of_requests else moves)(c, str(about))
+    )
+    found = of(c, about, list(steps))
+    return ActorClocks(
+        tuple(each._replace(clock=_settled(each.clock)) for each in found.running),
+        tuple(
+            StepClocks(
+                tuple(map(_settled, done)), tuple(each._replace(clock=_settled(each.clock)) for each in tests)
             )
-            more = tuple(test for _, test in leaving)
-            yield Edge(at, (*tests, *more, *entering), self.location(Place(number, windows)), sources)
-
-    def _leaving(self, number: int, leaving: tuple[int, int, int]) -> list[tuple[int | None, Constraint]]:
-        """Return how a vehicle may leave where it is restored: as it came, or with a clock that starts anew."""
-        restored, aloft, after = leaving
-        at = self._index(number, restored)
-        return [(None, Constraint(at, 0, after)), (aloft, Constraint(at, after))]
-
-    def _entries(
-        self, place: Place, number: int, passage: Passage
-    ) -> Iterator[tuple[tuple[int, ...], tuple[Constraint, ...]]]:
-        """Yield what windows may say after a step, and what the clocks have to show for that."""
-        situation = self.situations[number]
-        mission = situation.first.get(Clock(Sort.MISSION))
-        choices: list[list[tuple[int, tuple[Constraint, ...]]]] = []
-        for after, clock in enumerate(situation.clocks):
-            if clock.sort is not Sort.WINDOW:
-                continue
-            source, clause = passage.sources[after], clock.of
-            assert isinstance(clause, int)
-            said = FREE if after in passage.freed else 0 if source is None else self._shown(place, source)
-            window = situation.timing.clause(clause).step
-            assert isinstance(window, Window)
-            if said or not situation.by_clauses[clause]:
-                choices.append([(said, ())])
-            elif window.within is None:
-                choices.append([(BOUND, ())])
-            else:
-                assert mission is not None
-                came = passage.sources[mission]
-                assert came is not None
-                at = self._index(place.number, came)
-                choices.append(
-                    [
-                        (BOUND, (Constraint(at, 0, window.within),)),
-                        (FREE, (Constraint(at, window.within + 1),)),
-                    ]
-                )
-        for several in product(*choices):
-            yield tuple(said for said, _ in several), tuple(test for _, tests in several for test in tests)
+            for done, tests in found.steps
+        ),
+    )
 
 
-def compared(situation: Situation, clock: Clock) -> tuple[int, int]:
+def _settled(clock: Clock) -> Clock:
+    return clock._replace(of=settled(clock.of))
+
+
+def cap(clock: Clock, interval: Interval) -> int:
+    """Return how far a clock has to be counted: one more than its constant where it may be past it."""
+    return max(interval.lo, interval.hi or 0) + (clock.sort in STRICT)
+
+
+def compared(clock: Clock, interval: Interval) -> tuple[int, int]:
     """Return the largest constants that a clock is compared with, from below and from above."""
-    interval = situation.bounds[clock]
     lo, hi = interval.lo or NONE, NONE if interval.hi is None else interval.hi
     match clock.sort:
         case Sort.MISSION:
@@ -254,7 +398,5 @@ def compared(situation: Situation, clock: Clock) -> tuple[int, int]:
             return interval.lo + 1, NONE
         case Sort.RESTORED:
             return interval.lo, interval.lo
-        case Sort.WINDOW:
-            return NONE, NONE
         case _:
             return lo, hi

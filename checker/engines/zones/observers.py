@@ -68,19 +68,25 @@ class Observer:
     automaton: Automaton = field(default_factory=Automaton)
     spots: list[Spot] = field(default_factory=list)
     numbers: dict[Spot, int] = field(default_factory=dict)
+    meter_clock: int = field(init=False)
 
     def __post_init__(self) -> None:
+        lower, upper = (
+            each.used.tolist() for each in (self.network.automaton.lower, self.network.automaton.upper)
+        )
+        for least, most in zip(lower, upper, strict=True):
+            self.automaton.clock(*(max(least, most),) * 2 if self.is_exact else (least, most))
+        self.meter_clock = self.automaton.clock(self.meter.lower, self.meter.upper)
         watch = self.rule(Watch.OFF, self.network.first)
         assert watch is not None
         self._add(self.network.first, watch)
         for number, spot in enumerate(self.spots):  # grows on the way
-            if spot.watch is not Watch.END:
-                self.automaton.leave(number, list(self._edges(spot)))
+            self.automaton.leave(number, [] if spot.watch is Watch.END else self._edges(spot))
 
     def clock(self, number: int) -> int:
         """Return the number of the clock in a location, 0 where it does not run."""
         off = self.spots[number].watch is Watch.OFF
-        return 0 if off else len(self.automaton.all[number].lower)
+        return 0 if off else len(self.automaton.location(number).clocks)
 
     def first_ages(self) -> tuple[int, ...]:
         """Return what the clocks show at first."""
@@ -91,28 +97,25 @@ class Observer:
         spot = Spot(location, Watch.ON if watch is Watch.START else watch)
         if spot in self.numbers:
             return self.numbers[spot]
-        lower, upper = self.network.constants(location)
-        if self.is_exact:
-            lower = upper = tuple(map(max, lower, upper))
-        deadlines, goal = self.network.automaton.all[location].deadlines, None
+        clocks, deadlines, goal = self.network.automaton.location(location)
         if spot.watch is not Watch.OFF:
-            lower, upper = (*lower, self.meter.lower), (*upper, self.meter.upper)
+            clocks = (*clocks, self.meter_clock)
             if self.meter.goal is not None and self.meter.goal[0] is spot.watch:
-                goal = Constraint(len(lower), self.meter.goal[1])
+                goal = Constraint(len(clocks), self.meter.goal[1])
             if spot.watch is Watch.END:
                 deadlines = (NOWHERE,)
             elif self.meter.most >= 0:
-                deadlines = (*deadlines, (len(lower), self.meter.most))
+                deadlines = (*deadlines, (len(clocks), self.meter.most))
         self.spots.append(spot)
-        number = self.numbers[spot] = self.automaton.add(Location(lower, upper, deadlines, goal))
+        number = self.numbers[spot] = self.automaton.add(Location(clocks, deadlines, goal))
         return number
 
     def _edges(self, spot: Spot) -> list[Edge]:
         found = []
-        clock = len(self.network.automaton.all[spot.location].lower) + 1
+        clock = len(self.network.automaton.location(spot.location).clocks) + 1
         runs = spot.watch is Watch.ON
-        for step, tests, target, sources in self.network.automaton.out[spot.location]:
-            watch = None if target < 0 else self.rule(spot.watch, target)
+        for step, tests, target, sources in self.network.automaton.out(spot.location):
+            watch = self.rule(spot.watch, target)
             if watch is None:
                 continue
             if watch is not Watch.OFF:

@@ -7,14 +7,13 @@ from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
 from checker.engines.zones import kernel
-from checker.engines.zones.automaton import LOCATION, SIZE, Automaton
+from checker.engines.zones.automaton import EDGES, LOCATION, SIZE, UNKNOWN, Automaton
 from checker.engines.zones.kernel import (
     AT,
     BEFORE,
     BEGIN,
     BY,
     COUNT,
-    EDGE_OF,
     FOUND,
     GROUP,
     GROUPS,
@@ -52,7 +51,7 @@ class Search:
         shown = np.array((0, *self.ages), np.int32)
         first = np.zeros((self._largest, self._largest), np.int32)
         first[:size, :size] = shown[:, None] - shown[None, :]
-        scratch = np.zeros_like(first), np.zeros((2, 1 + len(self.automaton.deadlines)), np.int32)
+        scratch = np.zeros_like(first), np.zeros((4, 1 + self._largest), np.int32)
         kernel.enter(self.model, self.zones, self.state, self.location, first, *scratch)
         self.groups.room[:GROUP] = -1, -1, 0
         self.state[GROUPS] = 1
@@ -72,12 +71,19 @@ class Search:
             if why == kernel.FULL:
                 self._see(int(self.state[MISSED]))
             else:
-                self.learn(*divmod(int(self.state[MISSED]), EDGE_OF))
+                self.learn()
                 self._see(1)
 
-    def learn(self, location: int, step: int) -> None:
-        """Find out where a step leads that is taken for the first time."""
-        raise AssertionError(f"nobody knows where step {step} of location {location} leads")
+    def learn(self) -> None:
+        """Find out what leads from locations that were reached."""
+        raise AssertionError("nobody knows what leads from some location")
+
+    def waiting(self) -> NDArray[np.int64]:
+        """Return the locations of zones that are not followed yet of which nobody knows what leads from them."""
+        begin = int(self.groups.room[GROUP * int(self.state[AT]) + BEGIN])
+        reached = np.unique(self.places.room[begin : self.count]).astype(np.int64)
+        found: NDArray[np.int64] = reached[self.automaton.locations.used[EDGES::LOCATION][reached] == UNKNOWN]
+        return found
 
     def again(self) -> None:
         """Begin anew."""
@@ -105,14 +111,18 @@ class Search:
         self.bounds.reserve((zones + 1) * self._largest**2)
         self.groups.size = GROUP * int(self.state[GROUPS])
         self.groups.reserve(GROUP * (zones + CHUNK))
-        missing = len(automaton.all) - len(self.heads)
+        missing = len(automaton) - len(self.heads)
         if missing:
             self.heads.extend(missing, -1)
-        arrays = (automaton.locations, automaton.edges, automaton.tests, automaton.sources)
-        constants = (automaton.deadlines, automaton.lower, automaton.upper)
-        self.model = kernel.Model(
-            *(each.room for each in (*arrays[:4], constants[0])), *(each.room for each in constants[1:])
+        parts = (
+            automaton.locations,
+            automaton.edges,
+            automaton.tests,
+            automaton.sources,
+            automaton.deadlines,
         )
+        clocks = (automaton.clocks, automaton.lower, automaton.upper)
+        self.model = kernel.Model._make(each.room for each in (*parts, *clocks))
         found = (self.bounds, self.begins, self.sums, self.places, self.following, self.heads, self.groups)
         self.zones = kernel.Zones(*(each.room for each in found))
 

@@ -30,7 +30,7 @@ from checker.engines.zones.network import Network
 from checker.engines.zones.observers import Meter, Observer, Watch
 from checker.engines.zones.search import Search
 from checker.limits import look
-from semantics.timing.clocks import Sort
+from semantics.timing.actor_clocks import Sort
 
 
 def first_stop(network: Network) -> Stop | None:
@@ -55,9 +55,9 @@ def first_stop(network: Network) -> Stop | None:
 def _risky(automaton: Automaton) -> set[int]:
     """Return the locations with deadlines from which steps may go round among such locations."""
     graph = nx.DiGraph()
-    ending = {place for place, each in enumerate(automaton.all) if each.deadlines}
+    ending = {place for place in range(len(automaton)) if automaton.location(place).deadlines}
     for place in ending:
-        graph.add_edges_from((place, edge.target) for edge in automaton.out[place] if edge.target in ending)
+        graph.add_edges_from((place, edge.target) for edge in automaton.out(place) if edge.target in ending)
     rounds = {
         place
         for component in nx.strongly_connected_components(graph)
@@ -72,7 +72,7 @@ def _passing(automaton: Automaton, risky: set[int]) -> dict[int, list[Zone]]:
     found = {place: _passing_at_once(automaton, place) for place in risky}
     sources: dict[int, set[int]] = {place: set() for place in risky}
     for place in risky:
-        for edge in automaton.out[place]:
+        for edge in automaton.out(place):
             if edge.target in risky:
                 sources[edge.target].add(place)
     waiting = dict.fromkeys(sorted(risky))
@@ -80,14 +80,11 @@ def _passing(automaton: Automaton, risky: set[int]) -> dict[int, list[Zone]]:
         look()
         place = next(iter(waiting))
         del waiting[place]
-        size = len(automaton.all[place].lower)
+        size = len(automaton.location(place).clocks)
         more = list(found[place])
-        for edge in automaton.out[place]:
-            if edge.target >= 0:
-                after = found[edge.target] if edge.target in risky else [whole(len(edge.sources))]
-                more += (
-                    zone for each in after for zone in [before_edge(edge, size, each)] if zone is not None
-                )
+        for edge in automaton.out(place):
+            after = found[edge.target] if edge.target in risky else [whole(len(edge.sources))]
+            more += (zone for each in after for zone in [before_edge(edge, size, each)] if zone is not None)
         grown = spread(more)
         if _is_more(grown, found[place]):
             found[place] = grown
@@ -96,13 +93,13 @@ def _passing(automaton: Automaton, risky: set[int]) -> dict[int, list[Zone]]:
 
 
 def _passing_at_once(automaton: Automaton, place: int) -> list[Zone]:
-    location = automaton.all[place]
+    location = automaton.location(place)
     if any(most < 0 for _, most in location.deadlines):
-        return [whole(len(location.lower))]  # it is not known what follows
+        return [whole(len(location.clocks))]  # it is not known what follows
     if any(most == 0 for _, most in location.deadlines):
         return []
     zone = tested(
-        whole(len(location.lower)), [Constraint(clock, 0, most - 1) for clock, most in location.deadlines]
+        whole(len(location.clocks)), [Constraint(clock, 0, most - 1) for clock, most in location.deadlines]
     )
     return [] if zone is None else [zone]
 
@@ -121,7 +118,7 @@ def _is_more(zones: list[Zone], before: list[Zone]) -> bool:
 def _without(place: int, network: Network, passing: dict[int, list[Zone]]) -> list[Zone]:
     if place not in passing:
         return []
-    rest = [whole(len(network.automaton.all[place].lower))]
+    rest = [whole(len(network.automaton.location(place).clocks))]
     for each in passing[place]:
         rest = without(rest, each)
     return rest
@@ -138,9 +135,9 @@ def _going_round(network: Network, observer: Observer, dates: Dates) -> Stop:
     def shown(moment: Moment) -> tuple[int, tuple[int, ...]]:
         """Return a state as `Timeline` has it."""
         location = observer.spots[moment.location].location
-        place = network.places[location]
+        place = network.place(location)
         windows, ages = iter(place.windows), iter(network.capped(location, moment.ages))
-        clocks = network.situations[place.number].clocks
+        clocks = network.situation(place.number).clocks
         return place.number, tuple(next(windows if each.sort is Sort.WINDOW else ages) for each in clocks)
 
     run: Run = dates.run()
@@ -148,6 +145,6 @@ def _going_round(network: Network, observer: Observer, dates: Dates) -> Stop:
     seen: dict[object, int] = {}
     while shown(state) not in seen:
         seen[shown(state)] = len(run.steps)
-        edge = next(each for each in observer.automaton.out[state.location] if passes(each, state.ages))
+        edge = next(each for each in observer.automaton.out(state.location) if passes(each, state.ages))
         run, state = run.then(edge.step), Moment(edge.target, moved(edge, state.ages))
     return Stop(run, seen[shown(state)])

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
+from typing import overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,17 @@ from numpy.typing import NDArray
 from checker.engines.runs import Run
 from checker.engines.tick_times import control_pairs
 from checker.engines.times import Moments, Stop, Wait
-from checker.engines.zones.automaton import Automaton, Constraint
+from checker.engines.zones.automaton import (
+    EDGE,
+    EDGES,
+    EDGES_END,
+    FIRST,
+    LOCATION,
+    RULE,
+    STEP,
+    Automaton,
+    Constraint,
+)
 from checker.engines.zones.bounds import MOST
 from checker.engines.zones.dates import (
     Dates,
@@ -28,39 +39,85 @@ from checker.limits import look
 from checker.properties.durations import NEVER
 from semantics.environment import Says
 from semantics.properties.propositions import Proposition, holds
-from semantics.state.configuration import Transition
-from semantics.timing.clocks import Clock, Situation, Sort, TimedStep
+from semantics.state.configuration import Configuration, Transition
+from semantics.timing.actor_clocks import Clock, Sort, is_restored
+from semantics.timing.clocks import Situation, TimedStep
+
+
+class Configurations(Sequence[Configuration]):
+    """Configurations by the numbers of their rows, each made anew where it is looked at."""
+
+    def __init__(self, network: Network, rows: NDArray[np.int64]) -> None:
+        self.network = network
+        self.rows = rows
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @overload
+    def __getitem__(self, number: int) -> Configuration: ...
+
+    @overload
+    def __getitem__(self, number: slice) -> Sequence[Configuration]: ...
+
+    def __getitem__(self, number: int | slice) -> Configuration | Sequence[Configuration]:
+        if isinstance(number, slice):
+            return Configurations(self.network, self.rows[number])
+        return self.network.configuration(int(self.rows[number]))
+
+
+class Situations(Sequence[Situation]):
+    """What time means in configurations, by the numbers of their rows, as long as it is looked at."""
+
+    def __init__(self, network: Network, rows: NDArray[np.int64]) -> None:
+        self.network = network
+        self.rows = rows
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @overload
+    def __getitem__(self, number: int) -> Situation: ...
+
+    @overload
+    def __getitem__(self, number: slice) -> Sequence[Situation]: ...
+
+    def __getitem__(self, number: int | slice) -> Situation | Sequence[Situation]:
+        if isinstance(number, slice):
+            return Situations(self.network, self.rows[number])
+        return self.network.situation(int(self.rows[number]))
 
 
 class ZoneTimes:
-    """Answers from a search through zones."""
+    """Answers from a search through zones.
+
+    Attributes:
+        reached: The locations that were reached.
+        numbers: The row of each group.
+        order, firsts: The rows that were reached in the order of discovery, and the first group of each.
+    """
 
     def __init__(self, network: Network, search: Search) -> None:
         self.network = network
         self.search = search
         self.initial = network.initial
-        numbers = np.array([place.number for place in network.places], np.int64)
-        records = search.group_records()
-        self.numbers: NDArray[np.int64] = numbers[search.places.room[records[:, 2]]]
-        """The number of the configuration of each group."""
+        self.reached: NDArray[np.int64] = np.flatnonzero(search.heads.used >= 0)
+        rows = network.of_locations.used.astype(np.int64)
+        self.numbers = rows[search.places.room[search.group_records()[:, 2]]]
         met, first = np.unique(self.numbers, return_index=True)
         order = np.argsort(first)
-        self.order: list[int] = met[order].tolist()
-        self.firsts: list[int] = first[order].tolist()
-        """The first group of each configuration, in their order."""
-        self.located: dict[int, list[int]] = {}
-        for location, place in enumerate(network.places):
-            self.located.setdefault(place.number, []).append(location)
+        self.order: NDArray[np.int64] = met[order]
+        self.firsts: NDArray[np.int64] = first[order]
 
     @property
     def searched(self) -> str:
         """Over what it searched, in words."""
         return f"{self.search.count:,} zones"
 
-    @cached_property
+    @property
     def situations(self) -> Sequence[Situation]:
         """What time means in each configuration."""
-        return tuple(self.network.situations[number] for number in self.order)
+        return Situations(self.network, self.order)
 
     @cached_property
     def _by_place(self) -> dict[int, list[int]]:
@@ -68,7 +125,7 @@ class ZoneTimes:
 
     def _zones(self, place: int) -> Iterator[tuple[int, Zone]]:
         """Yield the zones of a configuration, each with its location."""
-        for location in self.located[self.order[place]]:
+        for location in self.network.locations(int(self.order[place])):
             for zone in self._by_place.get(location, ()):
                 yield location, self.search.matrix(zone)
 
@@ -77,7 +134,7 @@ class ZoneTimes:
     def firsts_of(self, place: int) -> dict[int, int]:
         """Return each step that is taken in a configuration, with the group that it is first taken in."""
         found: dict[int, int] = {}
-        for location in self.located[self.order[place]]:
+        for location in self.network.locations(int(self.order[place])):
             for step, group in self.network.automaton.firsts(location):
                 found[step] = min(group, found.get(step, group))
         return found
@@ -85,6 +142,19 @@ class ZoneTimes:
     def taken(self, place: int) -> set[int]:
         """Return the steps of a configuration that are taken at some time."""
         return set(self.firsts_of(place))
+
+    def taken_rules(self) -> NDArray[np.int32]:
+        """Return the rule of each step that is taken in a configuration, once."""
+        locations = self.network.automaton.locations.used.reshape(-1, LOCATION)
+        edges = self.network.automaton.edges.used.reshape(-1, EDGE)
+        counts = np.maximum(locations[:, EDGES_END] - locations[:, EDGES], 0)
+        begins = np.argsort(np.where(counts > 0, locations[:, EDGES], len(edges)), kind="stable")
+        rows = np.repeat(self.network.of_locations.used[begins], counts[begins])
+        taken = edges[:, FIRST] >= 0
+        steps = np.stack([rows[taken], edges[taken, STEP]])
+        _, first = np.unique(steps, axis=1, return_index=True)
+        found: NDArray[np.int32] = edges[taken, RULE][first]
+        return found
 
     def together(self, place: int) -> Iterator[tuple[Transition, ...]]:
         """Yield each pair of pending controls that may be served at one moment."""
@@ -101,28 +171,28 @@ class ZoneTimes:
 
     def _ways(self, location: int, steps: Sequence[TimedStep]) -> Iterator[tuple[Constraint, ...]]:
         for step in steps:
-            yield from self.network.tests(self.network.places[location], step) if step.in_turn else [()]
+            yield from self.network.tests(location, step) if step.in_turn else [()]
 
     def unsayable(self, place: int) -> set[int]:
         """Return the clauses whose message cannot be said any more at some time in a configuration."""
-        situation, number = self.situations[place], self.order[place]
+        situation = self.situations[place]
         clauses = situation.c.setting.environment
         if Clock(Sort.MISSION) not in situation.first or not any(isinstance(each, Says) for each in clauses):
             return set()
-        mission = self.network.columns[number].index(situation.first[Clock(Sort.MISSION)])
-        latest = max(int(zone[mission + 1, 0]) for _, zone in self._zones(place))
+        mission = Clock(Sort.MISSION)
+        latest = max(int(zone[self.network.index(at, mission), 0]) for at, zone in self._zones(place))
         ages = [0] * len(situation.clocks)
-        ages[situation.first[Clock(Sort.MISSION)]] = latest
+        ages[situation.first[mission]] = latest
         return set(situation.unsayable(tuple(ages)))
 
     # --- runs
 
     def transitions(self, run: Run) -> tuple[Transition, ...]:
         """Return what is done in a run."""
-        number, found = 0, list[Transition]()
+        situation, found = self.network.situation(0), list[Transition]()
         for at in run.steps:
-            found.append(self.network.situations[number].steps[at].transition)
-            number = self.network.passages[number, at][0]
+            found.append(situation.steps[at].transition)
+            situation = Situation(found[-1].target)
         return tuple(found)
 
     def run_before(self, place: int, by: Transition | None) -> Run:
@@ -131,13 +201,13 @@ class ZoneTimes:
         steps = {
             at: group for at, group in self.firsts_of(place).items() if situation.steps[at].transition == by
         }
-        group = min(steps.values()) if steps else self.firsts[place]
+        group = min(steps.values()) if steps else int(self.firsts[place])
 
         def goal(location: int) -> list[Zone]:
-            size = len(self.network.automaton.all[location].lower)
+            size = len(self.network.automaton.location(location).clocks)
             if not steps:
                 return [whole(size)]
-            edges = (edge for edge in self.network.automaton.out[location] if edge.step in steps)
+            edges = (edge for edge in self.network.automaton.out(location) if edge.step in steps)
             return [zone for edge in edges for zone in [tested(whole(size), edge.tests)] if zone is not None]
 
         run = self._dates(self.network.automaton, self.search.steps_to(group), goal).run()
@@ -159,12 +229,10 @@ class ZoneTimes:
 
     def true_in(self, formula: Proposition) -> list[bool]:
         """Return for each location whether a proposition is true there."""
-        met = set(self.order)
-        true = {
-            number: number in met and holds(formula, situation.c)
-            for number, situation in enumerate(self.network.situations)
-        }
-        return [true[place.number] for place in self.network.places]
+        found = np.zeros(self.network.size, np.bool_)
+        found[self.order] = [holds(formula, c) for c in Configurations(self.network, self.order)]
+        true: list[bool] = found[self.network.of_locations.used].tolist()
+        return true
 
     def waiting(self, asked: Proposition | None, awaited: Proposition) -> Rule:
         """Return when something is waited for: from the start, or from wherever something else is true."""
@@ -232,10 +300,10 @@ class ZoneTimes:
         """Return the first run to what an observer looked for, and found."""
 
         def goal(place: int) -> list[Zone]:
-            location = observer.automaton.all[place]
+            location = observer.automaton.location(place)
             if location.goal is None:
                 return []
-            zone = tested(whole(len(location.lower)), [location.goal])
+            zone = tested(whole(len(location.clocks)), [location.goal])
             return [] if zone is None else [zone]
 
         steps = search.steps_to(search.found)
@@ -286,10 +354,10 @@ class ZoneTimes:
 
     def exhausted(self) -> tuple[dict[str, Run], int]:
         """Return the first run on which each vehicle is aloft for too long, and how many configurations show that."""
-        tests = [self.exhaustion(location) for location in range(len(self.network.places))]
+        tests = {location: self.exhaustion(location) for location in self.reached.tolist()}
         first: dict[str, int] = {}
         where: set[int] = set()
-        for group, number in enumerate(self.numbers.tolist() if any(tests) else ()):
+        for group, number in enumerate(self.numbers.tolist() if any(tests.values()) else ()):
             for zone in self.search.zones_of(group):
                 shown = self.search.matrix(zone)
                 for vehicle, test in tests[self.search.place(zone)].items():
@@ -302,19 +370,21 @@ class ZoneTimes:
 
     def exhaustion(self, location: int) -> dict[str, Constraint]:
         """Return what the clocks show in a location where a vehicle is aloft for too long."""
-        number = self.network.places[location].number
-        situation = self.network.situations[number]
+        situation = self.network.situation(self.network.place(location).number)
         return {
-            vehicle: Constraint(at, endurance.lasts + 1)
+            vehicle: Constraint(self.network.index(location, Clock(Sort.ALOFT, vehicle)), endurance.lasts + 1)
             for vehicle, endurance in situation.timing.endurances
-            if vehicle in situation.c.structure.physical and not situation.is_restored(vehicle)
-            for at in [self.network.columns[number].index(situation.first[Clock(Sort.ALOFT, vehicle)]) + 1]
+            if vehicle in situation.c.structure.physical and not is_restored(situation.c, vehicle)
         }
 
-    def _exhausting(self, vehicle: str, group: int, tests: Sequence[dict[str, Constraint]]) -> Run:
+    def _exhausting(self, vehicle: str, group: int, tests: Mapping[int, dict[str, Constraint]]) -> Run:
         def goal(location: int) -> list[Zone]:
-            size = len(self.network.automaton.all[location].lower)
-            zone = tested(whole(size), [tests[location][vehicle]]) if vehicle in tests[location] else None
+            size = len(self.network.automaton.location(location).clocks)
+            zone = (
+                tested(whole(size), [tests[location][vehicle]])
+                if vehicle in tests.get(location, ())
+                else None
+            )
             return [] if zone is None else [zone]
 
         return self._dates(self.network.automaton, self.search.steps_to(group), goal).run()

@@ -53,16 +53,16 @@ def verdict_of(text):
         ]
 
     automaton, numbers, invariants = Automaton(), {}, {}
+    every = tuple(automaton.clock(1 << 20, 1 << 20) for _ in clocks)
     query = nta.findtext("queries/query/formula")
     for location in template.findall("location"):
         stands = location.find("urgent") is not None or location.find("committed") is not None
         bounds = [(clocks[clock], int(most)) for clock, _, most in comparisons(label(location, "invariant"))]
-        most = (1 << 20,) * len(clocks)
         goal = Constraint(0, 0) if query == f"A[] not mission.{location.findtext('name')}" else None
         name = location.get("id")
         invariants[name] = bounds
-        numbers[name] = automaton.add(Location(most, most, ((0, -1),) if stands else tuple(bounds), goal))
-    edges, first = {}, None
+        numbers[name] = automaton.add(Location(every, ((0, -1),) if stands else tuple(bounds), goal))
+    edges, first = {name: [] for name in numbers}, None
     for step, transition in enumerate(template.findall("transition")):
         source, target = (transition.find(end).get("ref") for end in ("source", "target"))
         sets = dict(each.split(" = ") for each in filter(None, label(transition, "assignment").split(", ")))
@@ -79,7 +79,7 @@ def verdict_of(text):
         ]
         kept = tuple(0 if clock in sets else at for clock, at in clocks.items())
         entering = [Constraint(clock, 0, most) for clock, most in invariants[target] if kept[clock - 1]]
-        edges.setdefault(source, []).append(Edge(step, (*tests, *entering), numbers[target], kept))
+        edges[source].append(Edge(step, (*tests, *entering), numbers[target], kept))
     for source, several in edges.items():
         automaton.leave(numbers[source], several)
     search = Search(automaton, *first)

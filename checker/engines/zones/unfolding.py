@@ -1,0 +1,497 @@
+"""The compiled loops that unfold a mission: the automaton's locations and edges, out of rows and learned trees.
+
+A row says by one walk through each actor's trees which steps there are, and what times them. A location is a row with
+what the clocks of windows say: base 3, one digit for each.
+"""
+
+# mypy: disable-error-code="return-value, assignment, arg-type, no-any-return"
+# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from checker.engines.fast import kernel
+from checker.engines.fast.kernel import AT, SIZE, TREE, TURNS, WORDS, conclude, copy_columns, walk
+from checker.engines.fast.leaves import (
+    ALIKE,
+    COPIES,
+    COPIES_END,
+    CROWDED,
+    END,
+    FIRST,
+    FLAGS,
+    LEAF,
+    PARTS,
+    PARTS_END,
+    STEP,
+    TURN,
+)
+from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
+from checker.engines.zones import automaton as automata
+from checker.engines.zones.automaton import DEADLINE, EDGE, LOCATION, TEST
+from checker.engines.zones.bounds import NONE
+from semantics.timing.actor_clocks import BOUND
+from semantics.timing.actor_clocks import FREE as UNBOUND
+
+Ints = NDArray[np.int32]
+State = NDArray[np.int64]
+
+
+class Timed(NamedTuple):
+    """What is timed, as the loops see it.
+
+    Attributes:
+        agents, clauses: The trees of what times the actors of `Model`, in the same order.
+        vehicles: The trees of vehicles that last so long.
+        answers: For each leaf of those trees where its clocks and its steps begin and end (`ANSWER` numbers).
+        running: Clocks with their bounds (`RUNNING`).
+        steps: Where the clocks that a step is done with, and its tests, begin and end (`TIMES`).
+        done, tests: Those clocks; those tests, of which one has to be met (`TEST`).
+        served: For each clock whether it is one of a request, of which there may be several.
+        lasting: The clocks that run everywhere.
+        restored: For each vehicle its clocks RESTORED and ALOFT, and how long it takes (`RESTORING`).
+        rules: For each transition the number of its rule.
+        windows: For each window its clause, and its end or `NONE` (`WINDOW`); its clock has the number -1 - window.
+    """
+
+    agents: Ints
+    clauses: Ints
+    vehicles: Ints
+    answers: Ints
+    running: Ints
+    steps: Ints
+    done: Ints
+    tests: Ints
+    served: Ints
+    lasting: Ints
+    restored: Ints
+    windows: Ints
+    rules: Ints
+
+
+ANSWER, RUNNING, TIMES, RESTORING, WINDOW, CHOICE = 4, 3, 4, 3, 2, 3
+CLOCK, LO, HI = range(RUNNING)
+
+
+class Growth(NamedTuple):
+    """The automaton as it grows, with room, and what is known of each location besides.
+
+    Attributes:
+        rows, windows: The row of each location, and what the clocks of windows say.
+        of_rows: For each row its last location, -1 for none.
+        before: For each location the one before it of the same row.
+    """
+
+    locations: Ints
+    edges: Ints
+    tests: Ints
+    sources: Ints
+    deadlines: Ints
+    clocks: Ints
+    rows: Ints
+    windows: State
+    of_rows: Ints
+    before: Ints
+
+
+class View(NamedTuple):
+    """What one row allows, as `look` finds it.
+
+    Attributes:
+        leaves: For each actor its leaf: the agents' first, then the clauses'.
+        answers: For each vehicle and then for each actor the leaf of what times it.
+        counts: How many agents' actors there are, how many actors, the turn, and whether it is crowded.
+        at, many, stamps: For each clock the first index at which it runs, how often it does, and the stamp of the view
+            in which that is so.
+        bound: For each clock the stamp of the view in which a step in its turn is done with it.
+    """
+
+    leaves: Ints
+    answers: Ints
+    counts: State
+    at: Ints
+    many: Ints
+    stamps: State
+    bound: State
+
+
+AGENTS, ACTORS, ITS_TURN, IS_CROWDED, STAMP, CLOCKS = range(6)
+
+LOCATED, LEAVING, TESTED, SOURCED, DEADLINED, CLOCKED, WIDEST, DONE = range(8)
+"""What stands where in the loops' state: how many locations, edges, tests, sources, deadlines and clocks there are, one
+more than the most clocks of a location, and how many of the given locations are left."""
+
+KNOWN, MISS, FULL = range(3)
+"""Why the loops return: all is done, a tree does not know, there is no room."""
+
+
+@njit(cache=True)
+def look(m: kernel.Model, t: Timed, words: Words, row: int, v: View, state: State) -> bool:
+    """Find out what a row allows; False at what is not known."""
+    state[AT], at = row, row * state[WORDS]
+    first, last = np.int64(0), np.int64(len(m.agents))
+    if state[kernel.ALPHA] >= 0:
+        group = kernel.code_at(words, at, m.columns, state[kernel.ALPHA])
+        first, last = np.int64(m.agents_from[group]), np.int64(m.agents_from[group + 1])
+    agents, vehicles = last - first, len(t.vehicles)
+    actors = agents + len(m.clauses)
+    flags = np.int64(0)
+    for k in range(actors):
+        tree = m.agents[first + k] if k < agents else m.clauses[k - agents]
+        reference = walk(words, at, m.root[tree], m.nodes, m.next, state)
+        if reference == 0:
+            state[TREE] = tree
+            return False
+        v.leaves[k] = -reference - 1
+        flags |= m.leaves[LEAF * (-reference - 1) + FLAGS]
+    for k in range(vehicles + actors):
+        if k < vehicles:
+            tree = t.vehicles[k]
+        elif k < vehicles + agents:
+            tree = t.agents[first + k - vehicles]
+        else:
+            tree = t.clauses[k - vehicles - agents]
+        reference = walk(words, at, m.root[tree], m.nodes, m.next, state)
+        if reference == 0:
+            state[TREE] = tree
+            return False
+        v.answers[k] = -reference - 1
+    v.counts[AGENTS], v.counts[ACTORS] = agents, actors
+    v.counts[ITS_TURN] = kernel.first_turn(m.leaves, m.steps, v.leaves, agents) if state[TURNS] else -1
+    v.counts[IS_CROWDED] = flags & CROWDED
+    v.counts[STAMP] += 1
+    note_clocks(m, t, v)
+    return True
+
+
+@njit(cache=True)
+def note_clocks(m: kernel.Model, t: Timed, v: View) -> None:
+    """Note where each clock runs first, and which are bound: a step that is in its turn is done with them."""
+    stamp, index = v.counts[STAMP], np.int64(1)
+    for clock in t.lasting:
+        v.at[clock], v.many[clock], v.stamps[clock] = index, 1, stamp
+        index += 1
+    vehicles = len(t.vehicles)
+    for k in range(vehicles + v.counts[ACTORS]):
+        record = ANSWER * v.answers[k]
+        for run in range(t.answers[record], t.answers[record + 1]):
+            clock = t.running[RUNNING * run + CLOCK]
+            if v.stamps[clock] != stamp:
+                v.at[clock], v.many[clock], v.stamps[clock] = index, 0, stamp
+            v.many[clock] += 1
+            index += 1
+    v.counts[CLOCKS] = index
+    for k in range(v.counts[ACTORS]):
+        leaf, record = LEAF * v.leaves[k], ANSWER * v.answers[vehicles + k]
+        for one in range(m.leaves[leaf + END] - m.leaves[leaf + FIRST]):
+            turn = m.steps[STEP * (m.leaves[leaf + FIRST] + one) + TURN]
+            if turn < 0 or turn == v.counts[ITS_TURN]:
+                times = TIMES * (t.answers[record + 2] + one)
+                for at in range(t.steps[times], t.steps[times + 1]):
+                    if t.done[at] >= 0:
+                        v.bound[t.done[at]] = stamp
+
+
+@njit(cache=True)
+def steps_of_clause(m: kernel.Model, v: View, clause: int) -> int:
+    """Return how many steps a clause has."""
+    leaf = LEAF * v.leaves[v.counts[AGENTS] + clause]
+    return m.leaves[leaf + END] - m.leaves[leaf + FIRST]
+
+
+@njit(cache=True)
+def digit(windows: int, window: int) -> int:
+    """Return what the clock of a window says."""
+    return windows // 3**window % 3
+
+
+@njit(cache=True)
+def add_location(m: kernel.Model, t: Timed, g: Growth, v: View, row: int, windows: int, s: State) -> int:
+    """Return the number of the location of a row that was looked at, a new one where it was not met; -1 at no room."""
+    found = np.int64(g.of_rows[row])
+    while found >= 0 and g.windows[found] != windows:
+        found = np.int64(g.before[found])
+    if found >= 0:
+        return found
+    number, size = s[LOCATED], v.counts[CLOCKS]
+    if (
+        number >= len(g.rows)
+        or LOCATION * (number + 1) > len(g.locations)
+        or s[CLOCKED] + size > len(g.clocks)
+        or DEADLINE * (s[DEADLINED] + size + 1) > len(g.deadlines)
+    ):
+        return -1
+    at, begin, stamp = s[CLOCKED], s[DEADLINED], v.counts[STAMP]
+    end = add_deadlines(m, t, g, v, windows, begin)
+    index = np.int64(0)
+    for clock in t.lasting:
+        g.clocks[at + index] = clock
+        index += 1
+    for k in range(len(t.vehicles) + v.counts[ACTORS]):
+        record = ANSWER * v.answers[k]
+        for run in range(t.answers[record], t.answers[record + 1]):
+            clock, most = t.running[RUNNING * run + CLOCK], t.running[RUNNING * run + HI]
+            g.clocks[at + index] = clock
+            index += 1
+            if not v.counts[IS_CROWDED] and most >= 0 and v.bound[clock] == stamp and v.at[clock] == index:
+                g.deadlines[DEADLINE * end], g.deadlines[DEADLINE * end + 1] = index, most
+                end += 1
+    record = LOCATION * number
+    g.locations[record + automata.SIZE], g.locations[record + automata.CLOCKS] = size, at
+    g.locations[record + automata.DEADLINES], g.locations[record + automata.DEADLINES_END] = begin, end
+    for each in (automata.EDGES, automata.EDGES_END, automata.GOAL, automata.LEAST):
+        g.locations[record + each] = NONE
+    g.rows[number], g.windows[number] = row, windows
+    g.before[number], g.of_rows[row] = g.of_rows[row], number
+    s[LOCATED], s[CLOCKED], s[DEADLINED] = number + 1, at + size - 1, end
+    s[WIDEST] = max(s[WIDEST], size)
+    return number
+
+
+@njit(cache=True)
+def add_deadlines(m: kernel.Model, t: Timed, g: Growth, v: View, windows: int, begin: int) -> int:
+    """Add the deadline of where nothing is followed, or else that of windows; return the end of the deadlines."""
+    least = np.int64(NONE)
+    for window in range(len(t.windows) // WINDOW):
+        within = np.int64(t.windows[WINDOW * window + 1])
+        bound = steps_of_clause(m, v, t.windows[WINDOW * window]) > 0 and digit(windows, window) < UNBOUND
+        if within >= 0 and bound and (least < 0 or within < least):
+            least = within
+    clock = np.int64(1)  # the mission's is the first
+    if v.counts[IS_CROWDED]:
+        clock, least = np.int64(0), np.int64(NONE)
+    elif least < 0:
+        return begin
+    g.deadlines[DEADLINE * begin], g.deadlines[DEADLINE * begin + 1] = clock, least
+    return begin + 1
+
+
+@njit(cache=True)
+def target_row(
+    m: kernel.Model,
+    words: Words,
+    row: int,
+    step: int,
+    scratch: Words,
+    origins: Any,
+    table: Any,
+    most: int,
+    state: State,
+) -> int:
+    """Return the row that a step leads to, a new one where it was not met: -1 at what is not known, -2 at no room."""
+    width = state[WORDS]
+    at, record = row * width, STEP * step
+    conclude(words, at, m.masks, step, scratch, 0, width)
+    begin, end = m.steps[record + COPIES], m.steps[record + COPIES_END]
+    copy_columns(words, at, m.columns, m.copies, begin, end, scratch, 0)
+    for part in range(m.steps[record + PARTS], m.steps[record + PARTS_END]):
+        tree = m.part[part]
+        reference = walk(words, at, m.root[tree], m.nodes, m.next, state)
+        if reference == 0:
+            state[AT], state[TREE] = row, tree
+            return -1
+        conclude(scratch, 0, m.masks, m.leaves[LEAF * (-reference - 1) + FIRST], scratch, 0, width)
+    digest = hashed(scratch, 0, width)
+    bits = np.uint32(bits_for(len(table)))
+    found = find(words, table, scratch, 0, digest, width, bits)
+    if found >= 0:
+        return found
+    new = state[SIZE]
+    if new >= most:
+        return -2
+    for k in range(width):
+        words[new * width + k] = scratch[k]
+    origins[new] = row
+    table[-found - 1] = entry_of(digest, new, bits)
+    state[SIZE] = new + 1
+    return new
+
+
+@njit(cache=True)
+def source_of(t: Timed, a: View, done: int, end: int, clock: int, earlier: int) -> int:
+    """Return the index of the clock that goes on in one of the target, of which so many stand before it; 0 for none."""
+    if a.stamps[clock] != a.counts[STAMP]:
+        return 0
+    at = np.int64(earlier)
+    for k in range(done, end):
+        if t.done[k] == clock:
+            if not t.served[clock]:
+                return 0
+            at += 1
+    return a.at[clock] + at if at < a.many[clock] else 0
+
+
+@njit(cache=True)
+def add_edges(  # each argument is another part of what is known
+    m: kernel.Model, t: Timed, g: Growth, a: View, b: View, here: int, row: int, times: int, number: int, rule: int,
+    choices: Ints, s: State,
+) -> int:  # fmt: skip
+    """Add the edges of a step to a row that was looked at: one for each way in which it may be taken.
+
+    These are what may be tested, then for each vehicle that leaves where it is restored as it came or with a clock that
+    starts anew, then for each window that binds from now on or is over.
+    """
+    done, end = t.steps[times], t.steps[times + 1]
+    count, said = np.int64(0), np.int64(0)
+    for vehicle in range(len(t.restored) // RESTORING):
+        restored, aloft = t.restored[RESTORING * vehicle], t.restored[RESTORING * vehicle + 1]
+        if a.stamps[restored] == a.counts[STAMP] and b.stamps[restored] != b.counts[STAMP]:
+            at = CHOICE * count
+            choices[at], choices[at + 1], choices[at + 2] = (
+                a.at[restored],
+                t.restored[RESTORING * vehicle + 2],
+                aloft,
+            )
+            count += 1
+    for window in range(len(t.windows) // WINDOW):
+        value, within = digit(g.windows[here], window), t.windows[WINDOW * window + 1]
+        for k in range(done, end):
+            if t.done[k] == -1 - window:
+                value = UNBOUND
+        if value == 0 and steps_of_clause(m, b, t.windows[WINDOW * window]) > 0:
+            value = BOUND
+            if within >= 0:
+                at = CHOICE * count
+                choices[at], choices[at + 1], choices[at + 2] = 1, within, -1 - window
+                count += 1
+        said += value * 3**window
+    begin, last = t.steps[times + 2], t.steps[times + 3]
+    for test in range(begin, max(last, begin + 1)):
+        clock, least, most = np.int64(NONE), np.int64(0), np.int64(NONE)
+        if begin < last:
+            clock, least, most = (
+                np.int64(t.tests[TEST * test]),
+                np.int64(t.tests[TEST * test + 1]),
+                np.int64(t.tests[TEST * test + 2]),
+            )
+            if clock < 0 and digit(g.windows[here], -1 - clock) < least:
+                continue
+        for chosen in range(1 << count):
+            windows, fresh = said, s[TESTED]
+            if TEST * (s[TESTED] + count + 1) > len(g.tests) or EDGE * (s[LEAVING] + 1) > len(g.edges):
+                return FULL
+            if clock >= 0:
+                put(g.tests, s, a.at[clock], least, most)
+            for k in range(count):
+                at, bound, what = choices[CHOICE * k], choices[CHOICE * k + 1], choices[CHOICE * k + 2]
+                if not is_second(chosen, count, k):
+                    put(g.tests, s, at, 0, bound)
+                elif what >= 0:
+                    put(g.tests, s, at, bound, NONE)
+                else:
+                    put(g.tests, s, at, bound + 1, NONE)
+                    windows += 3 ** (-1 - what)
+            target = add_location(m, t, g, b, row, windows, s)
+            if target < 0 or s[SOURCED] + b.counts[CLOCKS] > len(g.sources):
+                return FULL
+            at = EDGE * s[LEAVING]
+            g.edges[at + automata.STEP], g.edges[at + automata.TARGET] = number, target
+            g.edges[at + automata.TESTS], g.edges[at + automata.TESTS_END] = fresh, s[TESTED]
+            g.edges[at + automata.SOURCES], g.edges[at + automata.RULE] = s[SOURCED], rule
+            g.edges[at + automata.FIRST] = NONE
+            add_sources(t, g, a, b, done, end, target, choices, count, chosen, s)
+            s[LEAVING] += 1
+    return KNOWN
+
+
+@njit(cache=True)
+def is_second(chosen: int, count: int, choice: int) -> bool:
+    """Tell whether the second of both ways was chosen, the first choice being the last to change."""
+    return bool(chosen >> (count - 1 - choice) & 1)
+
+
+@njit(cache=True)
+def put(tests: Ints, s: State, clock: int, least: int, most: int) -> None:
+    """Add a test."""
+    at = TEST * s[TESTED]
+    tests[at], tests[at + 1], tests[at + 2] = clock, least, most
+    s[TESTED] += 1
+
+
+@njit(cache=True)
+def add_sources(
+    t: Timed, g: Growth, a: View, b: View, done: int, end: int, target: int, choices: Ints, count: int, chosen: int,
+    s: State,
+) -> None:  # fmt: skip
+    """Add for each clock of the target the one that goes on in it."""
+    clocks = g.locations[LOCATION * target + automata.CLOCKS]
+    for index in range(1, b.counts[CLOCKS]):
+        clock = g.clocks[clocks + index - 1]
+        source = source_of(t, a, done, end, clock, index - b.at[clock])
+        for k in range(count):
+            if choices[CHOICE * k + 2] == clock and is_second(chosen, count, k):
+                source = 0
+        g.sources[s[SOURCED]] = source
+        s[SOURCED] += 1
+
+
+@njit(cache=True)
+def begin(
+    m: kernel.Model, t: Timed, g: Growth, v: View, words: Words, windows: int, state: State, s: State
+) -> int:
+    """Add the location of the first row; say why that ended."""
+    if not look(m, t, words, 0, v, state):
+        return MISS
+    return KNOWN if add_location(m, t, g, v, 0, windows, s) >= 0 else FULL
+
+
+@njit(cache=True)
+def leave(
+    m: kernel.Model, t: Timed, g: Growth, a: View, b: View, words: Words, origins: Any, table: Any, most: int,
+    scratch: Words, taken: Ints, choices: Ints, locations: State, state: State, s: State,
+) -> int:  # fmt: skip
+    """Add the edges of locations, from the one on that comes next; say why that ended."""
+    while s[DONE] < len(locations):
+        here = locations[s[DONE]]
+        row, began = np.int64(g.rows[here]), (s[LEAVING], s[TESTED], s[SOURCED])
+        if not look(m, t, words, row, a, state):
+            return MISS
+        why = KNOWN
+        if not a.counts[IS_CROWDED]:
+            why = leave_by_steps(
+                m, t, g, a, b, words, origins, table, most, scratch, taken, choices, here, row, state, s
+            )
+        if why != KNOWN:
+            s[LEAVING], s[TESTED], s[SOURCED] = began
+            return why
+        record = LOCATION * here
+        g.locations[record + automata.EDGES], g.locations[record + automata.EDGES_END] = began[0], s[LEAVING]
+        s[DONE] += 1
+    return KNOWN
+
+
+@njit(cache=True)
+def leave_by_steps(
+    m: kernel.Model, t: Timed, g: Growth, a: View, b: View, words: Words, origins: Any, table: Any, most: int,
+    scratch: Words, taken: Ints, choices: Ints, here: int, row: int, state: State, s: State,
+) -> int:  # fmt: skip
+    """Add the edges of each step of a location that is in its turn, those of agents once."""
+    number = np.int64(0)
+    for k in range(a.counts[ACTORS]):
+        leaf, record = LEAF * a.leaves[k], ANSWER * a.answers[len(t.vehicles) + k]
+        first, own = np.int64(m.leaves[leaf + FIRST]), number
+        for step in range(first, m.leaves[leaf + END]):
+            turn, alike = m.steps[STEP * step + TURN], m.steps[STEP * step + ALIKE]
+            if turn >= 0 and turn != a.counts[ITS_TURN]:
+                continue
+            target = target_row(m, words, row, step, scratch, origins, table, most, state)
+            if target < 0:
+                return MISS if target == -1 else FULL
+            if target >= len(g.of_rows) or 2 * number + 2 > len(taken):
+                return FULL
+            again = False
+            for other in range(own, number if k < a.counts[AGENTS] and alike >= 0 else own):
+                again = again or (taken[2 * other] == target and taken[2 * other + 1] == alike)
+            if again:
+                continue
+            taken[2 * number], taken[2 * number + 1] = target, alike
+            if not look(m, t, words, target, b, state):
+                return MISS
+            times = TIMES * (t.answers[record + 2] + step - first)
+            if add_edges(m, t, g, a, b, here, target, times, number, t.rules[step], choices, s) == FULL:
+                return FULL
+            number += 1
+    return KNOWN

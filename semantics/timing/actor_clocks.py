@@ -1,0 +1,306 @@
+"""The clocks of actors: what of them runs in a configuration, and what each of their steps is timed by.
+
+An actor is a vehicle that lasts so long, an agent with its requests, an agent by itself, or a clause of the
+environment. What is said of each is a pure function of the cells that it reads, so it can be learned like the
+rules.
+"""
+
+import math
+import re
+from collections.abc import Hashable, Iterable, Iterator
+from enum import IntEnum, auto
+from typing import NamedTuple
+
+from semantics.behaviours.expressions import Fault
+from semantics.behaviours.statements import React
+from semantics.behaviours.stepping import next_statement
+from semantics.environment import Drops, Leaves
+from semantics.extension import channels_between
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.requests import CTR, FLY, MGR, OBS, SND, Request
+from semantics.state.signature import Name
+from semantics.timing.flight_times import aim, interval_of_flight
+from semantics.timing.intervals import ANY_TIME, Interval
+from semantics.timing.timing import ONE_HOST, Every, Sayable, Timing, Window
+
+
+class Sort(IntEnum):
+    """What a clock measures."""
+
+    MISSION = auto()
+    """The time since the start."""
+    EVERY = auto()
+    """Since the last step of a clause that steps at most every so often."""
+    WINDOW = auto()
+    """No time: whether a clause that has a window was enabled in it (1), or is bound by it no more (2)."""
+    ALOFT = auto()
+    """Since a vehicle left where it is restored."""
+    RESTORED = auto()
+    """Since a vehicle came to where it is restored."""
+    REQUEST = auto()
+    AGENT = auto()
+    AFTER = auto()
+    """Since an agent waits at a `react` with an `after`, and nothing that is there fits."""
+    FLIGHT = auto()
+    """Since the `command` of a flight."""
+    AIM = auto()
+    """Since a flight can end, and what it is directed by has not changed."""
+    RETURNS = auto()
+    """Since what dropped or left may return."""
+
+
+class Clock(NamedTuple):
+    """What a clock belongs to."""
+
+    sort: Sort
+    of: Hashable = ""
+    channel: Name = ""
+
+
+BOUND, FREE = 1, 2
+"""What the clock of a window says of a clause."""
+
+
+class Running(NamedTuple):
+    """A clock that runs.
+
+    Attributes:
+        clock: The clock.
+        interval: The bounds of what it times.
+        aim: What a flight is directed by: where that changes, its clock starts anew.
+    """
+
+    clock: Clock
+    interval: Interval
+    aim: Hashable = None
+
+
+class Test(NamedTuple):
+    """A clock has to be within bounds."""
+
+    clock: Clock
+    least: int
+    most: int | None = None
+
+
+class StepClocks(NamedTuple):
+    """What times a step.
+
+    Attributes:
+        done: The clocks of what is done.
+        tests: One of them has to be met; nothing where it may be done at any time.
+    """
+
+    done: tuple[Clock, ...]
+    tests: tuple[Test, ...] = ()
+
+
+class ActorClocks(NamedTuple):
+    """What is timed of an actor.
+
+    Attributes:
+        running: The clocks that run; of equal ones the oldest is the first.
+        steps: What times each of its steps.
+    """
+
+    running: tuple[Running, ...]
+    steps: tuple[StepClocks, ...] = ()
+
+
+def timing_of(c: Configuration) -> Timing:
+    """Return what a mission says of times; it says something."""
+    timing = c.setting.timing
+    assert timing is not None
+    return timing
+
+
+def lasting(timing: Timing) -> Iterator[Running]:
+    """Yield the clocks that run everywhere: the mission's, and those of clauses."""
+    steps = [each.step for each in timing.clauses]
+    latest = [bound for step in steps if isinstance(step, Window | Sayable) for bound in _bounds_of(step)]
+    if latest:
+        yield Running(Clock(Sort.MISSION), Interval(max(latest)))
+    for number, step in enumerate(steps):
+        if isinstance(step, Every):
+            yield Running(Clock(Sort.EVERY, number), Interval(step.least))
+        elif isinstance(step, Window):
+            yield Running(Clock(Sort.WINDOW, number), Interval(FREE))
+
+
+# --- vehicles -------------------------------------------------------------------------------------
+
+
+def of_vehicle(c: Configuration, vehicle: Name) -> ActorClocks:
+    """Return the clocks of a vehicle's endurance: RESTORED only where it is."""
+    endurance = dict(timing_of(c).endurances)[vehicle]
+    aloft = Running(Clock(Sort.ALOFT, vehicle), Interval(endurance.lasts))
+    restored = Running(Clock(Sort.RESTORED, vehicle), Interval(endurance.after))
+    return ActorClocks((aloft, restored) if is_restored(c, vehicle) else (aloft,))
+
+
+def is_restored(c: Configuration, vehicle: Name) -> bool:
+    """Tell whether a vehicle is where it is restored: in transit it is nowhere."""
+    physical, places = c.structure.physical, dict(timing_of(c).endurances)[vehicle].places
+    if vehicle not in physical or physical.transit(vehicle) is not None:
+        return False
+    return any(place in places for place in _around(c, vehicle))
+
+
+def _around(c: Configuration, entity: Name) -> Iterator[Name]:
+    """Yield the places around an entity, the innermost first, as P has them."""
+    seen: set[Name] = set()
+    place = c.structure.physical.abstract_parent(entity)
+    while place in c.structure.physical and place not in seen:
+        yield place
+        seen.add(place)
+        place = c.structure.physical.abstract_parent(place)
+
+
+# --- requests -------------------------------------------------------------------------------------
+
+
+def of_requests(c: Configuration, a: Name, served: Iterable[Transition | Fault]) -> ActorClocks:
+    """Return the clocks of an agent's requests that a rule would serve apart from turns, and of its flights."""
+    steps = [each for each in served if isinstance(each, Transition)]
+    enabled = {each.served.request for each in steps if each.served is not None}
+    pending = [each.request for each in c.eta.in_line(a) if each.request in enabled]
+    running = [
+        Running(Clock(Sort.REQUEST, request, channel), _service(c, request, channel))
+        for request in pending
+        if not isinstance(request, FLY)
+        for channel in _channels(c, request)
+    ]
+    bounded = sorted((each for each in running if each.interval != ANY_TIME), key=running.index)
+    found = (*bounded, *_flights(c, a, enabled))  # equal clocks stand together
+    return ActorClocks(found, tuple(_of_request(c, each, found) for each in steps))
+
+
+def _flights(c: Configuration, a: Name, enabled: set[Request]) -> Iterator[Running]:
+    for fly in dict.fromkeys(each.request for each in c.eta.of(a)):
+        if isinstance(fly, FLY):
+            interval = interval_of_flight(c, fly)
+            if interval != ANY_TIME or timing_of(c).motions:
+                yield Running(Clock(Sort.FLIGHT, fly), Interval(interval.lo))
+            if fly in enabled and interval.hi is not None:
+                yield Running(Clock(Sort.AIM, fly), Interval(0, interval.hi), aim(c, fly))
+
+
+def _of_request(c: Configuration, step: Transition, running: Iterable[Running]) -> StepClocks:
+    assert step.served is not None
+    request = step.served.request
+    if isinstance(request, FLY):
+        flight = Clock(Sort.FLIGHT, request)
+        return StepClocks((flight, Clock(Sort.AIM, request)), _tests(running, [flight]))
+    clocks = [Clock(Sort.REQUEST, request, channel) for channel in _channels(c, request)]
+    return StepClocks(tuple(clocks), _tests(running, clocks))
+
+
+def _tests(running: Iterable[Running], clocks: list[Clock]) -> tuple[Test, ...]:
+    """Return the bounds of which one has to be met; none where some clock has none."""
+    bounds = {each.clock: each.interval for each in running}
+    tests = tuple(Test(clock, bounds.get(clock, ANY_TIME).lo) for clock in clocks)
+    return tests if all(each.least for each in tests) else ()
+
+
+def _channels(c: Configuration, request: Request) -> tuple[Name, ...]:
+    if not isinstance(request, SND):
+        return ("",)
+    here, there = c.alpha.host(request.agent), c.alpha.host(request.to)
+    return (ONE_HOST,) if here == there else tuple(channels_between(c, here, there))
+
+
+def _service(c: Configuration, request: Request, channel: Name) -> Interval:
+    timing = timing_of(c)
+    match request:
+        case OBS():
+            return timing.sense
+        case SND():
+            return timing.message(channel)
+        case MGR():
+            return timing.command("migrate") or ANY_TIME
+        case CTR():
+            return timing.command(word_of(request)) or timing.react
+        case _:
+            return ANY_TIME
+
+
+def word_of(request: CTR) -> str:
+    """Return the word of a command, or the name of a rule.
+
+    >>> import re
+    >>> re.match(r"[A-Za-z_]+", "HAND uav0 TO gcs1").group()
+    'HAND'
+    """
+    found = re.match(r"\w+", request.reaction.text)
+    return found.group() if found else ""
+
+
+# --- agents by themselves -------------------------------------------------------------------------
+
+
+def of_moves(c: Configuration, a: Name, moves: Iterable[Transition | Fault]) -> ActorClocks:
+    """Return the clock of an agent that may do something by itself."""
+    steps = [each for each in moves if isinstance(each, Transition)]
+    running = tuple(_of_agent(c, a, steps[-1].label.rule)) if steps else ()
+    done = Clock(Sort.AGENT, a), Clock(Sort.AFTER, a)
+    clocks = [[done[1] if each.label.rule == "timeout" else done[0]] for each in steps]
+    return ActorClocks(running, tuple(StepClocks(done, _tests(running, each)) for each in clocks))
+
+
+def _of_agent(c: Configuration, a: Name, rule: str) -> Iterator[Running]:
+    timing = timing_of(c)
+    clock = Clock(Sort.AFTER if rule == "timeout" else Sort.AGENT, a)
+    interval = timing.react
+    if rule == "timeout":
+        interval = _after(c, a)
+    elif rule == "spawn":
+        interval = timing.command(rule) or ANY_TIME
+    if interval != ANY_TIME:
+        yield Running(clock, interval)
+
+
+def _after(c: Configuration, a: Name) -> Interval:
+    timing, statement = timing_of(c), next_statement(c, a)
+    assert isinstance(statement, React)
+    assert statement.after is not None
+    ticks, react = statement.after.seconds * 1000 / timing.tick, timing.react
+    return Interval(math.floor(ticks) + react.lo, None if react.hi is None else math.ceil(ticks) + react.hi)
+
+
+# --- clauses --------------------------------------------------------------------------------------
+
+
+def of_clause(c: Configuration, number: int, steps: Iterable[Transition]) -> ActorClocks:
+    """Return the clock of what may return by a clause, and what times its steps."""
+    several, most = list(steps), timing_of(c).clause(number).returns
+    returns = Running(Clock(Sort.RETURNS, number), Interval(0, most))
+    is_running = most is not None and any(_returns(c, number, each) for each in several)
+    return ActorClocks(
+        (returns,) if is_running else (), tuple(_of_clause_step(c, number, each) for each in several)
+    )
+
+
+def _of_clause_step(c: Configuration, number: int, step: Transition) -> StepClocks:
+    if _returns(c, number, step):
+        return StepClocks((Clock(Sort.RETURNS, number),))
+    mission, every, window = Clock(Sort.MISSION), Clock(Sort.EVERY, number), Clock(Sort.WINDOW, number)
+    match timing_of(c).clause(number).step:
+        case Every(least):
+            tests: tuple[Test, ...] = (Test(every, least),)
+        case Window(after):
+            tests = (Test(mission, after), Test(window, FREE))
+        case Sayable(after, until):
+            tests = (Test(mission, after, until),)
+        case None:
+            tests = ()
+    return StepClocks((every, window), tests)
+
+
+def _returns(c: Configuration, number: int, step: Transition) -> bool:
+    clause = c.setting.environment[number]
+    return isinstance(clause, Drops | Leaves) and step.label.about == clause.words[-1] and clause.returns
+
+
+def _bounds_of(step: Window | Sayable) -> Iterator[int]:
+    yield step.after
+    yield from filter(None, [step.within if isinstance(step, Window) else step.until])
