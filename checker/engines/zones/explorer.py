@@ -15,7 +15,7 @@ from checker.engines.zones.automaton import TooLargeError
 from checker.engines.zones.network import Network
 from checker.engines.zones.search import CHUNK, Search
 from checker.engines.zones.zone_times import Configurations, ZoneTimes
-from checker.limits import Bound, Limits, Stop, is_full
+from checker.limits import Bound, BoundMet, Limits, Stop, bounded, is_full
 from semantics.state.configuration import Configuration
 
 
@@ -43,7 +43,10 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
         with compilation_reported(options.report):
             network = Network(initial, options.limits.pending)
             search = _Learning(network)
-            _visit_all(network, search, found, options, started)
+            with bounded(options.limits, started):
+                _visit_all(network, search, found, options, started)
+    except BoundMet as met:  # while it learned
+        found.bounds.append(met.bound)
     except TooLargeError as error:
         raise TickError(str(error)) from error
     times = ZoneTimes(network, search)

@@ -165,8 +165,7 @@ class _Walk:
 
     def _steps(self, spot: _Spot) -> Iterator[Step]:
         for edge in self.automaton.out(spot.at):
-            if edge.target >= 0:
-                yield from self._step(spot, edge)
+            yield from self._step(spot, edge)
         for clock, least, _ in self.wrong.get(spot.at, ()):
             yield Step(self.spots[spot], WRONG, WRONG, guard=(f"{spot.names[clock - 1]} >= {least}",))
 

@@ -34,6 +34,7 @@ from checker.engines.zones.automaton import (
 )
 from checker.engines.zones.bounds import NONE
 from checker.engines.zones.unfolding import ANSWER, CHOICE, Growth, Timed, View
+from checker.limits import look
 from semantics.environment import Clause
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
@@ -156,7 +157,8 @@ class Network(Space):
         """Write down what was learned of clocks."""
         missing = len(self.learner.leaves.leaves) // LEAF - len(self.answers) // ANSWER
         self.answers.extend(missing * ANSWER, NONE)
-        for leaf, answer in islice(self.learner.answers.items(), self.noted, None):
+        new = len(self.learner.answers) - self.noted
+        for leaf, answer in reversed(list(islice(reversed(self.learner.answers.items()), new))):
             assert isinstance(answer, ActorClocks)
             if answer not in self.records:
                 self.records[answer] = self._record(answer)
@@ -229,6 +231,7 @@ class Network(Space):
     def _run(self, loop: Callable[..., int]) -> None:
         """Run a loop to its end, with room and with what it does not know."""
         while True:
+            look()  # locations are written down whole
             self._reserve()
             done = self.counts_of.copy()
             why = loop(self.model, self.timed, self._growth(), self._view())
