@@ -14,7 +14,7 @@ from checker.engines.times import inspect_in_time
 from checker.engines.zones.automaton import TooLargeError
 from checker.engines.zones.network import Network
 from checker.engines.zones.search import CHUNK, Search
-from checker.engines.zones.zone_times import Configurations, ZoneTimes
+from checker.engines.zones.zone_times import OfRows, ZoneTimes
 from checker.limits import Bound, BoundMet, Limits, Stop, bounded, is_full
 from semantics.state.configuration import Configuration
 
@@ -100,7 +100,7 @@ def _summarise(times: ZoneTimes, found: Exploration) -> None:
     places[times.order] = np.arange(len(times.order))
     found.origins = places[times.numbers[np.maximum(records[times.firsts, 0], 0)]].tolist()
     found.times, found.expanded = times, len(times.order)
-    found.configurations = Configurations(network, times.order)
+    found.configurations = OfRows(network.configuration, times.order)
     found.depth = len(times.search.steps_to(int(times.firsts[-1])))
     names = {number: name for name, number in network.learner.rules.items()}
     rules, counts = np.unique(times.taken_rules(), return_counts=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import overload
+from typing import TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,53 +39,33 @@ from checker.limits import look
 from checker.properties.durations import NEVER
 from semantics.environment import Says
 from semantics.properties.propositions import Proposition, holds
-from semantics.state.configuration import Configuration, Transition
+from semantics.state.configuration import Transition
 from semantics.timing.actor_clocks import Clock, Sort, is_restored
 from semantics.timing.clocks import Situation, TimedStep
 
+Made = TypeVar("Made")
 
-class Configurations(Sequence[Configuration]):
-    """Configurations by the numbers of their rows, each made anew where it is looked at."""
 
-    def __init__(self, network: Network, rows: NDArray[np.int64]) -> None:
-        self.network = network
+class OfRows(Sequence[Made]):
+    """What is made of rows, by their numbers: each anew where it is looked at."""
+
+    def __init__(self, make: Callable[[int], Made], rows: NDArray[np.int64]) -> None:
+        self.make = make
         self.rows = rows
 
     def __len__(self) -> int:
         return len(self.rows)
 
     @overload
-    def __getitem__(self, number: int) -> Configuration: ...
+    def __getitem__(self, number: int) -> Made: ...
 
     @overload
-    def __getitem__(self, number: slice) -> Sequence[Configuration]: ...
+    def __getitem__(self, number: slice) -> Sequence[Made]: ...
 
-    def __getitem__(self, number: int | slice) -> Configuration | Sequence[Configuration]:
+    def __getitem__(self, number: int | slice) -> Made | Sequence[Made]:
         if isinstance(number, slice):
-            return Configurations(self.network, self.rows[number])
-        return self.network.configuration(int(self.rows[number]))
-
-
-class Situations(Sequence[Situation]):
-    """What time means in configurations, by the numbers of their rows, as long as it is looked at."""
-
-    def __init__(self, network: Network, rows: NDArray[np.int64]) -> None:
-        self.network = network
-        self.rows = rows
-
-    def __len__(self) -> int:
-        return len(self.rows)
-
-    @overload
-    def __getitem__(self, number: int) -> Situation: ...
-
-    @overload
-    def __getitem__(self, number: slice) -> Sequence[Situation]: ...
-
-    def __getitem__(self, number: int | slice) -> Situation | Sequence[Situation]:
-        if isinstance(number, slice):
-            return Situations(self.network, self.rows[number])
-        return self.network.situation(int(self.rows[number]))
+            return OfRows(self.make, self.rows[number])
+        return self.make(int(self.rows[number]))
 
 
 class ZoneTimes:
@@ -117,7 +97,7 @@ class ZoneTimes:
     @property
     def situations(self) -> Sequence[Situation]:
         """What time means in each configuration."""
-        return Situations(self.network, self.order)
+        return OfRows(self.network.situation, self.order)
 
     @cached_property
     def _by_place(self) -> dict[int, list[int]]:
@@ -230,7 +210,7 @@ class ZoneTimes:
     def true_in(self, formula: Proposition) -> list[bool]:
         """Return for each location whether a proposition is true there."""
         found = np.zeros(self.network.size, np.bool_)
-        found[self.order] = [holds(formula, c) for c in Configurations(self.network, self.order)]
+        found[self.order] = [holds(formula, c) for c in OfRows(self.network.configuration, self.order)]
         true: list[bool] = found[self.network.of_locations.used].tolist()
         return true
 
