@@ -91,6 +91,11 @@ class _Text:
         self.c = c
         self.agent = agent
         self.program = c.setting.program
+        self._taken_along: dict[str | None, frozenset[Slot]] = {}
+
+    @cached_property
+    def _has_passive(self) -> bool:
+        return any(self.c.setting.signature[kind].passive for kind in set(self.c.setting.kinds.values()))
 
     @cached_property
     def statements(self) -> tuple[Statement, ...]:
@@ -134,20 +139,27 @@ class _Text:
         slots = {("parent", node) for node in moved} | {("links", node) for node in linked} | places
         return frozenset(slots.union(*map(self._along, moved)))
 
-    def _along(self, node: Name) -> set[Slot]:
+    def _along(self, node: Name) -> frozenset[Slot]:
         """Return what may be elsewhere, or may no longer be put down, once a node has moved."""
-        setting = self.c.setting
-        if node == ANY or setting.signature[setting.kind(node)].contains:
-            return {("parent", ANY)}
-        carried, waiting = set[Name](), [node]
-        while waiting:
-            carrier = waiting.pop()
-            cargo = {name for name in setting.kinds if setting.carries(carrier, name)} - carried
-            carried |= cargo
-            waiting += sorted(cargo)
-        if any(setting.signature[setting.kind(name)].contains for name in carried):
-            return {("parent", ANY)}
-        return {("parent", name) for name in carried}
+        kind = None if node == ANY else self.c.setting.kind(node)
+        if kind not in self._taken_along:
+            self._taken_along[kind] = self._along_with(kind)
+        return self._taken_along[kind]
+
+    def _along_with(self, kind: str | None) -> frozenset[Slot]:
+        if kind is None:
+            return frozenset({("parent", ANY)})
+        signature, kinds = self.c.setting.signature, self.c.setting.kinds
+        there = frozenset(kinds.values())
+        moved, carried = frozenset({kind}), signature[kind].carries & there
+        while not carried <= moved:
+            moved |= carried
+            carried |= frozenset(
+                cargo for each in carried for cargo in signature[each].carries if cargo in there
+            )
+        if any(signature[each].contains for each in moved):
+            return frozenset({("parent", ANY)})
+        return frozenset(("parent", name) for name, of in kinds.items() if of in carried)
 
     def redex(self, reaction: Reaction) -> frozenset[Slot]:
         """Return the slots that a redex uses, missing sites included, and those that say where its places are."""
@@ -155,10 +167,8 @@ class _Text:
         pairs = (*pattern.parents, *reaction.reactum.parents)
         parents = {("parent", self._term(node)) for node, _ in pattern.parents}
         parents |= {("parent", place) for _, place in pairs if isinstance(place, str)}
-        if any(self.c.setting.signature[kind].passive for kind in self.c.setting.kinds.values()):
-            parents = {
-                ("parent", ANY)
-            }  # nothing reacts inside of what is passive: all places around are read
+        if self._has_passive:  # nothing reacts inside of what is passive: all places around are read
+            parents = {("parent", ANY)}
         links = {("links", self._term(node)) for _, node in pattern.links}
         return frozenset(parents | links | {("children", self._term(node)) for node in pattern.closed})
 

@@ -1,153 +1,157 @@
 """The automorphisms of a mission: transpositions of names that preserve it, and why others don't."""
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, fields, is_dataclass
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import fields, is_dataclass
+from functools import cached_property, partial
 from itertools import product
 from typing import Any
 
-from checker.reduction.renaming import WORD, Renaming
+from checker.reduction.pairing import VARIABLES, Pairing, Unlike
+from checker.reduction.renaming import WORD, Mentions, Renaming
 from semantics.behaviours.commands import COMMANDS
-from semantics.behaviours.expressions import Fault, Literal, Variable
-from semantics.behaviours.patterns import Anything, Exactly
+from semantics.behaviours.expressions import Fault, Literal
+from semantics.behaviours.patterns import Exactly
 from semantics.behaviours.program import Behaviour
-from semantics.behaviours.statements import Assign, ChooseFrom, ControlBy, For, ForEach, Spawn
+from semantics.behaviours.statements import ControlBy, Spawn, Statement
 from semantics.environment import Says
 from semantics.properties.propositions import And, Or, Proposition
 from semantics.state.cells import Cell
 from semantics.state.configuration import Configuration
+from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
-
-VARIABLES = {
-    (Variable, "name"),
-    (Assign, "variable"),
-    (For, "rest"),
-    (ForEach, "variable"),
-    (ForEach, "rest"),
-    (ChooseFrom, "variable"),
-    (Anything, "variable"),
-}
-"""The members of statements, expressions and patterns that are names of variables."""
 
 MOST_ARGUMENTS = 20_000
 """The most combinations of arguments with which a rule of the mission is tried."""
 
 
-UNLIKE_TEXTS = "their texts differ"
+class Automorphisms:
+    """The transpositions that preserve a mission."""
+
+    def __init__(self, c: Configuration, formulas: Iterable[Proposition] = ()) -> None:
+        self.c = c
+        self.program = c.setting.program
+        self.properties = tuple(map(_Parts, formulas))
+
+    def transposition(self, pairing: Pairing) -> Renaming:
+        """Return the renaming that exchanges both sides of a pairing; raises Unlike if it changes the mission."""
+
+        def both(pairs: dict[Any, Any]) -> dict[Any, Any]:
+            return {**pairs, **{other: one for one, other in pairs.items()}}
+
+        renaming = Renaming(both(pairing.names), both(pairing.numbers), both(pairing.variables))
+        self._check_kinds(renaming)
+        counters = _sayings(self.c, renaming, pairing.names)
+        renaming = Renaming(renaming.names, renaming.numbers, renaming.variables, counters)
+        self._check_program(renaming)
+        self._check_world(renaming)
+        for each in self.properties:
+            if not each.kept(renaming):
+                raise Unlike(f"a property tells them apart: {each.formula}")
+        return renaming
+
+    # --- kinds and names --------------------------------------------------------------------------------------
+
+    @cached_property
+    def _words(self) -> frozenset[str]:
+        """What channels and rules are named with."""
+        words = (word for channel in _channels(self.c) for word in WORD.findall(channel))
+        return frozenset((*words, *self.program.reactions))
+
+    @cached_property
+    def _inhabited(self) -> frozenset[str]:
+        """The kinds that may contain something that there is."""
+        setting = self.c.setting
+        there = frozenset(setting.kinds.values())
+        return frozenset(kind for kind in there if setting.signature[kind].contains & there)
+
+    def _check_kinds(self, renaming: Renaming) -> None:
+        kinds, alpha = self.c.setting.kinds, self.c.alpha
+        for one, other in renaming.names.items():
+            if (one in alpha) is not (other in alpha) or kinds.get(one) != kinds.get(other):
+                raise Unlike(f"'{one}' and '{other}' are not of one kind")
+            if one in self._words:
+                raise Unlike(f"a channel or a rule is named with '{one}'")
+            if kinds.get(one) in self._inhabited:
+                raise Unlike(f"'{one}' may contain others: of two places as small the first by name is taken")
+
+    # --- the program ------------------------------------------------------------------------------------------
+
+    @cached_property
+    def _statements(self) -> Mentions[int]:
+        def looks() -> Iterator[tuple[int, Callable[[Renaming], object]]]:
+            for number, statement in enumerate(self.program.statements):
+                yield number, partial(_stated_at, number, statement)
+
+        return Mentions(looks())
+
+    @cached_property
+    def _rules(self) -> list[tuple[str, int]]:
+        """The mission's own rules, each with the number of its arguments, in the order of their first use."""
+        used = (each for each in self.program.statements if isinstance(each, ControlBy))
+        return list(
+            dict.fromkeys((each.name, len(each.arguments)) for each in used if each.name not in COMMANDS)
+        )
+
+    def _check_program(self, renaming: Renaming) -> None:
+        program = self.program
+        for number in self._statements.of(renaming):
+            partner, image = _stated_at(number, program.statements[number], renaming)
+            if image != program.statements[partner]:
+                line = program.line(number)
+                raise Unlike(f"the text tells them apart{f' (line {line})' if line else ''}")
+        for variable in sorted(program.watched, key=str):
+            if renaming.value(variable) not in program.watched:
+                raise Unlike(f"a property tells them apart: it names {variable}")
+        for each in program.behaviours.values():
+            if (
+                Behaviour(each.name, restated(renaming, each.parameters), restated(renaming, each.body))
+                != each
+            ):
+                raise Unlike(f"the behaviour '{each.name}' tells them apart")
+        for name, arguments in self._rules:
+            self._check_rule(renaming, name, arguments)
+
+    def _check_rule(self, renaming: Renaming, rule: str, arguments: int) -> None:
+        make, names = self.program.reactions[rule], sorted(self.c.setting.kinds)
+        if len(names) ** (arguments + 1) > MOST_ARGUMENTS:
+            raise Unlike(f"the rule '{rule}' has too many arguments to be tried with all of them")
+        for chosen in product(names, repeat=arguments + 1):
+            if renaming.value(_made(make, chosen)) != _made(make, tuple(map(renaming.name, chosen))):
+                raise Unlike(f"the rule '{rule}' tells them apart")
+
+    # --- the first configuration ------------------------------------------------------------------------------
+
+    @cached_property
+    def _cells(self) -> Mentions[Cell]:
+        def looks() -> Iterator[tuple[Cell, Callable[[Renaming], object]]]:
+            for cell, value in self.c.state.items():  # type: ignore[attr-defined]  # only rows are explored
+                yield cell, partial(self._held_at, cell, value)
+
+        return Mentions(looks())
+
+    def _held_at(self, cell: Cell, value: Any, renaming: Renaming) -> tuple[Cell, Any]:
+        unordered = self.c.setting.scheduler is Scheduler.UNORDERED
+        return renaming.cell(cell), renaming.content(cell, value, unordered=unordered)
+
+    def _check_world(self, renaming: Renaming) -> None:
+        state, arriving = self.c.state, self.c.setting.arriving
+        for cell in self._cells.of(renaming):
+            partner, image = self._held_at(cell, state.read(cell), renaming)
+            if state.read(partner) != image:
+                raise Unlike(
+                    DIFFERENCES.get(cell[0], f"what is said of '{cell[-1]}' at first ({cell[0]}) differs")
+                )
+        if frozenset(map(renaming.name, arriving)) != arriving:
+            raise Unlike("of one flights arrive, of the other not")
 
 
-class Unlike(Exception):
-    """Two agents or entities are not interchangeable; says why."""
+DIFFERENCES = {"placement": "they are not in the same place", "channels": "they are on different channels"}
+"""How a difference between two cells at first is said, by what they are."""
 
 
-# --- pairing --------------------------------------------------------------------------------------------------
-
-
-@dataclass
-class Pairing:
-    """A correspondence between two sides: names, statements, variables."""
-
-    c: Configuration
-    names: dict[str, str] = field(default_factory=dict)
-    numbers: dict[int, int] = field(default_factory=dict)
-    variables: dict[str, str] = field(default_factory=dict)
-
-    def agents(self, one: Name, other: Name) -> None:
-        """Pair two agents with their hosts, their programs, and the names in these."""
-        self.pair(self.names, one, other)
-        self.pair(self.names, self.c.alpha.host(one), self.c.alpha.host(other))
-        self.unify(self.c.alpha.code(one), self.c.alpha.code(other))
-
-    def pair(self, known: dict[Any, Any], one: Any, other: Any) -> bool:
-        """Note that one thing corresponds to another; tell whether that is new."""
-        if one == other or known.get(one) == other:
-            return False
-        if one in known or one in known.values() or other in known or other in known.values():
-            raise Unlike(f"'{one}' and '{other}' stand for each other in one place and not in another")
-        known[one] = other
-        return True
-
-    def unify(self, one: Any, other: Any) -> None:
-        """Pair two pieces of text part by part."""
-        if type(one) is not type(other):
-            raise Unlike(UNLIKE_TEXTS)
-        if isinstance(one, tuple | frozenset):
-            self.unify_all(one, other)
-        elif isinstance(one, bool) or not isinstance(one, int):
-            self.unify_parts(one, other)
-        elif self.pair(self.numbers, one, other):
-            statements = self.c.setting.program.statements
-            self.unify(statements[one], statements[other])
-
-    def unify_all(self, one: Any, other: Any) -> None:
-        """Pair the members of two tuples, in order."""
-        if len(one) != len(other):
-            raise Unlike(UNLIKE_TEXTS)
-        ordered = zip(one, other, strict=True) if isinstance(one, tuple) else ()
-        for each in ordered:
-            self.unify(*each)
-
-    def unify_parts(self, one: Any, other: Any) -> None:
-        """Pair the members of two statements, expressions or patterns."""
-        if isinstance(one, Literal | Exactly):
-            self.unify_values(one.value, other.value)
-        elif is_dataclass(one):
-            for member in fields(one):
-                first, second = getattr(one, member.name), getattr(other, member.name)
-                if (type(one), member.name) in VARIABLES and None not in (first, second):
-                    self.pair(self.variables, first, second)
-                elif isinstance(one, Spawn) and member.name == "name":
-                    self.unify_values(first, second)
-                else:
-                    self.unify(first, second)
-        elif one != other:
-            raise Unlike(UNLIKE_TEXTS)
-
-    def unify_values(self, one: Any, other: Any) -> None:
-        """Pair two constants: names that may be exchanged, or equal values."""
-        if isinstance(one, tuple) and isinstance(other, tuple) and len(one) == len(other):
-            for each in zip(one, other, strict=True):
-                self.unify_values(*each)
-        elif isinstance(one, str) and isinstance(other, str) and {one, other} <= self.movable():
-            self.pair(self.names, one, other)
-        elif type(one) is not type(other) or one != other:
-            raise Unlike(f"the text of one says {one} where the other's says {other}")
-
-    def movable(self) -> frozenset[Name]:
-        """Return the names that may be exchanged: of agents and of entities."""
-        return frozenset((*self.c.alpha.names(), *self.c.setting.kinds))
-
-
-# --- transpositions -------------------------------------------------------------------------------------------
-
-
-def transposition(c: Configuration, pairing: Pairing) -> Renaming:
-    """Return the renaming that exchanges both sides of a pairing; raises Unlike if it changes the mission."""
-
-    def both(pairs: dict[Any, Any]) -> dict[Any, Any]:
-        return {**pairs, **{other: one for one, other in pairs.items()}}
-
-    renaming = Renaming(both(pairing.names), both(pairing.numbers), both(pairing.variables))
-    _check_kinds(c, renaming)
-    counters = _sayings(c, renaming, pairing.names)
-    renaming = Renaming(renaming.names, renaming.numbers, renaming.variables, counters)
-    _check_program(c, renaming)
-    _check_world(c, renaming)
-    return renaming
-
-
-def _check_kinds(c: Configuration, renaming: Renaming) -> None:
-    setting, agents = c.setting, set(c.alpha.names())
-    words = {word for channel in _channels(c) for word in WORD.findall(channel)} | set(
-        setting.program.reactions
-    )
-    for one, other in renaming.names.items():
-        if (one in agents) is not (other in agents) or setting.kinds.get(one) != setting.kinds.get(other):
-            raise Unlike(f"'{one}' and '{other}' are not of one kind")
-        if one in words:
-            raise Unlike(f"a channel or a rule is named with '{one}'")
-        holds = setting.signature[setting.kind(one)].contains if one in setting.kinds else frozenset[str]()
-        if holds.intersection(setting.kinds.values()):
-            raise Unlike(f"'{one}' may contain others: of two places as small the first by name is taken")
+def _stated_at(number: int, statement: Statement, renaming: Renaming) -> tuple[int, Any]:
+    """Return the image of a statement and of its number."""
+    return renaming.numbers.get(number, number), restated(renaming, statement)
 
 
 def _channels(c: Configuration) -> Iterator[str]:
@@ -187,32 +191,6 @@ def _unnumbered(clause: Any) -> Any:
     return (clause.message, clause.agent, clause.times) if isinstance(clause, Says) else clause
 
 
-def _check_program(c: Configuration, renaming: Renaming) -> None:
-    program = c.setting.program
-    for number, statement in enumerate(program.statements):
-        if restated(renaming, statement) != program.statements[renaming.numbers.get(number, number)]:
-            line = program.lines[number] if number < len(program.lines) else 0
-            raise Unlike(f"the text tells them apart{f' (line {line})' if line else ''}")
-    for variable in sorted(program.watched, key=str):
-        if renaming.value(variable) not in program.watched:
-            raise Unlike(f"a property tells them apart: it names {variable}")
-    for each in program.behaviours.values():
-        if Behaviour(each.name, restated(renaming, each.parameters), restated(renaming, each.body)) != each:
-            raise Unlike(f"the behaviour '{each.name}' tells them apart")
-    for statement in program.statements:
-        if isinstance(statement, ControlBy) and statement.name not in COMMANDS:
-            _check_rule(c, renaming, statement)
-
-
-def _check_rule(c: Configuration, renaming: Renaming, statement: ControlBy) -> None:
-    make, names = c.setting.program.reactions[statement.name], sorted(c.setting.kinds)
-    if len(names) ** (len(statement.arguments) + 1) > MOST_ARGUMENTS:
-        raise Unlike(f"the rule '{statement.name}' has too many arguments to be tried with all of them")
-    for chosen in product(names, repeat=len(statement.arguments) + 1):
-        if renaming.value(_made(make, chosen)) != _made(make, tuple(map(renaming.name, chosen))):
-            raise Unlike(f"the rule '{statement.name}' tells them apart")
-
-
 def _made(make: Any, chosen: tuple[Name, ...]) -> Any:
     try:
         return make(*chosen)
@@ -244,23 +222,26 @@ def _restated_member(renaming: Renaming, value: Any, member: str) -> Any:
     return restated(renaming, part)
 
 
-def _check_world(c: Configuration, renaming: Renaming) -> None:
-    after = renaming.configuration(c)
-    if after == c:
-        if frozenset(map(renaming.name, c.setting.arriving)) != c.setting.arriving:
-            raise Unlike("of one flights arrive, of the other not")
-        return
-    cell = next(cell for cell, value in c.state.items() if after.read(cell) != value)  # type: ignore[attr-defined]  # only rows are explored
-    words = {"placement": "they are not in the same place", "channels": "they are on different channels"}
-    raise Unlike(words.get(cell[0], f"what is said of '{cell[-1]}' at first ({cell[0]}) differs"))
-
-
 # --- properties -----------------------------------------------------------------------------------------------
 
 
-def is_invariant(renaming: Renaming, formula: Proposition) -> bool:
-    """Tell whether a proposition is invariant under the exchange."""
-    return bool(_normal(formula) == _normal(renaming.value(formula)))
+class _Parts:
+    """A property as its parts: a transposition keeps it if the image of each part that it changes is a part."""
+
+    def __init__(self, formula: Proposition) -> None:
+        self.formula = formula
+        self.parts = list(_flat(And, (formula,)))
+        self.normal = frozenset(map(_normal, self.parts))
+        self.mentions = Mentions((number, partial(_image, part)) for number, part in enumerate(self.parts))
+
+    def kept(self, renaming: Renaming) -> bool:
+        """Tell whether the property is invariant under a transposition."""
+        changed = (self.parts[number] for number in self.mentions.of(renaming))
+        return all(_normal(_image(part, renaming)) in self.normal for part in changed)
+
+
+def _image(part: Any, renaming: Renaming) -> Any:
+    return renaming.value(part)
 
 
 def _normal(formula: Any) -> Any:

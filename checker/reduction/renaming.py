@@ -5,10 +5,10 @@ sorted by name are sorted again.
 """
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from physical import Geometry
 from semantics.behaviours.observations import All, Nodes, Observation, Of, Swept
@@ -27,6 +27,8 @@ from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, Placed
 from semantics.state.requests import request_key
 from semantics.state.setting import Scheduler
+
+Where = TypeVar("Where", int, Cell)
 
 WORD = re.compile(r"[^\W\d]\w*")
 
@@ -176,23 +178,48 @@ def spelled(value: Any) -> str:
     return repr(value)
 
 
-class _Noting(Renaming):
-    """Renames nothing, and notes the names that it meets."""
+# --- what is mentioned where ----------------------------------------------------------------------------------
 
-    def __init__(self) -> None:
+
+class _Asked(dict[Any, Any]):
+    """An empty permutation that notes what it is asked for."""
+
+    def __init__(self, met: dict[Any, None]) -> None:
         super().__init__()
-        object.__setattr__(self, "met", {})
+        self.met = met
 
-    met: dict[str, None]
+    def get(self, key: Any, default: Any = None) -> Any:
+        """Note a key; there is nothing under it."""
+        self.met[key] = None
+        return default
 
-    def name(self, name: str) -> str:
-        """Note a name."""
-        self.met[name] = None
-        return name
+    def __contains__(self, key: object) -> bool:
+        self.met[key] = None
+        return False
+
+
+def asked(look: Callable[[Renaming], object]) -> tuple[Any, ...]:
+    """Return the names, numbers, variables and cells that a look asks a renaming for, in order."""
+    met: dict[Any, None] = {}
+    look(Renaming(*(_Asked(met) for _ in range(4))))
+    return tuple(met)
 
 
 def mentioned(value: Any, among: frozenset[str]) -> tuple[str, ...]:
     """Return which of some names occur in a value, in the order in which they do."""
-    noting = _Noting()
-    noting.value(value)
-    return tuple(name for name in noting.met if name in among)
+    return tuple(name for name in asked(lambda renaming: renaming.value(value)) if name in among)
+
+
+class Mentions(Generic[Where]):
+    """Where things are mentioned: what a renaming changes lies among the places that mention what it moves."""
+
+    def __init__(self, places: Iterable[tuple[Where, Callable[[Renaming], object]]]) -> None:
+        self.places: dict[Any, dict[Where, None]] = {}
+        for place, look in places:
+            for thing in asked(look):
+                self.places.setdefault(thing, {})[place] = None
+
+    def of(self, renaming: Renaming) -> list[Where]:
+        """Return the places that mention what a renaming moves, sorted."""
+        moved = (thing for part in renaming.parts for thing in part)
+        return sorted(set().union(*(self.places.get(thing, ()) for thing in moved)))

@@ -9,9 +9,10 @@ from itertools import combinations
 from typing import Any
 
 from checker.engines.fast.skeletons import mobile_names
-from checker.reduction.automorphisms import UNLIKE_TEXTS, Pairing, Unlike, is_invariant, transposition
+from checker.reduction.automorphisms import Automorphisms
 from checker.reduction.items import Class, Items
 from checker.reduction.order import ordered
+from checker.reduction.pairing import UNLIKE_TEXTS, Pairing, Unlike
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.reduction.renaming import Renaming
 from checker.reduction.representatives import to_representative
@@ -37,7 +38,7 @@ class Symmetry:
         if reason is not None:
             raise RefusedError(Reduction.SYMMETRY, reason)
         self.initial = initial
-        self.formulas = tuple(formulas)
+        self.automorphisms = Automorphisms(initial, formulas)
         self.unlike: list[str] = []
         self.classes = tuple(self._classes(initial.alpha.names()))
         self.classes += tuple(self._of_entities())
@@ -86,14 +87,10 @@ class Symmetry:
                 pairing.agents(one, other)
             else:
                 pairing.pair(pairing.names, one, other)
-            renaming = transposition(self.initial, pairing)
-            for formula in self.formulas:
-                if not is_invariant(renaming, formula):
-                    raise Unlike(f"a property tells them apart: {formula}")
+            return self.automorphisms.transposition(pairing)
         except Unlike as reason:
             self.unlike.append(f"'{one}' is not like '{other}', since {reason}")
             return None
-        return renaming
 
     def _fits(self, swap: Renaming, likes: list[Renaming], taken: set[Any]) -> bool:
         """Tell whether a member shares nothing with those found before."""
