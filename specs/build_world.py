@@ -243,8 +243,16 @@ class BuildWorld(BuildTiming):
         return s.Negation(c[1], span=cover(c))
 
     def quantified(self, c: Children) -> s.Quantified:
-        behaviour, host = optional(c[5], name), optional(c[7], name)
-        return s.Quantified(str(c[0]), name(c[1]), name(c[3]), c[9], behaviour, host, span=cover(c))
+        first, *others = names(c[1:-8])
+        among, behaviour, host = name(c[-7]), optional(c[-5], name), optional(c[-3], name)
+
+        def of(variable: s.Name, body: s.Formula, *, joined: bool) -> s.Quantified:
+            return s.Quantified(str(c[0]), variable, among, body, behaviour, host, joined, span=cover(c))
+
+        body = c[-1]
+        for variable in reversed(others):
+            body = of(variable, body, joined=True)
+        return of(first, body, joined=False)
 
     def path_prefix(self, c: Children) -> s.PathPrefix:
         words = " ".join(map(str, c[:-1]))

@@ -449,8 +449,11 @@ class Code(Enum):
     FORMULA_TOO_LARGE = (
         "LS607",
         "formula too large",
-        """Quantifiers are expanded over all entities of their kind, and `<->` doubles its sides. After that, the
-        properties of a mission may have at most fifty thousand atoms.""",
+        """Quantifiers are written out, and `<->` doubles its sides. After that, the properties of a mission may have at
+        most fifty thousand atoms. What `invariant`, `reachable` and `within` say of entities alone is not written out
+        where it is long: `forall x, y: UAV . x != y -> forall c: Cell . not (x in c and y in c)` may be asked of fifty
+        vehicles on two hundred places, since each is in a few. It may ask two hundred thousand atoms of a
+        configuration.""",
     )
     NOT_QUANTIFIED = (
         "LS608",

@@ -61,6 +61,9 @@ _SHORT: Final = 5
 
 _IN_FORMULAS: Final = frozenset({"always", "eventually"})
 _QUANTIFIERS: Final = frozenset({"forall", "exists"})
+_NAMES_AFTER: Final = re.compile(r"\b(\w+)\s+((?:\w+\s*,\s*)*\w+)\s*\Z")
+_MOST_NAMES: Final = 200
+"""So many characters of quantified names are looked through."""
 _GUARDS: Final = frozenset({"and", "or", "&&", "||", "when", "where", "with"})
 _SYMBOL: Final = re.compile(r"[\w\s\"()\[\]{},;:.=<>!&|+\-]")
 
@@ -504,21 +507,28 @@ def missing_at_most(at: Situation) -> Diagnostic | None:
 
 def missing_dot(at: Situation) -> Diagnostic | None:
     """`forall u: UAV u in base`, `exists u: UAV: u in base`, `forall u in UAV . u in base`."""
-    word = word_before(at.prepared.text, at.before.span.start)
-    if at.accepted == {":"} and word.text in _QUANTIFIERS:
-        kind, name = at.following.text if at.found.text in ("in", "of") else "Kind", at.before.text
-        if at.found.is_name and not is_keyword(at.found):  # the kind first, as in Java
-            kind, name = at.before.text, at.found.text
-        hint = f"write {word.text} {name}: {kind} . formula"
+    quantifier, variables = _quantified(at.prepared.text, at.before.span.end)
+    if at.accepted == {":", ","} and quantifier in _QUANTIFIERS:
+        kind = at.following.text if at.found.text in ("in", "of") else "Kind"
+        if at.following.text == ":":
+            variables += f", {at.found.text}"
+        elif at.found.is_name and not is_keyword(at.found):  # the kind first, as in Java
+            kind, variables = at.before.text, at.found.text
+        hint = f"write {quantifier} {variables}: {kind} . formula"
         return at.mistake(Code.MISSING_KIND, f"expected ':' and a kind, found {at.found.shown}", hint)
     if not {".", "with_behavior", "hosted_at"} <= at.accepted:
         return None
     start = at.prepared.text.rfind(":", 0, at.found.span.start)
-    variable = word_before(at.prepared.text, start)
-    quantifier = word_before(at.prepared.text, variable.span.start)
+    quantifier, variables = _quantified(at.prepared.text, start)
     among = at.prepared.text[start + 1 : at.before.span.end].strip()
-    hint = f"write {quantifier.text} {variable.text}: {among} . formula"
+    hint = f"write {quantifier} {variables}: {among} . formula"
     return at.mistake(Code.UNEXPECTED, f"expected '.', found {at.found.shown}", hint)
+
+
+def _quantified(text: str, end: int) -> tuple[str, str]:
+    """Return the word and the names after it, with commas between them, that end at an offset."""
+    found = _NAMES_AFTER.search(text, max(0, end - _MOST_NAMES), end)
+    return (found[1], " ".join(found[2].split())) if found else ("", "")
 
 
 def equals_of_places(at: Situation) -> Diagnostic | None:

@@ -238,8 +238,12 @@ def _(node: s.Connective) -> str:
 def _(node: s.Quantified) -> str:
     behaviour = f" with_behavior {write(node.behaviour)}" if node.behaviour else ""
     host = f" hosted_at {write(node.host)}" if node.host else ""
+    variables, body = [node.variable], node.body
+    while isinstance(body, s.Quantified) and body.joined:
+        variables.append(body.variable)
+        body = body.body
     among = f"{write(node.range)}{behaviour}{host}"
-    return f"{node.quantifier} {write(node.variable)}: {among} . {write(node.body)}"
+    return f"{node.quantifier} {', '.join(map(write, variables))}: {among} . {write(body)}"
 
 
 @write.register

@@ -167,6 +167,10 @@ class _Resolver:
 
     def quantified(self, node: s.Quantified, scope: Scope) -> None:
         inner, among = dict(scope), node.range
+        if node.joined:  # its range was met before
+            self.bind(node.variable, inner, node.span)
+            self.visit(node.body, inner)
+            return
         if among.text != AGENTS or AGENTS in self.known:
             self.sorted_name(among, "agent" if self.known.get(among.text) == "agent" else "kind")
         if node.behaviour is not None:

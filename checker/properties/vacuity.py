@@ -17,11 +17,13 @@ from semantics.properties.propositions import (
     Always,
     And,
     Atom,
+    Formulas,
     IsBound,
     Not,
     Or,
     Proposition,
     VariableIs,
+    atoms_of,
     holds,
 )
 from semantics.state import cells
@@ -53,8 +55,7 @@ class Valuations:
     begun: bool = False
 
     def __post_init__(self) -> None:
-        found = tuple(dict.fromkeys(atoms_of(self.formula)))
-        self.atoms = found if len(found) <= MOST_ATOMS else ()
+        self.atoms = few_atoms(self.formula)
 
     def holds(self, c: Configuration) -> bool:
         """Tell whether the formula is true of a configuration, and remember its valuation."""
@@ -169,18 +170,14 @@ def bindings(atoms: Iterable[Proposition]) -> tuple[IsBound, ...]:
     return tuple({IsBound(atom.variable): None for atom in atoms if isinstance(atom, VariableIs)})
 
 
-def atoms_of(formula: Proposition) -> Iterator[Atom]:
-    """Yield the atoms of a formula, but for `true` and `false`."""
-    match formula:
-        case Not(inner):
-            yield from atoms_of(inner)
-        case And(parts) | Or(parts):
-            for part in parts:
-                yield from atoms_of(part)
-        case Always():
-            return
-        case _:
-            yield formula
+def few_atoms(formula: Proposition) -> tuple[Atom, ...]:
+    """Return the atoms of a formula, once each; none where there are more than can be gathered."""
+    found: dict[Atom, None] = {}
+    for atom in atoms_of(formula):
+        found[atom] = None
+        if len(found) > MOST_ATOMS:
+            return ()
+    return tuple(found)
 
 
 # --- which parts are never needed -----------------------------------------------------------------------------
@@ -234,7 +231,7 @@ def _remark(around: Part, part: Part, columns: Columns, every: int) -> str:
             return f"{said}: it holds without"
 
 
-def _others(parts: tuple[Proposition, ...], part: Part) -> tuple[Proposition, ...]:
+def _others(parts: Formulas, part: Part) -> tuple[Proposition, ...]:
     """Return the operands of a connective but for one."""
     rank = part.paths[0][-1]
-    return parts[:rank] + parts[rank + 1 :]
+    return (*parts[:rank], *parts[rank + 1 :])

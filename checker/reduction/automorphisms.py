@@ -14,7 +14,7 @@ from semantics.behaviours.patterns import Exactly
 from semantics.behaviours.program import Behaviour
 from semantics.behaviours.statements import ControlBy, Spawn, Statement
 from semantics.environment import Says
-from semantics.properties.propositions import And, Or, Proposition
+from semantics.properties.propositions import And, Instances, Or, Proposition
 from semantics.state.cells import Cell
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Scheduler
@@ -252,6 +252,9 @@ def _normal(formula: Any) -> Any:
 
 
 def _flat(kind: type, formulas: Iterable[Any]) -> Iterator[Any]:
+    if isinstance(formulas, Instances):  # what is quantified is kept if its range and its body are
+        yield formulas
+        return
     for each in formulas:
         if isinstance(each, kind):
             yield from _flat(kind, each.formulas)  # type: ignore[attr-defined]  # And and Or have them

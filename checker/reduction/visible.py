@@ -7,7 +7,7 @@ from typing import Any
 from checker.reduction.bounds import Bounds
 from semantics.behaviours.stepping import waits
 from semantics.properties.propositions import (
-    And,
+    Atom,
     Ended,
     Exists,
     HasPending,
@@ -16,12 +16,11 @@ from semantics.properties.propositions import (
     IsBound,
     Known,
     LinkedWith,
-    Not,
-    Or,
     Present,
     Proposition,
     VariableIs,
     Waiting,
+    atoms_of,
     is_true_of,
 )
 from semantics.state.agents import code_cell, host_cell, is_over, store_cell
@@ -60,19 +59,15 @@ class Eyes:
         self.bounds = Bounds(c)
         self.program = c.setting.program
         self.formulas = tuple(formulas)
-        self.seen = tuple(dict.fromkeys(each for formula in self.formulas for each in self._sees(formula)))
+        atoms = dict.fromkeys(_anywhere(atom) for formula in self.formulas for atom in atoms_of(formula))
+        self.seen = tuple(dict.fromkeys(each for atom in atoms for each in self._sees(atom)))
 
     def differ(self, before: Configuration, after: Configuration) -> bool:
         """Tell whether two configurations differ visibly."""
         return any(each.of(before) != each.of(after) for each in self.seen)
 
-    def _sees(self, formula: Proposition) -> Iterator[Seen]:
-        match formula:
-            case Not(inner):
-                yield from self._sees(inner)
-            case And(parts) | Or(parts):
-                for part in parts:
-                    yield from self._sees(part)
+    def _sees(self, atom: Atom) -> Iterator[Seen]:
+        match atom:
             case Inside(node, _, actually):
                 yield from self._places(node, actually)
             case LinkedWith(node, other, actually):
@@ -82,10 +77,10 @@ class Eyes:
             case Known(node):
                 yield Seen(parent_cell(node), is_something)
             case Exists() | Ended() | Waiting() | HostedAt() | HasPending():
-                yield Seen(AGENTS, has, (formula.agent,))
-                yield from self._of_agent(formula)
+                yield Seen(AGENTS, has, (atom.agent,))
+                yield from self._of_agent(atom)
             case VariableIs(variable) | IsBound(variable):
-                yield Seen(store_cell(variable.agent), is_true_of, (formula,))
+                yield Seen(store_cell(variable.agent), is_true_of, (atom,))
 
     def _of_agent(self, atom: Exists | Ended | Waiting | HostedAt | HasPending) -> Iterator[Seen]:
         match atom:
@@ -114,3 +109,8 @@ class Eyes:
                 yield from (Seen(links_cell(name)), Seen(parent_cell(name), is_something))
         if actually:
             yield from (Seen(down_cell(channel)) for channel in sorted(self.bounds.channels))
+
+
+def _anywhere(atom: Atom) -> Atom:
+    """Return an atom that sees as much: where something is is seen alike for all places that it may be in."""
+    return Inside(atom.node, REGION, atom.actually) if isinstance(atom, Inside) else atom

@@ -1,9 +1,11 @@
 """Propositions about one configuration, and the properties made of them."""
 
 import operator
-from collections.abc import Callable, Iterator, Mapping
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import Any, overload
 
 from semantics.behaviours.program import VariableOf
 from semantics.behaviours.stepping import waits
@@ -159,6 +161,17 @@ class Always:
         return "true" if self.value else "false"
 
 
+@dataclass(frozen=True, slots=True)
+class Same:
+    """`x == y` below a quantifier that isn't written out: a name's instance says whether it is the other."""
+
+    name: Name
+    other: Name
+
+    def __str__(self) -> str:
+        return f"{self.name} == {self.other}"
+
+
 # --- connectives ----------------------------------------------------------------------------------------------
 
 
@@ -176,9 +189,11 @@ class Not:
 class And:
     """`f and g and ...`."""
 
-    formulas: tuple["Proposition", ...]
+    formulas: "Formulas"
 
     def __str__(self) -> str:
+        if isinstance(self.formulas, Instances):
+            return f"forall {self.formulas}"
         return " and ".join(map(_nested, self.formulas)) or "true"
 
 
@@ -186,9 +201,11 @@ class And:
 class Or:
     """`f or g or ...`."""
 
-    formulas: tuple["Proposition", ...]
+    formulas: "Formulas"
 
     def __str__(self) -> str:
+        if isinstance(self.formulas, Instances):
+            return f"exists {self.formulas}"
         return " or ".join(map(_nested, self.formulas)) or "false"
 
 
@@ -205,8 +222,179 @@ Atom = (
     | VariableIs
     | IsBound
     | Always
+    | Same
 )
 Proposition = Atom | Not | And | Or
+
+
+# --- quantifiers that are not written out ----------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Range:
+    """What a quantified name goes through.
+
+    Attributes:
+        variable: The name, as the author wrote it.
+        kind: Of what it goes through, as the author wrote it.
+        names: What it stands for, sorted.
+    """
+
+    variable: str
+    kind: str
+    names: tuple[Name, ...]
+
+    @cached_property
+    def members(self) -> frozenset[Name]:
+        """The names, to look one up in."""
+        return frozenset(self.names)
+
+
+@dataclass(frozen=True, slots=True)
+class Instances(Sequence["Proposition"]):
+    """The operands that a quantifier comes to, each made when it is asked for.
+
+    Attributes:
+        variable: Stands in `body` for the quantified name; no name of a mission begins with a question mark.
+        range: What it goes through.
+        body: What is said of each.
+        anchor: `x in v` of the quantified v, where an instance of which that is false says nothing: true below
+            `forall`, false below `exists`. So only places that x is in need be looked at.
+    """
+
+    variable: Name
+    range: Range
+    body: "Proposition"
+    anchor: Inside | None = None
+
+    @staticmethod
+    def of(variable: Name, range_: Range, body: "Proposition", *, every: bool) -> "Instances":
+        """Return the operands of `forall` or `exists`, with their anchor if there is one."""
+        places = (
+            atom for atom in _written_atoms(body) if isinstance(atom, Inside) and atom.place == variable
+        )
+        anchors = (atom for atom in places if atom.node != variable and _without(body, atom) is every)
+        return Instances(variable, range_, body, next(anchors, None))
+
+    def of_name(self, name: Name) -> "Proposition":
+        """Return the instance for a name."""
+        return instance(self.body, self.variable, name)
+
+    def worth_asking(self, c: Configuration) -> "Iterable[Proposition]":
+        """Return the instances that may say something of a configuration."""
+        if self.anchor is None:
+            return self
+        around = places_around(c, self.anchor.node, actually=self.anchor.actually)
+        return [self.of_name(place) for place in around if place in self.range.members]
+
+    def with_(self, variable: Name, name: Name) -> "Instances":
+        """Return the operands in which another quantified name stands for something."""
+        anchor = None if self.anchor is None else instance(self.anchor, variable, name)
+        assert anchor is None or isinstance(anchor, Inside)
+        return Instances(self.variable, self.range, instance(self.body, variable, name), anchor)
+
+    def __len__(self) -> int:
+        return len(self.range.names)
+
+    def __iter__(self) -> "Iterator[Proposition]":
+        return map(self.of_name, self.range.names)
+
+    @overload
+    def __getitem__(self, rank: int) -> "Proposition": ...
+
+    @overload
+    def __getitem__(self, rank: slice) -> "Sequence[Proposition]": ...
+
+    def __getitem__(self, rank: int | slice) -> "Proposition | Sequence[Proposition]":
+        names = self.range.names[rank]
+        return self.of_name(names) if isinstance(names, str) else tuple(map(self.of_name, names))
+
+    def __str__(self) -> str:
+        body = re.sub(rf"{re.escape(self.variable)}\b", self.range.variable, str(self.body))
+        return f"{self.range.variable}: {self.range.kind} . {body}"
+
+
+Formulas = tuple["Proposition", ...] | Instances
+
+
+def is_variable(name: Name) -> bool:
+    """Tell whether a name stands for a quantified one."""
+    return name.startswith("?")
+
+
+def instance(formula: "Proposition", variable: Name, name: Name) -> "Proposition":
+    """Return a proposition in which a quantified name stands for another."""
+    match formula:
+        case Not(inner):
+            return Not(instance(inner, variable, name))
+        case And(parts) | Or(parts):
+            if isinstance(parts, Instances):
+                return type(formula)(parts.with_(variable, name))
+            return type(formula)(tuple(instance(part, variable, name) for part in parts))
+        case Always() | VariableIs() | IsBound():
+            return formula
+    make: Callable[..., Proposition] = type(formula)
+    atom = make(*(name if part == variable else part for part in _members(formula)))
+    if isinstance(atom, Same) and not (is_variable(atom.name) or is_variable(atom.other)):
+        return Always(atom.name == atom.other)
+    return atom
+
+
+def _members(atom: Any) -> list[Any]:
+    return [getattr(atom, each) for each in atom.__slots__]
+
+
+def atoms_of(formula: "Proposition") -> "Iterator[Atom]":
+    """Yield the atoms of a formula, but for `true` and `false`; of a quantifier, those of its instances, once each."""
+    for atom in _written_atoms(formula, of_instances=True):
+        if not isinstance(atom, Same):
+            yield atom
+
+
+def _written_atoms(formula: "Proposition", *, of_instances: bool = False) -> "Iterator[Atom]":
+    match formula:
+        case Not(inner):
+            yield from _written_atoms(inner, of_instances=of_instances)
+        case And(parts) | Or(parts) if isinstance(parts, Instances):
+            within = _written_atoms(parts.body, of_instances=of_instances)
+            yield from _each_instance(within, parts) if of_instances else within
+        case And(parts) | Or(parts):
+            for part in parts:
+                yield from _written_atoms(part, of_instances=of_instances)
+        case Always():
+            return
+        case _:
+            yield formula
+
+
+def _each_instance(atoms: "Iterable[Atom]", instances: Instances) -> "Iterator[Atom]":
+    for atom in dict.fromkeys(atoms):
+        if isinstance(atom, Same) or instances.variable not in _members(atom):
+            yield atom
+            continue
+        for name in instances.range.names:
+            found = instance(atom, instances.variable, name)
+            assert isinstance(found, Atom)
+            yield found
+
+
+def _without(formula: "Proposition", atom: "Atom") -> bool | None:
+    """Return what a formula says where an atom is false, None where that depends on others."""
+    match formula:
+        case Not(inner):
+            said = _without(inner, atom)
+            return None if said is None else not said
+        case And(parts) | Or(parts):
+            among = (parts.body,) if isinstance(parts, Instances) else parts
+            said_each = {_without(part, atom) for part in among}
+            decides = isinstance(formula, Or)
+            if decides in said_each:
+                return decides
+            return None if None in said_each else not decides
+        case Always(value):
+            return value
+        case _:
+            return False if formula == atom else None
 
 
 def _mode(actually: bool) -> str:
@@ -234,16 +422,25 @@ def holds(formula: Proposition, c: Configuration) -> bool:
         case Not(inner):
             return not holds(inner, c)
         case And(parts):
-            return all(holds(part, c) for part in parts)
+            return all(holds(part, c) for part in _worth_asking(parts, c))
         case Or(parts):
-            return any(holds(part, c) for part in parts)
+            return any(holds(part, c) for part in _worth_asking(parts, c))
         case _:
             return _TRUTH[type(formula)](formula, c)
 
 
+def _worth_asking(parts: Formulas, c: Configuration) -> Iterable[Proposition]:
+    return parts.worth_asking(c) if isinstance(parts, Instances) else parts
+
+
 def _inside(atom: Inside, c: Configuration) -> bool:
-    around = _actual_places(c, atom.node) if atom.actually else _believed_places(c, atom.node)
+    around = places_around(c, atom.node, actually=atom.actually)
     return next(around, None) == atom.place if atom.directly else atom.place in around
+
+
+def places_around(c: Configuration, node: Name, *, actually: bool) -> Iterator[Name]:
+    """Yield the places around a node, from within: in A(P), or in L."""
+    return _actual_places(c, node) if actually else _believed_places(c, node)
 
 
 def _believed_places(c: Configuration, node: Name) -> Iterator[Name]:

@@ -1,4 +1,8 @@
-"""Elaborate formulas of properties: expand quantifiers and resolve names, within bounds."""
+"""Elaborate formulas of properties: expand quantifiers and resolve names, within bounds.
+
+A quantifier over entities that is too long to be written out is left as it is: its instances are made when they are
+asked for.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +21,7 @@ from semantics.properties.propositions import (
     HasPending,
     HostedAt,
     Inside,
+    Instances,
     IsBound,
     Known,
     LinkedWith,
@@ -24,8 +29,11 @@ from semantics.properties.propositions import (
     Or,
     Present,
     Proposition,
+    Range,
+    Same,
     VariableIs,
     Waiting,
+    is_variable,
 )
 from semantics.state.signature import REGION
 from specs import syntax as s
@@ -39,6 +47,13 @@ from specs.elaboration.value_types import ANY, NAMES, NOTHING, Sort, Types, sort
 from specs.writing import write
 
 MOST_ATOMS: Final = 50_000
+"""So many atoms the properties may have, written out."""
+
+LONG: Final = 1_000
+"""A quantifier over entities that comes to more atoms is not written out."""
+
+MOST_ASKED: Final = 200_000
+"""So many atoms such a quantifier may ask of one configuration."""
 
 _PLURALS: Final = {
     Sort.NUMBER: "numbers",
@@ -65,15 +80,23 @@ class Context:
         unbound: The truth of a comparison here whose variable has no value.
         names: What each quantified name stands for.
         depth: How many operators of paths are around.
+        is_alone: Whether nothing around is about runs: then quantifiers need not be written out.
+        variables: What stands for each name whose quantifier is not written out; `names` has one of its range.
     """
 
     unbound: bool
     names: Mapping[str, str] = field(default_factory=dict)
     depth: int = 0
+    is_alone: bool = False
+    variables: Mapping[str, str] = field(default_factory=dict)
 
     def naming(self, variable: str, name: str) -> Context:
         """Return the context in which a quantified name stands for another."""
         return replace(self, names={**self.names, variable: name})
+
+    def leaving(self, variable: str, name: str, left: str) -> Context:
+        """Return the context in which a quantified name is left as it is; `name` is one that it stands for."""
+        return replace(self.naming(variable, name), variables={**self.variables, variable: left})
 
     def denied(self) -> Context:
         """Return the context below a negation."""
@@ -89,7 +112,7 @@ class TooLarge(Exception):
 
 
 class Formulas:
-    """Elaborates the formulas of a mission; `atoms` counts those of all of them."""
+    """Elaborates the formulas of a mission; `atoms` counts those of all of them, `left` quantifiers as they are."""
 
     def __init__(self, names: Names, bodies: Bodies, types: Types, *, is_timed: bool = False) -> None:
         self.names = names
@@ -97,6 +120,7 @@ class Formulas:
         self.types = types
         self.is_timed = is_timed
         self.atoms = 0
+        self.left = 0
         self.among = Among(names, bodies)
         self.ranges = set[tuple[str, ...]]()
 
@@ -105,7 +129,7 @@ class Formulas:
         if self.full:
             return Always(True)
         try:
-            return self.proposition(formula, Context(unbound=invariant))
+            return self.proposition(formula, Context(unbound=invariant, is_alone=True))
         except TooLarge as error:
             self.report(formula, error)
             return Always(True)
@@ -131,7 +155,10 @@ class Formulas:
                 return self._quantified(node, around)
             case _:
                 self.count(1)
-                return self._atom(node, around)
+                atom = self._atom(node, around)  # reports what is wrong with it
+                if not around.variables:
+                    return atom
+                return self._atom(node, replace(around, names={**around.names, **around.variables}))
 
     def count(self, atoms: int) -> None:
         """Count atoms; raises TooLarge where they are too many."""
@@ -152,6 +179,8 @@ class Formulas:
         return make((*_parts(left, make), *_parts(right, make)))
 
     def _quantified(self, node: s.Quantified, around: Context) -> Proposition:
+        if around.variables or (around.is_alone and self._is_long(node)):
+            return self._left(node, around)
         every, found = node.quantifier == "forall", []
         for each, if_so in self.instances(node, around, self.proposition):
             body = self.proposition(node.body, each)
@@ -185,6 +214,59 @@ class Formulas:
             if kind
             else "declare one, or quantify over others",
         )
+
+    # --- quantifiers that are not written out
+
+    def _is_long(self, node: s.Quantified) -> bool:
+        """Tell whether a quantifier is too long to be written out, and can be left."""
+        size = self._size(node)
+        return size is not None and size > LONG
+
+    def _size(self, node: s.Formula) -> int | None:
+        """Return how many atoms a formula about entities has, written out; None of one that is about others, too."""
+        match node:
+            case s.Quantified(_, _, among, body, None, None) if among.text in self.names.signature.kinds:
+                members = sum(kind == among.text for kind in self.names.kinds.values())
+                size = self._size(body)
+                return None if size is None else members * size
+            case s.Negation(operand):
+                return self._size(operand)
+            case s.Connective(operator, left, right):
+                sizes = self._size(left), self._size(right)
+                known = [size for size in sizes if size is not None]
+                return None if len(known) < 2 else sum(known) * (2 if operator == "<->" else 1)
+            case s.Inside() | s.LinkedTo() | s.Known() | s.SameName() | s.TruthLiteral():
+                return 1
+            case s.Present(entity):
+                return None if isinstance(entity, s.Member) else 1
+        return None
+
+    def _left(self, node: s.Quantified, around: Context) -> Proposition:
+        """Return a quantifier as operands that are made when they are asked for."""
+        chain, left = [node], list[tuple[str, Range]]()
+        while isinstance(inner := chain[-1].body, s.Quantified) and inner.quantifier == node.quantifier:
+            chain.append(inner)
+        if len({each.variable.text for each in chain}) == len(chain):  # else one hides another
+            chain.sort(key=lambda each: not _is_said_something_of(each.variable.text, inner))
+        for each in chain:
+            names = tuple(name for name, _ in self.among.instances(each, around.names))
+            if not names:
+                self._warn_of_nothing(each)
+            self.ranges.add(names)
+            self.left += 1
+            left.append((f"?{self.left}", Range(each.variable.text, each.range.text, names)))
+            around = around.leaving(each.variable.text, names[0] if names else NOBODY, left[-1][0])
+        every, body = node.quantifier == "forall", self.proposition(inner, around)
+        for variable, among in reversed(left):
+            instances = Instances.of(variable, among, body, every=every)
+            body = And(instances) if every else Or(instances)
+        if (asked := _asked(body)) > MOST_ASKED:
+            message = f"each configuration would be asked {asked:,} atoms, and {MOST_ASKED:,} is the most"
+            hint = (
+                "quantify over fewer names, split it, or begin with what holds of few places: x in c -> ..."
+            )
+            raise TooLarge(message, hint)
+        return body
 
     # --- atoms
 
@@ -275,7 +357,8 @@ class Formulas:
             hint = "quantify one of them; a bigActor's variable is written a.x"
             message = f"'{write(node.left)}' and '{write(node.right)}' are two fixed names"
             self.names.findings.add(Code.NOT_QUANTIFIED, node, message, hint)
-        return Always(self._either(node.left, bound) == self._either(node.right, bound))
+        left, right = self._either(node.left, bound), self._either(node.right, bound)
+        return Same(left, right) if is_variable(left) or is_variable(right) else Always(left == right)
 
     def _stored(self, node: s.Stored, around: Context) -> Proposition:
         mistakes = len(self.names.findings)
@@ -333,4 +416,31 @@ def implications(node: s.Connective) -> Iterator[tuple[s.Formula, s.Formula]]:
 
 
 def _parts(formula: Proposition, make: type[And | Or]) -> tuple[Proposition, ...]:
-    return formula.formulas if isinstance(formula, make) else (formula,)
+    if isinstance(formula, And | Or) and isinstance(formula, make) and isinstance(formula.formulas, tuple):
+        return formula.formulas
+    return (formula,)
+
+
+def _asked(formula: Proposition) -> int:
+    """Return how many atoms a proposition asks of a configuration: of the places that something is in, a few."""
+    match formula:
+        case Not(inner):
+            return _asked(inner)
+        case And(Instances() as parts) | Or(Instances() as parts):
+            return (1 if parts.anchor else len(parts)) * _asked(parts.body)
+        case And(parts) | Or(parts):
+            return sum(map(_asked, parts))
+    return 1
+
+
+def _is_said_something_of(variable: str, node: s.Formula) -> bool:
+    """Tell whether anything is said of a quantified name, but that others are in it."""
+    for each in s.walk(node):
+        match each:
+            case s.Inside(entity) | s.Known(entity) | s.Present(s.Name() as entity) if (
+                entity.text == variable
+            ):
+                return True
+            case s.LinkedTo(entity, other) if variable in (entity.text, other.text):
+                return True
+    return False

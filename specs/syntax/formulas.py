@@ -26,7 +26,7 @@ class Connective(Node):
 
 @node
 class Quantified(Node):
-    """`forall x: UAV . F`, `exists x: UAV . F`, `forall x: agents . F`, `forall x: patrol . F`.
+    """`forall x: UAV . F`, `exists x: UAV . F`, `forall x, y: UAV . F`, `forall x: agents . F`, `forall x: patrol . F`.
 
     All entities of a kind, or some; all bigActors; those of a family. F extends as far as possible. `agents
     with_behavior visit` are those that are declared or spawned so, and `agents hosted_at Y` those that Y hosts at that
@@ -40,6 +40,7 @@ class Quantified(Node):
     body: Formula
     behaviour: Name | None = None
     host: Name | None = None
+    joined: bool = False
 
 
 @node

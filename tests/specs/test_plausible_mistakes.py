@@ -346,6 +346,9 @@ IN_PORT = [
     ('check { invariant "i": ended uav }', "uav", "name the bigActor that it hosts: p"),
     ('check { invariant "i": forall u: UAV u in base }', "u", "write forall u: UAV . formula"),
     ('check { invariant "i": exists u: UAV, u in base }', ",", "write exists u: UAV . formula"),
+    ('check { invariant "i": forall u, v: UAV u in v }', "u", "write forall u, v: UAV . formula"),
+    ('check { invariant "i": forall u, v in UAV . u in v }', "in", "write forall u, v: UAV . formula"),
+    ('check { invariant "i": forall u v: UAV . u in v }', "v", "write forall u, v: Kind . formula"),
     ('check { invariant "i": forall u in UAV: u in base }', "in", "write forall u: UAV . formula"),
     (
         'check { invariant "i": actually uav = boat }',

@@ -17,9 +17,9 @@ from checker.engines.fast.inspecting import inspect_fast, is_still, truths
 from checker.engines.fast.kernel import AT, GATHERED
 from checker.engines.fast.survey import Survey
 from checker.properties.inspections import Invariant
-from checker.properties.vacuity import asked, atoms_of
+from checker.properties.vacuity import asked
 from checker.properties.visited import Visited
-from semantics.properties.propositions import Atom, Proposition
+from semantics.properties.propositions import Atom, Proposition, atoms_of
 from semantics.state.cells import Row
 from semantics.state.configuration import Configuration, Label
 from semantics.state.requests import Request

@@ -4,9 +4,8 @@ A survey says of each finding how often it occurs, and where first; there the in
 """
 
 from collections.abc import Callable, Hashable, Iterable, Iterator
-from functools import cache, partial, reduce
+from functools import cache, partial
 from itertools import chain, combinations_with_replacement
-from operator import and_, or_
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,15 +13,16 @@ from numpy.typing import NDArray
 from checker.engines.contract import Inspect
 from checker.engines.fast.learner import Actor
 from checker.engines.fast.leaves import COPIES, COPIES_END, PAIR, PARTS, PARTS_END, STEP, WRITES, WRITES_END
+from checker.engines.fast.profiles import Profiles
 from checker.engines.fast.survey import Survey, distinct
 from checker.limits import look
 from checker.properties.findings import Collected, Key
 from checker.properties.inspections import Excerpt, Inspection, Invariant, Reachability, Rules
 from checker.properties.races import ControlRaces
-from checker.properties.vacuity import atoms_of, bindings, truth
+from checker.properties.vacuity import bindings, truth
 from checker.properties.visited import Visited, where_it_stands
 from semantics.behaviours.expressions import Fault
-from semantics.properties.propositions import Always, And, Not, Or, Proposition, holds
+from semantics.properties.propositions import Proposition, atoms_of, holds
 from semantics.races.monitor import CONTROLS
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.setting import Scheduler
@@ -240,18 +240,8 @@ def written(survey: Survey, leaf: int) -> dict[int, list[int]] | None:
 
 
 def truths(survey: Survey, formula: Proposition, size: int) -> Bools:
-    """Return for each of the first configurations whether a proposition is true of it, atom by atom."""
-    match formula:
-        case Not(inner):
-            return ~truths(survey, inner, size)
-        case And(parts):
-            return reduce(and_, (truths(survey, part, size) for part in parts), np.ones(size, np.bool_))
-        case Or(parts):
-            return reduce(or_, (truths(survey, part, size) for part in parts), np.zeros(size, np.bool_))
-        case Always(value):
-            return np.full(size, value)
-        case _:
-            return survey.where(partial(holds, formula), size)
+    """Return for each of the first configurations whether a proposition is true of it."""
+    return Profiles(survey, formula).truths(size)
 
 
 def is_still(survey: Survey, atoms: Iterable[Proposition]) -> bool:
@@ -265,23 +255,22 @@ def look_at_invariant(survey: Survey, inspection: Invariant) -> None:
     valuations, size = inspection.valuations, survey.size
     found = np.zeros(size, np.uint64)
     changing = False
-    atoms = valuations.atoms or tuple(atoms_of(inspection.formula))
-    for rank, atom in enumerate(atoms):
+    for rank, atom in enumerate(valuations.atoms):
         values, varies = survey.where_with_change(partial(holds, atom))
         changing = changing or varies
-        if valuations.atoms:
-            found |= values.astype(np.uint64) << np.uint64(rank)
-    changing = changing or not is_still(survey, bindings(atoms))
-    valuations.begun, valuations.still = True, None if changing else {}
+        found |= values.astype(np.uint64) << np.uint64(rank)
     if valuations.atoms:
         values, firsts, counts = np.unique(found, return_index=True, return_counts=True)
         valuations.met.update(map(int, values))
         columns = [{atom: int(value) >> k & 1 for k, atom in enumerate(valuations.atoms)} for value in values]
         good = [truth(inspection.formula, column, 1) == 1 for column in columns]
     else:
-        true = truths(survey, inspection.formula, size)
+        profiles = Profiles(survey, inspection.formula)
+        true, changing = profiles.truths(size), profiles.changing
         values, firsts, counts = np.unique(true, return_index=True, return_counts=True)
         good = list(map(bool, values))
+    changing = changing or not is_still(survey, bindings(atoms_of(inspection.formula)))
+    valuations.begun, valuations.still = True, None if changing else {}
     tallies = [
         (None if fine else inspection.WRONG, int(count), int(first))
         for fine, first, count in zip(good, firsts, counts, strict=True)

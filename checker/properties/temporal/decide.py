@@ -24,12 +24,11 @@ from checker.properties.temporal.linear import counterexample, shortest_countere
 from checker.properties.temporal.progress import Pending, Progress, Starved, owed, pending_requests
 from checker.properties.temporal.truth import Truth, Valuation, valuation
 from checker.properties.temporal.vacuity import Judged, is_judged, judge_branching, judge_linear
-from checker.properties.vacuity import atoms_of
 from checker.traces import Trace, replay, step_of, to_json
 from checker.verdicts import Outcome, Verdict, Violation
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property, Ranges
-from semantics.properties.propositions import Proposition
+from semantics.properties.propositions import Proposition, atoms_of
 from semantics.properties.temporal import ENVIRONMENTS, Fairness, Now, Steps, Temporal, atoms
 from semantics.successors import expand
 

@@ -88,6 +88,14 @@ def test_a_family_binds_its_number_and_its_entity_in_its_body(marks, lines):
     assert words_at(FAMILY.format(*(mark.strip(".") for mark in marks))) == lines
 
 
+@pytest.mark.parametrize(
+    ("name", "lines"), [("^x, y: UAV", [2, 3]), ("x, ^y: UAV", [2, 3]), ("x, y: ^UAV", [1, 2])]
+)
+def test_names_that_are_quantified_together_share_what_they_go_through(name, lines):
+    text = f'signature {{ kind UAV }} check {{\ninvariant "i": forall {name} .\nx in y }}\n'
+    assert words_at(text) == lines
+
+
 def test_a_variable_in_a_property_is_that_of_the_bigactor_and_of_what_it_calls():
     text = (
         "def f(y) = {\nlet ^x = y\n}\n"

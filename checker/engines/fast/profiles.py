@@ -1,0 +1,240 @@
+"""Where propositions of many atoms are true: each name is asked once for all that is said of it.
+
+A fleet of fifty on two hundred places has ten thousand atoms `x in c`, and each row answers them by fifty profiles:
+which of the atoms about x are true. What is said of one or two names is looked up by their profiles, once for each
+pair of profiles that there is; what quantifiers say of more is taken apart, instance by instance.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from functools import partial, reduce
+from operator import and_, or_
+
+import numpy as np
+from numpy.typing import NDArray
+
+from checker.engines.fast.survey import Survey, known
+from semantics.properties.propositions import (
+    Always,
+    And,
+    Atom,
+    Ended,
+    Exists,
+    HostedAt,
+    Inside,
+    Instances,
+    Known,
+    LinkedWith,
+    Not,
+    Or,
+    Present,
+    Proposition,
+    Same,
+    Waiting,
+    atoms_of,
+    holds,
+    is_variable,
+    places_around,
+)
+from semantics.state.configuration import Configuration
+from semantics.state.signature import Name
+
+Bools = NDArray[np.bool_]
+Numbers = NDArray[np.int64]
+
+Subject = tuple[Name, ...]
+"""Of whom an atom is: what it reads is read for all atoms of its subject."""
+
+Subjects = tuple[Subject, ...]
+
+MOST_TOGETHER = 2
+"""So many subjects' profiles are looked up together."""
+
+MOST_PAIRS = 1 << 22
+"""So many pairs of profiles are told apart by a table; more are sorted."""
+
+
+def subject(atom: Atom) -> Subject:
+    """Return of whom an atom is: of both its names where it reads as much of the one as of the other."""
+    match atom:
+        case (
+            Inside(name)
+            | Present(name)
+            | Known(name)
+            | Exists(name)
+            | Ended(name)
+            | Waiting(name)
+            | HostedAt(name)
+        ):
+            return (name,)
+        case LinkedWith(name, other):
+            return (name, other)
+        case _:
+            return (str(atom),)
+
+
+class Profiles:
+    """The truth of a proposition in the rows that were expanded, by the profiles of its subjects.
+
+    Attributes:
+        changing: Whether what was asked is not the same everywhere, as far as was looked.
+    """
+
+    def __init__(self, survey: Survey, formula: Proposition) -> None:
+        self.survey = survey
+        self.formula = formula
+        self.changing = False
+        self.atoms: dict[Subject, list[Atom]] = {}
+        for atom in dict.fromkeys(atoms_of(formula)):
+            self.atoms.setdefault(subject(atom), []).append(atom)
+        self.ranks = {atom: rank for each in self.atoms.values() for rank, atom in enumerate(each)}
+        self.anchors: dict[Inside, list[int]] = {}
+        learner = survey.space.learner
+        self.trees = {
+            one: learner.question(partial(profile, tuple(atoms))) for one, atoms in self.atoms.items()
+        }
+        self.numbers: dict[Subject, dict[object, int]] = {one: {} for one in self.atoms}
+        self.met: dict[Subject, set[int]] = {one: set() for one in self.atoms}
+
+    def truths(self, size: int | None = None) -> Bools:
+        """Return for each of the first configurations whether the proposition is true of it."""
+        found = [np.zeros(0, np.bool_)]
+        found += (self._block(rows) for rows in self.survey.blocks(size))
+        self.changing = any(len(leaves) > 1 for leaves in self.met.values())
+        return np.concatenate(found)
+
+    def _block(self, rows: Numbers) -> Bools:
+        codes = {one: self._codes(one, rows) for one in self.trees}
+        return _Block(self, codes, len(rows)).true(self.formula)
+
+    def _codes(self, one: Subject, rows: Numbers) -> Numbers:
+        leaves = self.survey.space.classify(self.trees[one], rows)
+        self.met[one].update(known(leaves))
+        return self.survey.numbered(leaves, self.numbers[one])
+
+    def ranks_of(self, anchor: Inside, parts: Instances) -> list[int]:
+        """Return for each instance the rank of its anchor among the atoms of its subject."""
+        if anchor not in self.anchors:
+            each = (replace(anchor, place=name) for name in parts.range.names)
+            self.anchors[anchor] = [self.ranks[atom] for atom in each]
+        return self.anchors[anchor]
+
+    def table(self, one: Subject) -> Bools:
+        """Return which atoms of a subject are true in each of its profiles: a row for each profile."""
+        width = len(self.atoms[one])
+        bits = [
+            np.unpackbits(np.frombuffer(each, np.uint8), count=width, bitorder="little")  # type: ignore[call-overload]  # profiles are bytes
+            for each in self.numbers[one]
+        ]
+        return np.array(bits, np.bool_).reshape(len(bits), width)
+
+
+def profile(atoms: tuple[Atom, ...], c: Configuration) -> bytes:
+    """Return which of some atoms are true of a configuration, a bit for each."""
+    around: dict[tuple[Name, bool], tuple[Name, ...]] = {}
+
+    def is_true(atom: Atom) -> bool:
+        if not isinstance(atom, Inside):
+            return holds(atom, c)
+        asked = (atom.node, atom.actually)
+        if asked not in around:
+            around[asked] = tuple(places_around(c, atom.node, actually=atom.actually))
+        return atom.place in (around[asked][:1] if atom.directly else around[asked])
+
+    return np.packbits([is_true(atom) for atom in atoms], bitorder="little").tobytes()
+
+
+class _Block:
+    """Some rows, each with the number of its profile for each subject."""
+
+    def __init__(self, profiles: Profiles, codes: dict[Subject, Numbers], size: int) -> None:
+        self.profiles = profiles
+        self.codes = codes
+        self.size = size
+        self.tables = {one: profiles.table(one) for one in codes}
+
+    def true(self, formula: Proposition) -> Bools:
+        """Return for each row whether a proposition is true."""
+        subjects = _subjects_of(formula)
+        if subjects is not None and len(subjects) <= MOST_TOGETHER:
+            return self._by_profiles(formula, subjects)
+        match formula:
+            case Not(inner):
+                return ~self.true(inner)
+            case And(parts):
+                return reduce(and_, map(self.true, _by_subjects(And, parts)), np.ones(self.size, np.bool_))
+            case Or(parts):
+                return reduce(or_, map(self.true, _by_subjects(Or, parts)), np.zeros(self.size, np.bool_))
+        raise AssertionError(formula)  # an atom has one subject
+
+    def _by_profiles(self, formula: Proposition, subjects: Subjects) -> Bools:
+        together, counts = np.zeros(self.size, np.int64), [len(self.tables[one]) for one in subjects]
+        for one, count in zip(subjects, counts, strict=True):
+            together = together * count + self.codes[one]
+        if np.prod(counts, dtype=np.float64) > MOST_PAIRS:
+            there, which = np.unique(together, return_inverse=True)
+            return self._said(formula, subjects, there)[which]
+        there = np.flatnonzero(np.bincount(together))
+        said = np.zeros(there[-1] + 1 if len(there) else 0, np.bool_)
+        said[there] = self._said(formula, subjects, there)
+        return said[together]
+
+    def _said(self, formula: Proposition, subjects: Subjects, there: Numbers) -> Bools:
+        """Return what a proposition says where its subjects have some profiles: their numbers, as one number."""
+        tables, rest = dict[Subject, Bools](), there
+        for one in reversed(subjects):
+            rest, code = np.divmod(rest, len(self.tables[one]))
+            tables[one] = self.tables[one][code]
+        return self._of(formula, tables, len(there))
+
+    def _of(self, formula: Proposition, tables: dict[Subject, Bools], size: int) -> Bools:
+        match formula:
+            case Always(value):
+                return np.full(size, value)
+            case Not(inner):
+                return ~self._of(inner, tables, size)
+            case And(parts) | Or(parts):
+                operation, start = (and_, True) if isinstance(formula, And) else (or_, False)
+                each = self._worth_asking(parts, tables) if isinstance(parts, Instances) else iter(parts)
+                said = (self._of(part, tables, size) for part in each)
+                return reduce(operation, said, np.full(size, start))
+        return tables[subject(formula)][:, self.profiles.ranks[formula]]
+
+    def _worth_asking(self, parts: Instances, tables: dict[Subject, Bools]) -> Iterator[Proposition]:
+        """Yield the instances whose anchor is true in some profile; all where there is no anchor."""
+        anchor = parts.anchor
+        if anchor is None:
+            yield from parts
+            return
+        somewhere = tables[subject(anchor)][:, self.profiles.ranks_of(anchor, parts)].any(axis=0)
+        yield from (parts.of_name(parts.range.names[rank]) for rank in np.flatnonzero(somewhere))
+
+
+def _by_subjects(make: type[And | Or], parts: Iterable[Proposition]) -> list[Proposition]:
+    """Return the operands of a connective, those that are about the same few subjects together."""
+    together: dict[Subjects, list[Proposition]] = {}
+    rest: list[Proposition] = []
+    for part in parts:
+        subjects = _subjects_of(part)
+        few = subjects is not None and len(subjects) <= MOST_TOGETHER
+        (together.setdefault(subjects, []) if subjects is not None and few else rest).append(part)
+    return [*(make(tuple(each)) for each in together.values()), *rest]
+
+
+def _subjects_of(formula: Proposition) -> Subjects | None:
+    """Return the subjects of a proposition, sorted; None where one is quantified in it."""
+    found = sorted(set(_subjects(formula)))
+    return None if any(is_variable(name) for one in found for name in one) else tuple(found)
+
+
+def _subjects(formula: Proposition) -> Iterator[Subject]:
+    match formula:
+        case Always() | Same():
+            return
+        case Not(inner):
+            yield from _subjects(inner)
+        case And(parts) | Or(parts):
+            for part in (parts.body,) if isinstance(parts, Instances) else parts:
+                yield from _subjects(part)
+        case _:
+            yield subject(formula)
