@@ -164,16 +164,16 @@ def _reduced(
 
 
 def reductions_of(start: Checkable) -> tuple[Reduction, ...]:
-    """Return the reductions that a mission allows: the most that are sound together."""
+    """Return the reductions that a mission allows; none refuses another."""
     formulas = [each.formula for each in start.properties if each.kind.has_proposition]
-    initial, sound = watching(start.initial, start.properties), tuple[Reduction, ...]()
+    initial, sound = watching(start.initial, start.properties), list[Reduction]()
     for reduction in Reduction:
         try:
-            _reduced(initial, (*sound, reduction), formulas)
+            _reduced(initial, (reduction,), formulas)
         except RefusedError:
             continue
-        sound = (*sound, reduction)
-    return sound
+        sound.append(reduction)
+    return tuple(sound)
 
 
 class _Check:
