@@ -450,8 +450,8 @@ class Code(Enum):
         "LS607",
         "formula too large",
         """Quantifiers are written out, and `<->` doubles its sides. After that, the properties of a mission may have at
-        most fifty thousand atoms. What `invariant`, `reachable` and `within` say of entities alone is not written out
-        where it is long: `forall x, y: UAV . x != y -> forall c: Cell . not (x in c and y in c)` may be asked of fifty
+        most fifty thousand atoms. What `invariant`, `reachable` and `within` say of entities alone is not written out:
+        `forall x, y: UAV . x != y -> forall c: Cell . not (x in c and y in c)` may be asked of fifty
         vehicles on two hundred places, since each is in a few. It may ask two hundred thousand atoms of a
         configuration.""",
     )

@@ -18,7 +18,7 @@ from semantics.behaviours.statements import Block, Call, Loop, React
 from semantics.behaviours.stepping import next_statement
 from semantics.control import Obstacle, obstacle
 from semantics.environment import Says
-from semantics.properties.propositions import Proposition, holds
+from semantics.properties.propositions import Proposition, holds, told_by
 from semantics.state.cells import QUEUE
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.requests import CTR, FLY, MGR, OBS, SND
@@ -303,7 +303,13 @@ class Invariant(Inspection):
     def seen(self, of: Excerpt) -> Iterator[Seen]:
         """Yield the configuration, which is one thing."""
         good = self.valuations.holds(of.c)
-        yield Seen() if good else Seen(self.WRONG, None, f"not true here: {self.shown}")
+        details = partial(_names_told, self.formula, of.c)
+        yield Seen() if good else Seen(self.WRONG, None, f"not true here: {self.shown}", details)
+
+
+def _names_told(formula: Proposition, c: Configuration) -> tuple[str, ...]:
+    names = ", ".join(f"{variable} = {name}" for variable, name in told_by(formula, c))
+    return (f"where {names}",) if names else ()
 
 
 class Reachability(Inspection):

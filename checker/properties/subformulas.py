@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from semantics.behaviours.program import VariableOf
 from semantics.properties.property import Ranges
-from semantics.properties.propositions import Always, And, Exists, Not, Or, Proposition
+from semantics.properties.propositions import Always, And, Exists, Instances, Not, Or, Proposition
 from semantics.properties.temporal import Both, Denied, Either, Now, Temporal, parts
 from semantics.state.agents import written
 
@@ -228,6 +228,9 @@ def _words(formula: Any) -> Iterator[Any]:
     elif isinstance(formula, VariableOf):  # each member of a family has variables of its own
         yield formula.agent
         yield written(formula.variables[0])
+    elif isinstance(formula, Instances):
+        yield formula.range.names
+        yield from _words(formula.body)
     elif isinstance(formula, tuple):
         yield len(formula)
         for each in formula:

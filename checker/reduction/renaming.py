@@ -22,7 +22,7 @@ from semantics.behaviours.reaction_rules import (
     Reaction,
 )
 from semantics.behaviours.values import Truth, order_key
-from semantics.properties.propositions import Range
+from semantics.properties.propositions import Instances, Range
 from semantics.state.cells import AGENTS, NAMES, Cell, Changes, Row
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, Placed
@@ -160,6 +160,13 @@ SPECIAL: Mapping[type, Callable[[Renaming, Any], Any]] = {
         renaming.value(each.via),
     ),
     Pattern: _each_field,
+    Instances: lambda renaming, each: Instances(
+        each.variable,
+        renaming.value(each.range),
+        renaming.value(each.body),
+        renaming.value(each.anchor),
+        each.are_kept,
+    ),
     Range: lambda renaming, each: Range(each.variable, each.kind, _sorted(renaming, each.names)),
     VariableOf: lambda renaming, each: VariableOf(
         renaming.name(each.agent), tuple(sorted(renaming.variables.get(one, one) for one in each.variables))

@@ -3,7 +3,7 @@
 import operator
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, overload
 
@@ -260,25 +260,35 @@ class Instances(Sequence["Proposition"]):
         body: What is said of each.
         anchor: `x in v` of the quantified v, where an instance of which that is false says nothing: true below
             `forall`, false below `exists`. So only places that x is in need be looked at.
+        are_kept: Whether an instance is made once; the instances of what is long are made each time.
+        made: Those that were made.
     """
 
     variable: Name
     range: Range
     body: "Proposition"
     anchor: Inside | None = None
+    are_kept: bool = True
+    made: "dict[Name, Proposition]" = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @staticmethod
-    def of(variable: Name, range_: Range, body: "Proposition", *, every: bool) -> "Instances":
+    def of(
+        variable: Name, range_: Range, body: "Proposition", *, every: bool, are_kept: bool = True
+    ) -> "Instances":
         """Return the operands of `forall` or `exists`, with their anchor if there is one."""
+        unknown = {variable, *_quantified_in(body)}
         places = (
-            atom for atom in _written_atoms(body) if isinstance(atom, Inside) and atom.place == variable
+            each for each in _written_atoms(body) if isinstance(each, Inside) and each.place == variable
         )
-        anchors = (atom for atom in places if atom.node != variable and _without(body, atom) is every)
-        return Instances(variable, range_, body, next(anchors, None))
+        anchors = (each for each in places if each.node not in unknown and _without(body, each) is every)
+        return Instances(variable, range_, body, next(anchors, None), are_kept)
 
     def of_name(self, name: Name) -> "Proposition":
         """Return the instance for a name."""
-        return instance(self.body, self.variable, name)
+        found = self.made.get(name) or instance(self.body, self.variable, name)
+        if self.are_kept:
+            self.made[name] = found
+        return found
 
     def worth_asking(self, c: Configuration) -> "Iterable[Proposition]":
         """Return the instances that may say something of a configuration."""
@@ -291,7 +301,9 @@ class Instances(Sequence["Proposition"]):
         """Return the operands in which another quantified name stands for something."""
         anchor = None if self.anchor is None else instance(self.anchor, variable, name)
         assert anchor is None or isinstance(anchor, Inside)
-        return Instances(self.variable, self.range, instance(self.body, variable, name), anchor)
+        return Instances(
+            self.variable, self.range, instance(self.body, variable, name), anchor, self.are_kept
+        )
 
     def __len__(self) -> int:
         return len(self.range.names)
@@ -367,6 +379,18 @@ def _written_atoms(formula: "Proposition", *, of_instances: bool = False) -> "It
             yield formula
 
 
+def _quantified_in(formula: "Proposition") -> "Iterator[Name]":
+    match formula:
+        case Not(inner):
+            yield from _quantified_in(inner)
+        case And(parts) | Or(parts) if isinstance(parts, Instances):
+            yield parts.variable
+            yield from _quantified_in(parts.body)
+        case And(parts) | Or(parts):
+            for part in parts:
+                yield from _quantified_in(part)
+
+
 def _each_instance(atoms: "Iterable[Atom]", instances: Instances) -> "Iterator[Atom]":
     for atom in dict.fromkeys(atoms):
         if isinstance(atom, Same) or instances.variable not in _members(atom):
@@ -427,6 +451,23 @@ def holds(formula: Proposition, c: Configuration) -> bool:
             return any(holds(part, c) for part in _worth_asking(parts, c))
         case _:
             return _TRUTH[type(formula)](formula, c)
+
+
+def told_by(formula: Proposition, c: Configuration) -> tuple[tuple[str, Name], ...]:
+    """Return for which names a proposition that is false of a configuration is so: of each `forall` over entities.
+
+    Returns:
+        What each quantified name stands for, from without; nothing of names below `not` and `exists`.
+    """
+    match formula:
+        case And(Instances(range=among) as parts):
+            name = next(name for name in among.names if not holds(parts.of_name(name), c))
+            return ((among.variable, name), *told_by(parts.of_name(name), c))
+        case And(parts):
+            return told_by(next(part for part in parts if not holds(part, c)), c)
+        case Or(parts) if not isinstance(parts, Instances):
+            return next(filter(None, (told_by(part, c) for part in parts)), ())
+    return ()
 
 
 def _worth_asking(parts: Formulas, c: Configuration) -> Iterable[Proposition]:

@@ -1,7 +1,6 @@
 """Elaborate formulas of properties: expand quantifiers and resolve names, within bounds.
 
-A quantifier over entities that is too long to be written out is left as it is: its instances are made when they are
-asked for.
+A quantifier of which everything is about entities is not written out: its instances are made when they are asked for.
 """
 
 from __future__ import annotations
@@ -50,7 +49,7 @@ MOST_ATOMS: Final = 50_000
 """So many atoms the properties may have, written out."""
 
 LONG: Final = 1_000
-"""A quantifier over entities that comes to more atoms is not written out."""
+"""A quantifier over entities that comes to more atoms doesn't keep its instances."""
 
 MOST_ASKED: Final = 200_000
 """So many atoms such a quantifier may ask of one configuration."""
@@ -179,7 +178,7 @@ class Formulas:
         return make((*_parts(left, make), *_parts(right, make)))
 
     def _quantified(self, node: s.Quantified, around: Context) -> Proposition:
-        if around.variables or (around.is_alone and self._is_long(node)):
+        if around.variables or (around.is_alone and self._size(node) is not None):
             return self._left(node, around)
         every, found = node.quantifier == "forall", []
         for each, if_so in self.instances(node, around, self.proposition):
@@ -217,11 +216,6 @@ class Formulas:
 
     # --- quantifiers that are not written out
 
-    def _is_long(self, node: s.Quantified) -> bool:
-        """Tell whether a quantifier is too long to be written out, and can be left."""
-        size = self._size(node)
-        return size is not None and size > LONG
-
     def _size(self, node: s.Formula) -> int | None:
         """Return how many atoms a formula about entities has, written out; None of one that is about others, too."""
         match node:
@@ -257,8 +251,9 @@ class Formulas:
             left.append((f"?{self.left}", Range(each.variable.text, each.range.text, names)))
             around = around.leaving(each.variable.text, names[0] if names else NOBODY, left[-1][0])
         every, body = node.quantifier == "forall", self.proposition(inner, around)
+        are_kept = (self._size(node) or 0) <= LONG
         for variable, among in reversed(left):
-            instances = Instances.of(variable, among, body, every=every)
+            instances = Instances.of(variable, among, body, every=every, are_kept=are_kept)
             body = And(instances) if every else Or(instances)
         if (asked := _asked(body)) > MOST_ASKED:
             message = f"each configuration would be asked {asked:,} atoms, and {MOST_ASKED:,} is the most"

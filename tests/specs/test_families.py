@@ -203,7 +203,7 @@ def test_a_kind_called_agents_is_a_kind():
         "gcs0: Station", "gcs1: agents = point (37, -8)\n gcs0: Station"
     )
     mission = elaborated(text + CREW + 'check { invariant "f": forall x: agents . known x }')
-    assert str(mission.properties[0].formula) == "known gcs1"
+    assert [str(each) for each in mission.properties[0].formula.formulas] == ["known gcs1"]
 
 
 def test_a_quantified_host_stands_in_a_restriction():
