@@ -252,13 +252,15 @@ def find_mission(word: str) -> Path:
         reason = "this is a folder, not a mission" if Path(word).is_dir() else "there is no such file"
     except (OSError, ValueError):
         reason = "this is no path of a file"
+    if "\n" in word or "{" in word:
+        raise _unreadable(word, "this is the text of a mission, not its path", "write it to a file, and give its path")
     near = Findings(Source(word, "")).suggest(word, shipped) if "/" not in word else ""
     otherwise = "give the path of a mission, or the name of one that ships: " + ", ".join(shipped)
     raise _unreadable(word, reason, near or otherwise)
 
 
 def _unreadable(name: str, message: str, hint: str) -> MissionError:
-    return MissionError(Source(name, ""), [Diagnostic(Code.UNREADABLE_FILE, _START, message, hint)])
+    return MissionError(Source(cut(name), ""), [Diagnostic(Code.UNREADABLE_FILE, _START, message, hint)])
 
 
 def files_named(mission: s.Mission) -> tuple[str, ...]:

@@ -285,6 +285,7 @@ def test_a_mission_that_ships_is_loaded_by_its_name_unless_a_file_has_it(tmp_pat
         ("", "the path of the mission is empty", ""),
         (".", "this is a folder, not a mission", "give the path of a mission"),
         ("x" * 5000, "this is no path of a file", "give the path of a mission"),
+        ("signature { kind A }", "this is the text of a mission, not its path", "write it to a file"),
     ],
 )
 def test_what_is_no_mission_is_said_with_the_nearest_that_ships(name, message, hint):
