@@ -120,18 +120,24 @@ def step_of(source: Configuration, label: Label, target: Configuration) -> Step:
     What an observation is received without is looked up.
     """
     if isinstance(label.about, Received):
-        same = (
-            t.label for t in candidates(source) if t.target == target and isinstance(t.label.about, Received)
-        )
-        label = next(found for found in same if found.agent == label.agent)
+        received = (t for t in candidates(source, label=str(label)) if isinstance(t.label.about, Received))
+        label = next(t.label for t in received if t.target == target and t.label.agent == label.agent)
     targets = [transition.target for transition in alike(source, str(label))]
     return Step(label, targets.index(target), target)
 
 
 def step_between(source: Configuration, target: Configuration) -> Step:
     """Return the first step from one configuration to another."""
-    label = next(transition.label for transition in candidates(source) if transition.target == target)
-    return step_of(source, label, target)
+    changed = target.state.changed(source.state)
+    agents = source.alpha.names()
+    if changed and all(
+        len(cell) > 1 for cell in changed
+    ):  # a step changes its agent, or what is nobody's: the queue
+        named = {name for cell in changed for name in cell[1:]}
+        agents = tuple(name for name in agents if name in named)
+    expansion = expand_by(source, agents)
+    steps = expansion.transitions + expansion.out_of_turn
+    return step_of(source, next(step.label for step in steps if step.target == target), target)
 
 
 def candidates(
@@ -157,10 +163,12 @@ def trace_to(found: Exploration, number: int, by: Transition | None = None) -> T
     """Return a trace to a configuration of an exploration: a shortest one, unless steps were put off."""
     if found.times is not None:
         return dated_trace(found.times, found.times.run_before(number, by))
-    if found.reducer is not None:
-        return _unfolded(found, number, by, shortest=not found.reducer.putting_off)
+    shortest = found.reducer is None or not found.reducer.putting_off
+    if found.reducer is not None and found.reducer.symmetry is not None:
+        return _unfolded(found, number, by, shortest=shortest)
     run = [found.configurations[each] for each in found.path(number)]
-    trace = Trace(run[0], tuple(step_between(source, target) for source, target in pairwise(run)))
+    steps = tuple(step_between(source, target) for source, target in pairwise(run))
+    trace = Trace(run[0], steps, shortest=shortest)
     return trace if by is None else trace.extended(by)
 
 

@@ -253,7 +253,9 @@ def find_mission(word: str) -> Path:
     except (OSError, ValueError):
         reason = "this is no path of a file"
     if "\n" in word or "{" in word:
-        raise _unreadable(word, "this is the text of a mission, not its path", "write it to a file, and give its path")
+        raise _unreadable(
+            word, "this is the text of a mission, not its path", "write it to a file, and give its path"
+        )
     near = Findings(Source(word, "")).suggest(word, shipped) if "/" not in word else ""
     otherwise = "give the path of a mission, or the name of one that ships: " + ", ".join(shipped)
     raise _unreadable(word, reason, near or otherwise)
