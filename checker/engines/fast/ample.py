@@ -33,6 +33,7 @@ from checker.engines.fast.kernel import (
     copy_columns,
     is_repeated,
     walk,
+    write_part,
 )
 from checker.engines.fast.leaves import (
     ALIKE,
@@ -315,7 +316,7 @@ def make(m: Model, r: Members, words: Words, batch: Batch, k: int, state: State)
             state[TREE] = tree
             return False
         own = m.leaves[LEAF * (-reference - 1) + FIRST]
-        conclude(batch.words, to, m.masks, own, batch.words, to, width)
+        write_part(m.columns, m.writes, m.steps, own, batch.words, to)
     batch.hashes[k] = hashed(batch.words, to, width)
     r.made[k] = 1
     return True

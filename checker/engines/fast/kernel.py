@@ -43,7 +43,7 @@ class Model(NamedTuple):
 
     Attributes:
         root, nodes, next: See `Trees`.
-        leaves, steps, copies, part: See `Leaves`.
+        leaves, steps, copies, writes, part: See `Leaves`.
         masks: For each transition and word the bits that it keeps, then those that it sets.
         columns: For each column its word, shift and mask.
         agents_from, agents, clauses: Trees, the agents' in groups: one for each value of the cell that names them.
@@ -55,6 +55,7 @@ class Model(NamedTuple):
     leaves: Ints
     steps: Ints
     copies: Ints
+    writes: Ints
     part: Ints
     masks: Words
     columns: Words
@@ -145,6 +146,16 @@ def copy_columns(
         target[word] = (target[word] & ~(mask << shift)) | (code << shift)
 
 
+@njit(cache=True, inline="always")
+def write_part(columns: Words, writes: Ints, steps: Ints, step: int, target: Words, to: int) -> None:
+    """Write what a part of a transition writes, column by column: that is little of a wide row."""
+    record = STEP * step
+    for k in range(steps[record + WRITES], steps[record + WRITES_END]):
+        where = PLACE * writes[PAIR * k]
+        word, shift, mask = to + np.int64(columns[where]), columns[where + 1], columns[where + 2]
+        target[word] = (target[word] & ~(mask << shift)) | (np.uint64(writes[PAIR * k + 1]) << shift)
+
+
 @njit(cache=True)
 def first_turn(all_leaves: Ints, steps: Ints, leaves: Ints, actors: int) -> int:
     """Return the first turn of the queue that is enabled, -1 where none is."""
@@ -211,7 +222,8 @@ def gather(  # one loop, so that its arrays are taken out of their tuples only o
     A row's successors are gathered each once: first what its agents are served, then what they do themselves, then what
     the environment does.
     """
-    root, nodes, leads, columns, copies, parts = m.root, m.nodes, m.next, m.columns, m.copies, m.part
+    root, nodes, leads, columns = m.root, m.nodes, m.next, m.columns
+    copies, writes, parts = m.copies, m.writes, m.part
     agents_from, agents, clauses = m.agents_from, m.agents, m.clauses
     all_leaves, steps, masks = m.leaves, m.steps, m.masks
     target, hashes, origins = batch.words, batch.hashes, batch.origins
@@ -264,7 +276,7 @@ def gather(  # one loop, so that its arrays are taken out of their tuples only o
                             known = False
                             break
                         own = all_leaves[LEAF * (-reference - 1) + FIRST]
-                        conclude(target, to, masks, own, target, to, width)
+                        write_part(columns, writes, steps, own, target, to)
                     if not known:
                         break
                     if steps[record + ALIKE] >= 0 and is_repeated(

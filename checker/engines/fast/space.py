@@ -368,6 +368,7 @@ class Space:
             leaves.leaves,
             leaves.steps,
             leaves.copies,
+            leaves.writes,
             leaves.part,
         )
         self.model = kernel.Model._make(

@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from checker.engines.fast import kernel
-from checker.engines.fast.kernel import AT, SIZE, TREE, TURNS, WORDS, conclude, copy_columns, walk
+from checker.engines.fast.kernel import AT, SIZE, TREE, TURNS, WORDS, conclude, copy_columns, walk, write_part
 from checker.engines.fast.leaves import (
     ALIKE,
     COPIES,
@@ -293,7 +293,7 @@ def target_row(
         if reference == 0:
             state[AT], state[TREE] = row, tree
             return -1
-        conclude(scratch, 0, m.masks, m.leaves[LEAF * (-reference - 1) + FIRST], scratch, 0, width)
+        write_part(m.columns, m.writes, m.steps, m.leaves[LEAF * (-reference - 1) + FIRST], scratch, 0)
     digest = hashed(scratch, 0, width)
     bits = np.uint32(bits_for(len(table)))
     found = find(words, table, scratch, 0, digest, width, bits)
