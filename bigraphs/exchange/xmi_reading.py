@@ -15,6 +15,7 @@ from xml.parsers import expat
 
 from bigraphs.bigraph import Bigraph, Link, Node, Place, assemble
 from bigraphs.errors import BigraphError, NotationError
+from bigraphs.exchange.xmi_writing import names_a_control
 from bigraphs.notation.reading import MAX_BYTES, MAX_NESTING
 from bigraphs.signature import Control, Signature
 
@@ -29,6 +30,8 @@ _PARTS: Final[Mapping[str, frozenset[str]]] = {
     "bChild": frozenset({"bChild", "bPorts"}),
 }
 """Which elements may be in which: all others have none."""
+_ATTRIBUTES: Final = frozenset({"name", "index", "bLink", "bPoints"})
+"""What elements may say, beside what XMI itself lets them."""
 
 
 @dataclass(slots=True)
@@ -76,14 +79,21 @@ def _parse(text: str) -> _Element:
             raise NotationError("element", f"an element '{kind}' {where}", text, offset(), hint=hint)
         if len(open_elements) > MAX_NESTING:
             raise NotationError("too-deep", f"nesting deeper than {MAX_NESTING}", text, offset())
+        if lost := [each for each in attributes if " " not in each and each not in _ATTRIBUTES]:
+            raise NotationError("attribute", f"an attribute '{lost[0]}', which is not read", text, offset())
         inside.parts.append(_Element(kind, attributes, offset()))
         open_elements.append(inside.parts[-1])
+
+    def characters(data: str) -> None:
+        if data.strip():
+            raise NotationError("syntax", "a text between the elements", text, offset(), hint="take it out")
 
     def doctype(*_: object) -> None:
         raise NotationError("doctype", "a DOCTYPE, which is not read", text, offset(), hint="take it out")
 
     parser.StartElementHandler = start
     parser.EndElementHandler = lambda _: open_elements.pop()
+    parser.CharacterDataHandler = characters
     parser.StartDoctypeDeclHandler = doctype
     try:
         parser.Parse(content, True)
@@ -101,7 +111,7 @@ class _Reader:
         self.text = text
         self.document = document
         self.edges = len(document.of("bEdges"))
-        self.outer_names = [self.name(each) for each in document.of("bOuterNames")]
+        self.outer_names = self.names(document.of("bOuterNames"))
         self.points: dict[Link, int] = {}
 
     def bigraph(self) -> Bigraph:
@@ -119,7 +129,8 @@ class _Reader:
             id(each): number[id(parent)] for each, parent in places if each.control == "BSite"
         }
         sites = [(home[id(site)],) for site in self.in_order([e for e, _ in places if e.control == "BSite"])]
-        inner = {self.name(each): self.link(each) for each in self.document.of("bInnerNames")}
+        inner_names = self.document.of("bInnerNames")
+        inner = dict(zip(self.names(inner_names), map(self.link, inner_names), strict=True))
         self.check_points()
         try:
             return assemble(
@@ -141,8 +152,9 @@ class _Reader:
         """Return every node and site with what it is in."""
         found = [(child, root) for root in roots for child in root.of("bChild")]
         for place, _ in found:  # grows while it is walked
-            if not place.control:
-                raise self.mistake("control", "a place without a type", place, "give it an xsi:type")
+            if place.control != "BSite" and not names_a_control(place.control):
+                message = f"the type '{place.attributes.get(TYPE, '')}' is no control"
+                raise self.mistake("control", message, place, "give an xsi:type such as m:Room, or m:BSite")
             if place.control == "BSite" and place.parts:
                 raise self.mistake("element", "a site with something in it", place)
             found += [(child, place) for child in place.of("bChild")]
@@ -210,8 +222,13 @@ class _Reader:
                 )
                 raise self.mistake("link", message, element, "give every port and inner name its bLink")
 
-    def name(self, element: _Element) -> str:
-        found = element.attributes.get("name", "")
-        if not found:
-            raise self.mistake("name", f"{element.kind} without a name", element)
-        return found
+    def names(self, elements: Iterable[_Element]) -> list[str]:
+        """Return the names of the elements, each of which has its own."""
+        found: dict[str, None] = {}
+        for each in elements:
+            name = each.attributes.get("name", "")
+            if not name or name in found:
+                message = f"a second {each.kind} called '{name}'" if name else f"{each.kind} without a name"
+                raise self.mistake("name", message, each)
+            found[name] = None
+        return list(found)

@@ -40,10 +40,15 @@ def _check(bigraph: Bigraph) -> None:
     for node in bigraph.nodes:
         if node.name is not None:
             raise _unwritable(f"the name of the node {node}", "leave names of nodes out")
-        if not _CONTROL.fullmatch(node.control) or _OF_METAMODEL.fullmatch(node.control):
+        if not names_a_control(node.control):
             raise _unwritable(
                 f"the control '{node.control}'", "call it by letters and digits, without parameters"
             )
+
+
+def names_a_control(name: str) -> bool:
+    """Say whether a class of nodes may have this name, beside the classes of the metamodel."""
+    return bool(_CONTROL.fullmatch(name)) and not _OF_METAMODEL.fullmatch(name)
 
 
 def _unwritable(what: str, hint: str) -> BigraphError:

@@ -9,9 +9,13 @@ ctrl Room = 0;
 big house = /x (Room.(Door{x, y} | Room.1) | Door{x, x});
 begin brs init house; rules = []; end
 """
-RULES = "ctrl A = 0; big s = A.1; react r = A.1 --> A.1 | A.1; big p = A.1;" + (
-    "begin brs init s; rules = [ {r} ]; preds = { p }; end"
-)
+RULES = """\
+ctrl A = 0;
+big s = A.1;
+react r = A.1 --> A.1 | A.1;
+big p = A.1;
+begin brs init s; rules = [ {r} ]; preds = { p }; end
+"""
 HOLED = """\
 <m:BBigraph xmlns:m="http://example.org" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance">
   <bRoots><bChild xsi:type="m:BSite"/></bRoots>
@@ -26,7 +30,8 @@ def rooms(missions):
     return missions
 
 
-def test_a_state_goes_to_the_framework_and_back(bigactors, rooms):
+@pytest.mark.usefixtures("rooms")
+def test_a_state_goes_to_the_framework_and_back(bigactors):
     code, _, err = bigactors("big", "convert", "rooms.big", "rooms.xmi")
     assert code == 0
     assert "places not active: Door\n" in err

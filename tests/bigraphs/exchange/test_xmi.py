@@ -5,13 +5,16 @@
 """
 
 import os
+import re
 import subprocess
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from bigraph_strategies import SIGNATURE, bigraphs
 from hypothesis import given
+from hypothesis import strategies as st
 from scale import examples
 
 from bigraphs.bigraph import Bigraph, Node, assemble
@@ -93,6 +96,11 @@ def test_ports_have_their_index_and_those_that_are_not_linked_an_edge_of_their_o
         ('<bEdges name="e0"/>', '<bEdges name="e0" bPoints="a b c"/>', "link", 10),
         ('name="y"', "", "name", 13),
         (' xsi:type="m:Room"', "", "control", 4),
+        ("m:Room", "m:BNode", "control", 4),
+        ('<bInnerNames name="z"/>', '<bInnerNames name="x"/>', "name", 12),
+        ('name="y"/>', 'name="y"/><bOuterNames name="y"/>', "name", 13),
+        ('name="v0"', 'name="v0" speed="3"', "attribute", 4),
+        ("<bEdges", "some text<bEdges", "syntax", 10),
         ("<bEdges", "<attributes/><bEdges", "element", 10),
         ("</bRoots>", "</bRoot>", "syntax", 9),
         ("m:BBigraph", "m:BNode", "element", 2),
@@ -116,6 +124,18 @@ def test_deep_and_long_texts_are_refused():
         with pytest.raises(NotationError) as caught:
             read_xmi(text)
         assert caught.value.code == code
+
+
+@examples(100)
+@given(
+    st.integers(0, len(TEXT)),
+    st.integers(0, 30),
+    st.text(max_size=8) | st.sampled_from(re.findall(r"\S+", TEXT)),
+)
+def test_a_damaged_text_is_read_or_refused(start, length, put):
+    with suppress(NotationError):
+        found = read_xmi(TEXT[:start] + put + TEXT[start + length :])
+        assert equal(declared_by(read_xmi(write_xmi(found)), found.signature), found)
 
 
 A, ROOM, BNODE, CALL = Control("A", 0), Control("Room", 0), Control("BNode", 0), Control("Num(1)", 0)
