@@ -18,7 +18,7 @@ TASKS: Final = {
     "check": "whether predicates hold always, never or ever, and formulas of LTL and CTL, with a run that shows it",
     "validate": "whether the file makes sense, and what is in it",
     "show": "a state, printed and drawn",
-    "convert": "the same model in the file of another tool",
+    "convert": "the same model in the file of another tool (.xmi of the Bigraph Framework is read, too)",
 }
 
 

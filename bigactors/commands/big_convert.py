@@ -10,11 +10,12 @@ from bigactors.files import check_writable, write_text
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say_text, tell
 from bigraphs import Bigraph, BigraphError
+from bigraphs.examples import example_names, example_text
 from bigraphs.exchange.xmi_reading import read_xmi
 from bigraphs.exchange.xmi_writing import write_xmi
 from bigraphs.notation import read_bgm, read_system, write_system
 from bigraphs.notation.files import read_text
-from bigraphs.system import System, SystemKind
+from bigraphs.system import System, SystemKind, Value
 
 READ: Final = ("big", "bgm", "xmi")
 WRITTEN: Final = ("big", "xmi")
@@ -22,18 +23,20 @@ WRITTEN: Final = ("big", "xmi")
 
 def convert(options: Namespace) -> Exit:
     """Read a file of one format, and write it in another."""
-    source = options.source or _format_of(options.file, READ, "--from")
+    shipped = options.file in example_names() and not Path(options.file).exists()
+    source = "big" if shipped else options.source or _format_of(options.file, READ, "--from")
     target = options.target or _format_of(options.output, WRITTEN, "--to")
     if options.output != "-":
         check_writable(options.output)
-    system = _read(options, source)
+    text = example_text(options.file) if shipped else read_text(Path(options.file))
+    system = _read(text, source, dict(options.const))
     for warning in system.warnings:
         tell(f"warning: {warning.render(options.file)}")
-    text = write_system(system) if target == "big" else _as_xmi(system, options.initial)
+    written = write_system(system) if target == "big" else _as_xmi(system, options.initial)
     if options.output == "-":
-        say_text(text)
+        say_text(written)
     else:
-        write_text(options.output, text)
+        write_text(options.output, written)
         tell(f"written: {options.output}")
     return Exit.HOLDS
 
@@ -48,11 +51,10 @@ def _format_of(file: str, known: tuple[str, ...], option: str) -> str:
     return ending
 
 
-def _read(options: Namespace, source: str) -> System:
-    text = read_text(Path(options.file))
+def _read(text: str, source: str, constants: dict[str, Value]) -> System:
     if source == "big":
-        return read_system(text, constants=dict(options.const))
-    if options.const:
+        return read_system(text, constants=constants)
+    if constants:
         raise BigraphError("file", f"a .{source} file has no constants", "leave --const out")
     return read_bgm(text) if source == "bgm" else _state(read_xmi(text))
 

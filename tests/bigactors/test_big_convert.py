@@ -1,6 +1,7 @@
 import pytest
 
 from bigraphs.canonical import equal
+from bigraphs.examples import example_text
 from bigraphs.notation import read_system
 
 ROOMS = """\
@@ -63,6 +64,14 @@ def test_a_bgm_file_becomes_a_big_file_unless_its_names_do_not(bigactors, missio
     assert sum(1 for _ in system.rules()) == 1
     code, _, err = bigactors("big", "convert", "small.bgm", "small.big")
     assert (code, "no way to write the name 'a'" in err) == (2, True)
+
+
+def test_a_system_that_ships_is_written_whole(bigactors):
+    code, out, _ = bigactors("big", "convert", "mobile_ambients", "-", "--to", "big")
+    assert code == 0
+    ours = read_system(example_text("mobile_ambients"))
+    assert {rule.label for rule in read_system(out).rules()} == {rule.label for rule in ours.rules()}
+    assert equal(read_system(out).initial, ours.initial)
 
 
 @pytest.mark.parametrize(
