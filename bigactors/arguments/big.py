@@ -18,6 +18,7 @@ TASKS: Final = {
     "check": "whether predicates hold always, never or ever, and formulas of LTL and CTL, with a run that shows it",
     "validate": "whether the file makes sense, and what is in it",
     "show": "a state, printed and drawn",
+    "convert": "the same model in the file of another tool (.xmi of the Bigraph Framework is read, too)",
 }
 
 
@@ -32,6 +33,7 @@ def fill(parser: Parser) -> None:
         "check": _check,
         "validate": lambda _: None,
         "show": _show,
+        "convert": _convert,
     }
     for name, add in fillers.items():
         task = tasks.add_parser(name, help=TASKS[name], description=f"Find {TASKS[name]}.")
@@ -141,6 +143,26 @@ def _show(task: Parser) -> None:
         help="which state, as full numbers them (default 0)",
     )
     task.add_argument("--output", metavar="FILE", type=named, help="draw it: a picture, .svg or .png")
+
+
+def _convert(task: Parser) -> None:
+    task.add_argument(
+        "output", metavar="OUT", type=named, help="what is written; - for standard output, which needs --to"
+    )
+    task.add_argument(
+        "--from",
+        dest="source",
+        choices=("big", "bgm", "xmi"),
+        help="BigraphER's language, BigMC's, or XMI of the Bigraph Framework (default: by the file's ending)",
+    )
+    task.add_argument(
+        "--to", dest="target", choices=("big", "xmi"), help="what OUT is written in (default: by its ending)"
+    )
+    task.add_argument(
+        "--initial",
+        action="store_true",
+        help="write the first state to XMI, which has no rules, and leave the rest out",
+    )
 
 
 def constant(word: str) -> tuple[str, int | float | str]:

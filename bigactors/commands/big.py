@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from bigactors.big_checks import MARKS, asks_nothing, check_formulas, decided_json, decided_lines, verdicts_on
 from bigactors.big_output import check_outputs, write_outputs
+from bigactors.commands.big_convert import convert
 from bigactors.exits import Exit, worst
 from bigactors.files import json_text, write_json
 from bigactors.mistakes import Mistake
@@ -195,4 +196,5 @@ TASKS: Final[dict[str, Callable[[Namespace], Exit]]] = {
     "check": check,
     "validate": validate,
     "show": show,
+    "convert": convert,
 }

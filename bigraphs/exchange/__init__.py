@@ -1,0 +1,1 @@
+"""Bigraphs in the files of other tools: the Bigraph Framework's XMI."""
