@@ -20,6 +20,7 @@ TASKS: Final = {
     "show": "a state, printed and drawn",
     "convert": "the same model in the file of another tool (.xmi of the Bigraph Framework is read, too)",
 }
+_VERBS: Final = {"convert": "Write"}
 
 
 def fill(parser: Parser) -> None:
@@ -36,7 +37,9 @@ def fill(parser: Parser) -> None:
         "convert": _convert,
     }
     for name, add in fillers.items():
-        task = tasks.add_parser(name, help=TASKS[name], description=f"Find {TASKS[name]}.")
+        task = tasks.add_parser(
+            name, help=TASKS[name], description=f"{_VERBS.get(name, 'Find')} {TASKS[name]}."
+        )
         task.add_argument("file", metavar="FILE", help=FILE)
         task.add_argument(
             "--const",

@@ -24,11 +24,11 @@ WRITTEN: Final = ("big", "xmi")
 def convert(options: Namespace) -> Exit:
     """Read a file of one format, and write it in another."""
     shipped = options.file in example_names() and not Path(options.file).exists()
+    text = example_text(options.file) if shipped else read_text(Path(options.file))
     source = "big" if shipped else options.source or _format_of(options.file, READ, "--from")
     target = options.target or _format_of(options.output, WRITTEN, "--to")
     if options.output != "-":
         check_writable(options.output)
-    text = example_text(options.file) if shipped else read_text(Path(options.file))
     system = _read(text, source, dict(options.const))
     for warning in system.warnings:
         tell(f"warning: {warning.render(options.file)}")

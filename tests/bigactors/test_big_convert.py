@@ -26,7 +26,12 @@ HOLED = """\
 
 @pytest.fixture
 def rooms(missions):
-    for name, text in (("rooms.big", ROOMS), ("rules.big", RULES), ("holed.xmi", HOLED)):
+    for name, text in (
+        ("rooms.big", ROOMS),
+        ("rules.big", RULES),
+        ("holed.xmi", HOLED),
+        ("rooms.text", ROOMS),
+    ):
         (missions / name).write_text(text, encoding="utf-8")
     return missions
 
@@ -79,7 +84,8 @@ def test_a_system_that_ships_is_written_whole(bigactors):
     [
         (("holed.xmi", "x.big"), "site 0"),
         (("rooms.big", "x.json"), "the ending of 'x.json' names no format"),
-        (("rooms.txt", "x.xmi"), "the ending of 'rooms.txt' names no format"),
+        (("rooms.text", "x.xmi"), "the ending of 'rooms.text' names no format"),
+        (("nowhere.text", "x.xmi"), "'nowhere.text' cannot be read"),
         (("rooms.big", "-"), "give --to big or xmi"),
         (("holed.xmi", "x.big", "--const", "n=1"), "a .xmi file has no constants"),
         (("rooms.big", "x.xmi", "--from", "xmi"), "this is no XML"),
