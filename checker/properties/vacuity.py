@@ -215,6 +215,8 @@ def _remark(around: Part, part: Part, columns: Columns, every: int) -> str:
     match around.formula:
         case Or((Not(condition), conclusion)) if part.formula == conclusion:
             never = f"'{condition}' {'and its like are' if many else 'is'} never true"
+            if next(atoms_of(condition), None) is None:
+                never = "the comparison of names before it is never true"
             return f"vacuous: {never}, so that {said}"
         case Or(parts):
             rest: Proposition = Or(_others(parts, part))
