@@ -37,7 +37,7 @@ INVARIANTS = {
         "vacuous: 'uav0 in south0' is never true, so that 'ended a' is never needed",
     ),
     "forall x, y: Vessel . x != y -> not uav0 in gate0": (
-        "vacuous: the comparison of names before it is never true, so that 'not uav0 in gate0' is never needed",
+        "vacuous: the comparison of names before it is never true, so that 'uav0 in gate0' is never needed",
     ),
     "uav0 in gate0 -> ended a": (),
     "uav0 in north0 or uav0 in gate0": (),
