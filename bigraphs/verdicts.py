@@ -112,10 +112,14 @@ class Run:
 
 @dataclass(frozen=True, slots=True)
 class Decided:
-    """What became of a claim, with a run that shows it where one run can; `what` says of the run what it is."""
+    """What became of a claim, with a run that shows it where one run can.
+
+    `what` says of the run what it is, `remarks` what the verdict says less than it seems to.
+    """
 
     claim: str
     outcome: Outcome
     run: Run | None = None
     what: str = ""
     note: str = ""
+    remarks: tuple[str, ...] = ()

@@ -34,7 +34,7 @@ LIBRARIES = {
     "networkx": ("bigraphs/", "checker/", "specs/elaboration/bodies.py"),  # where a graph is a graph
     "numpy": (
         "checker/",
-        "bigactors/big_temporal.py",
+        "bigactors/big/temporal.py",
         "adapters/camera/",
         "adapters/ros/messages.py",  # arrays of ROS's messages
         "adapters/simulated/camera.py",

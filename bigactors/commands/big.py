@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, Final
 
-from bigactors.big_checks import MARKS, asks_nothing, check_formulas, decided_json, decided_lines, verdicts_on
-from bigactors.big_output import check_outputs, write_outputs
+from bigactors.big.checks import MARKS, asks_nothing, check_formulas, decided_json, decided_lines, verdicts_on
+from bigactors.big.output import check_outputs, write_outputs
 from bigactors.commands.big_convert import convert
 from bigactors.exits import Exit, worst
 from bigactors.files import json_text, write_json

@@ -20,6 +20,10 @@ MOST_WORDS: Final = 200
 """A formula has so many words and signs at the most."""
 
 GRAMMAR: Final = r"""
+?asked: formula
+      | _UNDER fairness (_AND fairness)* ":" formula -> under
+fairness: STRENGTH "fairness" "of" LABEL ("," LABEL)*
+
 ?formula: equivalence
         | equivalence LEADS equivalence -> leads_to
 ?equivalence: implication
@@ -51,12 +55,14 @@ OPERATION: /(?:[URW]|until)(?!\w)/
 PREFIX: "[]" | "<>" | /[GFX](?!\w)/
 FAR_PREFIX: /(?:always|eventually|next|infinitely\s+often)(?!\w)/
 QUANTIFIER: /[AE][GFX]?(?!\w)/
+_UNDER: /under(?!\w)/
+STRENGTH: /(?:weak|strong)(?!\w)/
 TRUTH: /(?:true|false)(?!\w)/
 LABEL: /(?!(?:RESERVED)(?![\w']))[^\W\d][\w']*(?:\((?:[^()"]|"[^"]*")*\))?|"[^"]+"/
 %ignore /\s+/
 """.replace(
     "RESERVED",
-    "leads|or|and|not|until|always|eventually|next|infinitely|true|false|taken|enabled|[URWGFX]|[AE][GFX]?",
+    "under|leads|or|and|not|until|always|eventually|next|infinitely|true|false|taken|enabled|[URWGFX]|[AE][GFX]?",
 )
 _WORD: Final = re.compile(r"\w+|\[\]|<>|[^\w\s]")
 _WORDS: Final = {
@@ -72,6 +78,12 @@ _WORDS: Final = {
     "LPAR": "'('",
     "RPAR": "')'",
     "TAKEN": "'taken'",
+    "_UNDER": "'under'",
+    "STRENGTH": "'weak' or 'strong'",
+    "FAIRNESS": "'fairness'",
+    "OF": "'of'",
+    "COLON": "':'",
+    "COMMA": "','",
     "$END": "the end",
 }
 
@@ -100,17 +112,17 @@ class Term:
 
 
 def parse_formula(text: str) -> Term:
-    """Return a formula as written; raises NotationError where it is none, or too long."""
+    """Return a formula as written, with its fairness; raises NotationError where it is none, or too long."""
     if sum(1 for _ in _WORD.finditer(text)) > MOST_WORDS:
         message = f"a formula of more than {MOST_WORDS} words and signs"
         raise NotationError("too-long", message, text, 0, hint="check its parts one by one")
-    term: Term = _Build().transform(read(_parser(), text, _WORDS, "formula"))
+    term: Term = _Build().transform(read(_parser(), text, _WORDS, "asked"))
     return term
 
 
 @cache
 def _parser() -> Lark:
-    return Lark(GRAMMAR, parser="lalr", start=["formula"], propagate_positions=True)
+    return Lark(GRAMMAR, parser="lalr", start=["asked"], propagate_positions=True)
 
 
 class _Build(Transformer_NonRecursive[Token, Term]):

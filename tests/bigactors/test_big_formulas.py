@@ -1,7 +1,7 @@
 import pytest
 
-from bigactors.big_formulas import MOST_NESTED, parse_formula
-from bigactors.big_temporal import Decider
+from bigactors.big.formulas import MOST_NESTED, parse_claim
+from bigactors.big.temporal import Decider
 from bigraphs.errors import NotationError
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system
@@ -46,7 +46,7 @@ end
     ],
 )
 def test_formulas_are_read_as_in_missions(logic, text, written):
-    assert str(parse_formula(text, logic, SYSTEM)) == written
+    assert str(parse_claim(text, logic, SYSTEM).formula) == written
 
 
 BEHIND = "write AG, EF, AX or A (F U G)"
@@ -73,7 +73,7 @@ BEHIND = "write AG, EF, AX or A (F U G)"
 )  # fmt: skip
 def test_mistakes_are_shown_where_they_are(logic, text, message, caret, hint):
     with pytest.raises(NotationError) as found:
-        parse_formula(text, logic, SYSTEM)
+        parse_claim(text, logic, SYSTEM)
     place, shown, mark, *advice = found.value.render(f"--{logic}").split("\n")
     assert place == f"--{logic}:1:{caret.index('^') + 1}: {message}"
     assert (shown, mark) == (f"    1 | {text}", f"      | {caret}")
@@ -94,11 +94,11 @@ def test_mistakes_are_shown_where_they_are(logic, text, message, caret, hint):
 )
 def test_formulas_are_bounded(logic, text):
     with pytest.raises(NotationError):
-        parse_formula(text, logic, SYSTEM)
+        parse_claim(text, logic, SYSTEM)
 
 
 def test_what_is_within_the_bounds_is_decided():
-    formula = parse_formula("not " * (MOST_WORDS - 1) + "ball", "ltl", SYSTEM)
+    formula = parse_claim("not " * (MOST_WORDS - 1) + "ball", "ltl", SYSTEM).formula
     verdict = Decider(explore(SYSTEM)).decide("ltl", "not " * (MOST_WORDS - 1) + "ball")
     assert str(formula).startswith("not not not")
     assert verdict.outcome is Outcome.VIOLATED

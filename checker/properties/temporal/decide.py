@@ -1,7 +1,8 @@
 """Decide the temporal properties of a mission, on the edges that an exploration stored."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -12,22 +13,18 @@ from checker.limits import BoundMet
 from checker.properties import vacuity
 from checker.properties.findings import MOST_VIOLATIONS, Finding
 from checker.properties.inspections import DeadlockFreedom
-from checker.properties.subformulas import STILL
-from checker.properties.temporal.automaton import TooLargeError
-from checker.properties.temporal.branching import Branching
 from checker.properties.temporal.components import Conditions
 from checker.properties.temporal.deadlock import Deadlocks
-from checker.properties.temporal.evaluation import is_true_on
+from checker.properties.temporal.decision import Decision, Formulas
 from checker.properties.temporal.fairness import EACH_RULE_AND_REQUEST, classes, conditions_of, optional
 from checker.properties.temporal.lassos import Lasso
-from checker.properties.temporal.linear import counterexample, shortest_counterexample
 from checker.properties.temporal.progress import Pending, Progress, Starved, owed, pending_requests
 from checker.properties.temporal.truth import Truth, Valuation, valuation
-from checker.properties.temporal.vacuity import Judged, is_judged, judge_branching, judge_linear
+from checker.properties.temporal.vacuity import is_judged
 from checker.traces import Trace, replay, step_of, to_json
 from checker.verdicts import Outcome, Verdict, Violation
 from semantics.properties.kinds import PropertyKind
-from semantics.properties.property import Property, Ranges
+from semantics.properties.property import Property
 from semantics.properties.propositions import Proposition, atoms_of
 from semantics.properties.temporal import ENVIRONMENTS, Fairness, Now, Steps, Temporal, atoms
 from semantics.successors import expand
@@ -101,7 +98,8 @@ class Decider:
         propositions = [atom.proposition for atom in asked if isinstance(atom, Now)]
         if is_judged(self.graph):  # part by part
             propositions = [atom for each in propositions for atom in atoms_of(each)]
-        self.truth = Truth(self.graph, where_true(found, propositions))
+        truth = Truth(self.graph, where_true(found, propositions))
+        self.formulas = Formulas(truth, found.complete, partial(is_still, found))
 
     def decide(self, asked: Property) -> Verdict:
         """Return the verdict on a property; what is not violated holds only where everything was explored."""
@@ -117,97 +115,49 @@ class Decider:
             case _:
                 raise AssertionError(f"{asked.kind} is not about runs")
 
-    # --- linear time
+    # --- linear and branching time
 
     def linear(self, asked: Property) -> Verdict:
         """Return the verdict on what is claimed of every fair run."""
         assert asked.temporal is not None
-        try:
-            lasso = shortest_counterexample(
-                self.graph, self.truth, asked.temporal, self.conditions(asked.fairness)
-            )
-        except TooLargeError as error:
-            return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {error}; split the formula")
-        note, remarks = self.note(asked.fairness), tuple(self.empty(asked.fairness))
-        if lasso is None:
-            outcome, judged = self.unless_violated(), Judged()
-            if outcome is Outcome.HOLDS:
-                judged = self.judged(asked.temporal, self.conditions(asked.fairness), asked.ranges)
-            return Verdict(
-                asked,
-                outcome,
-                examined=self.graph.size,
-                witness=None if judged.witness is None else self.trace(judged.witness),
-                note=note,
-                remarks=(*remarks, *judged.remarks),
-            )
-        message = f"false{'' if lasso.loop else ', whatever follows'}: {asked.shown}"
-        if lasso.loop and is_true_on(lasso, asked.temporal, self.truth):
-            raise AssertionError(f"the counterexample is none: {asked.temporal}")
-        details = (*self.pauses(lasso), *self.unfair(asked, self.is_fairly_true))
-        violation = Violation(asked.kind, message, self.trace(lasso), details)
-        return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
-
-    def judged(self, formula: Temporal, fairness: Conditions, ranges: Ranges) -> Judged:
-        """Return what there is to say of a formula that holds of all fair runs."""
-        if is_still(self.found, formula):
-            return Judged((STILL,))
-        return judge_linear(self.truth, formula, fairness, ranges)
-
-    # --- branching time
+        found = self.formulas.linear(asked.temporal, self.conditions(asked.fairness), asked.ranges)
+        if found.run is None or found.outcome is not Outcome.VIOLATED:
+            return self.unviolated(asked, found)
+        message = f"false{'' if found.run.loop else ', whatever follows'}: {asked.shown}"
+        return self.violated(asked, message, found.run, tuple(self.pauses(found.run)))
 
     def branching(self, asked: Property) -> Verdict:
         """Return the verdict on what is claimed of the tree of fair runs."""
-        formula = asked.temporal
-        assert formula is not None
-        tree = Branching(self.graph, self.truth, self.conditions(asked.fairness))
-        surely, perhaps = bool(tree.where(formula)[0]), bool(tree.where(formula, perhaps=True)[0])
-        note, remarks = self.note(asked.fairness), tuple(self.empty(asked.fairness))
-        if perhaps:
-            outcome, witness = self.unless_violated(), tree.evidence(formula) if surely else None
-            if outcome is Outcome.HOLDS:
-                still = is_still(self.found, formula)
-                judged = Judged((STILL,)) if still else judge_branching(tree, formula, asked.ranges)
-                remarks += judged.remarks
-                witness = judged.witness or witness
-            return Verdict(
-                asked,
-                outcome,
-                examined=int(tree.where(formula).sum()),
-                witness=None if witness is None else self.trace(witness),
-                note=note,
-                remarks=remarks,
-            )
-        lasso = tree.evidence(formula, claimed=False)
-        shown = tuple(self.pauses(lasso))
-        if not len(lasso):
-            shown = ("no single run shows it: it is about all that may follow",)
-        details = (*shown, *self.unfair(asked, self.is_fairly_true_of_all))
-        violation = Violation(asked.kind, f"false at c0: {asked.shown}", self.trace(lasso), details)
-        return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
-
-    # --- fairness that would do
-
-    def unfair(self, asked: Property, holds: Callable[[Temporal, Conditions], bool]) -> Iterator[str]:
-        """Yield that a violated property holds under fairness, where it asks for none and everything was explored."""
-        if asked.fairness or not self.found.complete:
-            return
         assert asked.temporal is not None
-        for words, fairness in ENOUGH.items():
-            if holds(asked.temporal, self.conditions(fairness)):
-                yield f"only unfair runs violate it: it holds under {words}"
-                return
+        found = self.formulas.branching(asked.temporal, self.conditions(asked.fairness), asked.ranges)
+        if found.run is None or found.outcome is not Outcome.VIOLATED:
+            return self.unviolated(asked, found)
+        shown = tuple(self.pauses(found.run))
+        if not len(found.run):
+            shown = ("no single run shows it: it is about all that may follow",)
+        return self.violated(asked, f"false at c0: {asked.shown}", found.run, shown)
 
-    def is_fairly_true(self, formula: Temporal, fairness: Conditions) -> bool:
-        """Tell whether a formula of linear time is true of all fair runs, as far as its automata are small."""
-        try:
-            return counterexample(self.graph, self.truth, formula, fairness) is None
-        except TooLargeError:
-            return False
+    def unviolated(self, asked: Property, found: Decision) -> Verdict:
+        """Return the verdict on a formula that holds, or that nothing found speaks against."""
+        return Verdict(
+            asked,
+            found.outcome,
+            examined=found.examined,
+            witness=None if found.run is None else self.trace(found.run),
+            note=found.note or self.note(asked.fairness),
+            remarks=(*self.empty(asked.fairness), *found.remarks),
+        )
 
-    def is_fairly_true_of_all(self, formula: Temporal, fairness: Conditions) -> bool:
-        """Tell whether a formula of branching time is true at the first configuration, of fair runs."""
-        return bool(Branching(self.graph, self.truth, fairness).where(formula)[0])
+    def violated(self, asked: Property, message: str, run: Lasso, shown: tuple[str, ...]) -> Verdict:
+        """Return the verdict on a formula that is violated, and whether only unfair runs do."""
+        assert asked.temporal is not None
+        if not asked.fairness:
+            ways = ((words, self.conditions(each)) for words, each in ENOUGH.items())
+            enough = self.formulas.enough(asked.temporal, asked.kind is PropertyKind.LTL, ways)
+            shown += (f"only unfair runs violate it: it holds under {enough}",) if enough else ()
+        violation = Violation(asked.kind, message, self.trace(run), shown)
+        note, remarks = self.note(asked.fairness), tuple(self.empty(asked.fairness))
+        return Verdict(asked, Outcome.VIOLATED, (violation,), 1, note=note, different=1, remarks=remarks)
 
     # --- progress
 

@@ -19,7 +19,7 @@ EACH_RULE_AND_REQUEST = (
 """Under what progress is asked for: weak fairness of each bigActor's rules, and of the serving of each request."""
 
 
-def conditions_of(declared: Iterable[Fairness], graph: Graph, arriving: Collection[Name]) -> Conditions:
+def conditions_of(declared: Iterable[Fairness], graph: Graph, arriving: Collection[Name] = ()) -> Conditions:
     """Return the conditions of a total graph.
 
     Weak fairness: infinitely often the steps are taken, or not enabled. Strong fairness: taken, if enabled infinitely
@@ -38,7 +38,9 @@ def conditions_of(declared: Iterable[Fairness], graph: Graph, arriving: Collecti
     return Conditions(tuple(recurrent), tuple(strong))
 
 
-def classes(fairness: Fairness, labels: tuple[Label, ...], arriving: Collection[Name]) -> Iterator[Bools]:
+def classes(
+    fairness: Fairness, labels: tuple[Label, ...], arriving: Collection[Name] = ()
+) -> Iterator[Bools]:
     """Yield for each set of steps that is owed something which labels it has.
 
     The end of a flight is among them only if the mission says that it arrives, or names the rule `commit`.

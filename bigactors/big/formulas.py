@@ -1,12 +1,13 @@
 """Temporal formulas over a system's predicates and rules, in the syntax of a mission's `ltl` and `ctl`.
 
-Atoms are the predicates of the system, and `taken` and `enabled` with a rule of it.
+Atoms are the predicates of the system, and `taken` and `enabled` with a rule of it. Before a formula may stand which
+runs it is about: `under weak fairness of walk and strong fairness of rules: <> meeting`.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import chain
-from typing import Final, cast
+from typing import Final, NamedTuple, cast
 
 from bigraphs.errors import NotationError
 from bigraphs.notation import formulas as s
@@ -53,10 +54,31 @@ def occurs(label: str) -> t.Now:
     return t.Now(cast("Proposition", Occurs(label)))
 
 
-def parse_formula(text: str, logic: str, system: System) -> t.Temporal:
+class Claim(NamedTuple):
+    """A formula, and the fairness of the runs that it is about."""
+
+    formula: t.Temporal
+    fairness: tuple[t.Fairness, ...] = ()
+
+
+EACH_RULE: Final = "rules"
+"""The word for all rules, each with its arguments being owed something."""
+
+
+def fair_to(strong: bool, steps: t.Steps, word: str) -> t.Fairness:
+    """Return fairness to the steps of rules, told apart by rule and arguments (the `rule` of their labels)."""
+    return t.Fairness(strong, steps, ("rule",), word)
+
+
+def parse_claim(text: str, logic: str, system: System) -> Claim:
     """Read a formula of a logic, `ltl` or `ctl`, about a system; raises NotationError where something is wrong."""
     elaboration = _Elaboration(text, logic, system)
-    return elaboration.state(elaboration.part(s.parse_formula(text)))
+    term = s.parse_formula(text)
+    fairness: tuple[t.Fairness, ...] = ()
+    if term.kind == "under":
+        *declared, term = cast("tuple[s.Term, ...]", term.parts)
+        fairness = tuple(chain.from_iterable(map(elaboration.fairness, declared)))
+    return Claim(elaboration.state(elaboration.part(term)), fairness)
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,8 +154,15 @@ class _Elaboration:
     def enabled(self, at: s.Term, word: s.Word) -> _Part:
         return _part(t.Enabled(self.steps(word)), at)
 
+    def fairness(self, declared: s.Term) -> Iterator[t.Fairness]:
+        """Yield what is owed to each of the rules that a declaration lists."""
+        strength, *listed = cast("tuple[s.Word, ...]", declared.parts)
+        for word in listed:
+            steps = t.Steps() if word.text == EACH_RULE else self.steps(word)
+            yield fair_to(strength.text == "strong", steps, word.text)
+
     def steps(self, word: s.Word) -> t.Steps:
-        """Return the steps of a rule, or of all rules of a name (see `big_temporal.graph_of`)."""
+        """Return the steps of a rule, or of all rules of a name (see `temporal.graph_of`)."""
         name = _unquoted(word.text)
         if name not in self.rules and name in self.instantaneous:
             message = f"the rule '{name}' is instantaneous, so no step is its own"

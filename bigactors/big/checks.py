@@ -56,7 +56,7 @@ def verdicts_on(options: Namespace, found: TransitionSystem) -> Iterator[Decided
     for claim in found.system.properties:
         yield of_verdict(found, property_verdict(found, claim))
     if asked := asked_formulas(options):
-        from bigactors.big_temporal import decided_formulas  # noqa: PLC0415 - scipy is slow to import
+        from bigactors.big.temporal import decided_formulas  # noqa: PLC0415 - scipy is slow to import
 
         yield from decided_formulas(found, asked)
 
@@ -64,10 +64,10 @@ def verdicts_on(options: Namespace, found: TransitionSystem) -> Iterator[Decided
 def check_formulas(options: Namespace, system: System) -> None:
     """Refuse what is no formula, before a long exploration and not after it."""
     for logic, text in asked_formulas(options):
-        from bigactors.big_formulas import parse_formula  # noqa: PLC0415 - geometry takes its time to load
+        from bigactors.big.formulas import parse_claim  # noqa: PLC0415 - geometry takes its time to load
 
         try:
-            parse_formula(text, logic, system)
+            parse_claim(text, logic, system)
         except NotationError as error:
             raise Mistake(error.message, error.hint, options.file, error.render(f"--{logic}")) from error
 
@@ -89,7 +89,8 @@ def decided_lines(found: TransitionSystem, decided: Decided) -> Iterator[str]:
     yield f"  {paint(mark, colour, sys.stdout)} {decided.claim}: {decided.outcome.value}"
     if decided.note:
         yield f"      {decided.note}"
-    if decided.run is not None:
+    yield from (f"      warning: {remark}" for remark in decided.remarks)
+    if decided.run is not None and decided.what:
         yield f"      {decided.what}:"
         yield from _run_lines(found, decided.run)
 
@@ -122,6 +123,7 @@ def decided_json(found: TransitionSystem, decided: list[Decided]) -> dict[str, A
                 "claim": each.claim,
                 "outcome": each.outcome.value,
                 "note": each.note,
+                "remarks": list(each.remarks),
                 "run": None if each.run is None else _run_json(found, each.run),
                 "loop": None if each.run is None else _loop_json(each.run),
             }

@@ -1,0 +1,1 @@
+"""What `bigactors big` decides, computes and writes about systems of bigraphs."""
