@@ -10,7 +10,7 @@ PARTS  := $(PAGE)/parts/LICENSES.txt
 SMOKE  := $(addprefix tests/,missions paper semantics/state/test_cells.py \
 	$(addprefix bigactors/test_,big.py cli.py engines.py missions.py public_names.py run.py))
 
-.PHONY: parts demo live-demo test test-long lint types test-wheel wheel constraints fuzz bounds bench bench-bigraphs bench-cluster bench-time docs pictures clean
+.PHONY: parts demo live-demo test test-long lint types test-wheel wheel constraints storm fuzz bounds bench bench-bigraphs bench-cluster bench-time docs pictures clean
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -62,9 +62,12 @@ test-wheel: wheel  ## a quick part of the suite against the installed wheel, wit
 
 constraints:  ## write constraints.txt anew: the newest of all that is needed, in a new .venv; then `make test`
 	rm -rf $(VENV)
-	PIP_CONSTRAINT= $(MAKE) $(STAMP)
-	echo '# The versions of all that .[dev] needs with which CI tests; `make constraints` writes them. A user installs without this file.' > constraints.txt
+	PIP_CONSTRAINT= $(MAKE) $(STAMP) storm
+	echo '# The versions of all that .[dev] and .[storm] need with which CI tests; `make constraints` writes them. A user installs without this file.' > constraints.txt
 	$(BIN)/python -m pip freeze --exclude-editable >> constraints.txt
+
+storm: $(STAMP)  ## the model checker Storm, for `big check --storm` and its tests, where there is a wheel of it
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --only-binary stormpy --editable '.[storm]'
 
 fuzz: $(STAMP)  ## the long tests whole, 100,000 mutated missions, a million mutated packets and sentences (nightly: an hour or more)
 	BIGACTORS_FUZZ=100000 BIGACTORS_FUZZ_PACKETS=1000000 $(BIN)/python -m pytest -n 2 -q -m "fuzz or hypothesis"

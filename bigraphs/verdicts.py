@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from enum import Enum
 
 from bigraphs.errors import BigraphError
@@ -96,10 +96,15 @@ def _situations(system: TransitionSystem) -> Iterator[tuple[int, Situation]]:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A step of a run: the rules that make it, none where nothing can happen, and the number of the state after it."""
+    """A step of a run: the rules that make it, none where nothing can happen, and the number of the state after it.
+
+    `action` is the action that was chosen, and `chance` the probability of the step then, where they are asked about.
+    """
 
     rules: tuple[str, ...]
     state: int
+    action: str = ""
+    chance: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,10 +116,23 @@ class Run:
 
 
 @dataclass(frozen=True, slots=True)
+class Value:
+    """A number that was asked for: what it is, between which bounds it surely is if they are known.
+
+    `compared` says that a formula claims something of it.
+    """
+
+    number: float
+    bounds: tuple[float, ...] = ()
+    compared: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Decided:
     """What became of a claim, with a run that shows it where one run can.
 
-    `what` says of the run what it is, `remarks` what the verdict says less than it seems to.
+    `what` says of the run what it is, `remarks` what the verdict says less than it seems to. Where a number is asked
+    for, `value` is it, and `strategy` what is chosen in the states with a choice to reach it.
     """
 
     claim: str
@@ -123,3 +141,5 @@ class Decided:
     what: str = ""
     note: str = ""
     remarks: tuple[str, ...] = ()
+    value: Value | None = None
+    strategy: Mapping[int, str] = field(default_factory=dict)

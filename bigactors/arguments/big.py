@@ -131,6 +131,14 @@ def _check(task: Parser) -> None:
         wanted.add_argument(
             option, metavar="FORMULA", action="append", default=[], help=f"{text}; may be repeated"
         )
+    wanted.add_argument(
+        "--storm",
+        metavar="FORMULA",
+        action="append",
+        default=[],
+        help="a probability, reward or time that Storm computes, such as 'Pmax=? [F goal]', with the likeliest run; or "
+        "a claim about one, such as 'P>=0.9 [F goal]'; needs the extra [storm]; may be repeated",
+    )
     wanted.add_argument("--no-deadlock", action="store_true", help="something can happen in every state")
     task.add_argument(
         "--json", metavar="FILE", type=named, help="verdicts as data; - for standard output, alone"
@@ -196,6 +204,7 @@ COMMAND = Command(
         "bigactors big sim --seed 7 --until 20 network.big",
         "bigactors big check --never collision network.big",
         "bigactors big check --ltl 'request leads to answer' --ctl 'AG EF idle' network.big",
+        "bigactors big check --storm 'Pmax=? [F delivered]' network.big",
     ),
     fill,
 )

@@ -2,8 +2,9 @@
 
 import sys
 from argparse import Namespace
-from collections.abc import Iterator
-from itertools import pairwise
+from collections.abc import Iterator, Mapping
+from itertools import islice, pairwise
+from math import isfinite
 from typing import Any, Final
 
 from bigactors.exits import Exit
@@ -20,11 +21,13 @@ from bigraphs.verdicts import (
     Quantifier,
     Run,
     Step,
+    Value,
     Verdict,
     deadlock_verdict,
     predicate_verdict,
     property_verdict,
 )
+from physical.messages import counted
 
 LOGICS: Final = ("ltl", "ctl")
 """The options that take formulas."""
@@ -34,6 +37,10 @@ MARKS: Final = {
     Outcome.VIOLATED: ("✗", "red", Exit.VIOLATED),
     Outcome.INCOMPLETE: ("?", "yellow", Exit.INCOMPLETE),
 }
+
+
+SHOWN_CHOICES: Final = 8
+"""How many choices of a strategy are printed."""
 
 
 def of_verdict(found: TransitionSystem, verdict: Verdict) -> Decided:
@@ -55,6 +62,10 @@ def verdicts_on(options: Namespace, found: TransitionSystem) -> Iterator[Decided
         yield of_verdict(found, deadlock_verdict(found))
     for claim in found.system.properties:
         yield of_verdict(found, property_verdict(found, claim))
+    if options.storm:
+        from bigactors.big.storm import answers  # noqa: PLC0415 - what asks Storm is rarely wanted
+
+        yield from answers(found, options.storm)
     if asked := asked_formulas(options):
         from bigactors.big.temporal import decided_formulas  # noqa: PLC0415 - scipy is slow to import
 
@@ -69,7 +80,18 @@ def check_formulas(options: Namespace, system: System) -> None:
         try:
             parse_claim(text, logic, system)
         except NotationError as error:
-            raise Mistake(error.message, error.hint, options.file, error.render(f"--{logic}")) from error
+            raise _mistake(error, options, logic) from error
+    if options.storm:
+        from bigactors.big.storm import check_queries  # noqa: PLC0415 - as below
+
+        try:
+            check_queries(options.storm, system)
+        except NotationError as error:
+            raise _mistake(error, options, "storm") from error
+
+
+def _mistake(error: NotationError, options: Namespace, option: str) -> Mistake:
+    return Mistake(error.message, error.hint, options.file, error.render(f"--{option}"))
 
 
 def asked_formulas(options: Namespace) -> list[tuple[str, str]]:
@@ -80,16 +102,24 @@ def asked_formulas(options: Namespace) -> list[tuple[str, str]]:
 def asks_nothing(options: Namespace, system: System) -> bool:
     """Say whether there is nothing to decide."""
     predicates = (getattr(options, quantifier.value) for quantifier in Quantifier)
-    return not (any(predicates) or options.no_deadlock or system.properties or asked_formulas(options))
+    asked = (*asked_formulas(options), *options.storm)
+    return not (any(predicates) or options.no_deadlock or system.properties or asked)
 
 
 def decided_lines(found: TransitionSystem, decided: Decided) -> Iterator[str]:
     """Yield what is printed of a verdict, with the run that shows it."""
     mark, colour, _ = MARKS[decided.outcome]
-    yield f"  {paint(mark, colour, sys.stdout)} {decided.claim}: {decided.outcome.value}"
+    value, said = decided.value, decided.outcome.value
+    if value is not None and value.compared:
+        said += f", it is {value.number:.6g}"
+    elif value is not None:
+        mark, said = "=" if decided.outcome is Outcome.HOLDS else mark, f"{value.number:.6g}"
+    yield f"  {paint(mark, colour, sys.stdout)} {decided.claim}: {said}"
     if decided.note:
         yield f"      {decided.note}"
     yield from (f"      warning: {remark}" for remark in decided.remarks)
+    if decided.strategy:
+        yield f"      an optimal strategy chooses {_strategy(decided.strategy)}"
     if decided.run is not None and decided.what:
         yield f"      {decided.what}:"
         yield from _run_lines(found, decided.run)
@@ -107,8 +137,20 @@ def _run_lines(found: TransitionSystem, run: Run) -> Iterator[str]:
             yield f"        and stays in state {step.state}, where nothing can happen"
 
 
+def _strategy(chosen: Mapping[int, str]) -> str:
+    shown = [f"{choice} in state {state}" for state, choice in islice(chosen.items(), SHOWN_CHOICES)]
+    more = (
+        f", and in {counted(len(chosen) - len(shown), 'more state')}: see --json"
+        if len(chosen) > len(shown)
+        else ""
+    )
+    return ", ".join(shown) + more
+
+
 def _rules(step: Step) -> str:
-    return ", ".join(step.rules) or "nothing can happen"
+    rules = ", ".join(step.rules) or "nothing can happen"
+    chance = "" if step.chance is None else f", {step.chance:.6g}"
+    return f"{step.action + ': ' if step.action else ''}{rules}{chance}"
 
 
 def decided_json(found: TransitionSystem, decided: list[Decided]) -> dict[str, Any]:
@@ -122,6 +164,8 @@ def decided_json(found: TransitionSystem, decided: list[Decided]) -> dict[str, A
             {
                 "claim": each.claim,
                 "outcome": each.outcome.value,
+                "value": None if each.value is None else _value_json(each.value),
+                "strategy": {str(state): choice for state, choice in each.strategy.items()} or None,
                 "note": each.note,
                 "remarks": list(each.remarks),
                 "run": None if each.run is None else _run_json(found, each.run),
@@ -135,9 +179,21 @@ def decided_json(found: TransitionSystem, decided: list[Decided]) -> dict[str, A
 def _run_json(found: TransitionSystem, run: Run) -> list[dict[str, Any]]:
     shown = run.steps if run.loop is None else run.steps[:-1]
     return [
-        {"number": step.state, "rules": list(step.rules), "state": bigraph_json(found.state(step.state))}
+        {
+            "number": step.state,
+            "rules": list(step.rules),
+            "action": step.action or None,
+            "chance": step.chance,
+            "state": bigraph_json(found.state(step.state)),
+        }
         for step in (Step((), 0), *shown)
     ]
+
+
+def _value_json(value: Value) -> dict[str, Any]:
+    """Return a number as data; what is infinite is a word, since JSON has no number for it."""
+    number, *bounds = (each if isfinite(each) else str(each) for each in (value.number, *value.bounds))
+    return {"number": number, "bounds": bounds or None}
 
 
 def _loop_json(run: Run) -> dict[str, Any] | None:

@@ -134,7 +134,8 @@ def check(options: Namespace) -> Exit:
     if asks_nothing(options, system):
         raise Mistake(
             "there is nothing to check",
-            "give --always, --never or --reachable with a predicate, --ltl or --ctl with a formula, or --no-deadlock",
+            "give --always, --never or --reachable with a predicate, --ltl, --ctl or --storm with a formula, "
+            "or --no-deadlock",
             options.file,
         )
     check_formulas(options, system)

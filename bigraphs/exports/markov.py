@@ -9,14 +9,14 @@ decided beyond them.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from itertools import groupby
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
-from bigraphs.system import SystemKind
-from bigraphs.transitions import TransitionSystem
+from bigraphs.system import System, SystemKind
+from bigraphs.transitions import Transition, TransitionSystem
 
 
 class MarkovKind(Enum):
@@ -85,15 +85,23 @@ def _moves(system: TransitionSystem) -> Iterator[Move]:
     rewards = {action.name: float(action.reward) for action in system.system.actions}
     for source, group in groupby(system.transitions(), key=lambda each: each.source):
         outgoing = list(group)
-        if system.kind is SystemKind.BRS:
-            for choice, each in enumerate(outgoing):
+        for choice, each in zip(choices_of(system.kind, outgoing), outgoing, strict=True):
+            if system.kind is SystemKind.BRS:
                 yield Move(source, choice, each.target, 1.0, label_name("_".join(each.rules)), 0.0)
-            continue
-        actions = sorted({each.action or "" for each in outgoing})
-        for each in outgoing:
+                continue
             action = each.action or ""
-            choice, reward = actions.index(action), rewards.get(action, 0.0)
-            yield Move(source, choice, each.target, each.weight, label_name(action), reward)
+            yield Move(source, choice, each.target, each.weight, label_name(action), rewards.get(action, 0.0))
+
+
+def choices_of(kind: SystemKind, outgoing: Sequence[Transition]) -> list[int]:
+    """Return for each transition of a state the number of the choice that it belongs to.
+
+    In a BRS each is a choice of its own; else those of an action are one, and actions are sorted by their names.
+    """
+    if kind is SystemKind.BRS:
+        return list(range(len(outgoing)))
+    actions = sorted({each.action or "" for each in outgoing})
+    return [actions.index(each.action or "") for each in outgoing]
 
 
 def _labels(system: TransitionSystem, stuck: list[int]) -> Iterator[tuple[str, tuple[int, ...]]]:
@@ -101,12 +109,7 @@ def _labels(system: TransitionSystem, stuck: list[int]) -> Iterator[tuple[str, t
     yield "deadlock", tuple(state for state in stuck if state < system.expanded)
     if not system.complete:
         yield "unexpanded", tuple(range(system.expanded, len(system)))
-    taken = {"init", "deadlock", "unexpanded"}
-    for number, predicate in enumerate(system.system.predicates):
-        name = label_name(predicate.label)
-        while name in taken:
-            name += "_"
-        taken.add(name)
+    for number, name in enumerate(label_names(system.system)):
         yield name, tuple(system.states_with(number))
 
 
@@ -121,6 +124,21 @@ def _rewards(system: TransitionSystem) -> Iterator[tuple[int, float]]:
         total = sum(reward for reward, holds in earning if holds[state])
         if total:
             yield state, total
+
+
+OWN_LABELS: Final = ("init", "deadlock", "unexpanded")
+
+
+def label_names(system: System) -> list[str]:
+    """Return the labels that the predicates of a system have in files, each another one."""
+    taken, names = set(OWN_LABELS), list[str]()
+    for predicate in system.predicates:
+        name = label_name(predicate.label)
+        while name in taken:
+            name += "_"
+        taken.add(name)
+        names.append(name)
+    return names
 
 
 def label_name(text: str) -> str:

@@ -1,0 +1,165 @@
+"""Probabilities, rewards and strategies of `bigactors big check --storm`, by the model checker Storm.
+
+A formula is Storm's, with the predicates of the file as they stand there. The explored system is handed over in the
+files that `big full --storm` writes. Storm answers in a process of its own (`storm_worker`).
+"""
+
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Final
+
+from bigactors.mistakes import Mistake
+from bigraphs.errors import NotationError
+from bigraphs.exports.markov import KINDS, OWN_LABELS, MarkovKind, label_names
+from bigraphs.exports.storm import storm_files
+from bigraphs.likeliest import Likeliest, decisions, likeliest_run
+from bigraphs.notation.spelling import did_you_mean
+from bigraphs.system import System
+from bigraphs.transitions import TransitionSystem
+from bigraphs.verdicts import Decided, Outcome, Run, Step, Value
+from physical.messages import counted, install_extra
+
+EXAMPLES: Final = "write P=? [F goal], Pmax=? [a U b], P>=0.9 [G !bad], T=? [F goal] or R=? [C<=10]"
+_OPERATORS: Final = "P|R|T|LRA"
+WORDS: Final = re.compile(rf"(?:{_OPERATORS})(?:min|max)?|[SFGXUWCI]|true|false")
+"""What Storm reads in another way than as a label."""
+MOST_CHARACTERS: Final = 2_000
+
+_PIECE: Final = re.compile(
+    r"""(?P<number>\d[\w.]*(?:(?<=[eE])[+-]\d+)?)
+      | (?P<quoted>"[^"]*")
+      | (?P<name>[^\W\d][\w']*)(?P<arguments>\((?:[^()"]|"[^"]*")*\))?""",
+    re.VERBOSE,
+)
+
+
+def translated(text: str, system: System) -> str:
+    """Return a formula with predicates as labels; raises NotationError where a name is no predicate.
+
+    >>> from bigraphs.examples import example_text
+    >>> from bigraphs.notation import read_system
+    >>> translated("Pmax=? [F<=3 delivered]", read_system(example_text("mobile_ambients")))
+    'Pmax=? [F<=3 "delivered"]'
+    """
+    if len(text) > MOST_CHARACTERS:
+        message = f"a formula of more than {MOST_CHARACTERS:,} characters"
+        raise NotationError("too-long", message, text, 0, hint="ask its parts one by one")
+    labels = [predicate.label for predicate in system.predicates]
+    known = dict(zip(labels, label_names(system), strict=True)) | {each: each for each in OWN_LABELS}
+    pieces, at = [], 0
+    while found := _PIECE.search(text, at):
+        end, piece = _label(text, found, known)
+        pieces += [text[at : found.start()], piece]
+        at = end
+    return "".join((*pieces, text[at:])).strip()
+
+
+def _label(text: str, found: re.Match[str], known: dict[str, str]) -> tuple[int, str]:
+    """Return where a piece of a formula ends, and what stands for it."""
+    if found["number"]:
+        return found.end(), found["number"]
+    if found["quoted"] is None and found["arguments"]:
+        whole = (found["name"] + found["arguments"]).replace(" ", "")
+        if whole in known:
+            return found.end(), f'"{known[whole]}"'
+    name = found["quoted"][1:-1] if found["quoted"] else found["name"]
+    end = found.start() + len(found["quoted"] or name)
+    if not found["quoted"] and WORDS.fullmatch(name):
+        return end, name
+    if name not in known:
+        labels = [each for each in known if each not in OWN_LABELS]
+        hint = did_you_mean(name, labels) or f"the predicates are {', '.join(labels[:8]) or 'none'}"
+        raise NotationError(
+            "predicate", f"unknown predicate '{name}'", text, found.start(), length=len(name), hint=hint
+        )
+    return end, f'"{known[name]}"'
+
+
+def check_queries(queries: Sequence[str], system: System) -> None:
+    """Refuse what Storm cannot read, and a missing Storm, before a long exploration.
+
+    Raises:
+        Mistake: There is no Storm, or it does not understand a formula.
+        NotationError: A formula names what is no predicate.
+    """
+    if find_spec("stormpy") is None:
+        raise Mistake("--storm needs Storm, which is not installed", install_extra("storm"))
+    texts = [translated(each, system) for each in queries]
+    for text, reply in zip(queries, _replies(texts), strict=True):
+        _refuse(text, reply)
+        if KINDS[system.kind] is MarkovKind.MDP and not reply["directed"]:
+            asked, kind = " ".join(text.split()), system.kind.value
+            message = f"'{asked}' has many values, for in a system of kind {kind} what happens is chosen"
+            raise Mistake(message, "ask for the least or the greatest: Pmin=?, Pmax=?, Rmin=?, ...")
+
+
+def answers(found: TransitionSystem, queries: Sequence[str]) -> Iterator[Decided]:
+    """Yield what Storm says of each query about an explored system."""
+    texts = [translated(each, found.system) for each in queries]
+    replies = _replies(texts, storm_files(found))
+    for text, reply in zip(queries, replies, strict=True):
+        _refuse(text, reply)
+        yield answer(found, f"storm {' '.join(text.split())}", reply)
+
+
+def answer(found: TransitionSystem, claim: str, reply: dict[str, Any]) -> Decided:
+    """Return what Storm says of one query; of an incomplete system it knows the explored part alone."""
+    outcome = Outcome.HOLDS if reply.get("true", True) else Outcome.VIOLATED
+    note = ""
+    if not found.complete:
+        outcome = Outcome.INCOMPLETE
+        note = f"of the {counted(found.expanded, 'state')} that were explored: beyond them nothing happens"
+    value = Value(reply["value"], tuple(reply.get("bounds", ())), "true" in reply)
+    strategy: list[int] | None = reply.get("choices")
+    shown: dict[str, Any] = reply.get("shown") or {"goals": []}
+    goals = set(shown["goals"])
+    chosen = decisions(found, strategy, goals) if strategy else {}
+    run, what = None, ""
+    if strategy or "choices" not in reply:
+        within = set(shown["within"]) if "within" in shown else None
+        likeliest = likeliest_run(found, goals, within, strategy)
+        run, what = _run(likeliest, strategy is not None, "against" in shown)
+    return Decided(claim, outcome, run, what, note, value=value, strategy=chosen)
+
+
+def _run(likeliest: Likeliest | None, has_strategy: bool, is_against: bool) -> tuple[Run | None, str]:
+    """Return the likeliest run as a run, and what it is."""
+    if likeliest is None:
+        return None, ""
+    steps = (
+        Step(each.rules, each.target, each.action or "", chance)
+        for each, chance in zip(likeliest.transitions, likeliest.chances, strict=True)
+    )
+    by, sort = "by this strategy " if has_strategy else "", "against it" if is_against else "that shows it"
+    return Run(tuple(steps)), f"{by}the likeliest run {sort}, of probability {likeliest.chance:.6g}"
+
+
+def _replies(texts: list[str], files: dict[str, str] | None = None) -> list[dict[str, Any]]:
+    """Return Storm's reply to each formula, about a model if there are files of one; raises Mistake if it fails."""
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        for suffix, text in (files or {}).items():
+            (folder / f"model{suffix}").write_text(text, encoding="utf-8")
+        (folder / "request.json").write_text(json.dumps(texts), encoding="utf-8")
+        command = [sys.executable, "-m", "bigactors.big.storm_worker", name]
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
+        reply = folder / "reply.json"
+        if done.returncode or not reply.exists():
+            last = (done.stderr or done.stdout).strip().splitlines()[-1:] or [f"exit code {done.returncode}"]
+            raise Mistake(f"Storm failed: {last[0]:.300}", "try the formula on fewer states (--max-states)")
+        found: list[dict[str, Any]] = json.loads(reply.read_text(encoding="utf-8"))
+        return found
+
+
+def _refuse(text: str, reply: dict[str, Any]) -> None:
+    if "error" not in reply:
+        return
+    said = re.sub(r"\b\w+Exception:\s*", "", reply["error"]).split("\nNote that")[0]
+    said = re.sub(r"Parsing error at [\d:]+:\s*|\s*\^\s*$", "", " ".join(said.split()))
+    raise Mistake(f"Storm cannot answer '{' '.join(text.split())}': {said:.400}", EXAMPLES)
