@@ -1,14 +1,16 @@
 """Picture files: which formats are allowed, and the errors where they cannot be written."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from bigactors.files import write_text
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.pages import Story, page_of, telling
 from bigactors.pages.timeline_page import timeline_page
 from bigactors.pictures import PictureError, draw_configuration, draw_overview, draw_trace
+from bigactors.pictures.first_times import Curve, draw_curves
 from bigactors.pictures.timeline import draw_timeline
 from checker import Trace
 from checker.properties.schedule import Schedule
@@ -50,6 +52,12 @@ def draw_schedule(schedule: Schedule, path: str, title: str) -> None:
             write_text(path, timeline_page(schedule, title))
         else:
             draw_timeline(schedule, path, title=title)
+
+
+def draw_first_times(curves: Sequence[Curve], path: str, title: str, **words: Any) -> None:
+    """Draw when predicates first become true into a file; see `draw_curves`."""
+    with _mistakes(path):
+        draw_curves(curves, path, title=title, **words)
 
 
 def write_page(story: Story, path: str) -> tuple[str, ...]:

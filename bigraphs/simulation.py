@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import NamedTuple
 
 from bigraphs.bigraph import Bigraph
@@ -13,7 +14,7 @@ from bigraphs.engine.machine import Machine, Step
 from bigraphs.engine.node_identity import identities
 from bigraphs.engine.occurrences import Spot
 from bigraphs.engine.state import State
-from bigraphs.system import System, SystemKind
+from bigraphs.system import Rule, System, SystemKind
 
 
 class Stage(NamedTuple):
@@ -52,11 +53,12 @@ def simulate(system: System, seed: int, bounds: Bounds) -> Iterator[Stage]:
     yield _stage(machine, spot, None, 0.0, ())
     time = 0.0
     for _ in range(bounds.steps):
-        steps = list(machine.steps(spot))
+        steps = ordered_steps(machine, spot)
         if not steps:
             return
-        step = _draw(system.kind, steps, chance)
-        time += chance.expovariate(sum(map(_weight, steps))) if system.kind is SystemKind.SBRS else 1.0
+        draw = Draw(system.kind, [step.reaction.rule for step in steps])
+        step = steps[draw.one(chance)]
+        time += draw.delay(chance)
         if bounds.time is not None and time > bounds.time:
             return
         kept = tuple(sorted(identities(spot, step)))
@@ -64,16 +66,34 @@ def simulate(system: System, seed: int, bounds: Bounds) -> Iterator[Stage]:
         yield _stage(machine, spot, step, time, kept)
 
 
-def _draw(kind: SystemKind, steps: list[Step], chance: random.Random) -> Step:
-    if kind is SystemKind.NBRS:
-        actions = sorted({step.reaction.rule.action or "" for step in steps})
-        chosen = chance.choice(actions)
-        steps = [step for step in steps if (step.reaction.rule.action or "") == chosen]
-    return chance.choices(steps, [_weight(step) for step in steps])[0]
+def ordered_steps(machine: Machine, spot: Spot) -> list[Step]:
+    """Return what can happen, in an order that depends on the state alone, and not on how it was reached."""
+    return sorted(machine.steps(spot), key=lambda step: (step.reaction.number, step.target.state.key()))
 
 
-def _weight(step: Step) -> float:
-    return 1.0 if step.reaction.rule.weight is None else step.reaction.rule.weight
+class Draw:
+    """Draws one of the rules that can be applied in a state, and how long it takes."""
+
+    def __init__(self, kind: SystemKind, rules: Sequence[Rule]) -> None:
+        self.timed = kind is SystemKind.SBRS
+        groups: dict[str, list[int]] = {}
+        for number, rule in enumerate(rules):
+            groups.setdefault(rule.action or "" if kind is SystemKind.NBRS else "", []).append(number)
+        weights = [1.0 if rule.weight is None else rule.weight for rule in rules]
+        self.groups = [
+            (numbers, list(accumulate(weights[number] for number in numbers)))
+            for _, numbers in sorted(groups.items())
+        ]
+        self.total = sum(weights)
+
+    def one(self, chance: random.Random) -> int:
+        """Return the number of a rule: of any action in an NBRS, then by the weights."""
+        numbers, weights = self.groups[0] if len(self.groups) == 1 else chance.choice(self.groups)
+        return chance.choices(numbers, cum_weights=weights)[0]
+
+    def delay(self, chance: random.Random) -> float:
+        """Return the time until it happens: 1, or in an SBRS exponentially distributed by the sum of the rates."""
+        return chance.expovariate(self.total) if self.timed else 1.0
 
 
 def _stage(

@@ -14,7 +14,7 @@ FILE: Final = (
 
 TASKS: Final = {
     "full": "every state that can be reached, written for people and for other programs",
-    "sim": "one seeded run",
+    "sim": "one seeded run, or what many runs say",
     "check": "whether predicates hold always, never or ever, and formulas of LTL and CTL, with a run that shows it",
     "validate": "whether the file makes sense, and what is in it",
     "show": "a state, printed and drawn",
@@ -91,6 +91,18 @@ def _sim(task: Parser) -> None:
         help="which run: the same seed, the same run (default 0)",
     )
     task.add_argument(
+        "--runs",
+        metavar="N",
+        type=at_least_one,
+        help="take the runs of N seeds, from --seed on, and say in how many each predicate was true, and when first",
+    )
+    task.add_argument(
+        "--plot",
+        metavar="FILE",
+        type=named,
+        help="with --runs: draw the share of runs in which each predicate was true by then, .svg or .png",
+    )
+    task.add_argument(
         "--steps",
         metavar="N",
         type=at_least_zero,
@@ -104,7 +116,10 @@ def _sim(task: Parser) -> None:
         help="in an sbrs, simulate up to TIME (default: no limit)",
     )
     task.add_argument(
-        "--json", metavar="FILE", type=named, help="the run as data; - for standard output, alone"
+        "--json",
+        metavar="FILE",
+        type=named,
+        help="the run, or what many say, as data; - for standard output, alone",
     )
 
 
@@ -202,6 +217,7 @@ COMMAND = Command(
         "bigactors big full sensor_network --html network.html",
         "bigactors big full --storm network --max-states 100000 network.big",
         "bigactors big sim --seed 7 --until 20 network.big",
+        "bigactors big sim --runs 10000 --plot network.svg network.big",
         "bigactors big check --never collision network.big",
         "bigactors big check --ltl 'request leads to answer' --ctl 'AG EF idle' network.big",
         "bigactors big check --storm 'Pmax=? [F delivered]' network.big",

@@ -1,10 +1,11 @@
-"""The output files of `bigactors big full`."""
+"""The output files of `bigactors big`."""
 
 from argparse import Namespace
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
-from bigactors.files import check_writable, json_text, write_text
+from bigactors.files import check_writable, json_text, write_json, write_text
 from bigactors.terminal import say_text
 from bigraphs.exports import graph_svg, prism_files, storm_files, to_dot, to_html, to_json
 from bigraphs.exports.html import MOST_STATES, first_states
@@ -38,6 +39,14 @@ def write_outputs(options: Namespace, found: TransitionSystem) -> Iterator[str]:
         if prefix:
             for suffix, text in write(found).items():
                 yield _write(prefix + suffix, text)
+
+
+def write_data(path: str, value: Any) -> None:
+    """Write data as JSON into a file, or to standard output if that is `-`."""
+    if path == "-":
+        say_text(json_text(value))
+    else:
+        write_json(path, value)
 
 
 def _write(path: str, text: str) -> str:

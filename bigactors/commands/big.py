@@ -7,13 +7,12 @@ from pathlib import Path
 from typing import Any, Final
 
 from bigactors.big.checks import MARKS, asks_nothing, check_formulas, decided_json, decided_lines, verdicts_on
-from bigactors.big.output import check_outputs, write_outputs
+from bigactors.big.output import check_outputs, write_data, write_outputs
 from bigactors.commands.big_convert import convert
 from bigactors.exits import Exit, worst
-from bigactors.files import json_text, write_json
 from bigactors.mistakes import Mistake
 from bigactors.progress import Watch, watching
-from bigactors.terminal import is_terminal, say, say_text, tell
+from bigactors.terminal import is_terminal, say, tell
 from bigraphs import BigraphError, NotationError, draw_text, save_bigraph
 from bigraphs.engine.machine import Machine
 from bigraphs.examples import example_names, example_text
@@ -92,17 +91,23 @@ def summary(file: str, found: TransitionSystem) -> str:
 
 
 def sim(options: Namespace) -> Exit:
-    """Take one run."""
+    """Take one run, or many."""
     system = read_file(options)
     if options.until is not None and system.kind is not SystemKind.SBRS:
         raise Mistake("--until is a time, and only an sbrs has times", "give --steps", options.file)
+    if options.runs is not None:
+        from bigactors.big.many_runs import many_runs  # noqa: PLC0415 - one run needs no statistics
+
+        return Exit.HOLDS if many_runs(options, system) else Exit.INCOMPLETE
+    if options.plot:
+        raise Mistake("--plot shows what many runs say", "give --runs, such as --runs 1000", options.file)
     stages = []
     for number, stage in enumerate(simulate(system, options.seed, Bounds(options.steps, options.until))):
         stages.append(stage)
         if options.json != "-":
             say(stage_line(system, number, stage))
     if options.json:
-        _write_json(
+        write_data(
             options.json, {"file": options.file, "seed": options.seed, "run": list(map(stage_json, stages))}
         )
     return Exit.HOLDS
@@ -147,7 +152,7 @@ def check(options: Namespace) -> Exit:
             for line in decided_lines(found, each):
                 say(line)
     if options.json:
-        _write_json(options.json, decided_json(found, decided))
+        write_data(options.json, decided_json(found, decided))
     return worst(MARKS[each.outcome][2] for each in decided)
 
 
@@ -182,13 +187,6 @@ def show(options: Namespace) -> Exit:
         save_bigraph(bigraph, options.output, title=f"{Path(options.file).name}, state {options.state}")
         tell(f"picture written to {options.output}")
     return Exit.HOLDS
-
-
-def _write_json(path: str, value: Any) -> None:
-    if path == "-":
-        say_text(json_text(value))
-    else:
-        write_json(path, value)
 
 
 TASKS: Final[dict[str, Callable[[Namespace], Exit]]] = {

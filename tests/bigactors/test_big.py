@@ -1,7 +1,10 @@
 import json
 import re
+import signal
 
 import pytest
+
+from bigraphs.sampling import Sampler
 
 WALK = """\
 ctrl Room = 0; atomic ctrl Door = 1; atomic ctrl Robot = 0;
@@ -168,6 +171,47 @@ class TestBig:
         assert len(run[1]["kept"]) == 2  # the third A has become another node
         assert len(bigactors("big", "sim", "--until", "1e-9", "decay.big")[1].splitlines()) == 1
 
+    def test_many_runs_say_when_predicates_are_first_true(self, bigactors, walk):
+        code, out, err = bigactors(
+            "big", "sim", "--runs", "200", "--until", "9", "--plot", "d.svg", "decay.big"
+        )
+        assert code == 0
+        assert out.startswith("decay.big: 200 runs, seeds 0 to 199, ")
+        assert "went on to time 9" in out or "ended where nothing can happen" in out
+        assert re.search(
+            r"\n  gone +[\d.]+ % of the runs \([\d.]+ to [\d.]+\), first at [\d.]+ \([\d.]+ to [\d.]+\)", out
+        )
+        assert err == "  written: d.svg\n"
+        drawn = (walk / "d.svg").read_text(encoding="utf-8")
+        assert "the share of 200 runs" in drawn
+        assert ">gone<" in drawn
+
+    def test_many_runs_are_data_too(self, bigactors):
+        code, out, _ = bigactors("big", "sim", "--runs", "20", "--seed", "5", "--json", "-", "decay.big")
+        said = json.loads(out)
+        assert (code, said["runs"], said["complete"], said["ends"]["stuck"]) == (0, 20, True, 20)
+        (gone,) = said["predicates"]
+        times = [each["first"]["gone"] for each in said["samples"]]
+        assert gone["first"]["least"] == min(times)
+        assert gone["first"]["seed"] == 5 + times.index(min(times))
+        assert gone["first"]["interval"][0] < sum(times) / 20 < gone["first"]["interval"][1]
+        run = json.loads(bigactors("big", "sim", "--seed", "5", "--json", "-", "decay.big")[1])["run"]
+        assert run[-1]["time"] == times[0]
+
+    def test_an_interruption_keeps_the_runs_that_were_taken(self, bigactors, monkeypatch):
+        take = Sampler.run
+
+        def interrupted(sampler, seed):
+            if seed == 100:
+                signal.raise_signal(signal.SIGINT)
+            return take(sampler, seed)
+
+        monkeypatch.setattr(Sampler, "run", interrupted)
+        code, out, _ = bigactors("big", "sim", "--runs", "1000000000", "decay.big")
+        assert code == 3
+        assert "  interrupted: 999," in out
+        assert "\n  gone " in out
+
     def test_a_constant_may_have_another_value(self, bigactors):
         _, out, _ = bigactors("big", "full", "--const", "k=7", "--json", "-", "decay.big")
         assert json.loads(out)["transitions"][0]["weight"] == 21
@@ -205,6 +249,10 @@ class TestBig:
             (["check", "--never", "crowds", "walk.big"], "unknown predicate 'crowds'"),
             (["check", "walk.big"], "there is nothing to check"),
             (["show", "--state", "9", "walk.big"], "there is no state 9: there are 4"),
+            (["sim", "--plot", "x.svg", "walk.big"], "give --runs"),
+            (["sim", "--runs", "3", "--plot", "x.pdf", "walk.big"], "an .svg or a .png"),
+            (["sim", "--runs", "3", "--plot", "none/x.svg", "walk.big"], "no such folder"),
+            (["sim", "--runs", "0", "walk.big"], "--runs"),
             (["sim", "--until", "3", "walk.big"], "only an sbrs has times"),
             (["full", "--html", "no/where.html", "walk.big"], "there is no such folder"),
             (["full", "nothing.big"], "No such file"),

@@ -1,0 +1,201 @@
+"""Many runs of a system: when its predicates become true, and how surely that is known.
+
+The run of a seed is the one that `simulate` yields for it. What can happen in a state is remembered for other runs.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from math import inf, sqrt
+from statistics import fmean, stdev
+from typing import Final, NamedTuple
+
+from bigraphs.engine.machine import Machine
+from bigraphs.engine.occurrences import Spot
+from bigraphs.engine.state import Key
+from bigraphs.simulation import Bounds, Draw, ordered_steps
+from bigraphs.system import System
+
+MOST_REMEMBERED: Final = 50_000
+"""How many states are remembered, with what can happen in them."""
+
+CONFIDENCE: Final = 0.95
+
+
+class End(Enum):
+    """Why a run ended."""
+
+    STUCK = "nothing can happen"
+    STEPS = "steps"
+    TIME = "time"
+
+
+class Sample(NamedTuple):
+    """One run.
+
+    `first` is for each predicate the time at which it was first true, None if it never was; `time` is the number of
+    steps, in an SBRS the time that passed until the end.
+    """
+
+    seed: int
+    first: tuple[float | None, ...]
+    steps: int
+    time: float
+    end: End
+
+
+class _Place:
+    """A state that runs come to: what can happen there is worked out when one goes on."""
+
+    __slots__ = ("draw", "holding", "spot", "targets")
+
+    def __init__(self, spot: Spot) -> None:
+        self.spot: Spot | None = spot
+        self.holding: frozenset[int] | None = None
+        self.draw: Draw | None = None
+        self.targets: list[_Place] = []
+
+
+class Sampler:
+    """Takes runs of one system, all within the same bounds."""
+
+    def __init__(self, system: System, bounds: Bounds) -> None:
+        self.machine, self.bounds = Machine(system), bounds
+        self.start, _ = self.machine.start()
+        self.places: dict[Key, _Place] = {}
+
+    def run(self, seed: int) -> Sample:
+        """Take the run of a seed."""
+        chance, time, steps = random.Random(seed), 0.0, 0
+        first: list[float | None] = [None] * len(self.machine.system.predicates)
+        place = self.place(self.start)
+        while True:
+            for predicate in self.holding(place):
+                if first[predicate] is None:
+                    first[predicate] = time
+            if steps == self.bounds.steps:
+                return Sample(seed, tuple(first), steps, time, End.STEPS)
+            draw = self.draw(place)
+            if not place.targets:
+                return Sample(seed, tuple(first), steps, time, End.STUCK)
+            number = draw.one(chance)
+            time += draw.delay(chance)
+            if self.bounds.time is not None and time > self.bounds.time:
+                return Sample(seed, tuple(first), steps, self.bounds.time, End.TIME)
+            place, steps = place.targets[number], steps + 1
+
+    def place(self, spot: Spot) -> _Place:
+        """Return the place of a state; the same for the same state as long as it is remembered."""
+        key = spot.state.key()
+        found = self.places.get(key)
+        if found is None:
+            if len(self.places) >= MOST_REMEMBERED:
+                self.places.clear()
+            found = self.places[key] = _Place(spot)
+        return found
+
+    def holding(self, place: _Place) -> frozenset[int]:
+        """Return the numbers of the predicates that are true at a place."""
+        if place.holding is None:
+            assert place.spot is not None  # it is looked at before anything happens
+            place.holding = frozenset(self.machine.holding(place.spot.state))
+        return place.holding
+
+    def draw(self, place: _Place) -> Draw:
+        """Return what draws one of the targets of a place, which are worked out the first time."""
+        if place.draw is None:
+            assert place.spot is not None  # it is dropped here
+            steps = ordered_steps(self.machine, place.spot)
+            place.draw = Draw(self.machine.system.kind, [step.reaction.rule for step in steps])
+            place.targets = [self.place(step.target) for step in steps]
+            place.spot = None
+        return place.draw
+
+
+# --- what they say --------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """A number that runs estimate, and the interval that covers it in 95 of 100 such experiments."""
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class FirstTimes:
+    """What runs say of one predicate.
+
+    Attributes:
+        label: The predicate.
+        runs: In how many runs it was ever true.
+        share: The probability of that, within the bounds of a run.
+        time: When it first was, of those runs; None without any.
+        least: The earliest.
+        most: The latest.
+        seed: The seed of the run in which it was true earliest.
+    """
+
+    label: str
+    runs: int
+    share: Estimate
+    time: Estimate | None = None
+    least: float = 0.0
+    most: float = 0.0
+    seed: int | None = None
+
+
+def first_times(system: System, samples: Sequence[Sample]) -> list[FirstTimes]:
+    """Return what some runs say of each predicate of a system."""
+    found = []
+    for number, predicate in enumerate(system.predicates):
+        times = [(time, each.seed) for each in samples if (time := each.first[number]) is not None]
+        chance = share(len(times), len(samples))
+        if not times:
+            found.append(FirstTimes(predicate.label, 0, chance))
+            continue
+        (least, seed), (most, _) = min(times), max(times)
+        estimate = mean([time for time, _ in times])
+        found.append(FirstTimes(predicate.label, len(times), chance, estimate, least, most, seed))
+    return found
+
+
+def share(times: int, runs: int) -> Estimate:
+    """Return the estimate of a probability: Wilson's interval, which is right for rare things, too.
+
+    >>> share(0, 100)
+    Estimate(value=0.0, low=0.0, high=0.0369935...)
+    """
+    from scipy.stats import binomtest  # noqa: PLC0415 - it is slow to import
+
+    interval = binomtest(times, runs).proportion_ci(CONFIDENCE, method="wilson")
+    return Estimate(times / runs, float(interval.low), float(interval.high))
+
+
+def mean(values: Sequence[float]) -> Estimate:
+    """Return the estimate of an expectation: Student's interval, without bounds for one value.
+
+    >>> mean([1.0, 2.0, 3.0])
+    Estimate(value=2.0, low=-0.484..., high=4.484...)
+    """
+    from scipy.stats import t  # noqa: PLC0415 - it is slow to import
+
+    centre = fmean(values)
+    if len(values) == 1:
+        return Estimate(centre, -inf, inf)
+    quantile = float(t.ppf((1 + CONFIDENCE) / 2, len(values) - 1))
+    half = quantile * stdev(values, centre) / sqrt(len(values))
+    return Estimate(centre, centre - half, centre + half)
+
+
+def shares_until(samples: Sequence[Sample], predicate: int) -> Iterable[tuple[float, int]]:
+    """Yield the times at which a predicate was first true, sorted, each with in how many runs it was by then."""
+    times = sorted(time for each in samples if (time := each.first[predicate]) is not None)
+    for number, time in enumerate(times, 1):
+        if number == len(times) or times[number] != time:
+            yield time, number
