@@ -168,8 +168,8 @@ def first_times(system: System, samples: Sequence[Sample]) -> list[FirstTimes]:
 def share(times: int, runs: int) -> Estimate:
     """Return the estimate of a probability: Wilson's interval, which is right for rare things, too.
 
-    >>> share(0, 100)
-    Estimate(value=0.0, low=0.0, high=0.0369935...)
+    >>> round(share(0, 100).high, 4)
+    0.037
     """
     from scipy.stats import binomtest  # noqa: PLC0415 - it is slow to import
 
@@ -180,8 +180,8 @@ def share(times: int, runs: int) -> Estimate:
 def mean(values: Sequence[float]) -> Estimate:
     """Return the estimate of an expectation: Student's interval, without bounds for one value.
 
-    >>> mean([1.0, 2.0, 3.0])
-    Estimate(value=2.0, low=-0.484..., high=4.484...)
+    >>> round(mean([1.0, 2.0, 3.0]).high, 4)
+    4.4841
     """
     from scipy.stats import t  # noqa: PLC0415 - it is slow to import
 
