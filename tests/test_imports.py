@@ -65,7 +65,8 @@ LIBRARIES = {
     "wcwidth": ("bigactors/terminal.py", "checker/reports/lanes.py"),
     "argcomplete": ("bigactors/completion.py",),
     "lazy_loader": tuple(
-        f"{room}/__init__.py" for room in (*MAY_IMPORT, "bigraphs/notation", "checker/reduction")
+        f"{room}/__init__.py"
+        for room in (*MAY_IMPORT, "bigraphs/exports", "bigraphs/notation", "checker/reduction")
     ),
     "matplotlib": ("bigraphs/drawing.py", "physical/drawing.py", "physical/map_", "bigactors/pictures/"),
 }

@@ -7,8 +7,6 @@ from typing import Any
 
 from bigactors.files import check_writable, json_text, write_json, write_text
 from bigactors.terminal import say_text
-from bigraphs.exports import graph_svg, prism_files, storm_files, to_dot, to_html, to_json
-from bigraphs.exports.html import MOST_STATES, first_states
 from bigraphs.transitions import TransitionSystem
 
 
@@ -24,6 +22,9 @@ def check_outputs(options: Namespace) -> None:
 
 def write_outputs(options: Namespace, found: TransitionSystem) -> Iterator[str]:
     """Write what was asked for, and yield the names of the files."""
+    from bigraphs.exports import graph_svg, prism_files, storm_files, to_dot, to_html, to_json  # noqa: PLC0415 - only full
+    from bigraphs.exports.html import MOST_STATES, first_states  # noqa: PLC0415 - writes them
+
     title = Path(options.file).name
     if options.html:
         yield _write(options.html, to_html(found, title))

@@ -6,14 +6,12 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, Final
 
-from bigactors.big.checks import MARKS, asks_nothing, check_formulas, decided_json, decided_lines, verdicts_on
 from bigactors.big.output import check_outputs, write_data, write_outputs
-from bigactors.commands.big_convert import convert
 from bigactors.exits import Exit, worst
 from bigactors.mistakes import Mistake
 from bigactors.progress import Watch, watching
 from bigactors.terminal import is_terminal, say, tell
-from bigraphs import BigraphError, NotationError, draw_text, save_bigraph
+from bigraphs import BigraphError, NotationError
 from bigraphs.engine.machine import Machine
 from bigraphs.examples import example_names, example_text
 from bigraphs.exploration import Progress, explore
@@ -135,25 +133,27 @@ def stage_json(stage: Stage) -> dict[str, Any]:
 
 def check(options: Namespace) -> Exit:
     """Decide what is claimed."""
+    from bigactors.big import checks  # noqa: PLC0415 - only this task decides anything
+
     system = read_file(options)
-    if asks_nothing(options, system):
+    if checks.asks_nothing(options, system):
         raise Mistake(
             "there is nothing to check",
             "give --always, --never or --reachable with a predicate, --ltl, --ctl or --storm with a formula, "
             "or --no-deadlock",
             options.file,
         )
-    check_formulas(options, system)
+    checks.check_formulas(options, system)
     found = explored(options, system)
-    decided = list(verdicts_on(options, found))
+    decided = list(checks.verdicts_on(options, found))
     if options.json != "-":
         say(summary(options.file, found))
         for each in decided:
-            for line in decided_lines(found, each):
+            for line in checks.decided_lines(found, each):
                 say(line)
     if options.json:
-        write_data(options.json, decided_json(found, decided))
-    return worst(MARKS[each.outcome][2] for each in decided)
+        write_data(options.json, checks.decided_json(found, decided))
+    return worst(checks.MARKS[each.outcome][2] for each in decided)
 
 
 def validate(options: Namespace) -> Exit:
@@ -177,6 +177,8 @@ def _instances(names: Iterable[str]) -> str:
 
 def show(options: Namespace) -> Exit:
     """Print a state, and draw it."""
+    from bigraphs import draw_text, save_bigraph  # noqa: PLC0415 - only this task draws
+
     found = explore(read_file(options), max_states=max(1, options.state + 1))
     if options.state >= len(found):
         raise Mistake(f"there is no state {options.state}: there are {len(found)}", "", options.file)
@@ -187,6 +189,13 @@ def show(options: Namespace) -> Exit:
         save_bigraph(bigraph, options.output, title=f"{Path(options.file).name}, state {options.state}")
         tell(f"picture written to {options.output}")
     return Exit.HOLDS
+
+
+def convert(options: Namespace) -> Exit:
+    """Write the model in another tool's file."""
+    from bigactors.commands import big_convert  # noqa: PLC0415 - only this task needs XML
+
+    return big_convert.convert(options)
 
 
 TASKS: Final[dict[str, Callable[[Namespace], Exit]]] = {

@@ -1,10 +1,5 @@
 """Exports of transition systems: for model checkers, drawing programs, and browsers."""
 
-from bigraphs.exports.dot import to_dot
-from bigraphs.exports.html import to_html
-from bigraphs.exports.json import to_json
-from bigraphs.exports.prism import prism_files
-from bigraphs.exports.storm import storm_files
-from bigraphs.exports.svg import bigraph_svg, graph_svg
+import lazy_loader
 
-__all__ = ["bigraph_svg", "graph_svg", "prism_files", "storm_files", "to_dot", "to_html", "to_json"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

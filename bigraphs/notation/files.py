@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from bigraphs.errors import BigraphError, NotationError
-from bigraphs.notation.bgm.systems import read_bgm
 from bigraphs.notation.big.systems import read_system
 from bigraphs.notation.reading import MAX_BYTES
 from bigraphs.system import System, Value
@@ -25,6 +24,8 @@ def load_system(path: Path | str, *, constants: Mapping[str, Value] | None = Non
         return read_system(text, constants=constants)
     if constants:
         raise BigraphError("file", "a .bgm file has no constants", "leave them out")
+    from bigraphs.notation.bgm.systems import read_bgm  # noqa: PLC0415 - most files are .big
+
     return read_bgm(text)
 
 
