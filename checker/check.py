@@ -96,7 +96,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
         notes: What the report is to say besides.
         engine: How to explore; by default whichever is quicker for the mission's size.
         violations: Of each property so many different ones are shown at the most, each with a shortest trace.
-        reduce: What may let it visit less; by both reductions together only the reference explorer can.
+        reduce: What may let it visit less.
         keeping: What the fast explorer keeps on the way, and what it doubts; where it is said, that one explores.
         cluster: With whom, where Ray is the engine.
         times: Whether the report is to say when flights may begin and end, of a mission with `timing`.
@@ -115,13 +115,6 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     reducer = _reduced(initial, reductions, formulas) if reductions else None
     if reducer is not None and engine is Engine.RAY:
         raise RefusedError(reducer.names[0], "the ray explorer does not reduce; leave --engine out")
-    symmetric = reducer is not None and reducer.symmetry is not None
-    both = symmetric and reducer is not None and reducer.ample is not None
-    if both and engine is Engine.FAST:
-        raise RefusedError(
-            Reduction.SYMMETRY, "with por, only the reference explorer knows it; leave --engine or por out"
-        )
-
     options = Options(
         limits, report, reduce=reducer, keeping=keeping or Keeping(), cluster=cluster or Cluster()
     )
@@ -131,12 +124,12 @@ def check(  # noqa: PLR0913 - each says one thing of a check
         found = _Check(initial, asked, exploration, violations, times=times)
         return found.run(notes, limits)
 
-    if (keeping is not None and reducer is None) or (limits.spill is not None and not both):
+    if (keeping is not None and reducer is None) or limits.spill is not None:
         engine = engine or Engine.FAST
     if times and timed:
         engine = engine or Engine.REFERENCE  # only ticks know when flights begin and end
     impatient = limits.seconds is None or limits.seconds > PATIENCE
-    if engine is None and not both and impatient:
+    if engine is None and impatient:
         tried = run(Engine.REFERENCE, replace(limits, seconds=PATIENCE))
         late = any(bound.stop is Stop.TIME for bound in tried.bounds)
         return run(Engine.FAST, replace(limits, spent=limits.spent + tried.seconds)) if late else tried

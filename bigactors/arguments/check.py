@@ -127,7 +127,7 @@ def _limits(parser: Parser) -> None:
         metavar="N",
         type=at_least_one,
         help="visit no more than N configurations (default 100,000,000, of which each takes some 30 bytes, for each "
-        "worker of --engine ray; 2,000,000 with --engine reference or --reduce por,symmetry)",
+        "worker of --engine ray; 2,000,000 with --engine reference)",
     )
     group.add_argument(
         "--max-time",

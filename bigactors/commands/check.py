@@ -105,21 +105,16 @@ def limits_of(options: Namespace) -> Limits:
     if options.spill is not None:
         if options.max_memory is None:
             raise Mistake("--spill is for when memory ends", "say when that is: --max-memory SIZE")
-        if options.engine in ("reference", "ray") or is_of_reference(options):
-            raise Mistake("--spill is of the fast explorer", "leave --engine and --reduce por,symmetry out")
+        if options.engine in ("reference", "ray"):
+            raise Mistake("--spill is of the fast explorer", "leave --engine out")
         make_folder(options.spill)
     return Limits(most_of(options), options.max_time, memory=options.max_memory, spill=options.spill)
 
 
 def most_of(options: Namespace) -> int:
     """Return how many configurations are visited at most."""
-    usual = MOST_OF_REFERENCE if options.engine == "reference" or is_of_reference(options) else MOST
+    usual = MOST_OF_REFERENCE if options.engine == "reference" else MOST
     return options.max_configurations or usual * (options.workers or 1)
-
-
-def is_of_reference(options: Namespace) -> bool:
-    """Tell whether all reductions are asked for: only the reference explorer knows them together."""
-    return {each.value for each in Reduction} == set(options.reduce)
 
 
 def cluster_of(options: Namespace) -> Cluster | None:

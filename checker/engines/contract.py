@@ -154,7 +154,7 @@ class Options:
         every: Seconds.
         engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
         edges: Whether every transition is kept, as temporal properties need; explorers with rows find them again.
-        reduce: What lets it visit less; by both reductions together only the reference explorer can.
+        reduce: What lets it visit less.
         keeping: What explorers with rows keep on the way, and what is doubted.
         cluster: With whom, on several processes or machines.
     """

@@ -22,6 +22,7 @@ from checker.engines.fast.kernel import (
     NODE,
     SIZE,
     TREE,
+    UNSORTED,
     WIDE,
     WORDS,
     Batch,
@@ -48,6 +49,7 @@ from checker.engines.fast.leaves import (
     STEP,
 )
 from checker.engines.fast.leaves import PARTS as TREES_OF_PARTS
+from checker.engines.fast.sorting import represent
 from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
 
 WORD = 64
@@ -59,6 +61,9 @@ MOST_HERE = 8 * WORD
 EVERYBODY, UNKNOWN, NOBODY_LEFT, GOING_ON = -1, -2, -3, -4
 """What is said in the place of the transition that leads on: that all are followed, that not all is known, that none
 need lead on, or that another set joins."""
+
+MADE, REPRESENTED = 1, 2
+"""What is so of a transition: its target is made, and its representative stands in its place."""
 
 TRIED = -1
 """The size of a set that was found not to be ample, or that joined."""
@@ -97,7 +102,8 @@ class Members(NamedTuple):
         answers: What that question makes of each code.
         agents: How many agents there may ever be.
         here, place: Room for one row: its actors, and where each actor is among them.
-        whose, made: Whose each of its transitions is, and whether that was made.
+        whose, made, visible: Whose each of its transitions is, what of that was made (see `MADE`), and whether
+            properties see it: 0 where that was not asked, 1 no, 2 yes.
         disturbers, sets: Sets of its actors, each in as many words as they need: who may disturb each (where that was
             asked it is one itself), and those that were found.
         sizes: How many transitions each set that was found has.
@@ -124,6 +130,7 @@ class Members(NamedTuple):
     place: Ints
     whose: Ints
     made: Any
+    visible: Any
     disturbers: Words
     sets: Words
     sizes: State
@@ -318,7 +325,28 @@ def make(m: Model, r: Members, words: Words, batch: Batch, k: int, state: State)
         own = m.leaves[LEAF * (-reference - 1) + FIRST]
         write_part(m.columns, m.writes, m.steps, own, batch.words, to)
     batch.hashes[k] = hashed(batch.words, to, width)
-    r.made[k] = 1
+    r.made[k] = MADE
+    return True
+
+
+@njit(cache=True)
+def make_representative(
+    m: Model, r: Members, x: Any, d: Any, words: Words, batch: Batch, k: int, state: State
+) -> bool:
+    """Make what a transition of a row leads to, and put what represents that in its place, as far as it was not done.
+
+    False where something is not known.
+    """
+    if not make(m, r, words, batch, k, state):
+        return False
+    if r.made[k] != REPRESENTED:
+        width = state[WORDS]
+        d.whole[:] = 0
+        if not represent(x, d, batch.words, k * width, width, m.columns, 1):
+            state[NODE] = UNSORTED
+            return False
+        batch.hashes[k] = hashed(batch.words, k * width, width)
+        r.made[k] = REPRESENTED
     return True
 
 
@@ -327,7 +355,7 @@ def without_repetitions(m: Model, r: Members, words: Words, batch: Batch, count:
     """Leave out what leads under the same label to the same; return how many are left, UNKNOWN as elsewhere."""
     width, alike = state[WORDS], False
     for k in range(count):
-        r.made[k] = 0
+        r.made[k] = r.visible[k] = 0
         alike = alike or m.steps[STEP * batch.steps[k] + ALIKE] >= 0
     if not alike:
         return count
@@ -335,7 +363,7 @@ def without_repetitions(m: Model, r: Members, words: Words, batch: Batch, count:
     for k in range(count):
         step = batch.steps[k]
         batch.steps[left] = step
-        r.made[left] = 0
+        r.made[left] = r.visible[left] = 0
         if not make(m, r, words, batch, left, state):
             return UNKNOWN
         if m.steps[STEP * step + ALIKE] < 0 or not is_repeated(
@@ -384,7 +412,10 @@ def is_ample(m: Model, r: Members, words: Words, batch: Batch, count: int, at: i
         if has(r.sets, at, r.whose[k]):
             if not make(m, r, words, batch, k, state):
                 return UNKNOWN
-            if is_seen(m, r, words, state[AT] * width, batch.words, k * width, width):
+            if r.visible[k] == 0:  # of what is made, not of what represents it
+                seen = is_seen(m, r, words, state[AT] * width, batch.words, k * width, width)
+                r.visible[k] = 2 if seen else 1
+            if r.visible[k] == 2:
                 return 0
             fair |= r.step_flags[batch.steps[k]] & FAIR
     return fair
@@ -445,6 +476,8 @@ def end_of(trails: Trails, row: int, taken: Words) -> int:
 def join(
     m: Model,
     r: Members,
+    x: Any,
+    d: Any,
     trails: Trails,
     words: Words,
     table: Any,
@@ -465,20 +498,32 @@ def join(
     bits = np.uint32(bits_for(len(table)))
     for k in range(count):
         if has(r.sets, at, r.whose[k]):
+            if x is not None and not make_representative(m, r, x, d, words, batch, k, state):
+                return UNKNOWN
             number = find(words, table, batch.words, k, batch.hashes[k], width, bits)
             if number < 0:
                 return k
             r.more[:] = np.uint64(0)
             if end_of(trails, number, r.more) != row:
                 return k
-            for word in range(len(r.taken)):
-                r.taken[word] |= r.more[word]
+            if x is None:  # an exchange gives actors other names on the way
+                for word in range(len(r.taken)):
+                    r.taken[word] |= r.more[word]
     return GOING_ON if ignores(r, r.owners, 0, wide) else NOBODY_LEFT
 
 
 @njit(cache=True)
 def choose(
-    m: Model, r: Members, trails: Trails, words: Words, table: Any, batch: Batch, count: int, state: State
+    m: Model,
+    r: Members,
+    x: Any,
+    d: Any,
+    trails: Trails,
+    words: Words,
+    table: Any,
+    batch: Batch,
+    count: int,
+    state: State,
 ) -> int:
     """Return which transition leads on of those that are followed, or what is said in its place; note who is inside.
 
@@ -518,7 +563,7 @@ def choose(
             found += 1
             if size == 1:
                 r.sizes[found - 1] = TRIED
-                onward = join(m, r, trails, words, table, batch, count, actors, at, state)
+                onward = join(m, r, x, d, trails, words, table, batch, count, actors, at, state)
                 if onward != GOING_ON:
                     return onward
         for _ in range(begin, found):
@@ -529,7 +574,7 @@ def choose(
             if least < 0:
                 break
             r.sizes[least] = TRIED
-            onward = join(m, r, trails, words, table, batch, count, actors, least * wide, state)
+            onward = join(m, r, x, d, trails, words, table, batch, count, actors, least * wide, state)
             if onward != GOING_ON:
                 return onward
     return EVERYBODY
@@ -539,6 +584,8 @@ def choose(
 def expand_reduced(
     m: Model,
     r: Members,
+    x: Any,
+    d: Any,
     trails: Trails,
     words: Words,
     origins: Any,
@@ -551,6 +598,8 @@ def expand_reduced(
     state: State,
 ) -> bool:
     """Expand rows up to a number, or until so many new ones came, by ample sets where there are any.
+
+    Where members are interchangeable (`x` and `d` of `sorting`, else None), what represents a target is visited for it.
 
     It is counted how often each transition was met, and how often it was followed. False where something is not known
     of the row that comes next: of that, nothing was stored.
@@ -565,11 +614,16 @@ def expand_reduced(
             count = without_repetitions(m, r, words, batch, count, state)
         if count == UNKNOWN:
             return False
-        onward = choose(m, r, trails, words, table, batch, count, state) if count else np.int64(EVERYBODY)
+        onward = np.int64(EVERYBODY)
+        if count:
+            onward = choose(m, r, x, d, trails, words, table, batch, count, state)
         known = onward != UNKNOWN
         for k in range(count if known else 0):
             if onward == EVERYBODY or has(r.inside, 0, r.whose[k]):
-                known = known and make(m, r, words, batch, k, state)
+                if x is None:  # a call hands over all of `Members`
+                    known = known and make(m, r, words, batch, k, state)
+                else:
+                    known = known and make_representative(m, r, x, d, words, batch, k, state)
         if not known:
             return False
         for k in range(count):

@@ -137,6 +137,7 @@ class Choosing:
             np.zeros(len(self.part.room), np.int32),
             np.zeros(successors, np.int32),
             np.zeros(successors, np.uint8),
+            np.zeros(successors, np.uint8),
             np.zeros(sets, np.uint64),
             np.zeros(sets, np.uint64),
             np.zeros(MOST_HERE, np.int64),

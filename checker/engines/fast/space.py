@@ -210,7 +210,9 @@ class Space:
         from checker.engines.fast.ample import expand_reduced  # noqa: PLC0415  # compiled where something is reduced
 
         loop: Callable[..., bool] = expand_reduced
-        known = (self.model, choosing.members, choosing.trails)
+        swaps = self.exchanging
+        exchanges = (None, None) if swaps is None else (swaps.exchanges, swaps.desk)
+        known = (self.model, choosing.members, *exchanges, choosing.trails)
         arrays = (self.rows.words, self.rows.origins, self.table.room, self.batch)
         return loop(*known, *arrays, until, room, self.met.room, self.counts.room, self.state)
 

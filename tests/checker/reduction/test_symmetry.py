@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scale import examples
 from shipped import UNTIMED
 
-from checker import Engine, Keeping, Limits, Reduction, RefusedError, check, explore
+from checker import Keeping, Limits, Reduction, RefusedError, check, explore
 from checker.check import reductions_of
 from checker.reduction import Reduced
 from checker.reduction.footprint_check import Drift
@@ -90,12 +90,6 @@ def classes(loaded):
 
 def test_robots_that_start_in_one_place_and_run_one_behaviour_are_interchangeable():
     assert classes(mission(LOOKS, robots=3)) == [(("r0", "robot0"), ("r1", "robot1"), ("r2", "robot2"))]
-
-
-def test_the_fast_explorer_refuses_both_reductions_together():
-    asked = mission(LOOKS)
-    with pytest.raises(RefusedError, match="with por, only the reference explorer knows it"):
-        check(asked.initial, asked.properties, engine=Engine.FAST, reduce=BOTH)
 
 
 def test_texts_written_out_for_each_are_alike_but_for_names_and_variables():
