@@ -101,7 +101,9 @@ class Members(NamedTuple):
         seen: Columns that properties look at through a question, each with where its answers begin.
         answers: What that question makes of each code.
         agents: How many agents there may ever be.
-        here, place: Room for one row: its actors, and where each actor is among them.
+        count: For how many footprints `disturbed` has room.
+        here, ever, place: Room for one row: its actors, the footprints of what they may ever do, and where each
+            actor is among them.
         whose, made, visible: Whose each of its transitions is, what of that was made (see `MADE`), and whether
             properties see it: 0 where that was not asked, 1 no, 2 yes.
         disturbers, sets: Sets of its actors, each in as many words as they need: who may disturb each (where that was
@@ -126,7 +128,9 @@ class Members(NamedTuple):
     seen: Ints
     answers: Any
     agents: int
+    count: int
     here: Ints
+    ever: Ints
     place: Ints
     whose: Ints
     made: Any
@@ -190,6 +194,7 @@ def meet(m: Model, r: Members, words: Words, at: int, state: State) -> int:
         for actor in range(r.begins[2 * leaf], r.begins[2 * leaf + 1]):
             if count < len(here):
                 here[count] = actor
+                r.ever[count] = r.actors[RECORD * actor + EVER]
                 r.place[r.actors[RECORD * actor + MEMBER]] = count
             count += 1
     return count
@@ -207,26 +212,46 @@ def add(sets: Words, begin: int, actor: int) -> None:
     sets[begin + (actor >> 6)] |= np.uint64(1) << np.uint64(actor & 63)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
+def remove(sets: Words, begin: int, actor: int) -> None:
+    """Take an actor out of the set that begins there."""
+    sets[begin + (actor >> 6)] &= ~(np.uint64(1) << np.uint64(actor & 63))
+
+
+@njit(cache=True, inline="always")
 def note_disturbers(r: Members, actors: int, wide: int, k: int) -> None:
     """Note who may ever disturb what an actor of a row may do now, and that it was asked: it is in its own set."""
-    disturbed, here = r.disturbed, r.here
-    count = np.int64(np.sqrt(len(disturbed)))
-    actor = RECORD * here[k]
-    now, follower = r.actors[actor + NOW], r.actors[actor + FOLLOWER]
+    disturbed, ever = r.disturbed, r.ever
+    actor = RECORD * r.here[k]
+    now, follower = np.int64(r.actors[actor + NOW]), r.actors[actor + FOLLOWER]
+    begin = now * r.count
+    for word in range(wide):
+        first, last = WORD * word, min(WORD * word + WORD, actors)
+        found, asked = np.uint64(0), True
+        for j in range(first, last):
+            known = np.uint64(disturbed[begin + ever[j]])
+            asked = asked and known != np.uint64(0)
+            found |= (known >> np.uint64(1)) << np.uint64(j - first)
+        if not asked:
+            for j in range(first, last):
+                if disturbed[begin + ever[j]] == 0:
+                    known = np.uint64(compare(r.footprints, disturbed, r.count, now, np.int64(ever[j])))
+                    found |= (known >> np.uint64(1)) << np.uint64(j - first)
+        r.disturbers[k * wide + word] = found
+    if follower >= 0:
+        j = np.int64(r.place[follower])  # where it was last, in whichever row
+        if j < actors and r.actors[RECORD * r.here[j] + MEMBER] == follower:
+            aside = np.int64(r.actors[RECORD * r.here[j] + ASIDE])
+            known = np.uint64(disturbed[begin + aside])
+            if known == np.uint64(0):
+                known = np.uint64(compare(r.footprints, disturbed, r.count, now, aside))
+            remove(r.disturbers, k * wide, j)
+            if known == np.uint64(2):
+                add(r.disturbers, k * wide, j)
     add(r.disturbers, k * wide, k)
-    for j in range(actors):
-        other = RECORD * here[j]
-        behind = follower >= 0 and follower == r.actors[other + MEMBER]
-        may = r.actors[other + (ASIDE if behind else EVER)]
-        known = np.int64(disturbed[now * count + may])
-        if known == 0:
-            known = compare(r.footprints, disturbed, count, now, may)
-        if known == 2:
-            add(r.disturbers, k * wide, j)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def persistent(r: Members, actors: int, wide: int, seed: int, at: int) -> bool:
     """Write the least set around an actor such that nothing outside ever disturbs what those inside may do now.
 
@@ -245,17 +270,19 @@ def persistent(r: Members, actors: int, wide: int, seed: int, at: int) -> bool:
             note_disturbers(r, actors, wide, k)
         omitted, whole = np.uint64(0), np.uint64(0)
         for word in range(wide):
+            reached = r.disturbers[k * wide + word] | inside[at + word]
+            omitted |= r.owners[word] & ~reached
+            whole |= r.whole[word] & reached
+        if omitted == np.uint64(0) or whole != np.uint64(0):
+            add(r.whole, 0, seed)
+            return False
+        for word in range(wide):
             joining = r.disturbers[k * wide + word] & ~inside[at + word]
             inside[at + word] |= joining
-            omitted |= r.owners[word] & ~inside[at + word]
-            whole |= r.whole[word] & inside[at + word]
             for bit in range(WORD if joining else 0):
                 if (joining >> np.uint64(bit)) & np.uint64(1):
                     waiting[left] = WORD * word + bit
                     left += 1
-        if omitted == np.uint64(0) or whole != np.uint64(0):
-            add(r.whole, 0, seed)
-            return False
     return True
 
 
@@ -383,7 +410,7 @@ def attribute(r: Members, batch: Batch, count: int, wide: int) -> None:
         add(r.owners, 0, r.whose[k])
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def find_set(r: Members, count: int, actors: int, wide: int, seed: int, found: int) -> int:
     """Note the persistent set around an actor after those found; return how many transitions it has.
 

@@ -126,6 +126,7 @@ class Choosing:
             self.seen,
             self.seen_answers,
             len(self.everyone),
+            self.stride,
         )
         self.members = Members._make((*learned, *self._room(successors)))
 
@@ -133,6 +134,7 @@ class Choosing:
         """Return the room for one row."""
         sets, words = MOST_HERE * MOST_HERE // WORD, MOST_HERE // WORD
         return (
+            np.zeros(MOST_HERE, np.int32),
             np.zeros(MOST_HERE, np.int32),
             np.zeros(len(self.part.room), np.int32),
             np.zeros(successors, np.int32),

@@ -288,17 +288,21 @@ class Space:
         """Learn what was not known of a row, as it was noted where a walk ended."""
         unknown = (row, int(self.state[TREE]), int(self.state[NODE]), int(self.state[CODE]))
         self.learned.append(unknown)
-        self._learn_from(self.packing, self._words(row), *unknown[1:])
-        self._see()
+        if self._learn_from(self.packing, self._words(row), *unknown[1:]):
+            self._see()
 
-    def _learn_from(self, where: Packing, words: NDArray[np.uint64], tree: int, node: int, code: int) -> None:
-        """Learn what was not known at a node of a tree, from a row that came there."""
+    def _learn_from(self, where: Packing, words: NDArray[np.uint64], tree: int, node: int, code: int) -> bool:
+        """Learn what was not known at a node of a tree, from a row that came there; False where no rule had to be run.
+
+        Then a node leads further than before, and nothing else is new: the loops see that as it is.
+        """
         learner = self.learner
         if node >= 0:
             column = learner.columns.all[learner.trees.column_of(node)]
             if learner.trees.settle(node, code, column):
-                return
+                return False
         learner.learn(tree, CodedSource(learner.columns, where, words.tolist()))
+        return True
 
     def restore(
         self,
