@@ -52,6 +52,8 @@ def test_what_is_not_there_is_told():
 OWN = {
     "bigactors/__init__.py",
     "bigactors/api_pages.py",
+    "bigactors/big/storm.py",
+    "bigactors/big/storm_worker.py",
     "bigactors/commands/new.py",
     "bigactors/docs.py",
     "bigactors/lsp/server.py",

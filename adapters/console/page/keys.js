@@ -37,9 +37,10 @@ export function listenForKeys(app) {
   const table = new Map(shortcuts(app).map(([key, , does]) => [key, does]));
   addEventListener("keydown", (event) => {
     if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.target.closest?.(WRITES) && event.key !== "Escape") return;
+    const within = (selector) => event.target.closest?.(selector) && !event.target.closest("dialog:not([open])"); // what is closed has the focus until the next frame
+    if (within(WRITES) && event.key !== "Escape") return;
     if (document.querySelector("dialog[open]") && !["?", "Escape"].includes(event.key)) return; // what is behind it can't be seen
-    if (event.key === " " && event.target.closest?.("button, summary, input:not([type=range]), a, [role=tab]")) return; // it presses what has the focus
+    if (event.key === " " && within("button, summary, input:not([type=range]), a, [role=tab]")) return; // it presses what has the focus
     if (app.singleKeys.value === "off" && !["?", "Escape"].includes(event.key)) return;
     const does = table.get(event.key) ?? table.get(event.key.toLowerCase()); // with a shift of its own, or with none
     if (!does) return;

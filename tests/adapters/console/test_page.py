@@ -741,6 +741,20 @@ def test_the_keys_do_what_the_help_says(shown):
         assert turns == [{"type": "pause"}, {"type": "play", "speed": 2}, {"type": "live"}]
 
 
+def test_a_key_just_after_the_help_was_closed_counts(shown):
+    with Harness(world()) as harness:
+        page = shown(harness)
+        page.keyboard.press("?")
+        page.locator("dialog[open]").wait_for()
+        focused = page.evaluate(
+            "() => { document.querySelector('dialog[open]').close(); const e = document.activeElement;"
+            " e.dispatchEvent(new KeyboardEvent('keydown', { key: ' ', bubbles: true })); return e.textContent; }"
+        )
+        assert focused == "Close"
+        await_turns(harness, page, 1)
+        assert harness.received == [{"type": "pause"}]
+
+
 def test_what_was_asked_for_last_counts_before_it_is_answered(shown):
     with Harness(world()) as harness:
         page = shown(harness)
