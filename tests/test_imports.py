@@ -4,6 +4,7 @@ import ast
 import re
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator
 from functools import cache
 from graphlib import TopologicalSorter
@@ -45,7 +46,6 @@ LIBRARIES = {
     "numba": ("checker/",),
     "ray": ("checker/engines/cluster/ray_crew.py",),
     "scipy": ("checker/properties/temporal/components.py", "bigraphs/sampling.py"),
-    "stormpy": ("bigactors/big/storm_worker.py",),
     "pytest": ("bigactors/pytest_plugin.py",),
     "jsonschema": ("bigactors/testing.py",),
     "pyais": ("physical/ais_decode.py",),
@@ -64,31 +64,33 @@ LIBRARIES = {
     "hypothesis": ("semantics/strategies.py",),
     "wcwidth": ("bigactors/terminal.py", "checker/reports/lanes.py"),
     "argcomplete": ("bigactors/completion.py",),
-    "lazy_loader": tuple(
-        f"{room}/__init__.py"
-        for room in (*MAY_IMPORT, "bigraphs/exports", "bigraphs/notation", "checker/reduction")
+    "lazy_loader": (
+        "bigactors/big/storm_worker.py",
+        *(
+            f"{room}/__init__.py"
+            for room in (*MAY_IMPORT, "bigraphs/exports", "bigraphs/notation", "checker/reduction")
+        ),
     ),
     "matplotlib": ("bigraphs/drawing.py", "physical/drawing.py", "physical/map_", "bigactors/pictures/"),
 }
 
 # Libraries that take long to load or are extras: imported in the functions that need them, never with the module.
-LAZY = {
-    "cv2",
-    "rasterio",
-    "pandas",
-    "aiohttp",
-    "cryptography",
-    "matplotlib",
-    "pyais",
-    "pymavlink",
-    "serial_asyncio_fast",
-    "zenoh",
-    "rosbags",
-    "mcap",
-    "zstandard",
-    "lz4",
-    "ray",
+LAZY = {"matplotlib"}
+"""Of what every installation has, what takes long to load."""
+
+NEED_THEIR_EXTRA = {
+    "bigactors/lsp/server.py",
+    "bigactors/pytest_plugin.py",
+    "bigactors/testing.py",
+    "semantics/strategies.py",
 }
+"""Modules that nothing imports where their extra is not installed."""
+
+
+def always_installed() -> set[str]:
+    """Return the names of the libraries that come with every installation."""
+    given = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["dependencies"]
+    return {re.split(r"[^\w-]", each)[0].replace("-", "_") for each in given}
 
 
 class Import(NamedTuple):
@@ -193,6 +195,12 @@ def test_each_library_stays_in_the_room_that_needs_it():
 
 def test_what_takes_long_to_load_is_imported_where_it_is_needed():
     assert [str(found) for found in imports() if found.top in LAZY and found.at_import] == []
+
+
+def test_each_module_can_be_imported_without_any_extra():
+    there = always_installed() | sys.stdlib_module_names | set(MAY_IMPORT)
+    strays = [found for found in imports() if found.at_import and found.top not in there]
+    assert [str(found) for found in strays if found.file not in NEED_THEIR_EXTRA] == []
 
 
 def test_nobody_imports_the_strategies_but_tests_and_the_module_that_offers_them():

@@ -8,7 +8,9 @@ import sys
 from pathlib import Path
 from typing import Any, Final
 
-import stormpy
+import lazy_loader
+
+stormpy: Final[Any] = lazy_loader.load("stormpy")  # an extra: without it this module can still be imported
 
 FILES: Final = {
     "transitions": ".tra",
@@ -16,12 +18,6 @@ FILES: Final = {
     "state_rewards": ".srew",
     "transition_rewards": ".trew",
 }
-OPERATORS: Final = (
-    stormpy.logic.ProbabilityOperatorFormula,
-    stormpy.logic.RewardOperatorFormula,
-    stormpy.logic.TimeOperatorFormula,
-    stormpy.logic.LongRunAverageOperatorFormula,
-)
 
 
 def main(folder: Path) -> None:
@@ -40,13 +36,24 @@ def reply(text: str, model: Any) -> dict[str, Any]:
         formulas = [each.get_raw_formula() for each in stormpy.parse_properties(text)]
         if len(formulas) != 1:
             return {"error": f"there are {len(formulas)} formulas in it, instead of one"}
-        if not isinstance(formulas[0], OPERATORS):
+        if not isinstance(formulas[0], operators()):
             return {"error": "no operator P, R, T or LRA stands first"}
         if model is None:
             return {"directed": formulas[0].has_bound or formulas[0].has_optimality_type}
         return answer(model, formulas[0])
     except (RuntimeError, TypeError, ValueError) as error:
         return {"error": str(error)}
+
+
+def operators() -> tuple[Any, ...]:
+    """Return the sorts of formulas that have a value in a state."""
+    logic = stormpy.logic
+    return (
+        logic.ProbabilityOperatorFormula,
+        logic.RewardOperatorFormula,
+        logic.TimeOperatorFormula,
+        logic.LongRunAverageOperatorFormula,
+    )
 
 
 def answer(model: Any, formula: Any) -> dict[str, Any]:
@@ -65,7 +72,7 @@ def answer(model: Any, formula: Any) -> dict[str, Any]:
         said["bounds"] = [value.lower, value.upper]
     if model.is_nondeterministic_model:
         said["choices"] = choices(model, found)
-    if isinstance(formula, OPERATORS[0]):
+    if isinstance(formula, stormpy.logic.ProbabilityOperatorFormula):
         said["shown"] = shown(model, formula.subformula)
     return said
 
