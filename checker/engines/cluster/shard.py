@@ -4,6 +4,7 @@ Each round it expands some rows of its layer. Successors that belong to others l
 new ones become rows. It knows nothing of how parcels travel.
 """
 
+import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -137,6 +138,7 @@ class Shard(Space):
     """
 
     ORIGIN = np.uint64
+    PLAIN = sys.maxsize  # rows go from worker to worker
     """Rows of other workers have numbers, too: row · workers + worker."""
 
     def __init__(self, initial: Configuration, pending: int, me: int, workers: int) -> None:
@@ -220,7 +222,7 @@ class Shard(Space):
         self.state[AT] = self.expanded
         while self.expanded < until:
             self._make_room(len(self.batch.hashes))
-            known = loops.gather(self.model, self.rows.words, self.batch, self.state, until)
+            known = loops.gather(self.model, self.rows.words, self.rows.folded, self.batch, self.state, until)
             self._deal()
             if not known:
                 self._miss()
@@ -349,7 +351,7 @@ class Shard(Space):
         self.rows.words[: self.packing.words] = self.packed(codes)
         self.state[SIZE], self.state[AT] = 1, 0
         while not self.state[AT]:
-            known = loops.gather(self.model, self.rows.words, self.batch, self.state, 1)
+            known = loops.gather(self.model, self.rows.words, self.rows.folded, self.batch, self.state, 1)
             self.state[GATHERED] = 0
             if not known:
                 self._miss()

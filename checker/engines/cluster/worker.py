@@ -157,7 +157,9 @@ class Worker:
         until = min(first + most, shard.expanded)
         shard.state[AT], found = min(first, until), []
         while shard.state[AT] < until:
-            known = loops.gather(shard.model, shard.rows.words, shard.batch, shard.state, until)
+            known = loops.gather(
+                shard.model, shard.rows.words, shard.rows.folded, shard.batch, shard.state, until
+            )
             found.append(self._point())
             if not known:
                 shard.go_on()

@@ -10,14 +10,16 @@ Which actors there are is told by trees of their own; what may disturb what is w
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 
+from checker.engines.fast.folding import Folded, fold, take, unfold
 from checker.engines.fast.kernel import (
     ALPHA,
     AT,
     CROWDS,
     CUT,
     EXPANDED,
+    FULL,
+    KEPT,
     LIMIT,
     NODE,
     SIZE,
@@ -49,6 +51,7 @@ from checker.engines.fast.leaves import (
     STEP,
 )
 from checker.engines.fast.leaves import PARTS as TREES_OF_PARTS
+from checker.engines.fast.loops import njit
 from checker.engines.fast.sorting import represent
 from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
 
@@ -179,21 +182,21 @@ def compare(footprints: Words, disturbed: Any, count: int, one: int, other: int)
 
 
 @njit(cache=True)
-def meet(m: Model, r: Members, words: Words, at: int, state: State) -> int:
+def meet(m: Model, r: Members, here: Words, state: State) -> int:
     """Note the actors of a row; return how many there are, -1 where something is not known."""
     group = np.int64(0)
     if state[ALPHA] >= 0:
-        group = code_at(words, at, m.columns, state[ALPHA])
-    count, here = np.int64(0), r.here
+        group = code_at(here, 0, m.columns, state[ALPHA])
+    count, actors_here = np.int64(0), r.here
     for k in range(r.trees_from[group], r.trees_from[group + 1]):
-        reference = walk(words, at, m.root[r.trees[k]], m.nodes, m.next, state)
+        reference = walk(here, 0, m.root[r.trees[k]], m.nodes, m.next, state)
         if reference == 0:
             state[TREE] = r.trees[k]
             return -1
         leaf = -reference - 1
         for actor in range(r.begins[2 * leaf], r.begins[2 * leaf + 1]):
-            if count < len(here):
-                here[count] = actor
+            if count < len(actors_here):
+                actors_here[count] = actor
                 r.ever[count] = r.actors[RECORD * actor + EVER]
                 r.place[r.actors[RECORD * actor + MEMBER]] = count
             count += 1
@@ -287,35 +290,34 @@ def persistent(r: Members, actors: int, wide: int, seed: int, at: int) -> bool:
 
 
 @njit(cache=True)
-def is_seen(m: Model, r: Members, words: Words, at: int, target: Words, to: int, width: int) -> bool:
+def is_seen(m: Model, r: Members, here: Words, target: Words, to: int, width: int) -> bool:
     """Tell whether properties see a difference between a row and a successor."""
     asked = False
     for j in range(width):
-        changed = words[at + j] ^ target[to + j]
+        changed = here[j] ^ target[to + j]
         if changed & r.seen_whole[j]:
             return True
         asked = asked or (changed & r.seen_masks[j]) != np.uint64(0)
     if asked:
         for k in range(len(r.seen) // 2):
             column, begin = r.seen[2 * k], r.seen[2 * k + 1]
-            before = r.answers[begin + code_at(words, at, m.columns, column)]
+            before = r.answers[begin + code_at(here, 0, m.columns, column)]
             if before != r.answers[begin + code_at(target, to, m.columns, column)]:
                 return True
     return False
 
 
 @njit(cache=True)
-def list_steps(m: Model, words: Words, batch: Batch, state: State) -> int:
+def list_steps(m: Model, here: Words, batch: Batch, state: State) -> int:
     """Note the transitions that a row allows, not made yet; return how many, UNKNOWN where something is not known."""
-    row, width = state[AT], state[WORDS]
     first, last = np.int64(0), np.int64(len(m.agents))
     if state[ALPHA] >= 0:
-        group = code_at(words, row * width, m.columns, state[ALPHA])
+        group = code_at(here, 0, m.columns, state[ALPHA])
         first, last = np.int64(m.agents_from[group]), np.int64(m.agents_from[group + 1])
     count, flags = np.int64(0), np.int64(0)
     for k in range(last - first + len(m.clauses)):
         tree = m.agents[first + k] if first + k < last else m.clauses[first + k - last]
-        reference = walk(words, row * width, m.root[tree], m.nodes, m.next, state)
+        reference = walk(here, 0, m.root[tree], m.nodes, m.next, state)
         if reference == 0:
             state[TREE] = tree
             return UNKNOWN
@@ -334,51 +336,70 @@ def list_steps(m: Model, words: Words, batch: Batch, state: State) -> int:
 
 
 @njit(cache=True)
-def make(m: Model, r: Members, words: Words, batch: Batch, k: int, state: State) -> bool:
+def make(m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, k: int, state: State) -> bool:
     """Make what a transition of a row leads to, if it was not made yet; False where something is not known."""
     if r.made[k]:
         return True
     width = state[WORDS]
-    at, to, record = state[AT] * width, k * width, STEP * batch.steps[k]
-    conclude(words, at, m.masks, batch.steps[k], batch.words, to, width)
+    to, record = k * width, STEP * batch.steps[k]
+    if f is None:
+        conclude(here, 0, m.masks, batch.steps[k], batch.words, to, width)
+    else:
+        for word in range(width):
+            batch.words[to + word] = here[word]
+        write_part(m.columns, m.writes, m.steps, batch.steps[k], batch.words, to)
     begin, end = m.steps[record + COPIES], m.steps[record + COPIES_END]
-    copy_columns(words, at, m.columns, m.copies, begin, end, batch.words, to)
+    copy_columns(here, 0, m.columns, m.copies, begin, end, batch.words, to)
     for part in range(m.steps[record + TREES_OF_PARTS], m.steps[record + PARTS_END]):
         tree = m.part[part]
-        reference = walk(words, at, m.root[tree], m.nodes, m.next, state)
+        reference = walk(here, 0, m.root[tree], m.nodes, m.next, state)
         if reference == 0:
             state[TREE] = tree
             return False
         own = m.leaves[LEAF * (-reference - 1) + FIRST]
         write_part(m.columns, m.writes, m.steps, own, batch.words, to)
-    batch.hashes[k] = hashed(batch.words, to, width)
     r.made[k] = MADE
+    return keep(f, batch, k, state)
+
+
+@njit(cache=True)
+def keep(f: Folded | None, batch: Batch, k: int, state: State) -> bool:
+    """Fold what a transition leads to, where rows are folded, and hash what is kept; False where there is no room."""
+    width, kept = state[WORDS], state[KEPT]
+    if f is not None:
+        adding = state[SIZE] < state[LIMIT]  # of what can't become a row, nothing is added
+        if not fold(f, take(f, batch.words, k * width, width, adding), adding, batch.kept, k * kept):
+            state[NODE] = FULL
+            return False
+    batch.hashes[k] = hashed(batch.kept, k * kept, kept)
     return True
 
 
 @njit(cache=True)
 def make_representative(
-    m: Model, r: Members, x: Any, d: Any, words: Words, batch: Batch, k: int, state: State
+    m: Model, r: Members, x: Any, d: Any, f: Folded | None, here: Words, batch: Batch, k: int, state: State
 ) -> bool:
     """Make what a transition of a row leads to, and put what represents that in its place, as far as it was not done.
 
     False where something is not known.
     """
-    if not make(m, r, words, batch, k, state):
+    if not make(m, r, f, here, batch, k, state):
         return False
-    if r.made[k] != REPRESENTED:
-        width = state[WORDS]
-        d.whole[:] = 0
-        if not represent(x, d, batch.words, k * width, width, m.columns, 1):
-            state[NODE] = UNSORTED
-            return False
-        batch.hashes[k] = hashed(batch.words, k * width, width)
-        r.made[k] = REPRESENTED
-    return True
+    if r.made[k] == REPRESENTED:
+        return True
+    width = state[WORDS]
+    d.whole[:] = 0
+    if not represent(x, d, batch.words, k * width, width, m.columns, 1):
+        state[NODE] = UNSORTED
+        return False
+    r.made[k] = REPRESENTED
+    return keep(f, batch, k, state)
 
 
 @njit(cache=True)
-def without_repetitions(m: Model, r: Members, words: Words, batch: Batch, count: int, state: State) -> int:
+def without_repetitions(
+    m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, count: int, state: State
+) -> int:
     """Leave out what leads under the same label to the same; return how many are left, UNKNOWN as elsewhere."""
     width, alike = state[WORDS], False
     for k in range(count):
@@ -391,7 +412,7 @@ def without_repetitions(m: Model, r: Members, words: Words, batch: Batch, count:
         step = batch.steps[k]
         batch.steps[left] = step
         r.made[left] = r.visible[left] = 0
-        if not make(m, r, words, batch, left, state):
+        if not make(m, r, f, here, batch, left, state):
             return UNKNOWN
         if m.steps[STEP * step + ALIKE] < 0 or not is_repeated(
             batch.words, batch.steps, m.steps, 0, left, step, width
@@ -432,15 +453,17 @@ def find_set(r: Members, count: int, actors: int, wide: int, seed: int, found: i
 
 
 @njit(cache=True)
-def is_ample(m: Model, r: Members, words: Words, batch: Batch, count: int, at: int, state: State) -> int:
+def is_ample(
+    m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, count: int, at: int, state: State
+) -> int:
     """Tell whether no property sees a step, and one must be taken some time: 0 or 1, or UNKNOWN."""
     width, fair = state[WORDS], np.int64(0)
     for k in range(count):
         if has(r.sets, at, r.whose[k]):
-            if not make(m, r, words, batch, k, state):
+            if not make(m, r, f, here, batch, k, state):
                 return UNKNOWN
             if r.visible[k] == 0:  # of what is made, not of what represents it
-                seen = is_seen(m, r, words, state[AT] * width, batch.words, k * width, width)
+                seen = is_seen(m, r, here, batch.words, k * width, width)
                 r.visible[k] = 2 if seen else 1
             if r.visible[k] == 2:
                 return 0
@@ -506,6 +529,8 @@ def join(
     x: Any,
     d: Any,
     trails: Trails,
+    f: Folded | None,
+    here: Words,
     words: Words,
     table: Any,
     batch: Batch,
@@ -515,19 +540,19 @@ def join(
     state: State,
 ) -> int:
     """Let a set join that is ample and has someone who is ignored; return which transition leads on, or what is so."""
-    width, row, wide = state[WORDS], state[AT], (actors + WORD - 1) // WORD
+    kept, row, wide = state[KEPT], state[AT], (actors + WORD - 1) // WORD
     if not ignores(r, r.sets, at, wide):
         return GOING_ON
-    ample = is_ample(m, r, words, batch, count, at, state)
+    ample = is_ample(m, r, f, here, batch, count, at, state)
     if ample <= 0:
         return UNKNOWN if ample == UNKNOWN else GOING_ON
     let_join(r, actors, wide, at)
     bits = np.uint32(bits_for(len(table)))
     for k in range(count):
         if has(r.sets, at, r.whose[k]):
-            if x is not None and not make_representative(m, r, x, d, words, batch, k, state):
+            if x is not None and not make_representative(m, r, x, d, f, here, batch, k, state):
                 return UNKNOWN
-            number = find(words, table, batch.words, k, batch.hashes[k], width, bits)
+            number = find(words, table, batch.kept, k, batch.hashes[k], kept, bits)
             if number < 0:
                 return k
             r.more[:] = np.uint64(0)
@@ -546,6 +571,8 @@ def choose(
     x: Any,
     d: Any,
     trails: Trails,
+    f: Folded | None,
+    here: Words,
     words: Words,
     table: Any,
     batch: Batch,
@@ -559,7 +586,7 @@ def choose(
     if count < 2:
         return EVERYBODY
     row = state[AT]
-    actors = meet(m, r, words, row * state[WORDS], state)
+    actors = meet(m, r, here, state)
     if actors < 0:
         return UNKNOWN
     if actors > MOST_HERE:
@@ -590,7 +617,7 @@ def choose(
             found += 1
             if size == 1:
                 r.sizes[found - 1] = TRIED
-                onward = join(m, r, x, d, trails, words, table, batch, count, actors, at, state)
+                onward = join(m, r, x, d, trails, f, here, words, table, batch, count, actors, at, state)
                 if onward != GOING_ON:
                     return onward
         for _ in range(begin, found):
@@ -601,7 +628,9 @@ def choose(
             if least < 0:
                 break
             r.sizes[least] = TRIED
-            onward = join(m, r, x, d, trails, words, table, batch, count, actors, least * wide, state)
+            onward = join(
+                m, r, x, d, trails, f, here, words, table, batch, count, actors, least * wide, state
+            )
             if onward != GOING_ON:
                 return onward
     return EVERYBODY
@@ -615,6 +644,7 @@ def expand_reduced(
     d: Any,
     trails: Trails,
     words: Words,
+    f: Folded | None,
     origins: Any,
     table: Any,
     batch: Batch,
@@ -631,26 +661,30 @@ def expand_reduced(
     It is counted how often each transition was met, and how often it was followed. False where something is not known
     of the row that comes next: of that, nothing was stored.
     """
-    width, limit = state[WORDS], state[LIMIT]
+    kept, limit = state[KEPT], state[LIMIT]
     bits = np.uint32(bits_for(len(table)))
     wide = len(r.taken)
     while state[AT] < until and state[SIZE] + len(batch.steps) <= room:
         row = state[AT]
-        count = list_steps(m, words, batch, state)
+        here = words[row * kept : (row + 1) * kept]
+        if f is not None:
+            unfold(f, words, row)
+            here = f.whole
+        count = list_steps(m, here, batch, state)
         if count > 0:
-            count = without_repetitions(m, r, words, batch, count, state)
+            count = without_repetitions(m, r, f, here, batch, count, state)
         if count == UNKNOWN:
             return False
         onward = np.int64(EVERYBODY)
         if count:
-            onward = choose(m, r, x, d, trails, words, table, batch, count, state)
+            onward = choose(m, r, x, d, trails, f, here, words, table, batch, count, state)
         known = onward != UNKNOWN
         for k in range(count if known else 0):
             if onward == EVERYBODY or has(r.inside, 0, r.whose[k]):
                 if x is None:  # a call hands over all of `Members`
-                    known = known and make(m, r, words, batch, k, state)
+                    known = known and make(m, r, f, here, batch, k, state)
                 else:
-                    known = known and make_representative(m, r, x, d, words, batch, k, state)
+                    known = known and make_representative(m, r, x, d, f, here, batch, k, state)
         if not known:
             return False
         for k in range(count):
@@ -659,14 +693,14 @@ def expand_reduced(
             if onward != EVERYBODY and not has(r.inside, 0, r.whose[k]):
                 continue
             counts[step] += 1
-            number = find(words, table, batch.words, k, batch.hashes[k], width, bits)
+            number = find(words, table, batch.kept, k, batch.hashes[k], kept, bits)
             if number < 0 and state[SIZE] >= limit:
                 state[CUT] += 1
                 continue
             if number < 0:
                 slot, number = -number - 1, np.int64(state[SIZE])
-                for j in range(width):
-                    words[number * width + j] = batch.words[k * width + j]
+                for j in range(kept):
+                    words[number * kept + j] = batch.kept[k * kept + j]
                 origins[number] = row
                 table[slot] = entry_of(batch.hashes[k], number, bits)
                 agent = np.int64(r.part[r.step_actor[step]]) // KINDS

@@ -19,15 +19,18 @@ from checker.engines.archive import Kinds, read_archive, write_archive
 from checker.engines.contract import CheckpointError
 from checker.engines.fast.columns import Packing
 from checker.engines.fast.kernel import CROWDS, CUT, EXPANDED, LIMIT, SIZE
+from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import Space
 from semantics.state.canonical import canonical
 
-SCHEMA = "bigactors.checkpoint/2"
+SCHEMA = "bigactors.checkpoint/3"
 KEPT = (EXPANDED, SIZE, CUT, CROWDS)
 """What of the loops' state goes on; the rest follows from the mission."""
 
 KINDS: Final[Kinds] = {
     "rows": np.uint64,
+    "pieces": np.uint64,
+    "nodes": np.uint64,
     "origins": np.uint32,
     "counts": np.int64,
     "packing": np.uint64,
@@ -84,7 +87,8 @@ def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
         "columns": _digest_of_columns(space),
     }
     arrays = (
-        space.rows.words[: space.size * space.packing.words],
+        space.rows.words[: space.size * space.rows.kept],
+        *space.rows.interned,
         space.rows.origins[: space.size],
         space.counts.used,
         space.packing.columns[: 3 * len(columns)],
@@ -107,7 +111,11 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
         journey = Journey(head["depth"], head["layer_end"], head["seconds"], tuple(head["layers"]))
         _check(arrays, journey, int(space.state[LIMIT]))
         learned = arrays["learned"].reshape(-1, 4).tolist()
-        space.restore(Packing(head["words"], arrays["packing"]), arrays["rows"], arrays["origins"], learned)
+        where = Packing(head["words"], arrays["packing"])
+        if not where.is_sound:
+            raise ValueError("its columns stand nowhere in its rows")
+        rows = Rows.of(where.words, arrays["rows"], arrays["origins"], arrays["pieces"], arrays["nodes"])
+        space.restore(where, rows, len(arrays["origins"]), learned)
         _check_counts(space, arrays["counts"], arrays["state"])
         space.counts.used[:] = arrays["counts"]
         space.state[list(KEPT)] = arrays["state"]

@@ -258,7 +258,7 @@ def packing(sizes: Sequence[int], words: int = 1) -> Packing:
 
     A row takes at least so many words. What is left of a word is spread over its columns, so that they may grow.
     """
-    bits = [max(size - 1, 0).bit_length() for size in sizes]
+    bits = bits_of(sizes)
     rows: list[list[int]] = [[] for _ in range(words)]
     room = [WORD] * words
     full = 0  # how many of the first words are
@@ -271,9 +271,34 @@ def packing(sizes: Sequence[int], words: int = 1) -> Packing:
         room[at] -= bits[number]
         while full < len(room) and not room[full]:
             full += 1
-    columns = [(0, 0, 0)] * len(sizes)
-    for word, (numbers, free) in enumerate(zip(rows, room, strict=True)):
-        shift = 0
+    return spread(rows, bits)
+
+
+def packing_in_order(sizes: Sequence[int], order: Iterable[int], words: int = 1) -> Packing:
+    """Pack columns in some order, one behind another; the rest is as in `packing`."""
+    bits = bits_of(sizes)
+    rows: list[list[int]] = [[]]
+    room = WORD
+    for number in order:
+        if bits[number] > room:
+            rows.append([])
+            room = WORD
+        if bits[number]:
+            rows[-1].append(number)
+            room -= bits[number]
+    return spread(rows + [[]] * (words - len(rows)), bits)
+
+
+def bits_of(sizes: Sequence[int]) -> list[int]:
+    """Return how many bits each column takes that has so many values."""
+    return [max(size - 1, 0).bit_length() for size in sizes]
+
+
+def spread(rows: Sequence[Sequence[int]], bits: Sequence[int]) -> Packing:
+    """Return the packing of columns with so many bits, given which stand in each word, with its spare bits spread."""
+    columns = [(0, 0, 0)] * len(bits)
+    for word, numbers in enumerate(rows):
+        free, shift = WORD - sum(bits[number] for number in numbers), 0
         for place, number in enumerate(numbers):
             spare = (free + len(numbers) - 1 - place) // len(numbers)
             wide = bits[number] + min(spare, 1 if len(numbers) > 1 else free)

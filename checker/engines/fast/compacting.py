@@ -11,20 +11,20 @@ from math import expm1
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from checker.engines.fast.kernel import (
     BLOCK,
     CUT,
     EXPANDED,
+    KEPT,
     LIMIT,
     PROBED,
     SIZE,
     TOUCHED,
-    WORDS,
     Batch,
     State,
 )
+from checker.engines.fast.loops import njit
 from checker.engines.fast.table import Words, slot_of
 
 _ONE, _WORD, _FOLD, _MULTIPLIER = map(np.uint64, (1, 64, 29, 0xBF58476D1CE4E5B9))
@@ -66,7 +66,7 @@ def store_tags(
     bits: int,
 ) -> None:
     """Look up what was gathered of the rows before `at`, as `kernel.store` does, by tags alone."""
-    width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
+    width, size, limit = state[KEPT], state[SIZE], state[LIMIT]
     slots = np.uint64(len(table))
     touched = np.uint64(0)
     for begin in range(0, gathered, BLOCK):
@@ -89,7 +89,7 @@ def store_tags(
                 state[CUT] += 1
                 continue
             for j in range(width):
-                words[size * width + j] = batch.words[k * width + j]
+                words[size * width + j] = batch.kept[k * width + j]
             origins[size] = batch.origins[k]
             table[slot] = tag
             size += 1

@@ -11,9 +11,9 @@ is memory, which answers many questions at once.
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from checker.engines.fast.folding import MEMORY, Folded, fold, intern, put_piece, seek_piece, unfold
 from checker.engines.fast.leaves import (
     ALIKE,
     COPIES,
@@ -31,6 +31,7 @@ from checker.engines.fast.leaves import (
     WRITES,
     WRITES_END,
 )
+from checker.engines.fast.loops import njit
 from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed, touch
 from checker.engines.fast.trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
 
@@ -44,7 +45,8 @@ class Model(NamedTuple):
     Attributes:
         root, nodes, next: See `Trees`.
         leaves, steps, copies, writes, part: See `Leaves`.
-        masks: For each transition and word the bits that it keeps, then those that it sets.
+        masks: For each transition and word the bits that it keeps, then those that it sets; where rows are folded, for
+            each transition the pieces that it writes into.
         columns: For each column its word, shift and mask.
         agents_from, agents, clauses: Trees, the agents' in groups: one for each value of the cell that names them.
     """
@@ -65,32 +67,59 @@ class Model(NamedTuple):
 
 
 class Batch(NamedTuple):
-    """Successors that were not looked up yet: their words, hash, origin, and the transition that led there."""
+    """Successors that were not looked up yet.
+
+    Attributes:
+        words: Their words.
+        kept: What is kept of them: their words, or the roots into which these are folded.
+        hashes: The hashes of what is kept.
+        origins, steps: From where each was reached, and by which transition.
+        leaves: Room for the leaves of one row.
+    """
 
     words: Words
+    kept: Words
     hashes: Words
     origins: State
     steps: Ints
     leaves: Ints
 
 
-AT, SIZE, LIMIT, WORDS, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED, PROBED, TOUCHED = (
-    range(15)
-)
-"""What stands where in the loops' state: the row that comes next, how many rows there are and may be, words a row,
-whether requests wait for their turn, the column that says which agents there are (-1: always the same), how many
-successors are gathered, what was not known, whether rows were left out or not followed, up to which row all successors
-are stored, how many tags were compared, and nothing of meaning."""
+(
+    AT,
+    SIZE,
+    LIMIT,
+    WORDS,
+    KEPT,
+    TURNS,
+    ALPHA,
+    GATHERED,
+    TREE,
+    NODE,
+    CODE,
+    CUT,
+    CROWDS,
+    EXPANDED,
+    PROBED,
+    TOUCHED,
+) = range(16)
+"""What stands where in the loops' state: the row that comes next, how many rows there are and may be, words a row and
+how many are kept of it, whether requests wait for their turn, the column that says which agents there are (-1: always
+the same), how many successors are gathered, what was not known, whether rows were left out or not followed, up to which
+row all successors are stored, how many tags were compared, and nothing of meaning."""
 
-STATE = 15
+STATE = 16
 BLOCK = 1 << 12
 """Successors that are looked up at once: what is touched for them fits a core's own cache."""
 
-WIDE, UNSORTED = -2, -3
-"""What stands in the place of a node where one row has more successors than a batch holds, and where it is not known
-what represents one of them."""
+WIDE, UNSORTED, FULL = -2, -3, -4
+"""What stands in the place of a node where one row has more successors than a batch holds, where it is not known what
+represents one of them, and where there is no room for the nodes into which one is folded."""
 
 PLACE, MOVE = 3, 5
+
+_ONE, _PIECE, _STEP, _MEMORY = map(np.uint64, (1, 32, 36, 65 - MEMORY.bit_length()))
+_MULTIPLIER = np.uint64(0x9E3779B97F4A7C15)
 
 # Indices are unsigned in the inner loops: of signed ones numba asks whether they count from the end.
 _RECORD, _LOW, _WIDTH, _BASE, _WORD, _SHIFT, _MASK = map(
@@ -157,6 +186,71 @@ def write_part(columns: Words, writes: Ints, steps: Ints, step: int, target: Wor
 
 
 @njit(cache=True)
+def change_piece(
+    columns: Words, writes: Ints, steps: Ints, step: int, f: Folded, piece: int, adding: bool
+) -> int:
+    """Return what a transition, or a part of one, makes of a piece of the successor."""
+    record = STEP * step
+    seek_piece(f, piece)
+    for k in range(steps[record + WRITES], steps[record + WRITES_END]):
+        where = PLACE * writes[PAIR * k]
+        word, shift, mask = np.int64(columns[where]), columns[where + 1], columns[where + 2]
+        if word >> f.shift == piece:
+            word -= piece << f.shift
+            f.sought[word] = (f.sought[word] & ~(mask << shift)) | (np.uint64(writes[PAIR * k + 1]) << shift)
+    return np.int64(intern(f.pieces, f.sought, adding))
+
+
+@njit(cache=True, inline="always")
+def change_pieces(
+    columns: Words,
+    writes: Ints,
+    steps: Ints,
+    touches: Words,
+    step: int,
+    f: Folded,
+    touched: int,
+    adding: bool,
+) -> int:
+    """Write what a transition, or a part of one, writes into the successor, piece by piece; return its own pieces.
+
+    What a transition makes of a piece is looked up where it was made lately.
+    """
+    left, piece = touches[step], np.int64(0)
+    while left:
+        if left & _ONE and f.below[piece] >= 0:
+            key = (np.uint64(step) << _STEP) | (np.uint64(piece) << _PIECE) | np.uint64(f.below[piece] + 1)
+            slot = (key * _MULTIPLIER) >> _MEMORY
+            result = f.results[slot]
+            if f.memory[slot] != key:
+                result = change_piece(columns, writes, steps, step, f, piece, adding)
+                if result >= 0:
+                    f.memory[slot], f.results[slot] = key, result
+            touched = put_piece(f, piece, result, touched)
+        left >>= _ONE
+        piece += 1
+    return touched
+
+
+@njit(cache=True)
+def copy_pieces(
+    columns: Words, copies: Ints, begin: int, end: int, f: Folded, touched: int, adding: bool
+) -> int:
+    """Copy what a transition copies from column to column into the successor; return its own pieces."""
+    for k in range(begin, end):
+        code = np.uint64(code_at(f.whole, 0, columns, copies[PAIR * k + 1]))
+        where = PLACE * copies[PAIR * k]
+        word, shift, mask = np.int64(columns[where]), columns[where + 1], columns[where + 2]
+        piece = word >> f.shift
+        if f.below[piece] >= 0:
+            seek_piece(f, piece)
+            word -= piece << f.shift
+            f.sought[word] = (f.sought[word] & ~(mask << shift)) | (code << shift)
+            touched = put_piece(f, piece, intern(f.pieces, f.sought, adding), touched)
+    return touched
+
+
+@njit(cache=True)
 def first_turn(all_leaves: Ints, steps: Ints, leaves: Ints, actors: int) -> int:
     """Return the first turn of the queue that is enabled, -1 where none is."""
     found = np.int64(-1)
@@ -190,8 +284,8 @@ def store(
 
     There must be room for so many new rows. It may run beside `gather`: they touch nothing of each other's.
     """
-    target, hashes, reached_from, taken = batch.words, batch.hashes, batch.origins, batch.steps
-    width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
+    target, hashes, reached_from, taken = batch.kept, batch.hashes, batch.origins, batch.steps
+    width, size, limit = state[KEPT], state[SIZE], state[LIMIT]
     bits = np.uint32(bits_for(len(table)))
     for begin in range(0, gathered, BLOCK):
         end = min(begin + BLOCK, gathered)
@@ -215,32 +309,36 @@ def store(
 
 @njit(cache=True, nogil=True)
 def gather(  # one loop, so that its arrays are taken out of their tuples only once
-    m: Model, words: Words, batch: Batch, state: State, until: int
+    m: Model, words: Words, f: Folded | None, batch: Batch, state: State, until: int
 ) -> bool:
     """Gather the successors of rows up to a number, or until half of the batch is full; False at what is not known.
 
     A row's successors are gathered each once: first what its agents are served, then what they do themselves, then what
-    the environment does.
+    the environment does. They are folded at once where rows are (`f`): that is compiled apart.
     """
     root, nodes, leads, columns = m.root, m.nodes, m.next, m.columns
     copies, writes, parts = m.copies, m.writes, m.part
     agents_from, agents, clauses = m.agents_from, m.agents, m.clauses
     all_leaves, steps, masks = m.leaves, m.steps, m.masks
-    target, hashes, origins = batch.words, batch.hashes, batch.origins
+    target, made, hashes, origins = batch.words, batch.kept, batch.hashes, batch.origins
     taken, leaves = batch.steps, batch.leaves
-    width, known = state[WORDS], True
+    width, kept, known = state[WORDS], state[KEPT], True
+    adding = state[SIZE] < state[LIMIT]  # of what can't become a row, nothing is added
     while known and state[AT] < until and state[GATHERED] <= len(hashes) // 2:
         row = state[AT]
-        at = row * width
+        source, at = words, row * width
+        if f is not None:
+            unfold(f, words, row)
+            source, at = f.whole, np.int64(0)
         first, last = np.int64(0), np.int64(len(agents))
         if state[ALPHA] >= 0:
-            group = code_at(words, at, columns, state[ALPHA])
+            group = code_at(source, at, columns, state[ALPHA])
             first, last = np.int64(agents_from[group]), np.int64(agents_from[group + 1])
         count = last - first + len(clauses)
         flags = np.int64(0)
         for k in range(count):
             tree = agents[first + k] if first + k < last else clauses[first + k - last]
-            reference = walk(words, at, root[tree], nodes, leads, state)
+            reference = walk(source, at, root[tree], nodes, leads, state)
             if reference == 0:
                 state[TREE] = tree
                 known = False
@@ -263,27 +361,37 @@ def gather(  # one loop, so that its arrays are taken out of their tuples only o
                         state[NODE] = WIDE
                         known = False
                         break
-                    to = end * width
-                    conclude(words, at, masks, step, target, to, width)
+                    to, touched = end * width, np.int64(0)
+                    add = adding or steps[record + ALIKE] >= 0  # which will be compared
                     begin, stop = steps[record + COPIES], steps[record + COPIES_END]
-                    if begin < stop:
-                        copy_columns(words, at, columns, copies, begin, stop, target, to)
+                    if f is not None:
+                        touched = change_pieces(columns, writes, steps, masks, step, f, touched, add)
+                        if begin < stop:
+                            touched = copy_pieces(columns, copies, begin, stop, f, touched, add)
+                    else:
+                        conclude(source, at, masks, step, target, to, width)
+                        if begin < stop:
+                            copy_columns(source, at, columns, copies, begin, stop, target, to)
                     for part in range(steps[record + PARTS], steps[record + PARTS_END]):
                         tree = parts[part]
-                        reference = walk(words, at, root[tree], nodes, leads, state)
+                        reference = walk(source, at, root[tree], nodes, leads, state)
                         if reference == 0:
                             state[TREE] = tree
                             known = False
                             break
                         own = all_leaves[LEAF * (-reference - 1) + FIRST]
-                        write_part(columns, writes, steps, own, target, to)
+                        if f is not None:
+                            touched = change_pieces(columns, writes, steps, masks, own, f, touched, add)
+                        else:
+                            write_part(columns, writes, steps, own, target, to)
+                    if f is not None and not fold(f, touched, add, made, kept * end) and known:
+                        state[NODE] = FULL
+                        known = False
                     if not known:
                         break
-                    if steps[record + ALIKE] >= 0 and is_repeated(
-                        target, taken, steps, began, end, step, width
-                    ):
+                    if steps[record + ALIKE] >= 0 and is_repeated(made, taken, steps, began, end, step, kept):
                         continue
-                    hashes[end] = hashed(target, to, width)
+                    hashes[end] = hashed(made, kept * end, kept)
                     origins[end] = row
                     taken[end] = step
                     end += 1
@@ -296,13 +404,18 @@ def gather(  # one loop, so that its arrays are taken out of their tuples only o
 
 
 @njit(cache=True)
-def classify(m: Model, words: Words, rows: State, tree: int, found: Ints, state: State) -> int:
+def classify(
+    m: Model, words: Words, f: Folded | None, rows: State, tree: int, found: Ints, state: State
+) -> int:
     """Note the leaf that each of some rows leads to in a tree; return how many were led, all where it knows all."""
     root, nodes, leads = m.root, m.nodes, m.next
-    width = state[WORDS]
     done = np.int64(0)
     for k in range(len(rows)):
-        reference = walk(words, rows[k] * width, root[tree], nodes, leads, state)
+        source, at = words, rows[k] * state[WORDS]
+        if f is not None:
+            unfold(f, words, rows[k])
+            source, at = f.whole, np.int64(0)
+        reference = walk(source, at, root[tree], nodes, leads, state)
         if reference == 0:
             state[TREE] = tree
             break
@@ -314,8 +427,8 @@ def classify(m: Model, words: Words, rows: State, tree: int, found: Ints, state:
 @njit(cache=True)
 def look_up(words: Words, table: Any, batch: Batch, targets: Any, state: State) -> None:
     """Note the row that each successor of the batch is."""
-    target, hashes = batch.words, batch.hashes
-    width = state[WORDS]
+    target, hashes = batch.kept, batch.hashes
+    width = state[KEPT]
     bits = np.uint32(bits_for(len(table)))
     for begin in range(0, len(targets), BLOCK):
         end = min(begin + BLOCK, len(targets))
@@ -324,7 +437,7 @@ def look_up(words: Words, table: Any, batch: Batch, targets: Any, state: State) 
             targets[k] = find(words, table, target, k, hashes[k], width, bits)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=True)
 def repack(words: Words, size: int, moves: Words, old_width: int, new_width: int) -> None:
     """Pack rows anew in their place, from the last to the first: a row of the new packing is not shorter.
 
@@ -364,6 +477,15 @@ def make_masks(masks: Words, steps: Ints, writes: Ints, columns: Words, width: i
             masks[at + word] &= ~(mask << shift)
             masks[at + width + word] &= ~(mask << shift)
             masks[at + width + word] |= np.uint64(writes[PAIR * k + 1]) << shift
+
+
+@njit(cache=True)
+def note_pieces(touches: Words, steps: Ints, writes: Ints, columns: Words, shift: int, first: int) -> None:
+    """Note for each transition, from a first one on, which pieces of a folded row it writes into, as bits."""
+    for step in range(first, len(touches)):
+        touches[step] = 0
+        for k in range(steps[STEP * step + WRITES], steps[STEP * step + WRITES_END]):
+            touches[step] |= _ONE << (columns[PLACE * writes[PAIR * k]] >> np.uint64(shift))
 
 
 @njit(cache=True)

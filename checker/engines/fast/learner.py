@@ -107,6 +107,7 @@ class Learner:
         owners: What each tree is about.
         taken: For each cell that was taken to be never written, the trees that did so.
         writers: For each cell the trees that write it.
+        homes: For each cell, and for each name, which actor was met first that writes it, or cells about it.
         answers: What a question is answered with, leaf by leaf.
         reads: For each leaf of an actor what was asked of which column to come there, with the answer.
         steps: The label of each transition, as it was when it was learned.
@@ -123,6 +124,7 @@ class Learner:
     owners: list[Actor | PartOf | Question] = field(default_factory=list)
     taken: defaultdict[Cell, set[int]] = field(default_factory=lambda: defaultdict(set))
     writers: defaultdict[Cell, set[int]] = field(default_factory=lambda: defaultdict(set))
+    homes: dict[Cell | Name, int] = field(default_factory=dict)
     planted: dict[Actor, int] = field(default_factory=dict)
     varying: set[Cell] = field(default_factory=set)
     rules: dict[str, int] = field(default_factory=dict)
@@ -227,8 +229,27 @@ class Learner:
         self._grow(tree, scope, self.leaves.add([Step(Effect(writes))]), source)
 
     def _note_writer(self, tree: int, writes: Writes) -> None:
-        for number, _ in writes:
-            self.writers[self.columns.all[number].place[0]].add(tree)
+        cells = dict.fromkeys(self.columns.all[number].place[0] for number, _ in writes)
+        owner = self.owners[tree]
+        for cell in cells:
+            self.writers[cell].add(tree)
+            if isinstance(owner, Actor):
+                home = self.homes.setdefault(cell, self._home(owner))
+                self.homes.setdefault(cell[-1], home)
+
+    def _home(self, actor: Actor) -> int:
+        """Return the number of whom an actor is about: its first tree."""
+        return min(tree for each, tree in self.planted.items() if each.about == actor.about)
+
+    def by_home(self) -> list[int]:
+        """Return the numbers of all columns, those together that one actor writes."""
+        last = len(self.owners)
+
+        def home(number: int) -> tuple[int, int]:
+            cell = self.columns.all[number].place[0]
+            return self.homes.get(cell, self.homes.get(cell[-1], last)), number
+
+        return sorted(range(len(self.columns)), key=home)
 
     def _grow(self, tree: int, scope: Scope, leaf: int, source: CodedSource) -> None:
         for cell in scope.taken:

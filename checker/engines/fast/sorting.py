@@ -9,9 +9,9 @@ It does what `checker.reduction.representatives` does, on numbers that `exchangi
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from checker.engines.fast.kernel import PLACE, Batch, Ints, State, code_at
+from checker.engines.fast.loops import njit
 from checker.engines.fast.table import Words, hashed
 
 UNKNOWN, FIXED = 0, 1

@@ -5,6 +5,7 @@ It visits the same configurations in the same order and stops at the same bounds
 
 import math
 import os
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 
 from checker.engines.fast import kernel
 from checker.engines.fast.arrays import Growing
-from checker.engines.fast.columns import Packing, packing, shifts
+from checker.engines.fast.columns import Packing, packing, packing_in_order, shifts
 from checker.engines.fast.kernel import (
     ALPHA,
     AT,
@@ -25,7 +26,9 @@ from checker.engines.fast.kernel import (
     CROWDS,
     CUT,
     EXPANDED,
+    FULL,
     GATHERED,
+    KEPT,
     LIMIT,
     NODE,
     PROBED,
@@ -78,6 +81,8 @@ class Space:
     """
 
     ORIGIN: type[np.generic] = np.uint32
+    PLAIN = 2
+    """How many words rows have at most that are not folded."""
 
     def __init__(
         self,
@@ -91,6 +96,8 @@ class Space:
         self.left: Callable[[], float] = lambda: math.inf
         self.choosing = choosing
         self.exchanging = exchanging
+        if exchanging is not None and choosing is None:
+            self.PLAIN = sys.maxsize  # representatives are found in whole batches
         self.compact = compact
         self.state = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
@@ -171,11 +178,7 @@ class Space:
 
     def codes(self, number: int) -> list[int]:
         """Return the code of each column in a row."""
-        return self.packing.codes(self._words(number))
-
-    def _words(self, number: int) -> NDArray[np.uint64]:
-        at = number * self.packing.words
-        return self.rows.words[at : at + self.packing.words]
+        return self.packing.codes(self.rows.row(number))
 
     # --- expanding ------------------------------------------------------------------------------------------------
 
@@ -213,12 +216,13 @@ class Space:
         swaps = self.exchanging
         exchanges = (None, None) if swaps is None else (swaps.exchanges, swaps.desk)
         known = (self.model, choosing.members, *exchanges, choosing.trails)
-        arrays = (self.rows.words, self.rows.origins, self.table.room, self.batch)
+        arrays = (self.rows.words, self.rows.folded, self.rows.origins, self.table.room, self.batch)
         return loop(*known, *arrays, until, room, self.met.room, self.counts.room, self.state)
 
     def _gather(self, until: int) -> bool:
         """Gather the successors of rows up to a number, or what represents them; False at what is not known."""
-        known: bool = kernel.gather(self.model, self.rows.words, self.batch, self.state, until)
+        rows = self.rows
+        known: bool = kernel.gather(self.model, rows.words, rows.folded, self.batch, self.state, until)
         return (
             known if self.exchanging is None else self.exchanging.represent(self.batch, self.state) and known
         )
@@ -255,7 +259,8 @@ class Space:
         done = 0
         while done < len(rows):
             look()
-            done += kernel.classify(self.model, self.rows.words, rows[done:], tree, found[done:], self.state)
+            known = (self.model, self.rows.words, self.rows.folded)
+            done += kernel.classify(*known, rows[done:], tree, found[done:], self.state)
             if done < len(rows):
                 self._learn(int(rows[done]))
         return found
@@ -278,6 +283,8 @@ class Space:
         if self.state[NODE] == kernel.WIDE:
             self._make_batches(2 * len(self.batch.hashes))
             self._see()
+        elif self.state[NODE] == FULL:
+            self.rows.reserve_folding()
         elif self.exchanging is not None and self.state[NODE] == kernel.UNSORTED:
             self.exchanging.learn()
             self._see()
@@ -288,7 +295,7 @@ class Space:
         """Learn what was not known of a row, as it was noted where a walk ended."""
         unknown = (row, int(self.state[TREE]), int(self.state[NODE]), int(self.state[CODE]))
         self.learned.append(unknown)
-        if self._learn_from(self.packing, self._words(row), *unknown[1:]):
+        if self._learn_from(self.packing, self.rows.row(row), *unknown[1:]):
             self._see()
 
     def _learn_from(self, where: Packing, words: NDArray[np.uint64], tree: int, node: int, code: int) -> bool:
@@ -307,39 +314,37 @@ class Space:
     def restore(
         self,
         where: Packing,
-        words: NDArray[np.uint64],
-        origins: NDArray[np.uint32],
+        rows: Rows,
+        size: int,
         learned: list[list[int]],
     ) -> None:
-        """Go on from the rows of another space of the same mission, learning again what that had learned.
+        """Go on from so many rows of another space of the same mission, learning again what that had learned.
 
         Raises:
             ValueError, IndexError: They are not rows of such a space.
         """
-        if not where.is_sound or len(words) != len(origins) * where.words:
-            raise ValueError("its columns stand nowhere in its rows")
-        first, rows = self.codes(0), words.reshape(len(origins), where.words)
+        first = self.codes(0)
         for row, tree, node, code in learned:
-            if not 0 <= row < len(rows):
+            if not 0 <= row < size:
                 raise ValueError("it learned from no row")
             self.learned.append((row, tree, node, code))
-            self._learn_again(where, rows[row], tree, node, code)
+            self._learn_again(where, rows.row(row), tree, node, code)
             self._agents(self._groups())  # plants the trees of agents that are new, in the same order
         sizes = np.array(self.learner.columns.sizes, np.int64)
         begins = np.concatenate(([0], np.cumsum(sizes)))
-        if len(where.mask) != len(sizes) or not kernel.mark_used(
-            words, where.words, where.columns, begins, np.zeros(begins[-1], np.bool_)
+        used = np.zeros(begins[-1], np.bool_)
+        if len(where.mask) != len(sizes) or not all(
+            kernel.mark_used(words, where.words, where.columns, begins, used)
+            for _, words in rows.blocks(size)
         ):
             raise ValueError("it has other columns, or values that they do not take")
+        self.rows = rows
         self._pack_as(where, BATCH)
-        self.rows.reserve(len(origins))
-        self.rows.words[: len(words)] = words
-        self.rows.origins[: len(origins)] = origins
-        self.state[SIZE] = len(origins)
+        self.state[SIZE] = size
         begun = self.codes(0)
         if begun[: len(first)] != first or any(begun[len(first) :]):
             raise ValueError("it begins elsewhere")
-        self._rebuild(slots_for(len(origins)))
+        self._rebuild(slots_for(size))
         self._make_room(BATCH)
         self._see()
 
@@ -393,19 +398,17 @@ class Space:
 
     def _make_masks(self) -> None:
         """Work out what the transitions that are new keep and set; all of them where the packing is."""
-        leaves, width = self.learner.leaves, 2 * self.packing.words
+        leaves, folded = self.learner.leaves, self.rows.folded
+        width = 2 * self.packing.words if folded is None else 1
         known = self.masks.size // width
         self.masks.extend((len(leaves.rule) - known) * width)
         for counts in (self.counts, self.met):
             counts.extend(len(leaves.rule) - len(counts))
-        kernel.make_masks(
-            self.masks.used,
-            leaves.steps.room,
-            leaves.writes.room,
-            self.packing.columns,
-            self.packing.words,
-            known,
-        )
+        arrays = (self.masks.used, leaves.steps.room, leaves.writes.room, self.packing.columns)
+        if folded is None:
+            kernel.make_masks(*arrays, self.packing.words, known)
+        else:
+            kernel.note_pieces(*arrays, folded.shift, known)
 
     def _groups(self) -> list[tuple[Name, ...]]:
         """Return the agents that there are, for each value of the cell that says so."""
@@ -433,19 +436,17 @@ class Space:
         self.packing = self.packing.extended(sizes)
         if self.packing.holds(sizes):
             return
-        old, new = self.packing, packing(columns.room(self.learner.varying), self.packing.words)
+        old, room = self.packing, columns.room(self.learner.varying)
+        new = packing(room, old.words)
+        if new.words > self.PLAIN:  # then a transition changes few pieces of a row
+            new = packing_in_order(room, self.learner.by_home(), old.words)
+        self.rows.repack(self.size, shifts(old, new), new.words, fold=new.words > self.PLAIN)
         self._pack_as(new, len(self.batch.hashes))
-        kernel.repack(self.rows.words, self.size, shifts(old, new), old.words, new.words)
         self._rebuild(len(self.table.room))
 
     def _pack_as(self, where: Packing, successors: int) -> None:
-        """Let rows, and batches for so many successors, be of another packing; what stands in rows is not moved.
-
-        Raises:
-            OSError: There is no room for wider rows; nothing has changed.
-        """
-        self.rows.widen(where.words)
-        self.packing, self.state[WORDS] = where, where.words
+        """Let all that looks at rows, and batches for so many successors, be of the packing that rows have."""
+        self.packing, self.state[WORDS], self.state[KEPT] = where, where.words, self.rows.kept
         self.grown = -1
         self.masks.size = self.located = 0
         self._make_batches(successors)
@@ -455,6 +456,7 @@ class Space:
     def _add_first(self) -> None:
         codes = self.learner.columns.codes(self.learner.still)
         where = packing(self.learner.columns.sizes)
+        self.rows.widen(where.words)
         self._pack_as(where, BATCH)
         for word, shift, code in zip(where.word, where.shift, codes, strict=True):
             self.rows.words[word] |= np.uint64(code) << shift
@@ -472,8 +474,12 @@ class Space:
             self._make_batches(len(self.batch.hashes))
 
     def _batch(self, successors: int) -> kernel.Batch:
+        folded = self.rows.folded is not None
+        whole = 0 if folded and self.choosing is None else successors
+        words = np.zeros(whole * self.packing.words, np.uint64)
         return kernel.Batch(
-            np.zeros(successors * self.packing.words, np.uint64),
+            words,
+            np.zeros(self.rows.kept * successors, np.uint64) if folded else words,
             np.zeros(successors, np.uint64),
             np.zeros(successors, np.int64),
             np.zeros(successors, np.int32),
@@ -490,7 +496,7 @@ class Space:
     def _slots(self, rows: int) -> int:
         """Return how many slots the next table has: for half as many rows more, or for a few where memory ends."""
         table = self.table.room
-        left, row = self.left() + table.nbytes, 0 if self.spilled else 8 * self.packing.words + 4
+        left, row = self.left() + table.nbytes, 0 if self.spilled else 8 * self.rows.kept + 4
         within = min(slots_for(rows), slots_within(left, self.size, row, table.itemsize))
         return max(int(within), slots_for(rows) * 3 // 4)
 
@@ -504,7 +510,7 @@ class Space:
 
     def _rebuild(self, slots: int) -> None:
         self.table = Pages(np.uint32, 1)  # give the old one back before the next is taken
-        rows = (self.rows.words, self.size, self.packing.words)
+        rows = (self.rows.words, self.size, self.rows.kept)
         if self.compact is None:
             self.table = Pages(np.uint32, slots)
             rebuild(*rows, self.table.room, write_numbers, bits_for(len(self.table.room)))

@@ -11,8 +11,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from checker.engines.fast.loops import njit
 
 Words = NDArray[np.uint64]
 Write = Callable[[Words, Any, Any, int], None]
@@ -161,7 +162,7 @@ def rebuild(words: Words, size: int, width: int, table: Any, write: Write, bits:
         enter(table, hashes[some], entries[some])
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=True)
 def order(words: Words, begin: int, width: int, hashes: Words, rows: Any) -> None:
     """Note the hashes and numbers of as many rows, ordered by the parts of a table into which they belong."""
     mixed, ends = np.empty(len(hashes), np.uint64), np.zeros(PARTS + 1, np.int64)

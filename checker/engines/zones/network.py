@@ -7,6 +7,7 @@ loops. What a clock is compared with is taken for what it was anywhere, as long 
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from functools import lru_cache, partial
 from itertools import islice
@@ -80,6 +81,8 @@ class Network(Space):
         outgrown: Whether a clock is compared with a larger constant than before.
         first_ages: What the clocks of the first location show.
     """
+
+    PLAIN = sys.maxsize  # its loops look into rows
 
     def __init__(self, initial: Configuration, pending: int) -> None:
         self.initial = initial
