@@ -21,6 +21,7 @@ from checker.engines.fast.kernel import (
     WORDS,
     Batch,
     State,
+    room_for,
 )
 from checker.engines.fast.prefetch import prefetch
 from checker.engines.fast.table import AHEAD, Words, slot_of
@@ -61,10 +62,11 @@ def store_tags(
     end: int,
     state: State,
     bits: int,
-) -> None:
+) -> int:
     """Look up some of what was gathered, as `kernel.store` does, by tags alone."""
     width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
     slots = np.uint64(len(table))
+    room = room_for(words, origins, table, width)
     for k in range(begin, end):
         if k + AHEAD < end:
             prefetch(table, slot_of(batch.hashes[k + AHEAD], len(table)))
@@ -81,6 +83,9 @@ def store_tags(
         if size >= limit:
             state[CUT] = 1
             continue
+        if size >= room:
+            end = k
+            break
         for j in range(width):
             words[size * width + j] = batch.words[k * width + j]
         origins[size] = batch.origins[k]
@@ -88,6 +93,7 @@ def store_tags(
         size += 1
         state[PROBED] += probed
     state[SIZE] = size
+    return end
 
 
 @njit(cache=True)

@@ -30,7 +30,7 @@ from checker.engines.fast.leaves import (
     WRITES,
     WRITES_END,
 )
-from checker.engines.fast.table import Words, bits_for, entry_of, fetch, find, hashed
+from checker.engines.fast.table import Words, bits_for, entry_of, fetch, find, hashed, most_in
 from checker.engines.fast.trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
 
 Ints = NDArray[np.int32]
@@ -189,15 +189,23 @@ def is_repeated(target: Words, taken: Ints, steps: Ints, began: int, end: int, s
     return False
 
 
+@njit(cache=True, inline="always")
+def room_for(words: Words, origins: Any, table: Any, width: int) -> int:
+    """Return how many rows there may be before something must grow."""
+    return min(len(words) // width, len(origins), most_in(len(table)))
+
+
 @njit(cache=True, nogil=True)
-def store(words: Words, origins: Any, table: Any, batch: Batch, begin: int, end: int, state: State) -> None:
+def store(words: Words, origins: Any, table: Any, batch: Batch, begin: int, end: int, state: State) -> int:
     """Look up some of what was gathered: what is new becomes a row, with where it was reached from.
 
-    There must be room for so many new rows. Others may look up rows that were there before.
+    Return the first for which there is no room, the end where there is room for all. Others may look up rows that were
+    there before.
     """
     target, hashes, reached_from = batch.words, batch.hashes, batch.origins
     width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
     bits = np.uint32(bits_for(len(table)))
+    room = room_for(words, origins, table, width)
     for k in range(begin, end):
         fetch(words, table, hashes, k, end, width, bits)
         found = find(words, table, target, k, hashes[k], width, bits)
@@ -206,12 +214,16 @@ def store(words: Words, origins: Any, table: Any, batch: Batch, begin: int, end:
         if size >= limit:
             state[CUT] = 1
             continue
+        if size >= room:
+            end = k
+            break
         for j in range(width):
             words[size * width + j] = target[k * width + j]
         origins[size] = reached_from[k]
         table[-found - 1] = entry_of(hashes[k], size, bits)
         size += 1
     state[SIZE] = size
+    return end
 
 
 @njit(cache=True, nogil=True)

@@ -26,5 +26,5 @@ def _prefetch(_context: Any, array: Any, index: Any) -> Any:
     return types.void(array, index), generate
 
 
-prefetch: Final[Callable[[Any, Any], None]] = cast(Callable[[Any, Any], None], _prefetch)
+prefetch: Final[Callable[[Any, Any], None]] = cast("Callable[[Any, Any], None]", _prefetch)
 """Ask for the cache line in which an element of a contiguous array stands; its index is not checked."""

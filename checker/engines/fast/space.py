@@ -306,17 +306,24 @@ class Space:
 
     def _store(self, batch: kernel.Batch, steps: tuple[int, int], found: tuple[int, int], at: int) -> None:
         """Store what was gathered of the rows before one: some transitions, and successors that may be new."""
-        self._make_room(found[1] - found[0])
         kernel.count(batch.steps, *steps, self.counts.room)
-        arrays = (self.rows.words, self.rows.origins, self.table.room, batch, *found)
-        if self.compact is None:
-            kernel.store(*arrays, self.state)
-        else:
-            from checker.engines.fast.compacting import store_tags  # noqa: PLC0415  # compiled where it is wanted
-
-            store_tags(*arrays, self.state, self.compact)
+        begin, end = found
+        while begin < end:  # the table grows just when it is full, whatever is stored at once
+            self._make_room(1)
+            begin = self._store_some(batch, begin, end)
         self.state[EXPANDED] = at
         self.stored = self.size
+
+    def _store_some(self, batch: kernel.Batch, begin: int, end: int) -> int:
+        """Store some of the successors of a batch, as far as there is room, and return how far."""
+        arrays = (self.rows.words, self.rows.origins, self.table.room, batch, begin, end, self.state)
+        loop: Callable[..., int] = kernel.store
+        if self.compact is None:
+            return loop(*arrays)
+        from checker.engines.fast.compacting import store_tags  # noqa: PLC0415  # compiled where it is wanted
+
+        loop = store_tags
+        return loop(*arrays, self.compact)
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the leaf that each row leads to in a tree, learning what is not known on the way."""
