@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, Protocol
+from typing import Any
 
 from checker.engines.fast.kernel import AT, GATHERED, LATER, PUT_OFF, SIFTED, Batch, Model, State
 
@@ -62,25 +62,22 @@ class Slice:
         return ((row, steps, found) for row, steps, found in rows.tolist())
 
 
-class Expand(Protocol):
-    """Expands a slice, in the thread that stores or beside it."""
-
-    def __call__(self, part: Slice, /, *, beside: bool) -> None:
-        """Expand a slice."""
-
-
 class Pipeline:
     """The slices that are ahead.
 
     Attributes:
         threads: How many threads there are, with the one that stores.
         expand: Expands a slice, in any thread.
+        sift: Looks up what a slice found, which else is done where it is stored.
         ahead: The slices, in their order.
+        awaited: The slice that is to be stored next, if it is waited for.
     """
 
-    def __init__(self, threads: int, expand: Expand) -> None:
+    def __init__(self, threads: int, expand: Callable[[Slice], None], sift: Callable[[Slice], None]) -> None:
         self.threads = threads
         self.expand = expand
+        self.sift = sift
+        self.awaited: Slice | None = None
         self.ahead: deque[Slice] = deque()
         self.beside = ThreadPoolExecutor(threads - 1, "expanding") if threads > 1 else None
 
@@ -107,20 +104,27 @@ class Pipeline:
         """Add a slice behind the others, which is expanded by other threads, or by this one when its turn comes."""
         self.ahead.append(part)
         if self.beside is not None and part.end - part.begin >= WORTH:
-            part.expanding = self.beside.submit(self.expand, part, beside=True)
+            part.expanding = self.beside.submit(self._expand_beside, part)
+
+    def _expand_beside(self, part: Slice) -> None:
+        """Expand a slice in another thread; as long as nobody waits for it, there is time to sift it, too."""
+        self.expand(part)
+        if part is not self.awaited:
+            self.sift(part)
 
     def take(self) -> Slice:
         """Return the first slice when it is expanded; meanwhile this thread expands those that nobody has begun."""
-        first = self.ahead.popleft()
+        self.awaited = first = self.ahead.popleft()
         for part in (first, *self.ahead):
             if part.expanding is None or part.expanding.cancel():
                 part.expanding = Future()
-                self.expand(part, beside=False)
+                self.expand(part)
                 part.expanding.set_result(None)
             if first.expanding is not None and first.expanding.done():
                 break
         assert first.expanding is not None
         first.expanding.result()
+        self.awaited = None
         return first
 
     def rest(self) -> None:

@@ -107,7 +107,7 @@ class Space:
         self.compact = compact
         self.state = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
-        self.pipeline = Pipeline(threads, self._expand_slice)
+        self.pipeline = Pipeline(threads, self._expand_slice, self._sift)
         self.stored = self.changes = 0
         self.pace, self.breadth = FEW, 1.0
         self.shown: kernel.Model | None = None
@@ -240,14 +240,16 @@ class Space:
         """A number that changes whenever what was found ahead may be worth nothing."""
         return self.changes + self.learner.trees.forgotten
 
-    def _expand_slice(self, part: Slice, *, beside: bool) -> None:
-        """Expand a slice, in the thread that stores or beside it, where time is taken to look successors up."""
-        words, state = self.rows.words, part.state
-        state[SEEN] = self.stored
-        kernel.gather(part.model, words, part.batch, state, part.end)
-        kernel.drop_repeated(part.batch, state)
-        if beside and self.compact is None:
-            kernel.sift(words, self.table.room, part.batch, state)
+    def _expand_slice(self, part: Slice) -> None:
+        """Expand a slice, in any thread."""
+        kernel.gather(part.model, self.rows.words, part.batch, part.state, part.end)
+        kernel.drop_repeated(part.batch, part.state)
+
+    def _sift(self, part: Slice) -> None:
+        """Leave of a slice only what is none of the rows that are stored; tags are compared where they are stored."""
+        if self.compact is None:
+            part.state[SEEN] = self.stored
+            kernel.sift(self.rows.words, self.table.room, part.batch, part.state)
 
     def _commit(self, part: Slice) -> None:
         """Store what was found in a slice; rows that were put off are expanded when their turn comes."""

@@ -80,18 +80,25 @@ def test_reports_are_the_same_for_any_number_of_threads(name):
     assert told[0] == told[1]
 
 
-def test_other_threads_expand_slices(monkeypatch):
-    by, expand = set(), space.Space._expand_slice
+def test_other_threads_expand_slices_and_sift_them(monkeypatch):
+    done = set()
 
-    def noted(self, part, *, beside):
-        by.add((threading.current_thread() is threading.main_thread(), beside))
-        expand(self, part, beside=beside)
+    def noted(name):
+        do = getattr(space.Space, name)
 
-    monkeypatch.setattr(space.Space, "_expand_slice", noted)
+        def note(self, part):
+            done.add((name, threading.current_thread() is threading.main_thread()))
+            do(self, part)
+
+        monkeypatch.setattr(space.Space, name, note)
+
+    noted("_expand_slice")
+    noted("_sift")
     alone = seen(start("rendezvous"), 1, limits=Limits())
-    assert by == {(True, False)}
+    assert done == {("_expand_slice", True)}
     assert seen(start("rendezvous"), 4, limits=Limits()) == alone
-    assert (False, True) in by
+    assert {("_expand_slice", False), ("_sift", False)} <= done
+    assert ("_sift", True) not in done
 
 
 @pytest.mark.parametrize("bits", [16, 32, 64])
