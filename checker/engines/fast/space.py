@@ -195,10 +195,7 @@ class Space:
     # --- expanding ------------------------------------------------------------------------------------------------
 
     def advance(self, until: int, end: int | None = None) -> None:
-        """Expand rows up to a number, learning what is not known on the way.
-
-        Other threads may go ahead as far as to some end, beyond which nothing may be expanded yet.
-        """
+        """Expand rows up to a number or somewhat farther, but never beyond an end, learning what is not known."""
         if self.choosing is not None:
             self._advance_by(self.choosing, until)
             return
@@ -209,16 +206,19 @@ class Space:
                 self._expand_here(until)
 
     def _next(self, end: int) -> Slice:
-        """Return the slice that comes next, expanded; let others go ahead, as far as to some end."""
+        """Return the slice that comes next, expanded; let others go ahead, as far as rows are stored.
+
+        No slice lies on both sides of some end.
+        """
         pipeline = self.pipeline
         if pipeline.begin is not None and pipeline.begin > self.expanded:  # a batch was full before its end
             pipeline.ahead.appendleft(self._slice(self.expanded, pipeline.begin))
         elif pipeline.ahead and pipeline.ahead[0].epoch != self._epoch:
             pipeline.drop()
         begin = self.expanded if pipeline.end is None else pipeline.end
-        while begin < end and not pipeline.is_full:
-            rows = min(self.pace, int(BATCH / 2 / self.breadth), pipeline.fair(end - begin))
-            part = self._slice(begin, min(begin + max(rows, 1), end))
+        while not pipeline.is_full and begin < (stop := end if begin < end else self.size):
+            rows = min(self.pace, int(BATCH / 2 / self.breadth), pipeline.fair(stop - begin))
+            part = self._slice(begin, min(begin + max(rows, 1), stop))
             pipeline.add(part)
             begin = part.end
         return pipeline.take()
