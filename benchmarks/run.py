@@ -1,7 +1,8 @@
 """Measure the patrol beside SPIN: assert the counts, then run both in turns, with cold and warm starts.
 
-Usage: `python benchmarks/run.py [--turns N] [--output FILE] AGENTSxSIDE[+handover] ...`. The reference engine takes
-part where there are few configurations.
+Both run on one core and on two. The reference engine takes part where there are few configurations.
+
+Usage: `python benchmarks/run.py [--turns N] [--output FILE] AGENTSxSIDE[+handover] ...`
 """
 
 import argparse

@@ -36,7 +36,7 @@ def patrol_tables(kept: Kept) -> str:
         (
             each["size"],
             f"{each['configurations']:,}",
-            *(f"{each['ratio_to_spin'][ratio]:.2f}" for ratio in RATIOS.values()),
+            *(_ratio(each["ratio_to_spin"], ratio) for ratio in RATIOS.values()),
         )
         for each in kept["sizes"]
     ]
@@ -51,6 +51,11 @@ def patrol_tables(kept: Kept) -> str:
     )
     tables = (_table(head, rows) for head, rows in zip(heads, (tools, beside, phases), strict=True))
     return "\n".join([*tables, machine(kept)])
+
+
+def _ratio(ratios: Kept, name: str) -> str:
+    """Return a ratio as text; what was measured before it was asked for has none."""
+    return f"{ratios[name]:.2f}" if name in ratios else ""
 
 
 def _run(run: Kept) -> tuple[str, ...]:
